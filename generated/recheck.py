@@ -1,51 +1,1368 @@
-"""Re-verify kernels from their files alone: `python recheck.py NAME.cert.json ..`; standard library, nothing of symrot.
+"""Re-check kernels from their files alone: ``python recheck.py NAME.cert.json ..``. It needs Python, nothing of symrot.
 
-Every hash. Link 3, C text = formulas: exactly, at a random point of fractions, where functions are any functions and
-choices any means of their two ways; what series leave out is computed at 64 random points. Link 1, formulas obey laws:
-to 60 digits at 8 random points where what is given holds, of numbers up to 1000, at 64 if they choose. What fails by
-less, or only near few points or far out, is not noticed: `symrot audit` proves. Link 4, rounding errors within their
-bounds: at a random point of a box without holes, so that `(x + 1e20) - 1e20` is refused; not after conversions whose
-box has holes. Headers hold known macros and prototypes alone, and symrot_math.h is the one below by its hash; NumPy
-texts are known by hash alone. That a kernel is what its name says, and what else is said (proofs, titles, operations,
-flags, theorems, object code), is not looked at, nor where C is defined. Names that end in _ are of this file alone.
+What is checked
+---------------
+Files (`certified`): the seal of the certificate and the hash of every file that it names.
+
+C text (`check_precision`): each function computes the formulas of the certificate. Both are evaluated at one random
+point, exactly, in fractions. There, sin(x) is a random number that depends on x alone, and ``a < b ? x : y`` is a
+random mean of x and y that depends on a and b alone. Two texts that differ as rational expressions of their functions
+and choices agree at such a point with negligible probability. An identity of the functions themselves, such as
+sin^2 + cos^2 = 1, is not used, so a C text may not rely on it.
+
+Series (`check_series`): a polynomial that replaces a function near a removable singularity is close enough to it,
+measured at 64 random points.
+
+Laws (`check_law`): the formulas obey the laws, to 60 digits, at 8 random points up to 1000 (64 points if there are
+choices). A law that fails by less, or only near few points or far out, is not noticed: `symrot audit` proves laws.
+
+Rounding (`check_rounding`): at one random point of the box, computed as C computes, the error is within its bound. So
+``(x + 1e20) - 1e20`` is refused, which is x in exact arithmetic.
+
+Header (`check_header`): it declares the functions of the C file and defines only the known macros.
+
+What is not checked
+-------------------
+Proofs of laws, theorems of Coq, operation counts, flags, object code, the domain; NumPy texts beyond their hash. That a
+kernel computes what its name promises: all files must agree on the name, but only `symrot audit` knows its meaning.
+
+Which C is read
+---------------
+Everything that this grammar does not derive is refused. ``real`` is double or float; E is an expression.
+
+    file        = {include} {function}
+    include     = #include <math.h> | #include "symrot_math.h" | #include "NAME.h"       (each at most once)
+    function    = static inline real name(real a, ..) { {local} return E; }
+                | void name(parameters) { {unused} {statement} }                         (one sample)
+                | void name(size_t n, parameters) { {unused} loops }                     (n samples)
+    parameter   = real a | [const] real a[3] | [const] real *SYMROT_RESTRICT a
+    unused      = (void)a;
+    statement   = local | assignment | far
+    local       = const real x = E;
+    assignment  = a[index] = E;
+    far         = beyond += symrot_far(E) {+ symrot_far(E)};                             (in blocks only)
+    index       = 2 (one sample) | k | n + k | 2*n + k                                   (component 2 of sample k)
+    loops       = the three phrases EACH_SAMPLE, SPANS and BLOCKS below, around {statement}
+    E           = sum | sum < sum ? sum : sum                                            (or >=, ==)
+    sum         = product {(+ | -) product}
+    product     = factor {(* | /) factor}
+    factor      = -factor | number | x | a[index] | function(sum, ..) | (sum)
+
+Each name is declared before its use and never again, and each component is assigned once. Formulas of certificates
+have the same expressions, with powers ``x**2``, ``x**(3/2)`` and whole numbers or decimals.
 """
 
 # mypy: ignore-errors
-import ast
 import json
 import math
+import operator
 import re
 import sys
-from collections import Counter, defaultdict
 from ctypes import c_double, c_float
 from decimal import Context, Decimal, localcontext
 from fractions import Fraction
-from functools import cache, partial
+from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from secrets import randbelow
+from typing import NamedTuple
 
-PI = Decimal("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803482534211707")
+PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803482534211707")
+DIGITS = Context(prec=190, Emax=120)  # of laws and exact values; what overflows is drawn again
+LARGEST_FILE = 16_000_000  # bytes
+LONGEST_TEXT = 200_000  # words of a function or formula, those of the functions that it calls included
+LONGEST_NUMBER = 50_000  # binary digits of a numerator or denominator
+MATH_HEADER_SHA256 = "ec48bca7f8eb7ed77612704a0672155f4af0330d0679ba59524c5cfb5f5b0a19"  # of symrot_math.h
+
+FUNCTIONS = {"sin": 1, "cos": 1, "sqrt": 1, "atan2": 2, "copysign": 2}  # name -> number of arguments
+FUNCTIONS |= dict.fromkeys(("tan", "asin", "acos", "atan", "exp", "log", "sinh", "cosh", "tanh"), 1)
+FORMULA_FUNCTIONS = FUNCTIONS | {"Abs": 1}
+C_FUNCTIONS = FUNCTIONS | {"fabs": 1}
+VECTOR_FUNCTIONS = {"symrot_sin": 1, "symrot_cos": 1, "symrot_atan2": 2}  # of symrot_math.h
+FORMULA_CHOICES = {"select_lt": "<", "select_eq": "==", "select_ge": ">="}  # f(a, b, x, y) = a < b ? x : y
+VECTOR_CHOICES = {"symrot_select_lt": "<", "symrot_select_eq": "==", "symrot_choose_ge": ">="}  # of symrot_math.h
+COMPARISONS = {"<": operator.lt, "==": operator.eq, ">=": operator.ge}
+
+
+def need(holds, sentence):
+    """Refuse a certificate with a sentence unless a condition holds."""
+    if not holds:
+        raise ValueError(sentence)
+
+
+def shown(value):
+    """Return a value for a sentence: short, in one line."""
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+# --- expressions ------------------------------------------------------------------------------------------------------
+# Every node has value(numbers, names): `numbers` is an arithmetic of the next section, `names` the values of variables.
+
+
+class Number(NamedTuple):
+    """A number of a formula, exactly."""
+
+    number: Fraction
+
+    def value(self, numbers, names):
+        return numbers.number(self.number)
+
+
+class Literal(NamedTuple):
+    """A number of a C text: the double or float that C makes of it."""
+
+    number: float
+
+    def value(self, numbers, names):
+        return numbers.literal(self.number)
+
+
+class Variable(NamedTuple):
+    """A variable: a name, or (array, component)."""
+
+    name: str | tuple[str, int]
+
+    def value(self, numbers, names):
+        return names[self.name]
+
+
+class Negative(NamedTuple):
+    """Minus an operand."""
+
+    operand: object
+
+    def value(self, numbers, names):
+        return numbers.negate(self.operand.value(numbers, names))
+
+
+class Chain(NamedTuple):
+    """Sums and differences, or products and quotients, from left to right: ``first [(operation, operand), ..]``."""
+
+    first: object
+    rest: list
+
+    def value(self, numbers, names):
+        total = self.first.value(numbers, names)
+        for operation, operand in self.rest:
+            total = numbers.operate(operation, total, operand.value(numbers, names))
+        return total
+
+
+class Power(NamedTuple):
+    """A whole power of an operand, or of its square root."""
+
+    operand: object
+    exponent: int
+
+    def value(self, numbers, names):
+        return numbers.power(self.operand.value(numbers, names), self.exponent)
+
+
+class Call(NamedTuple):
+    """A call of a mathematical function."""
+
+    function: str
+    arguments: list
+
+    def value(self, numbers, names):
+        return numbers.apply(self.function, [argument.value(numbers, names) for argument in self.arguments])
+
+
+class Choice(NamedTuple):
+    """``a < b ? x : y``, or with another comparison."""
+
+    comparison: str
+    a: object
+    b: object
+    x: object
+    y: object
+
+    def value(self, numbers, names):
+        a, b = self.a.value(numbers, names), self.b.value(numbers, names)
+        return numbers.choose(
+            self.comparison, a, b, lambda: self.x.value(numbers, names), lambda: self.y.value(numbers, names)
+        )
+
+
+class Definition(NamedTuple):
+    """A function that a certificate or a C text defines: local variables, then its value."""
+
+    parameters: list
+    local: list  # of (name, expression)
+    result: object
+    weight: int  # words to read for one call
+
+    def call(self, numbers, arguments):
+        names = dict(zip(self.parameters, arguments, strict=True))
+        for name, expression in self.local:
+            names[name] = expression.value(numbers, names)
+        return self.result.value(numbers, names)
+
+
+class OwnCall(NamedTuple):
+    """A call of a function that the certificate or the C text defines."""
+
+    definition: Definition
+    arguments: list
+
+    def value(self, numbers, names):
+        return self.definition.call(numbers, [argument.value(numbers, names) for argument in self.arguments])
+
+
+# --- arithmetics ------------------------------------------------------------------------------------------------------
+
+
+OPERATIONS = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}
+
+
+class Arithmetic:
+    """Numbers of one kind, with random values of functions, at one random point. Subclasses say what differs."""
+
+    def __init__(self):
+        self.drawn = {}  # (function, *arguments) or (comparison, a, b) -> random number
+
+    def random(self, *key):
+        """Return a random number that depends on the key alone."""
+        if key not in self.drawn:
+            self.drawn[key] = self.draw()
+        return self.drawn[key]
+
+    def negate(self, x):
+        return -x
+
+    def operate(self, operation, x, y):
+        return OPERATIONS[operation](x, y)
+
+    def choose(self, comparison, a, b, x, y):
+        """Return x() or y(): the way that is not chosen is not computed."""
+        return x() if COMPARISONS[comparison](a, b) else y()
+
+
+class AnyFunctions(Arithmetic):
+    """Exact fractions, where functions and choices are any.
+
+    A function is a random number for each argument; a choice is a random mean of its two ways for each comparison.
+    Expressions that agree here agree, with overwhelming probability, for all functions of these names.
+    """
+
+    def __init__(self):
+        super().__init__()
+        self.constants = {}  # double or float -> the number that it represents: pi, 1/3
+        self.near_angles = set()  # arguments of symrot_sin and symrot_cos
+
+    def draw(self):
+        return Fraction(randbelow(2**99) - 2**98)
+
+    def number(self, number):
+        return number
+
+    def literal(self, number):
+        return self.constants.get(number, Fraction(number))
+
+    def operate(self, operation, x, y):
+        return self.short(OPERATIONS[operation](x, y))
+
+    def power(self, x, exponent):
+        need(isinstance(exponent, int), "expected whole powers in formulas, got a root: write it as sqrt(..)")
+        self.short(x, abs(exponent))
+        return x**exponent
+
+    def short(self, x, times=1):
+        """Return a number, refused if it or its power is so long that the check would take too long."""
+        digits = max(x.numerator.bit_length(), x.denominator.bit_length()) * times
+        need(digits <= LONGEST_NUMBER, f"expected numbers of at most {LONGEST_NUMBER} binary digits, got longer ones")
+        return x
+
+    def apply(self, function, arguments):
+        if function in ("symrot_sin", "symrot_cos"):
+            self.near_angles.add(arguments[0])
+        return self.random(function.removeprefix("symrot_").replace("fabs", "Abs"), *arguments)
+
+    def choose(self, comparison, a, b, x, y):
+        share = self.random(comparison, a, b)
+        return self.short(x() * share + y() * (1 - share))
 
 
 @cache
 def sine(x):
-    """Return the sine by 60 terms of its series, those of high powers first."""
-    x = x % (2 * PI)
+    """Return the sine of a Decimal by 60 terms of its series, those of high powers first."""
+    pi = Decimal(PI.numerator) / PI.denominator
+    x = x % (2 * pi)
     square, total = x * x, 1
     for k in range(118, 0, -2):
         total = 1 - total * square / (k * (k + 1))
     return x * total
 
 
-PLAIN = {"sin": sine, "cos": lambda x: sine(x + PI / 2), "sqrt": Decimal.sqrt, "fabs": abs}
-PLAIN |= {"copysign": Decimal.copy_sign, "nearly_": lambda y, x: Decimal(math.atan2(y, x))}
-OTHERS = ("tan", "asin", "acos", "atan", "exp", "log", "sinh", "cosh", "tanh")  # any functions, in laws too
-MEANS = {"atan2": "closer_(x, y, closer_(x, y, nearly_(x, y)))", "closer_": "z + (x*cos(z) - y*sin(z))/sqrt(x*x + y*y)"}
-MEANS |= {"select_lt": "x < y ? z : w", "select_eq": "x == y ? z : w", "select_ge": "x >= y ? z : w", "Abs": "fabs(x)"}
-LARGEST = 16_000_000  # bytes of a file
-MATH = "ec48bca7f8eb7ed77612704a0672155f4af0330d0679ba59524c5cfb5f5b0a19"  # symrot_math.h
-HEADER = """#ifndef SYMROT_@_H
+def cosine(x):
+    """Return the cosine of a Decimal."""
+    return sine(x + Decimal(PI.numerator) / PI.denominator / 2)
+
+
+def arc_tangent(y, x):
+    """Return atan2(y, x) of Decimals: the double, made closer twice; each step triples the digits."""
+    angle = Decimal(math.atan2(y, x))
+    for _ in range(2):
+        angle += (y * cosine(angle) - x * sine(angle)) / (x * x + y * y).sqrt()
+    return angle
+
+
+EXACT_FUNCTIONS = {"sin": sine, "cos": cosine, "sqrt": Decimal.sqrt, "Abs": abs, "atan2": arc_tangent}
+EXACT_FUNCTIONS |= {"copysign": Decimal.copy_sign}
+
+
+class Decimals(Arithmetic):
+    """Numbers of 190 digits. Functions that no law knows (tan, exp, ..) are any functions."""
+
+    def __init__(self):
+        super().__init__()
+        self.scale = 2 ** randbelow(11)  # so that points near 0 and far from it are drawn
+
+    def draw(self):
+        return self.scale * Decimal(randbelow(2**99) - 2**98) / 2**98
+
+    def number(self, number):
+        return Decimal(number.numerator) / number.denominator
+
+    def power(self, x, exponent):
+        return x**exponent if isinstance(exponent, int) else x.sqrt() ** int(2 * exponent)
+
+    def apply(self, function, arguments):
+        if function in EXACT_FUNCTIONS:
+            return EXACT_FUNCTIONS[function](*arguments)
+        return self.random(function, *arguments)
+
+
+class Machine(Arithmetic):
+    """The arithmetic of C: each operation and function is rounded to the nearest double or float."""
+
+    def __init__(self, nearest):
+        super().__init__()
+        self.nearest = nearest
+
+    def literal(self, number):
+        return number
+
+    def operate(self, operation, x, y):
+        return self.rounded(OPERATIONS[operation], x, y)
+
+    def apply(self, function, arguments):
+        return self.rounded(getattr(math, function.removeprefix("symrot_")), *arguments)
+
+    def rounded(self, function, *arguments):
+        try:
+            return self.nearest(function(*arguments)).value
+        except (ArithmeticError, ValueError):  # Python raises where C goes on with NaN or an infinity
+            return math.nan
+
+
+class Names(dict):
+    """Values of symbols at a random point: those without a definition are drawn when they are first used."""
+
+    def __init__(self, numbers):
+        super().__init__(pi=numbers.number(PI))
+        self.numbers = numbers
+
+    def __missing__(self, name):
+        self[name] = value = self.numbers.draw()
+        return value
+
+    def define(self, name, value):
+        need(name not in self, f"{name} is no new name: expected a name that nothing above it uses")
+        self[name] = value
+
+
+def at_a_point(compute):
+    """Return what a function computes at a random point; where it is not defined, another point is drawn."""
+    for _ in range(200):
+        try:
+            return compute()
+        except ArithmeticError:
+            continue
+    raise ValueError("expected formulas that are defined somewhere, got none of 200 random points where they are")
+
+
+# --- tokens and expressions as text -----------------------------------------------------------------------------------
+
+TOKEN = re.compile(
+    r"(?P<space>[ \n]+)|(?P<name>[A-Za-z_]\w*)|(?P<number>\.?\d(?:[eE][-+]|[\w.])*)"
+    r"|(?P<symbol>\*\*|\+\+|--|[-+*/<>=!]=|<<|>>|->|[-+*/()\[\]{},;<>=?:])",
+    re.ASCII,
+)
+NUMBER = re.compile(r"\d{1,400}(\.\d{1,400})?(e[-+]?\d\d?)?", re.ASCII)  # of a formula
+C_NUMBER = re.compile(r"(\d{1,40}\.\d{0,40}|\d{1,40}(?=e))(e[-+]?\d\d?)?(f?)", re.ASCII)
+INDEX = re.compile(r"0|[1-9]\d{0,2}", re.ASCII)
+END = "the end"
+
+
+class Token(NamedTuple):
+    """A word of a text: its kind (name, number, symbol), and the line that it is on."""
+
+    kind: str
+    text: str
+    line: int
+
+
+def tokens(text, place):
+    """Return the words of a text as C takes them apart: each as long as possible."""
+    words, start, line = [], 0, 1
+    while start < len(text):
+        match = TOKEN.match(text, start)
+        need(match, f"{place}, line {line}: expected names, numbers and operators, got {shown(text[start])}")
+        if match.lastgroup != "space":
+            words.append(Token(match.lastgroup, match[0], line))
+        line += match[0].count("\n")
+        start = match.end()
+    return [*words, Token("end", END, line)]
+
+
+class Reader:
+    """Recursive descent through expressions; subclasses say what numbers, names and functions there are."""
+
+    def __init__(self, text, place):
+        self.place = place
+        self.tokens = tokens(text, place)
+        self.position = 0
+        self.weight = 0  # words read, and those of each function at each call
+
+    @property
+    def token(self):
+        return self.tokens[self.position]
+
+    def here(self):
+        return f"{self.place}, line {self.token.line}"
+
+    def refuse(self, expectation):
+        """Refuse the text at the next word."""
+        raise ValueError(f"{self.here()}: expected {expectation}, got {shown(self.token.text)}")
+
+    def need(self, holds, sentence):
+        need(holds, f"{self.here()}: {sentence}")
+
+    def advance(self):
+        """Return the next word and step over it."""
+        token = self.token
+        self.position += token.kind != "end"
+        self.weight += 1
+        return token.text
+
+    def accept(self, text):
+        """Step over the next word if it is this one."""
+        if self.token.text != text or self.token.kind == "end":
+            return False
+        self.advance()
+        return True
+
+    def take(self, phrase):
+        """Step over the words of a phrase, which have to come next."""
+        for word in tokens(phrase, phrase)[:-1]:
+            if not self.accept(word.text):
+                self.refuse(f"`{word.text}` of `{phrase}`")
+
+    def take_name(self, what):
+        """Return the name that comes next. Names with _ in front or of macros mean something else to compilers."""
+        if self.token.kind != "name" or self.token.text.startswith(("_", "SYMROT_")):
+            self.refuse(what)
+        return self.advance()
+
+    def expression(self):
+        """Read a sum, or a choice between two sums: choices do not nest, so no reader can pair them in another way."""
+        a = self.sum()
+        if self.token.text not in COMPARISONS:
+            return a
+        comparison, b = self.advance(), self.sum()
+        self.take("?")
+        x = self.sum()
+        self.take(":")
+        return Choice(comparison, a, b, x, self.sum())
+
+    def sum(self):
+        return self.chain(("+", "-"), self.product)
+
+    def product(self):
+        return self.chain(("*", "/"), self.factor)
+
+    def chain(self, operations, operand):
+        first, rest = operand(), []
+        while self.token.text in operations:
+            rest.append((self.advance(), operand()))
+        return Chain(first, rest) if rest else first
+
+    def factor(self):
+        """Read a number, a variable, a call or a sum in parentheses, and what its subclass allows behind it."""
+        if self.accept("-"):
+            return Negative(self.factor())
+        if self.token.kind == "number":
+            return self.power(self.number())
+        if self.accept("("):
+            inner = self.sum()
+            self.take(")")
+            return self.power(inner)
+        name = self.take_name("a number, a name or a parenthesis")
+        return self.power(self.call(name) if self.accept("(") else self.variable(name))
+
+    def power(self, operand):
+        return operand
+
+    def call(self, name):
+        """Read the arguments of a function, behind its parenthesis."""
+        arguments = [self.sum()]
+        while self.accept(","):
+            arguments.append(self.sum())
+        self.take(")")
+        own = self.own.get(name)
+        arity = len(own.parameters) if own else 4 if name in self.choices else self.functions.get(name)
+        self.need(arity, f"expected a known function, got {shown(name)}")
+        self.need(len(arguments) == arity, f"expected {arity} arguments of {name}, got {len(arguments)}")
+        if own:
+            self.weight += own.weight
+            self.check_weight()
+            return OwnCall(own, arguments)
+        return Choice(self.choices[name], *arguments) if name in self.choices else Call(self.base(name), arguments)
+
+    def check_weight(self):
+        self.need(self.weight <= LONGEST_TEXT, f"expected at most {LONGEST_TEXT} words with those of functions")
+
+
+class FormulaReader(Reader):
+    """A formula of a certificate: free symbols, powers, and functions that the certificate defines.
+
+    With ``symbols``, it has no other names; a constant has no functions either.
+    """
+
+    def __init__(self, text, place, own, symbols=None, is_constant=False):
+        super().__init__(text, place)
+        self.own, self.symbols = own, symbols
+        self.functions = {} if is_constant else FORMULA_FUNCTIONS
+        self.choices = {} if is_constant else FORMULA_CHOICES
+
+    def number(self):
+        text = self.advance()
+        self.need(NUMBER.fullmatch(text), f"expected a number such as 2 or 0.5, got {shown(text)}")
+        return Number(Fraction(text))
+
+    def variable(self, name):
+        reserved = name in self.functions or name in self.choices or name in self.own
+        known = not reserved and (self.symbols is None or name in self.symbols)
+        self.need(known, f"expected the name of a variable, got {shown(name)}")
+        return Variable(name)
+
+    def base(self, name):
+        return name
+
+    def power(self, operand):
+        """Read an exponent of one or two digits, or half of one, in parentheses if it is negative or a half."""
+        if not self.accept("**"):
+            return operand
+        inner, sign = self.accept("("), -1 if self.accept("-") else 1
+        self.need(re.fullmatch(r"\d\d?", self.token.text), "expected an exponent of at most two digits")
+        exponent = sign * int(self.advance())
+        if inner and self.accept("/"):
+            self.take("2")
+            exponent = Fraction(exponent, 2)
+        if inner:
+            self.take(")")
+        if self.token.text == "**":
+            self.refuse("one exponent")
+        return Power(operand, exponent)
+
+    def whole(self):
+        """Return the expression of the text, refused if anything follows it."""
+        expression = self.expression()
+        self.need(self.token.kind == "end", f"expected the end of the formula, got {shown(self.token.text)}")
+        self.check_weight()
+        return expression
+
+
+def constant(text, place):
+    """Return the number that a text without variables and functions is, exactly; pi to 100 digits."""
+    return FormulaReader(text, place, {}, ("pi",), is_constant=True).whole().value(AnyFunctions(), {"pi": PI})
+
+
+# --- the C text -------------------------------------------------------------------------------------------------------
+
+INDEPENDENT = "SYMROT_INDEPENDENT"
+EACH_SAMPLE = "for (size_t k = 0; k < n; ++k) {"
+SPANS = (
+    "for (size_t start = 0; start < n; start += SYMROT_SPAN) {"
+    " const size_t end = n - start < SYMROT_SPAN ? n : start + SYMROT_SPAN;"
+)
+BLOCKS = SPANS.replace("SYMROT_SPAN", "SYMROT_BLOCK")
+OF_SPAN = "for (size_t k = start; k < end; ++k) {"
+AGAIN = "const size_t again = beyond == 0 ? start : end; for (size_t k = start; k < again; ++k) {"
+RESERVED = {"n", "k", "start", "end", "again", "beyond", "symrot_far", "symrot_farf", "size_t", "uint64_t", "uint32_t"}
+RESERVED |= {"double", "float", "void", "const", "static", "inline", "return", "for"}
+REALS = {"double": "", "float": "f"}  # type -> end of the names of its functions
+COUNTERS = {"double": "uint64_t", "float": "uint32_t"}
+
+
+class Parameter(NamedTuple):
+    """A parameter of a C function. Its form is "value" (one number), "array" (of one sample) or "samples" (of all)."""
+
+    name: str
+    form: str
+    size: int  # components
+    is_input: bool
+
+
+class Body(NamedTuple):
+    """What is computed for one sample, in order."""
+
+    statements: list  # of (name or (array, component), expression)
+    far: list  # expressions that `symrot_far` is asked about
+
+
+class Kernel(NamedTuple):
+    """A C function without result: what it is for one sample, or for n samples in a shape of loops."""
+
+    parameters: list
+    shape: str  # "one sample", "each sample", "spans" or "blocks"
+    bodies: list
+    real: str
+    prototype: tuple  # the words of its declaration
+
+
+def without_comments(text, file):
+    """Return a text with spaces for comments, on the same lines.
+
+    Refused is whatever compilers or versions of C may read in two ways: trigraphs, lines joined by a backslash, line
+    comments, comments in comments, and all characters but printable ASCII and ends of lines.
+    """
+    odd = re.search(r"[^\n -~]|\\|\?\?|//", text)
+    need(not odd, f"{file}: expected plain ASCII without backslashes, ?? and //, got {shown(odd and odd[0])}")
+    pieces, start = [], 0
+    while (opened := text.find("/*", start)) >= 0:
+        closed = text.find("*/", opened + 2)
+        comment = text[opened + 2 : closed]
+        need(closed >= 0 and "/*" not in comment, f"{file}: expected comments that end once, without one inside")
+        pieces += [text[start:opened], " ", "\n" * comment.count("\n")]
+        start = closed + 2
+    return "".join([*pieces, text[start:]])
+
+
+def split_includes(text, name, files):
+    """Return the headers that a C text includes, and the text with empty lines in their place.
+
+    Lines of the preprocessor are #include lines of the three known headers, in front of all code. Any other # is no
+    word of the grammar, so that macros cannot change what is read here.
+    """
+    known = {'#include "symrot_math.h"'} if "symrot_math.h" in files else set()
+    known |= {"#include <math.h>", f'#include "{name}.h"'}
+    lines, included = text.split("\n"), set()
+    for number, line in enumerate(lines):
+        line = line.strip()
+        if line and not line.startswith("#"):
+            break
+        if line:
+            need(
+                line in known and line not in included,
+                f"{name}.c, line {number + 1}: expected #include of math.h, symrot_math.h or {name}.h, each once, "
+                f"got {shown(line)}",
+            )
+            included.add(line)
+            lines[number] = ""
+    return {re.search(r'[<"](.*)[>"]', line)[1] for line in included}, "\n".join(lines)
+
+
+class CReader(Reader):
+    """The functions of a C file, by the grammar at the head of this file."""
+
+    def __init__(self, text, name, files, sizes):
+        included, text = split_includes(without_comments(text, f"{name}.c"), name, files)
+        super().__init__(text, f"{name}.c")
+        self.included = included
+        self.sizes = sizes  # of arrays, by the certificate: a batch does not declare them
+        self.kernels, self.inline = {}, {real: {} for real in REALS}
+        self.parameters, self.names, self.assigned = {}, set(), set()
+        self.real, self.in_batch = "double", False
+        while self.token.kind != "end":
+            self.function()
+
+    # expressions
+
+    def number(self):
+        text = self.advance()
+        match = C_NUMBER.fullmatch(text)
+        self.need(
+            match and match[3] == REALS[self.real],
+            f"expected a {self.real} such as 2.0{REALS[self.real]}, got {shown(text)}",
+        )
+        return Literal(NEAREST[self.real](float(text.removesuffix("f"))).value)
+
+    def variable(self, name):
+        """Read a local variable, a parameter that is one number, or a component of an input."""
+        if self.token.text == "[":
+            return Variable(self.component(name, is_input=True))
+        if name not in self.names:
+            self.position -= 1
+            self.refuse("a variable that is declared above")
+        return Variable(name)
+
+    def component(self, name, is_input):
+        """Read an index: ``[2]`` of an array, or ``[2*n + k]`` of samples; ``[k]`` and ``[n + k]`` are 0 and 1."""
+        parameter = self.parameters.get(name)
+        self.need(
+            parameter and parameter.form != "value" and parameter.is_input == is_input,
+            f"expected an array of {'inputs' if is_input else 'outputs'}, got {shown(name)}",
+        )
+        self.take("[")
+        component = 0
+        if parameter.form == "array":
+            component = self.index()
+        elif not self.accept("k"):
+            component = 1
+            if self.token.text != "n":
+                component = self.index()
+                self.take("*")
+            self.take("n + k")
+        self.need(component < parameter.size, f"expected an index below {parameter.size} of {name}")
+        self.take("]")
+        return name, component
+
+    def index(self):
+        if not INDEX.fullmatch(self.token.text):
+            self.refuse("a whole number")
+        return int(self.advance())
+
+    def use(self, real):
+        """Set the type of numbers, and the functions that there are for it."""
+        self.real, end = real, REALS[real]
+        self.own = self.inline[real]
+        functions = C_FUNCTIONS if "math.h" in self.included else {}
+        if "symrot_math.h" in self.included:
+            functions = functions | VECTOR_FUNCTIONS
+        choices = VECTOR_CHOICES if "symrot_math.h" in self.included else {}
+        self.functions = {name + end: arity for name, arity in functions.items()}
+        self.choices = {name + end: comparison for name, comparison in choices.items()}
+
+    def base(self, name):
+        return name.removesuffix("f") if self.real == "float" else name
+
+    # functions
+
+    def new_name(self, what):
+        """Return a name that means nothing yet: not of a variable, a function, a loop or of C."""
+        name = self.take_name(what)
+        known = [self.names, self.parameters, self.kernels, RESERVED, *self.inline.values()]
+        for end in REALS.values():
+            known.append({f + end for f in (*C_FUNCTIONS, *VECTOR_FUNCTIONS, *VECTOR_CHOICES)})
+        self.need(
+            not any(name in each for each in known),
+            f"{name} is no new name: expected {what} that means nothing yet",
+        )
+        return name
+
+    def function(self):
+        self.parameters, self.names, self.weight = {}, set(), 0
+        if self.token.text == "static":
+            self.inline_function()
+        else:
+            self.kernel()
+        self.check_weight()
+
+    def inline_function(self):
+        """Read a function of numbers: locals, then its value. It may call those above it, so it cannot call itself."""
+        self.take("static inline")
+        if self.token.text not in REALS:
+            self.refuse("double or float")
+        self.use(self.advance())
+        name = self.new_name("the name of a function")
+        if not name.startswith("symrot_"):
+            self.position -= 1
+            self.refuse("the name of a function that begins with symrot_")
+        self.take("(")
+        parameters = []
+        while not parameters or self.accept(","):
+            self.take(self.real)
+            parameters.append(self.new_name("the name of a parameter"))
+            self.names.add(parameters[-1])
+        self.take(") {")
+        local = []
+        while self.token.text == "const":
+            local.append(self.local())
+        self.take("return")
+        result = self.expression()
+        self.take("; }")
+        self.inline[self.real][name] = Definition(parameters, local, result, self.weight)
+
+    def kernel(self):
+        """Read a function of arrays, for one sample or, if its first parameter is n, for n samples."""
+        start = self.position
+        self.take("void")
+        name = self.new_name("the name of a function")
+        self.take("(")
+        self.in_batch = self.accept("size_t")
+        if self.in_batch:
+            self.take("n ,")
+        first = [token.text for token in self.tokens[self.position : self.position + 2]]  # const float, or float
+        self.use("float" if "float" in first else "double")
+        while not self.parameters or self.accept(","):
+            parameter = self.parameter()
+            self.parameters[parameter.name] = parameter
+            if parameter.form == "value":
+                self.names.add(parameter.name)
+        self.take(")")
+        prototype = tuple(token.text for token in self.tokens[start : self.position])
+        self.take("{")
+        while self.accept("("):  # (void)a; an input that is not needed
+            self.take("void )")
+            self.need(self.take_name("a parameter") in self.parameters, "expected a parameter behind (void)")
+            self.take(";")
+        shape, bodies = self.loops() if self.in_batch else ("one sample", [self.body()])
+        self.kernels[name] = Kernel([*self.parameters.values()], shape, bodies, self.real, prototype)
+
+    def parameter(self):
+        is_input = self.accept("const")
+        self.take(self.real)
+        samples = self.accept("*")
+        if samples:
+            self.take("SYMROT_RESTRICT")
+        name = self.new_name("the name of a parameter")
+        if samples:
+            return Parameter(name, "samples", self.sizes.get(name, 0), is_input)
+        if self.accept("["):
+            size = self.index()
+            self.take("]")
+            return Parameter(name, "array", size, is_input)
+        self.need(not is_input, f"expected `{self.real} {name}` without const, as a number by value")
+        return Parameter(name, "value", 1, True)
+
+    def loops(self):
+        """Read the loops over samples, which have one of three shapes, word for word.
+
+        Each visits every sample from 0 to n - 1. Spans keep arrays in the cache: each of two loops computes a part of
+        the outputs. Blocks compute all outputs by functions for a range of angles; `beyond` counts the angles outside
+        it, and if there is one, the block is computed again by the functions of <math.h>.
+        """
+        if self.accept(INDEPENDENT):
+            self.take(EACH_SAMPLE)
+            bodies = [self.body()]
+            self.take("}")
+            return "each sample", bodies
+        shape = "blocks" if self.comes(BLOCKS) else "spans"
+        self.take(BLOCKS if shape == "blocks" else SPANS)
+        if shape == "blocks":
+            self.take(f"{COUNTERS[self.real]} beyond = 0;")
+        self.take(f"{INDEPENDENT} {OF_SPAN}")
+        bodies = [self.body(asks_far=shape == "blocks")]
+        self.take(AGAIN if shape == "blocks" else f"{INDEPENDENT} {OF_SPAN}")
+        bodies.append(self.body())
+        self.take("} }")
+        return shape, bodies
+
+    def comes(self, phrase):
+        """Tell whether the words of a phrase come next."""
+        words = [token.text for token in tokens(phrase, phrase)[:-1]]
+        return words == [token.text for token in self.tokens[self.position : self.position + len(words)]]
+
+    def body(self, asks_far=False):
+        """Read statements up to a closing brace; their names end there."""
+        outer, self.names, self.assigned = self.names, set(self.names), set()
+        statements, far = [], []
+        while not self.accept("}"):
+            if self.token.text == "const":
+                statements.append(self.local())
+            elif asks_far and not far and self.accept("beyond"):
+                far = self.far()
+            else:
+                statements.append(self.assignment())
+        self.names = outer
+        return Body(statements, far)
+
+    def local(self):
+        """Read ``const double x = E;``. The name is known behind its value, so that it cannot be a part of it."""
+        self.take(f"const {self.real}")
+        name = self.new_name("the name of a variable")
+        self.take("=")
+        expression = self.expression()
+        self.take(";")
+        self.names.add(name)
+        return name, expression
+
+    def assignment(self):
+        """Read ``a[2] = E;``: each component of an output is written once, and never read."""
+        place = self.component(self.take_name("`const`, an output or `}`"), is_input=False)
+        self.need(place not in self.assigned, f"expected an output to be written once, got {place[0]} again")
+        self.assigned.add(place)
+        self.take("=")
+        expression = self.expression()
+        self.take(";")
+        return place, expression
+
+    def far(self):
+        """Read which angles are asked to be in the range of symrot_sin and symrot_cos."""
+        asked = []
+        self.take("+=")
+        while not asked or self.accept("+"):
+            self.take(f"symrot_far{REALS[self.real]}(")
+            asked.append(self.sum())
+            self.take(")")
+        self.take(";")
+        return asked
+
+
+def run(body, numbers, inputs):
+    """Return the outputs of a body, and the angles that it asks about, for values of its inputs."""
+    names, outputs = dict(inputs), {}
+    for target, expression in body.statements:
+        value = expression.value(numbers, names)
+        (names if isinstance(target, str) else outputs)[target] = value
+    return outputs, {angle.value(numbers, names) for angle in body.far}
+
+
+# --- the certificate --------------------------------------------------------------------------------------------------
+
+TEXT = str
+ROW = (TEXT, TEXT, TEXT)
+SHAPE = {
+    "kernel": TEXT, "title": TEXT, "regenerate": TEXT, "files": {str: TEXT}, "inputs": [ROW],
+    "spec": {"parameters": {str: TEXT}, "named": [(TEXT, TEXT)], "formulas": [ROW], "functions": [(TEXT, TEXT)]},
+    "laws": [{"law": TEXT, "vanishing": [TEXT], "given": [TEXT]}],
+    "readback": {str: {"type": TEXT, "constants": [(TEXT, TEXT)], "series": [(TEXT, TEXT, [TEXT], TEXT)]}},
+}  # fmt: skip
+ROUNDING_SHAPE = {
+    "clearance": TEXT, "box": {str: (TEXT, TEXT)},
+    "precisions": [{"precision": TEXT, "outputs": [{"output": TEXT, "absolute": TEXT}]}],
+}  # fmt: skip
+
+
+def check_shape(value, shape, place):
+    """Refuse a value that has not the types of a shape; parts that a shape does not name are not looked at."""
+    if isinstance(shape, type):
+        need(isinstance(value, shape), f"{place}: expected a text, as the schema says, got {shown(value)}")
+    elif isinstance(shape, tuple):
+        right = isinstance(value, list) and len(value) == len(shape)
+        need(right, f"{place}: expected a list of {len(shape)}, as the schema says, got {shown(value)}")
+        for index, part in enumerate(shape):
+            check_shape(value[index], part, f"{place}[{index}]")
+    elif isinstance(shape, list):
+        need(isinstance(value, list), f"{place}: expected a list, as the schema says, got {shown(value)}")
+        for index, part in enumerate(value):
+            check_shape(part, shape[0], f"{place}[{index}]")
+    else:
+        need(isinstance(value, dict), f"{place}: expected an object, as the schema says, got {shown(value)}")
+        for key in value if str in shape else shape:
+            need(key in value, f"{place}: expected {key!r}, as the schema says, and it is missing")
+            check_shape(value[key], shape[str] if str in shape else shape[key], f"{place}.{shown(key)[1:-1]}")
+
+
+def content(path):
+    """Return the bytes of a regular file of a size that kernels have: nothing else is opened."""
+    small = path.is_file() and path.stat().st_size <= LARGEST_FILE
+    need(small, f"{path.name} is no file of at most {LARGEST_FILE} bytes: expected one of the kernel")
+    return path.read_bytes()
+
+
+def text_of(path):
+    """Return the text of a file as its bytes say it, ends of lines included."""
+    try:
+        return content(path).decode("utf-8")
+    except UnicodeDecodeError:
+        raise ValueError(f"{path.name}: expected text in UTF-8, got other bytes") from None
+
+
+def without_repetition(pairs):
+    """Return a JSON object, refused if it says a name twice: people read the first value, programs the last."""
+    items = dict(pairs)
+    need(len(items) == len(pairs), "expected each name once in an object of the certificate, got one twice")
+    return items
+
+
+def certified(path):
+    """Return a certificate whose seal is right and whose files have the hashes that it says.
+
+    Hashes show that the files are those that were certified; that they are right is for the other checks. Files in
+    other folders (NumPy texts) may be missing, those beside the certificate not.
+    """
+    try:
+        data = json.loads(content(path), object_pairs_hook=without_repetition)
+    except RecursionError:
+        raise ValueError(f"{path.name}: expected a certificate, got lists in lists without end") from None
+    except (json.JSONDecodeError, UnicodeDecodeError) as reason:
+        raise ValueError(f"{path.name}: expected JSON of the schema, got none ({reason})") from None
+    check_shape(data, {"schema": TEXT, "seal": TEXT, "kernel": TEXT, "files": {str: TEXT}}, "certificate")
+    sealed = {key: value for key, value in data.items() if key != "seal"}
+    text = json.dumps(sealed, sort_keys=True, separators=(",", ":"))
+    seal = sha256(text.encode()).hexdigest() == data["seal"]
+    known = data["schema"] == "symrot.certificate/1"
+    need(seal and known, "the schema is another, or the text that was sealed: expected symrot.certificate/1 as sealed")
+    name, files = data["kernel"], data["files"]
+    right = re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII) and path.name == f"{name}.cert.json"
+    need(
+        right and {f"{name}.c", f"{name}.h"} <= {*files},
+        f"it is that of another file: expected the kernel of {path.name}, with its C file and header",
+    )
+    for file, digest in files.items():
+        need(re.fullmatch(r"(\.\./){0,2}(\w+/)*\w+\.\w+", file, re.ASCII), f"{shown(file)} is no file of a kernel")
+        if "/" not in file or (path.parent / file).exists():
+            right = sha256(content(path.parent / file)).hexdigest() == digest
+            need(right, f"{file} is not what was certified")
+    return sealed
+
+
+def is_name(text):
+    """Tell whether a text is a name of formulas that has no other meaning."""
+    reserved = text in FORMULA_FUNCTIONS or text in FORMULA_CHOICES or text == "pi"
+    return bool(re.fullmatch(r"[A-Za-z]\w*", text, re.ASCII)) and not reserved
+
+
+def defined_functions(definitions):
+    """Return the functions of x, y, z, w that a certificate defines, each by functions above it."""
+    functions = {}
+    for name, text in definitions:
+        new = is_name(name) and name not in functions
+        need(new, f"{shown(name)} is no new function: expected a name that means nothing yet")
+        parameters = [letter for letter in "xyzw" if re.search(rf"\b{letter}\b", text)]
+        need(parameters and parameters == [*"xyzw"][: len(parameters)], f"{name}: expected a function of x, or of x, y")
+        reader = FormulaReader(text, f"function {name}", functions, ("pi", *parameters))
+        expression = reader.whole()
+        functions[name] = Definition(parameters, [], expression, reader.weight)
+    return functions
+
+
+class Specification:
+    """The formulas of a certificate, read with certain functions."""
+
+    def __init__(self, data, functions):
+        spec = data["spec"]
+        self.functions = functions
+        self.symbols = {place: symbol for place, symbol, _ in data["inputs"]}
+        symbols = [symbol for _, symbol, _ in data["inputs"]]
+        places = [place for place, *_ in data["inputs"] + spec["formulas"]]
+        need(
+            all(is_name(symbol) and symbol not in functions for symbol in symbols)
+            and len({*symbols}) == len(symbols)
+            and len({*places}) == len(places),
+            "an input is no name, or two are one: expected a name of its own for each input, and a place",
+        )
+        slots = {symbol for place, symbol, _ in data["inputs"] + spec["formulas"] if place.startswith("p[")}
+        need(slots == {*spec["parameters"]}, "p is another: expected the inputs p[0], p[1], .. to be the parameters")
+        self.inputs = []  # of (place, expression): a symbol, or a parameter by its formula
+        for place, symbol in self.symbols.items():
+            text = spec["parameters"].get(symbol, symbol)
+            self.inputs.append((place, self.read(text, f"input {shown(place)}")))
+        self.named = []  # of (symbol, expression): parts of formulas, then outputs
+        for symbol, text in spec["named"]:
+            self.named.append((symbol, self.read(text, f"formula of {shown(symbol)}")))
+        self.outputs = []  # of (place, symbol)
+        for place, symbol, text in spec["formulas"]:
+            self.named.append((symbol, self.read(text, f"formula of {shown(place)}")))
+            self.outputs.append((place, symbol))
+
+    def read(self, text, place):
+        return FormulaReader(text, place, self.functions).whole()
+
+    def set_values(self, names):
+        """Set parts of formulas and outputs to their values, and return the values of inputs by place."""
+        inputs = {place: expression.value(names.numbers, names) for place, expression in self.inputs}
+        for symbol, expression in self.named:
+            names.define(symbol, expression.value(names.numbers, names))
+        return inputs
+
+
+# --- laws -------------------------------------------------------------------------------------------------------------
+
+
+def draw_given(given, names):
+    """Set the symbols that a law assumes to be a rotation matrix (nine, row by row) or of length one, at random.
+
+    The matrix is that of a random unit quaternion: 2*v*v^T + 2*q0*[v]x + (2*q0^2 - 1)*1.
+    """
+    vector = [names.numbers.draw() for _ in range(4 if len(given) == 9 else len(given))]
+    length = Decimal.sqrt(sum(each * each for each in vector))
+    vector = [each / length for each in vector]
+    if len(given) == 9:
+        q0, q1, q2, q3 = vector
+        a = 2 * q0 * q0 - 1
+        vector = [
+            2 * q1 * q1 + a, 2 * (q1 * q2 - q0 * q3), 2 * (q1 * q3 + q0 * q2),
+            2 * (q2 * q1 + q0 * q3), 2 * q2 * q2 + a, 2 * (q2 * q3 - q0 * q1),
+            2 * (q3 * q1 - q0 * q2), 2 * (q3 * q2 + q0 * q1), 2 * q3 * q3 + a,
+        ]  # fmt: skip
+    for name, value in zip(given, vector, strict=True):
+        names.define(name, value)
+
+
+def check_law(law, specification, points):
+    """Refuse a law whose expressions do not vanish at random points, to 60 digits.
+
+    At each point, what is given holds and outputs are their formulas. An expression is small there if it is so compared
+    with its size at another point, where all symbols are random; but at most 1e-40 in any case. An analytic expression
+    that is not zero is that small at a random point with negligible probability.
+    """
+    place = f"the law {shown(law['law'])}"
+    need(law["vanishing"], f"{place} does not follow: expected an expression that vanishes, got none")
+    given = law["given"]
+    need(all(is_name(name) for name in given), f"{place}: expected names of symbols as given, got {shown(given)}")
+    expressions = [specification.read(text, place) for text in law["vanishing"]]
+
+    def values(law_holds):
+        names = Names(Decimals())
+        if law_holds:
+            if given:
+                draw_given(given, names)
+            specification.set_values(names)
+        return [expression.value(names.numbers, names) for expression in expressions]
+
+    for _ in range(points):
+        rests, sizes = at_a_point(lambda: values(True)), at_a_point(lambda: values(False))
+        for rest, size in zip(rests, sizes, strict=True):
+            small = min(max(abs(size) / 10**60, Decimal("1e-70")), Decimal("1e-40"))
+            need(abs(rest) <= small, f"{place} does not follow: expected 0 to 60 digits, got {rest:.3}")
+
+
+# --- series and constants ---------------------------------------------------------------------------------------------
+
+NEAREST = {"double": c_double, "float": c_float}
+PRECISIONS = {"double": "binary64", "float": "binary32"}
+LEAST = {"double": Fraction(1, 2**55), "float": Fraction(1, 2**26)}  # a quarter of a unit in the last place
+
+
+def check_series(series, functions, real):
+    """Return functions with a polynomial where x*x is below a split, refused if it leaves out too much.
+
+    What is left out, relative to the function, is computed at 64 random points of the interval. It has to be at most
+    what the certificate says, and a quarter of a unit in the last place.
+    """
+    name, split_text, coefficient_texts, rest_text = series
+    place = f"series of {shown(name)}"
+    split, rest = constant(split_text, place), constant(rest_text, place)
+    coefficients = [constant(text, place) for text in coefficient_texts]
+    need(
+        name in functions and functions[name].parameters == ["x"] and 0 < split <= 100 and len(coefficients) < 50,
+        f"{place}: expected a function of x that the certificate defines, a split and coefficients",
+    )
+    powers = [Chain(Number(c), [("*", Power(Variable("x"), 2 * k))]) for k, c in enumerate(coefficients)]
+    polynomial = Chain(Number(Fraction(0)), [("+", each) for each in powers])
+    exact = functions[name]
+
+    def left_out():
+        numbers = Decimals()
+        x = numbers.number(split).sqrt() * randbelow(2**64) / 2**64
+        return abs(polynomial.value(numbers, {"x": x}) / exact.call(numbers, [x]) - 1)
+
+    for _ in range(64):
+        error = at_a_point(left_out)
+        need(error <= min(rest, LEAST[real]), f"the {place} leaves out {error:.3}: expected at most {float(rest):.3}")
+    square = Chain(Variable("x"), [("*", Variable("x"))])
+    choice = Choice("<", square, Number(split), polynomial, exact.result)
+    return functions | {name: exact._replace(result=choice)}
+
+
+def constants_of(readback, real):
+    """Return what a double or float of the C text stands for, refused unless it is the nearest to that number.
+
+    Halves, quarters and other multiples of 2^-20 stand for themselves alone.
+    """
+    pairs = [(constant(a, "constants"), constant(b, "constants")) for a, b in readback["constants"]]
+    for name, _, coefficients, _ in readback["series"]:
+        numbers = [abs(constant(text, f"series of {shown(name)}")) for text in coefficients]
+        pairs += zip(numbers, numbers, strict=True)
+    constants = {}
+    for written, exact in pairs:
+        number = NEAREST[real](float(written)).value
+        right = NEAREST[real](float(exact)).value == number and exact * 2**20 % 1
+        need(right, f"a constant is another number: expected the {real} nearest to {float(exact)!r}, got {number!r}")
+        constants[number] = exact
+    return constants
+
+
+# --- C text = formulas ------------------------------------------------------------------------------------------------
+
+
+def component_of(place):
+    """Return (array, component) of a place such as ``q[2]``; a number by value is component 0 of its name."""
+    match = re.fullmatch(r"([A-Za-z]\w*)(?:\[(0|[1-9]\d{0,2})\])?", place, re.ASCII)
+    need(match, f"{shown(place)}: expected an argument of a function such as W or q[2]")
+    return match[1], int(match[2] or 0)
+
+
+def array_sizes(data, is_input):
+    """Return the number of components of each input or output, in order, refused if places have gaps."""
+    sizes = {}
+    for place, *_ in data["inputs"] if is_input else data["spec"]["formulas"]:
+        name, component = component_of(place)
+        right = component == sizes.get(name, 0) and not (place == name and name in sizes)
+        need(right, f"{shown(place)}: expected the inputs and outputs of the certificate to list arguments in order")
+        sizes[name] = component + 1
+    return sizes
+
+
+def expected_parameters(data, in_batch):
+    """Return the parameters that a kernel has, by the inputs and outputs of its certificate.
+
+    A number comes by value and an array by its components; in a batch, both come as arrays of all samples, but for the
+    parameters of a scene, which all samples share. Inputs are const.
+    """
+    by_value = {place for place, *_ in data["inputs"] if "[" not in place}
+    parameters = []
+    for is_input in (True, False):
+        for name, size in array_sizes(data, is_input).items():
+            form = "value" if is_input and name in by_value else "array"
+            shared = bool(data["spec"]["parameters"]) and name == "p"
+            if in_batch and not shared:
+                form = "samples"
+            parameters.append(Parameter(name, form, size, is_input))
+    return parameters
+
+
+def by_component(values):
+    """Return values of places by component, and by name for numbers that come by value."""
+    named = {component_of(place): value for place, value in values.items()}
+    return named | {place: value for place, value in values.items() if "[" not in place}
+
+
+class ExactPoint(NamedTuple):
+    """A random point of exact fractions: inputs and outputs by component, and the arithmetic that drew them."""
+
+    numbers: AnyFunctions
+    inputs: dict
+    outputs: dict
+
+
+def exact_point(specification):
+    """Return a random point where any two inputs differ, so that none can take the place of another."""
+    names = Names(AnyFunctions())
+    inputs = specification.set_values(names)
+    need(
+        len({names["pi"], *inputs.values()}) == len(inputs) + 1,
+        "an input is no name, or two are one: expected inputs of different values",
+    )
+    outputs = {component_of(place): names[symbol] for place, symbol in specification.outputs}
+    return ExactPoint(names.numbers, by_component(inputs), outputs)
+
+
+def check_formulas(name, kernel, data, point):
+    """Refuse a C function whose outputs are not the formulas, at a random point of exact fractions.
+
+    Functions and choices are any there, so that equality at the point is equality as expressions. Each loop of a batch
+    computes all outputs; the two loops of spans compute a part each.
+    """
+    need(
+        kernel.parameters == expected_parameters(data, kernel.shape != "one sample"),
+        f"arguments or loops of {name} are others: expected the inputs and outputs of the certificate, in their order",
+    )
+    numbers, expected = point.numbers, point.outputs
+    computed = {}
+    for body in kernel.bodies:
+        numbers.near_angles.clear()
+        outputs, far = run(body, numbers, point.inputs)
+        need(
+            numbers.near_angles <= far,
+            f"functions of {name} take angles beyond their range: expected symrot_far of each in a first loop",
+        )
+        for place, value in outputs.items():
+            right = place in expected and value == expected[place]
+            need(right, f"{name} is not its formulas: expected {place[0]}[{place[1]}] to be that of the certificate")
+        if kernel.shape == "spans":
+            need(not computed.keys() & outputs.keys(), f"{name} is not its formulas: expected each output in one loop")
+            computed |= outputs
+        else:
+            computed = outputs
+            need(computed.keys() == expected.keys(), f"{name} is not its formulas: expected all outputs in each loop")
+    need(computed.keys() == expected.keys(), f"{name} is not its formulas: expected all outputs")
+
+
+# --- rounding errors --------------------------------------------------------------------------------------------------
+
+
+class BoxPoint(NamedTuple):
+    """A random point of the box of bounds: the inputs, and exact values and bounds of outputs."""
+
+    inputs: dict
+    exact: dict
+    bounds: dict
+
+
+def hexadecimal(text, place):
+    """Return the double that a text such as 0x1.8p+3 is."""
+    try:
+        return float.fromhex(text)
+    except (ValueError, OverflowError):
+        raise ValueError(f"{place}: expected a number such as 0x1.8p+3, got {shown(text)}") from None
+
+
+def point_of_box(data, specification, real):
+    """Return a random point of the box of rounding errors; None if nothing is bounded or the box has holes."""
+    if "rounding" not in data or data["spec"]["parameters"]:
+        return None
+    check_shape(data["rounding"], ROUNDING_SHAPE, "rounding")
+    bounds = data["rounding"]
+    if hexadecimal(bounds["clearance"], "rounding.clearance"):
+        return None
+    numbers = Decimals()
+    names, inputs = Names(numbers), {}
+    for place, symbol in specification.symbols.items():
+        need(place in bounds["box"], f"rounding.box: expected a range of {shown(place)}")
+        low, high = (hexadecimal(end, f"rounding.box.{place}") for end in bounds["box"][place])
+        need(-math.inf < low <= high < math.inf, f"rounding.box: expected a finite range of {shown(place)}")
+        value = NEAREST[real](low + (high - low) * randbelow(2**53 + 1) / 2**53).value
+        inputs[place] = min(max(value, low), high)
+        names.define(symbol, Decimal(inputs[place]))
+    try:
+        for name, expression in specification.named:
+            names.define(name, expression.value(numbers, names))
+    except ArithmeticError:
+        raise ValueError("rounding.box: expected formulas that are defined at every point of the box") from None
+    limits = {}
+    for precision in bounds["precisions"]:
+        if precision["precision"] == PRECISIONS[real]:
+            for each in precision["outputs"]:
+                limits[component_of(each["output"])] = Decimal(hexadecimal(each["absolute"], "rounding.precisions"))
+    exact = {component_of(place): names[symbol] for place, symbol in specification.outputs}
+    return BoxPoint(by_component(inputs), exact, limits)
+
+
+def check_rounding(name, kernel, point):
+    """Refuse a C function whose error at a point of the box is larger than its bound.
+
+    It is computed as C computes, rounding by rounding, and compared with the exact formula at the same inputs. A bound
+    holds at every point, so one point where it does not refutes it.
+    """
+    machine = Machine(NEAREST[kernel.real])
+    for body in kernel.bodies:
+        outputs, _ = run(body._replace(far=[]), machine, point.inputs)
+        for place in outputs.keys() & point.bounds.keys():
+            value, bound = outputs[place], point.bounds[place]
+            right = math.isfinite(value) and abs(Decimal(value) - point.exact[place]) <= bound
+            need(
+                right,
+                f"{name} is rounded by more than its bounds: expected at most {bound:.3} in {place[0]}[{place[1]}]",
+            )
+
+
+def check_precision(name, data, specification, kernels):
+    """Refuse the functions of one precision, for one sample and for many, that are not the formulas or round more.
+
+    Numbers of the C text are taken for the constants that they stand for, and series for the functions of the formulas.
+    """
+    readback = data["readback"][name]
+    real = readback["type"]
+    need(
+        real in REALS and name == f"symrot_{data['kernel']}{REALS[real]}",
+        f"{shown(name)}: a function has another name or type: expected symrot_{data['kernel']}, for float with f",
+    )
+    functions = specification.functions
+    for series in readback["series"]:
+        functions = check_series(series, functions, real)
+    point = at_a_point(lambda: exact_point(Specification(data, functions)))
+    point.numbers.constants |= constants_of(readback, real)
+    box_point = point_of_box(data, specification, real)
+    for function, shapes in ((name, {"one sample"}), (f"{name}_batch", {"each sample", "spans", "blocks"})):
+        kernel = kernels[function]
+        need(
+            kernel.real == real and kernel.shape in shapes,
+            f"{function}: expected a function of {real} for {min(shapes)}",
+        )
+        check_formulas(function, kernel, data, point)
+        if box_point:
+            check_rounding(function, kernel, box_point)
+
+
+# --- header and names -------------------------------------------------------------------------------------------------
+
+HEADER_TOP = """#ifndef SYMROT_@_H
 #define SYMROT_@_H
 #include <stddef.h>
 #ifndef SYMROT_RESTRICT
@@ -63,235 +1380,122 @@ HEADER = """#ifndef SYMROT_@_H
 #else
 #define SYMROT_INDEPENDENT
 #endif
-#endif
-?#ifndef SYMROT_SPAN
+#endif"""
+HEADER_SPAN = """#ifndef SYMROT_SPAN
 #define SYMROT_SPAN 2048
-#endif
-?#ifdef __cplusplus
+#endif"""
+HEADER_OPEN = """#ifdef __cplusplus
 extern "C" {
-#endif
-?#ifdef __cplusplus
+#endif"""
+HEADER_END = """#ifdef __cplusplus
 }
 #endif
 #endif"""
-NODES = (ast.Expression, ast.BinOp, ast.UnaryOp, ast.Call, ast.Name, ast.Constant, ast.operator, ast.USub, ast.Load)
-ATOM = re.compile(r"(?<![\w.])(\w+\[[^]]*\]|\d[\w.]*(?:(?<=e)[-+]\w+)?)")
-CHOICE = re.compile(r"^([^?:<>=]+) (<|>=|==) ([^?:<>=]+) \? ([^?:<>=]+) : ([^?:<>=]+)")
-FUNCTION = r"(void|static inline \w+) (\w+)\(([\w *,[\]]*)\) \{((?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*)\} ?"
-ODD = r"\+\+|--|//|['\"\\#]|\b(_|SYMROT_|(True|False|None)\b)|(?<!\d)\.|\*\*(?!\(?-?\d\d?\b(?! *\*\*))|\de[-+]?\d{3}"
-STATEMENT = r" (?:const (\w+) )?(?!beyond =)(\w+(?:\[[^]]*\])?(?= =)|beyond(?= \+=)|return) (?:\+?= )?([^;{}]+);"
-EACH = " SYMROT_INDEPENDENT for (size_t k = 0; k < n; ++k) {} "
-LOOP = EACH.replace("0", "start").replace("n;", "end;")
-SPAN = " for (size_t start = 0; start < n; start += @) { const size_t end = n - start < @ ? n : start + @;"
-PARTS = SPAN.replace("@", "SYMROT_SPAN") + LOOP + LOOP[1:] + "} "
-BLOCKS = SPAN.replace("@", "SYMROT_BLOCK") + f" uint%s_t beyond = 0;{LOOP}const size_t again = beyond == 0 ? "
-BLOCKS += "start : end; for (size_t k = start; k < again; ++k) {} } "
 
 
-def need(holds, said):
-    if not holds:
-        raise ValueError(said)
+def check_header(name, text, kernels):
+    """Refuse a header that is more than the known macros and one prototype of each function of the C file.
+
+    The C file includes it, so a macro of its own could change what the C text means.
+    """
+    text = without_comments(text, f"{name}.h holds what C may read in several ways")
+    lines = [line.strip() for line in text.split("\n") if line.strip()]
+    refusal = f"{name}.h holds more than prototypes: expected the macros of symrot and a prototype of each function"
+    top = HEADER_TOP.replace("@", name.upper()).split("\n")
+    for part in (top, HEADER_SPAN.split("\n"), HEADER_OPEN.split("\n")):
+        if lines[: len(part)] == part:
+            lines = lines[len(part) :]
+        else:
+            need(part[0] == "#ifndef SYMROT_SPAN", refusal)  # only kernels with spans have this macro
+    end = HEADER_END.split("\n")
+    need(lines[-len(end) :] == end, refusal)
+    words = [token.text for token in tokens("\n".join(lines[: -len(end)]), refusal)[:-1]]
+    expected = sorted([*kernel.prototype, ";"] for kernel in kernels.values())
+    declared = [[]]
+    for word in words:
+        declared[-1].append(word)
+        if word == ";":
+            declared.append([])
+    need(declared.pop() == [] and sorted(declared) == expected, refusal)
 
 
-@cache
-def formula(text):
-    """Return what a formula, or a choice of C, is of names; numbers and places [..] are looked up by ``at_``."""
-    need(text.isascii() and not re.search(ODD, text), f"no formula: {text[:60]!r}")
-    tree = ast.parse(CHOICE.sub(r"if_('\2', (\1), (\3), (\4), (\5))", ATOM.sub(r"at_('\1')", text.strip())), "", "eval")
-    need(all(isinstance(node, NODES) for node in ast.walk(tree)), f"no formula: {text[:60]!r}")
-    return partial(eval, compile(tree, "a formula", "eval"), {"__builtins__": {}})
+def check_banner(data, text):
+    """Refuse a C file whose first comment does not have the name, title and command of the certificate.
+
+    So a kernel under another name is seen wherever one file keeps the old name. Letters and digits are compared, as
+    banners break lines, leave out what would end a comment, and spell other alphabets as <U+00E9>.
+    """
+
+    def bare(words):
+        return re.sub(r"<U\+[0-9A-F]{4,6}>|[^A-Za-z0-9]", "", "".join(words.split()))
+
+    name = data["kernel"]
+    banner = text[: max(text.find("*/"), 0)].replace("\n *", "\n")
+    title = banner.split("\n\n")[0]
+    need(
+        bare(title) == bare(f"{name}: {data['title']}"),
+        f"{name}.c: expected the banner to begin with the kernel and title of the certificate, got {shown(title)}",
+    )
+    command = bare(data["regenerate"])
+    need(command and command in bare(banner), f"{name}.c: expected the banner to name the command of the certificate")
 
 
-def point(given, formulas, functions, number=Decimal):
-    """Return random numbers by name where what is given holds, and functions: with fractions, any, and any choices."""
-
-    def choose(sign, a, b, x, y):
-        way = names[sign, a, b] if number is Fraction else {"<": a < b, ">=": a >= b, "==": a == b}[sign]
-        return x * way + y * (1 - way)
-
-    s, names = 2 ** randbelow(11), defaultdict(lambda: s * number(randbelow(2**99) - 2**98) / 2**98, PLAIN, if_=choose)
-    names |= {f: lambda *x, f=f: names[(f, *x)] for f in (*OTHERS, *PLAIN) if f in OTHERS or number is Fraction}
-    for function, text in [*MEANS.items(), *functions]:
-        need(function not in names, f"{function} is no new function")
-        names[function] = lambda *x, text=text: formula(text)(names | dict(zip("xyzw", x, strict=False)))
-    turn = [names[each] for each in given[: 4 if given[8:] else None]]
-    q = [each / sum(each * each for each in turn).sqrt() for each in turn]
-    nine = ((i, j, q[i] * q[j] + (0, q[0], -q[0])[i - j] * q[(6 - i - j) % 4]) for i in (1, 2, 3) for j in (1, 2, 3))
-    rotation = (2 * each + (i == j) * (2 * q[0] * q[0] - 1) for i, j, each in nine)
-    names |= dict(zip(given, rotation if given[8:] else q, strict=True)) | {"pi": number(PI), "at_": number}
-    try:
-        for *_, name, text in formulas:
-            need(name not in names, f"{name} is no new name")
-            names[name] = formula(text)(names)
-        return names
-    except ArithmeticError:  # they are not defined there
-        return point(given, formulas, functions, number)
+def has_choices(data):
+    """Tell whether formulas or laws choose between two ways: one point sees one way."""
+    return bool(re.search(r"select_|Abs|copysign|\?", json.dumps([data["spec"], data["laws"]])))
 
 
-def machine(end, nearest):
-    """Return the arithmetic of C, by name: each operation and function rounded to the nearest number of a type."""
-
-    def rounded(function):
-        return lambda *x: kind(nearest(function(*x)).value)
-
-    kind = type("rounded", (float,), {})
-    for each in ("add", "radd", "sub", "rsub", "mul", "rmul", "truediv", "rtruediv", "neg", "abs"):
-        setattr(kind, f"__{each}__", rounded(getattr(float, f"__{each}__")))
-    names = {f: rounded(getattr(math, f)) for f in ("sin", "cos", "sqrt", "fabs", "copysign", "atan2", *OTHERS)}
-    ways = {"lt": lambda x, y, z, w: z if x < y else w, "eq": lambda x, y, z, w: z if x == y else w}
-    names |= {f"symrot_{f}": names[f] for f in ("sin", "cos", "atan2")} | {"symrot_far": lambda x: 0}
-    names |= {f"symrot_select_{f}": way for f, way in ways.items()}
-    names |= {"symrot_choose_ge": lambda x, y, z, w: z if x >= y else w}
-    choose = {"<": ways["lt"], "==": ways["eq"], ">=": names["symrot_choose_ge"]}
-    return {f + end: names[f] for f in names} | {
-        "at_": lambda text: kind(nearest(float(text.removesuffix("f") if isinstance(text, str) else text)).value),
-        "if_": lambda sign, *x: choose[sign](*x), "n": None, "k": None,
-    }  # fmt: skip
-
-
-def sample(data, bits, nearest, formulas, functions):
-    """Return a random point of the box of rounding errors, the values there, and their bounds; none if it has holes."""
-    bounds = data.get("rounding", {"clearance": "1", "precisions": []})
-    if float.fromhex(bounds["clearance"]) or data["spec"]["parameters"]:
-        return {}, {}
-    names, symbols = point([], [], functions), {place: symbol for place, symbol, _ in data["inputs"]}
-    for place, ends in bounds["box"].items():
-        low, high = map(float.fromhex, ends)
-        value = nearest(low + (high - low) * randbelow(2**53 + 1) / 2**53).value
-        names[place] = names[symbols[place]] = Decimal(min(max(value, low), high))
-    for *_, symbol, text in formulas[len(data["inputs"]) :]:
-        names[symbol] = formula(text)(names)
-    names |= {place: names[symbol] for place, symbol, _ in data["spec"]["formulas"]}
-    found = [each["outputs"] for each in bounds["precisions"] if each["precision"] == f"binary{bits}"]
-    return names, {each["output"]: Decimal(float.fromhex(each["absolute"])) for outputs in found for each in outputs}
-
-
-def check_c(name, said, real, data, formulas, functions, found):
-    """Link 3: refuse a function, of one sample and of many, that is not its formulas."""
-    end, bits, nearest, least = {"double": ("", "64", c_double, 2**-55), "float": ("f", "32", c_float, 2**-26)}[real]
-    numbers = said["constants"] + [[each.strip("-")] * 2 for _, _, series, _ in said["series"] for each in series]
-    for f, split, series, rest in said["series"]:
-        names, taylor = point([], [], functions), " + ".join(f"{Fraction(c)}*x**{2 * k}" for k, c in enumerate(series))
-        within = [names | {"x": Decimal(float(Fraction(split))).sqrt() * randbelow(2**64) / 2**64} for _ in range(64)]
-        left_out = max(abs(formula(f"({taylor})/{f}(x) - 1")(each)) for each in within)
-        need(left_out <= min(Fraction(rest), least), f"the series of {f} leaves out {left_out:.3}")
-        functions = [(each, f"x*x < {split} ? {taylor} : {text}" if each == f else text) for each, text in functions]
-    names = point([], formulas, functions, Fraction)
-    constants = {nearest(formula(written)(names)).value: formula(exact)(names) for written, exact in numbers}
-    inputs = {place: names[(place,)] for place, symbol, _ in data["inputs"] if symbol.isidentifier()}
-    need(len({names["pi"], *inputs.values()}) == len(data["inputs"]) + 1, "an input is no name, or two are one")
-    need(all(nearest(constants[c]).value == c and c * 2**20 % 1 for c in constants), "a constant is another number")
-
-    def number(text):
-        need(re.fullmatch(rf"(\d+\.\d*|\d+(?=e))(e[-+]?\d+)?{end}", text), f"{text} is no {real}")
-        return constants.get(written := nearest(float(text.removesuffix("f"))).value, Fraction(written))
-
-    def run(body, places, own):
-        """Return what statements give to places, or return."""
-        local, given = own | places | {"at_": lambda text: local[text] if text in local else own["at_"](text)}, {}
-        for kind, goal, text in re.findall(STATEMENT, body):
-            need(kind in ("", real) and goal not in local | given, f"{goal} is no new {real}")
-            (local if kind else given)[goal] = formula(text)(local)
-        need(not re.sub(STATEMENT, "", body).strip(), f"no statement: {re.sub(STATEMENT, '', body)[:60]!r}")
-        return given
-
-    def call(own, listed, body, *x):
-        return run(body, dict(zip(re.findall(rf"{real} (\w+)", listed), x, strict=True)), own)["return"]
-
-    own = {f + end: names[f] for f in (*PLAIN, *MEANS, *OTHERS)} | {"n": None, "k": None, "if_": names["if_"]}
-    own |= {f"symrot_{f}{end}": names[f] for f in ("select_lt", "select_eq", "atan2")}
-    own |= {f"symrot_{f}{end}": lambda x, f=f: near.add(x) or names[f](x) for f in ("sin", "cos")}
-    own |= {f"symrot_choose_ge{end}": names["select_ge"], f"symrot_far{end}": lambda x: [x]}
-    need(not own.keys() & found.keys() and name == data["kernel"] + end, "a function has another meaning, or type")
-    own |= {"at_": number}
-    doubles, exact, limits = machine(end, nearest), *sample(data, bits, nearest, formulas, functions)
-    placed = {place: doubles["at_"](exact[place]) for place in inputs if limits}
-    for each in (own, doubles):
-        each |= {f: partial(call, each, *found[f][1:]) for f in found if found[f][0] == f"static inline {real}"}
-    far = f"{name} is rounded by more than its bounds"
-    places = [f"const {place}" for place in inputs] + [place for place, *_ in data["spec"]["formulas"]]
-    sizes = Counter(place.partition("[")[0] for place in places)
-    need(places == [b if b in places else f"{b}[{k}]" for b in sizes for k in range(sizes[b])], "arguments are others")
-    for (_, listed, body), frames in (found[name], [""]), (found[f"{name}_batch"], [EACH, PARTS, BLOCKS % bits]):
-        parts = re.split(r"(?<=\+\+k\) \{)([^{}]*)(?=\})", body)
-        frame, loops = ("".join(parts[::2]), parts[1::2]) if parts[1:] else ("", parts)
-        typed = [re.sub(rf"^{real} (?=\w+$)", "const ", each.strip()) for each in listed.split(",")]  # by value
-        takes = [re.sub(rf"\b(size_t|{real}) (\*SYMROT_RESTRICT )?|\[\d+]$", "", each) for each in typed]
-        need(frame in frames and takes == ["n"] * bool(frame) + [*sizes], f"arguments or loops of {name} are others")
-        results = []
-        for loop in loops:
-            near = set()
-            need(not frame or not re.search(r"(?<!\bp)\[\d+\]|\bp\[\d+\*", loop), f"{name} takes one sample alone")
-            loop = loop.replace("*n + k]", "]").replace("[k]", "") if frame else loop
-            results.append(run(loop, inputs, own))
-            rounded = run(loop, placed, doubles) if limits else {}
-            need(all(abs(Decimal(rounded.get(p, 0)) - exact[p]) <= limits[p] for p in limits.keys() & rounded), far)
-            need(near <= {*results[0].pop("beyond", [])}, f"functions of {name} take angles beyond their range")
-        for result in [results[0] | results[1]] if frame == PARTS else results:
-            need(result == {p: names[s] for p, s, _ in data["spec"]["formulas"]}, f"{name} is not its formulas")
-
-
-def check_header(name, raw, found):
-    """Refuse a header that holds more than the prototypes of the functions of its C file."""
-    need(not re.search(r"[^\n -~]|\\|\?\?|//", raw), f"{name}.h holds what C may read in several ways")
-    lines = [line.strip() for line in re.sub(r"/\*.*?\*/", " ", raw, flags=re.S).split("\n")]
-    top, span, opened, end = map(re.escape, HEADER.replace("@", name.upper()).split("?"))
-    held = re.fullmatch(rf"{top}({span})?{opened}([^#\"{{}}]*){end}", "\n".join(line for line in lines if line))
-    bare = partial(re.sub, r" *([(),*;]) *", r"\1")
-    heads = {bare(f"void {f}({listed})") for f, (kind, listed, _) in found.items() if kind == "void"}
-    need(held and {*bare(" ".join(held[2].split())).split(";")} == {*heads, ""}, f"{name}.h holds more than prototypes")
-
-
-def content(path):
-    """Return the bytes of a regular file of a size that kernels have: nothing else is opened."""
-    need(path.is_file() and path.stat().st_size <= LARGEST, f"{path.name} is no file of at most {LARGEST} bytes")
-    return path.read_bytes()
-
-
-def certified(path):
-    """Return what a certificate says, after its seal and the hashes of all its files."""
-    data = json.loads(content(path), object_pairs_hook=lambda pairs: len(dict(pairs)) == len(pairs) and dict(pairs))
-    seal = data.pop("seal") == sha256(json.dumps(data, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
-    need(seal and data["schema"] == "symrot.certificate/1", "the schema is another, or the text that was sealed")
-    name, files = data["kernel"], data["files"]
-    need(path.name == f"{name}.cert.json" and {f"{name}.c", f"{name}.h"} <= {*files}, "it is that of another file")
-    for file, digest in files.items():
-        need(re.fullmatch(r"(\.\./){0,2}(\w+/)*\w+\.\w+", file), f"{file} is no file of a kernel")
-        if "/" not in file or (path.parent / file).exists():
-            need(sha256(content(path.parent / file)).hexdigest() == digest, f"{file} is not what was certified")
-    return data
-
-
-def check(path):
-    """Return what a certificate shows, in a line; raise an exception if it does not."""
+def check_files(path):
+    """Check all that a certificate claims and this file can see; return one line on it."""
     data = certified(path)
-    name, files, spec, readback = data["kernel"], data["files"], data["spec"], data["readback"]
-    raw = path.with_name(f"{name}.c").read_text("utf-8")
-    text = re.sub(r'/\*.*?\*/|\(void\)\w+;|#include (<math\.h>|"\w+\.h")(?=\n)', " ", raw, flags=re.S)
-    rest, count = re.subn(FUNCTION, "", text := " ".join(text.split()))
-    odd = rest or re.search(r"\*\*|['\"#%]", text) or re.search(r"[^\n -~]|\\|\?\?|//", raw)
-    found = {f: (kind, listed, body) for kind, f, listed, body in re.findall(FUNCTION, text)}
-    known = {f for f in found if found[f][0] == "void"} == {f + end for f in readback for end in ("", "_batch")}
-    known = known and readback and {*re.findall('#.+ "(.+)"', raw)} <= {f"{name}.h", "symrot_math.h"} & {*files}
-    known = known and len(found) == count and files.get("symrot_math.h", MATH) == MATH
-    need(known and not odd and data["laws"], "laws or functions are others")
-    check_header(name, path.with_name(f"{name}.h").read_text("utf-8"), found)
-    formulas = [((p,), spec["parameters"].get(s, s)) for p, s, _ in data["inputs"]] + spec["named"] + spec["formulas"]
-    need({s for p, s, _ in data["inputs"] + spec["formulas"] if p[:2] == "p["} == {*spec["parameters"]}, "p is another")
-    with localcontext(Context(prec=190, Emax=120)):
-        for law in data["laws"] * (64 if re.search("select_|Abs|copysign|[?]", str([spec, data["laws"]])) else 8):
-            laws = [*enumerate(law["vanishing"])]
-            left, size = (point(*each, spec["functions"]) for each in ((law["given"], formulas + laws), ([], laws)))
-            holds = all(abs(left[k]) <= min(max(abs(size[k]) / 10**60, 1e-70), 1e-40) for k, _ in laws)
-            need(holds and law["vanishing"][:0] == [] != laws, f"the law {law['law']!r} does not follow")
-        for function, said in readback.items():
-            check_c(function, said, said["type"], data, formulas, spec["functions"], found)
+    check_shape(data, SHAPE, "certificate")
+    name, files, readback = data["kernel"], data["files"], data["readback"]
+    need(
+        files.get("symrot_math.h", MATH_HEADER_SHA256) == MATH_HEADER_SHA256,
+        "symrot_math.h is another: expected that of symrot",
+    )
+    need(data["laws"], "there are no laws: expected at least one")
+    text, header = text_of(path.with_name(f"{name}.c")), text_of(path.with_name(f"{name}.h"))
+    check_banner(data, text)
+    sizes = {array: size for is_input in (True, False) for array, size in array_sizes(data, is_input).items()}
+    kernels = CReader(text, name, files, sizes).kernels
+    expected = {function + end for function in readback for end in ("", "_batch")}
+    need(
+        readback and kernels.keys() == expected,
+        f"functions are others: expected {', '.join(sorted(expected))} in {name}.c",
+    )
+    check_header(name, header, kernels)
+    specification = Specification(data, defined_functions(data["spec"]["functions"]))
+    with localcontext(DIGITS):
+        for law in data["laws"]:
+            check_law(law, specification, 64 if has_choices(data) else 8)
+        for function in readback:
+            check_precision(function, data, specification, kernels)
     return f"{name}: {len(files)} hashes, C text of {' and '.join(readback)} and batches, laws"
 
 
-if __name__ == "__main__":
-    for path in sys.argv[1:] or sys.exit("usage: python recheck.py NAME.cert.json .."):
+def check(path):
+    """Return what a certificate shows, in a line; raise ValueError or OSError with one sentence if it does not hold."""
+    try:
+        return check_files(path)
+    except (ValueError, OSError):
+        raise
+    except RecursionError:
+        raise ValueError("expected texts of usual depth, got parentheses or calls nested too deeply") from None
+    except (ArithmeticError, MemoryError) as reason:
+        raise ValueError(f"expected numbers of usual size, got others ({reason!r})") from None
+
+
+def main(paths):
+    """Check certificates in turn, a line for each; the first that does not hold ends the program with exit code 1."""
+    if not paths:
+        sys.exit("usage: python recheck.py NAME.cert.json ..")
+    for path in paths:
         try:
             print(f"{check(Path(path))}: hold")
-        except Exception as e:
-            sys.exit(f"{path}: {e if isinstance(e, ValueError | OSError) else f'no certificate of the schema ({e!r})'}")
+        except (ValueError, OSError) as reason:
+            sys.exit(f"{path}: {reason}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,8 +1,8 @@
 """symrot: rigid-body rotation from derivation to trajectory.
 
-Formulas are derived by SymPy from first principles, proven, specialised to a scene, emitted as kernels and propagated.
-Every name here is loaded when it is first used, so that ``import symrot`` costs next to nothing.
-Conventions: :mod:`symrot.conventions`.
+SymPy derives the formulas from first principles; symrot proves them, specialises them to a scene, emits them as kernels
+and propagates the motion. Each public name is imported at its first use, so ``import symrot`` is fast; the stub
+``__init__.pyi`` tells type checkers where the names come from. Conventions: :mod:`symrot.conventions`.
 """
 
 from importlib import import_module
@@ -10,35 +10,62 @@ from typing import Any
 
 __version__ = "0.1.0"
 
-_HOMES = {
+_NAMES_OF_MODULES = {
     "conventions": ("SEQUENCES",),
-    "errors": ("CompilerError", "InputError", "PropagationError", "SymrotError"),
-    "kinematics.euler": ("dcm", "rate_jacobian"),
-    "kinematics.quaternion": ("dcm_of", "qmul", "quaternion_rates"),
-    "kinematics.dossier": ("singularity_dossier",),
+    "errors": ("CertificateError", "CompilerError", "InputError", "PropagationError", "SymrotError"),
+    "kinematics.chart": ("Limit", "RateMatrix", "SingularSet"),
+    "kinematics.euler": ("EulerRateMatrix", "dcm", "rate_jacobian"),
+    "kinematics.quaternion": ("quaternion_product", "quaternion_rates", "quaternion_to_dcm"),
+    "kinematics.dossier": ("LockedPoint", "SingularityDossier", "singularity_dossier"),
     "dynamics.equations": ("euler_equations",),
-    "inertia.solids": ("solid",),
+    "dynamics.structure": ("Structure",),
+    "inertia.solids": ("Solid", "solid"),
+    "proof.derivation": ("Derivation", "ProofError"),
+    "proof.page": ("Step",),
     "catalogue": ("derivation",),
     "exact": ("normal_form",),
-    "checker": ("check", "check_file", "identify"),
-    "scene.scene": ("Scene", "load_scene", "shipped_scenes"),
-    "planning.plan": ("Plan",),
-    "ensemble.ensemble": ("Ensemble", "propagate_ensemble"),
-    "workshop.emit": ("emit", "explain", "kernel_names", "plan"),
+    "exact.evidence": ("Counterexample",),
+    "checker.interface": ("RefusedClaims", "check", "check_file"),
+    "checker.recognition.identification": ("Identification", "identify"),
+    "checker.verdict": ("Diagnosis", "Dimensions", "Repair", "Verdict"),
+    "scene.scene": ("Body", "Initial", "Output", "Scene", "Span", "Table", "Torque", "load_scene", "shipped_scenes"),
+    "planning.plan": ("Plan", "RuleOutcome"),
+    "planning.scene_kernel": ("SceneKernel",),
+    "ensemble.ensemble": ("Ensemble", "EnsembleStats", "propagate_ensemble"),
+    "workshop.certification": (
+        "Audit",
+        "Certificate",
+        "LargestBox",
+        "OutputError",
+        "RoundingBounds",
+        "audit",
+        "bound",
+        "certify",
+        "largest_box",
+    ),
+    "workshop.emit": ("Emitted", "emit", "explain", "kernel_names", "plan"),
     "propagation.events.events": ("Event",),
+    "propagation.method": ("METHODS",),
     "propagation.propagate": ("propagate", "propagator"),
     "propagation.propagator": ("Propagator",),
-    "propagation.trajectory": ("Trajectory",),
+    "propagation.steppers.stepping": ("Stats",),
+    "propagation.trajectory": ("Invariant", "Trajectory"),
 }
-_HOME = {name: module for module, names in _HOMES.items() for name in names}
+_MODULE = {name: module for module, names in _NAMES_OF_MODULES.items() for name in names}
+_RENAMED = {"dcm_of": "quaternion_to_dcm", "qmul": "quaternion_product"}
 
-__all__ = ["__version__", *sorted(_HOME)]
+__all__ = ["__version__", *sorted(_MODULE)]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _HOME:
+    if name in _RENAMED:
+        from warnings import warn
+
+        warn(f"symrot.{name} is now symrot.{_RENAMED[name]}", DeprecationWarning, stacklevel=2)
+        return __getattr__(_RENAMED[name])
+    if name not in _MODULE:
         raise AttributeError(f"module 'symrot' has no attribute {name!r}")
-    value = getattr(import_module(f"symrot.{_HOME[name]}"), name)
+    value = getattr(import_module(f"symrot.{_MODULE[name]}"), name)
     globals()[name] = value
     return value
 

@@ -1,27 +1,75 @@
-"""The errors that symrot raises for what a user gave it.
+"""The exceptions of symrot. Each message is one sentence: where, what was expected, what arrived instead.
 
-Every one of them carries one sentence: where, what was expected, what arrived. The command line prints that
-sentence and exits with code 2; nothing else of symrot's own may reach a user.
+The command line prints the message and exits with code 2, or with code 1 if an audit fails. :class:`InputError` is also
+a ``ValueError``, since an argument has an unusable value. The others are not: they report the outcome of a computation,
+and an ``except ValueError`` must not hide it.
 """
 
 __all__ = ["CertificateError", "CompilerError", "InputError", "PropagationError", "SymrotError"]
 
 
-class SymrotError(ValueError):
-    """Base of all errors with a sentence for the user."""
+class SymrotError(Exception):
+    """Base class of all exceptions that symrot raises on purpose.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> try:
+    ...     symrot.load_scene("no_such_scene")
+    ... except symrot.SymrotError as error:
+    ...     print(type(error).__name__)
+    InputError
+    """
 
 
-class InputError(SymrotError):
-    """A scene, formula, mesh or option that cannot be used as given."""
+class InputError(SymrotError, ValueError):
+    """A scene, formula, mesh, option or other argument that cannot be used.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.dcm("ABC")
+    Traceback (most recent call last):
+    ...
+    symrot.errors.InputError: an Euler sequence is three axis letters, ...
+    """
 
 
 class CompilerError(SymrotError):
-    """No C compiler, or one that refuses the emitted kernel."""
+    """There is no C compiler, or it rejects the emitted kernel.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> issubclass(symrot.CompilerError, symrot.SymrotError)
+    True
+    """
 
 
 class PropagationError(SymrotError):
-    """A motion that could not be followed to the end of its span."""
+    """A motion cannot be propagated to its last time.
+
+    Attributes
+    ----------
+    trajectory : Trajectory
+        The samples before the failure, with ``status`` -1; absent if there are none.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> issubclass(symrot.PropagationError, ValueError)
+    False
+    """
 
 
 class CertificateError(SymrotError):
-    """A kernel, an object file or a certificate that is not what it claims to be."""
+    """A kernel, an object file or a certificate does not hold what it claims.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.audit("heavy_top.c")
+    Traceback (most recent call last):
+    ...
+    symrot.errors.CertificateError: heavy_top.c: expected a certificate, got another file; ...
+    """

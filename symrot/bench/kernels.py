@@ -28,7 +28,7 @@ from symrot.bench.by_hand.kernel_heyoka import LANES, heyoka_code
 from symrot.bench.by_hand.kernel_peers import PEERS_IN_C, casadi_function, counted, textbook
 from symrot.build import cache as build_cache
 from symrot.codegen.library_kernels import kernel_program
-from symrot.codegen.printing.c_source import MATH_HEADER
+from symrot.codegen.printing.c_source import MATH_HEADER, c_name
 from symrot.codegen.printing.math_header import math_header
 from symrot.errors import InputError
 from symrot.formula.program import Argument, Signature
@@ -119,19 +119,19 @@ def _drivers(signature: Signature, batch: bool) -> str:
     every = [*inputs, *outputs]
     apart = [sum(a.size for a in (inputs if each in inputs else outputs)) for each in every]
     one = ", ".join(f"{'' if a.is_scalar else '&'}a[{i}][{apart[i]}*k]" for i, a in enumerate(every))
-    lines = [] if batch else _batch_of_one(signature.name, inputs, outputs)
+    lines = [] if batch else _batch_of_one(c_name(signature.name), inputs, outputs)
     parameters = [f"{'const ' if a in inputs else ''}double {'' if a.is_scalar else '*'}{a.name}" for a in every]
     lines += [f"static __attribute__((noinline)) void single({', '.join(parameters)})", "{",
-              f"    {signature.name}({', '.join(a.name for a in every)});", "}"]  # fmt: skip
+              f"    {c_name(signature.name)}({', '.join(a.name for a in every)});", "}"]  # fmt: skip
     arguments = ", ".join(f"a[{i}]" for i in range(len(every)))
     return "\n".join([
         "#include <stddef.h>", *lines,
         _REPEAT_ONE.format(call=f"single({one})"),
-        _REPEAT_BATCH.format(call=f"{f'{signature.name}_batch' if batch else 'batch'}(n, {arguments})"),
+        _REPEAT_BATCH.format(call=f"{f'{c_name(signature.name)}_batch' if batch else 'batch'}(n, {arguments})"),
     ])  # fmt: skip
 
 
-_REPEAT_ONE = """void repeat_one(size_t repeats, size_t n, double **a)
+_REPEAT_ONE = """void symrot_repeat_one(size_t repeats, size_t n, double **a)
 {{
     for (size_t r = 0; r < repeats; ++r)
         for (size_t k = 0; k < n; ++k) {{
@@ -140,7 +140,7 @@ _REPEAT_ONE = """void repeat_one(size_t repeats, size_t n, double **a)
         }}
 }}
 """
-_REPEAT_BATCH = """void repeat_batch(size_t repeats, size_t n, double **a)
+_REPEAT_BATCH = """void symrot_repeat_batch(size_t repeats, size_t n, double **a)
 {{
     for (size_t r = 0; r < repeats; ++r) {{
         {call};
@@ -175,7 +175,7 @@ def _heyoka_drivers(signature: Signature) -> str:
         "typedef void (*of_one)(double *, const double *, const double *, const double *);",
         "typedef void (*of_batch)(double *, const double *, const double *, const double *, size_t);",
         "static of_one one;", "static of_batch neighbour, neighbours;",
-        "void take(of_one a, of_batch b, of_batch c)", "{", "    one = a, neighbour = b, neighbours = c;", "}",
+        "void symrot_take(of_one a, of_batch b, of_batch c)", "{", "    one = a, neighbour = b, neighbours = c;", "}",
         "static void batch(size_t n, const double *in, double *out)", "{", "    size_t k = 0;",
         f"    for (; k + {LANES} <= n; k += {LANES})", "        neighbours(out + k, in + k, 0, 0, n);",
         "    for (; k < n; ++k)", "        neighbour(out + k, in + k, 0, 0, n);", "}",
@@ -219,7 +219,7 @@ def _runs(name: str, loaded: ctypes.CDLL, shapes: Sequence[str], many: int) -> d
     runs = {}
     for shape in shapes:
         count = many if shape == "many" else CACHED
-        function = loaded.repeat_one if shape == "one" else loaded.repeat_batch
+        function = loaded.symrot_repeat_one if shape == "one" else loaded.symrot_repeat_batch
         function.argtypes = (ctypes.c_size_t, ctypes.c_size_t, ctypes.c_void_p)
         if count:
             addresses = [_addresses(name, shape, count, place) for place in range(PLACES[shape])]
@@ -280,7 +280,7 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
         missing.append("CasADi")
     try:
         code = heyoka_code(name)
-        add("heyoka", Counter(), *_in_c(name, _heyoka_drivers(signature), many, prepare=lambda c: c.take(*code)))
+        add("heyoka", Counter(), *_in_c(name, _heyoka_drivers(signature), many, prepare=lambda c: c.symrot_take(*code)))
     except ImportError:
         missing.append("heyoka")
     contestants.append(Contestant(FLOOR, Counter(), _in_c(name, _moving(signature), many, SHAPES[1:])[0]))
@@ -313,7 +313,8 @@ def _casadi_text(name: str, function: Any) -> str:
     inputs = [a for a in signature.arguments if a.role == "in"]
     values = ", ".join(a.name if a.is_scalar else f"{a.name}[{i}]" for a in inputs for i in range(a.size))
     size = sum(a.size for a in signature.arguments if a.role == "out")
-    lines += [f"static inline void {name}({', '.join(arguments)})", "{", f"    const double x[] = {{{values}}};",
+    lines += [f"static inline void {c_name(name)}({', '.join(arguments)})", "{",
+              f"    const double x[] = {{{values}}};",
               f"    double y[{size}];", "    const double *arg[1] = {x};", "    double *res[1] = {y};",
               "    peer(arg, res, 0, 0, 0);"]  # fmt: skip
     for a in signature.arguments:

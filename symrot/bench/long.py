@@ -64,7 +64,7 @@ def measure(omega: Sequence[Any], revolutions: float) -> dict[str, tuple[float, 
 
     def stepped(project: bool) -> tuple[Floats, int]:
         parameters = [*p, *invariant_parameters(kernel, plan)]
-        states, stats = taylor.integrate(path, parameters, start, 0.0, [stop], 1e-15, project=project)
+        states, stats = taylor.integration(path, parameters, start, 0.0, 1e-15, project=project).sample([stop])
         return states[0], stats.accepted
 
     contestants: dict[str, Callable[[], tuple[Floats, int]]] = {

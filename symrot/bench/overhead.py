@@ -15,9 +15,10 @@ import numpy as np
 
 from symrot.bench.comparison.race import Measured, race, seconds_of
 from symrot.errors import InputError
+from symrot.propagation.motion import ClosedFormMotion, SteppedMotion
 from symrot.propagation.propagate import propagator
 from symrot.propagation.propagator import Propagator
-from symrot.propagation.steppers.stepping import DONE, Stretch
+from symrot.propagation.steppers.stepping import DONE, Segment
 
 __all__ = ["main", "measure"]
 
@@ -27,11 +28,13 @@ METHODS = ("taylor", "dop853", "exact")
 
 
 def _bare_stepper(propagate: Propagator, times: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> Callable[[], object]:
-    task = propagate._motion.stepping
+    motion = propagate._motion
+    assert isinstance(motion, SteppedMotion)
+    task = motion.stepping
     stepper, end = task.stepper, float(times[-1])
     ready = stepper.new_run.from_buffer_copy(task._ready)
     ready.pace, ready.stop = (end - task.t0) * task.pace, end
-    stepper.enter(ready, Stretch(task.t0, end, task.t0, end), task.allowed)
+    stepper.enter(ready, Segment(task.t0, end, task.t0, end), task.allowed)
     run = stepper.new_run()
     states = np.empty((len(times), stepper.states))
     size, place, source = ctypes.sizeof(run), ctypes.addressof(run), ctypes.addressof(ready)
@@ -49,9 +52,11 @@ def _bare_stepper(propagate: Propagator, times: "np.ndarray[tuple[int], np.dtype
 
 
 def _bare_exact(propagate: Propagator, times: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> Callable[[], object]:
-    motion: Any = propagate._motion.exact
-    loops = getattr(motion, "_loops", None)
-    call, constants = (loops.evaluate, loops.place) if loops else (motion._evaluate, motion._address)
+    motion = propagate._motion
+    assert isinstance(motion, ClosedFormMotion)
+    exact: Any = motion.exact
+    loops = getattr(exact, "_loops", None)
+    call, constants = (loops.evaluate, loops.place) if loops else (exact._evaluate, exact._address)
     omega, quaternion = np.empty((len(times), 3)), np.empty((len(times), 4))
     arguments = (constants, len(times), times.ctypes.data, omega.ctypes.data, quaternion.ctypes.data)
     return lambda alive=(omega, quaternion): call(*arguments)  # type: ignore[misc]  # whose memory is used

@@ -23,7 +23,7 @@ from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.planning.plan import Plan, general_structure, make_plan
 from symrot.propagation.method import Choice
-from symrot.propagation.motion import Motion
+from symrot.propagation.motion import stepped_motion
 from symrot.propagation.propagate import propagator
 from symrot.scene.file import read_toml
 from symrot.scene.scene import Scene, Torque, load_scene
@@ -114,7 +114,7 @@ def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[
         counts = problem.kernel.rates.operations()
         row[side]["operations"] = sum(count for name, count in counts.items() if name != "neg")
         runs[f"{side} evaluation"] = _evaluations(problem)
-        motion, at = Motion(plan, Choice("taylor", ""), TOLERANCE), np.array([problem.stop])
+        motion, at = stepped_motion(plan, Choice("taylor", ""), TOLERANCE), np.array([problem.stop])
         runs[f"{side} motion"] = lambda motion=motion, at=at: motion.integrate(at)  # type: ignore[misc]
         ends[side] = problem.state(motion.integrate(at)[0][0], problem.stop)
     auto, at = propagator(scene, "auto", TOLERANCE), np.array([float(scene.span.stop)])

@@ -145,7 +145,7 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
     (omega, quaternion), times = _start(scene), np.linspace(0.0, float(scene.span.stop), SAMPLES)
     propagate(times, omega=omega, quaternion=quaternion)
     initial = read_start(scene, omega, quaternion)
-    motion = propagate.motion_from(initial)
+    motion: Any = propagate.motion_from(initial)
     parts = motion.exact if motion.choice.method == "exact" else motion.stepping
     motion.follow(times, True)
     fresh = [motion.from_start(initial) for _ in range(2 * rounds)]
@@ -263,8 +263,7 @@ def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tup
     varied = {"principal": moments * (1 + SPREAD * random.random((n, 1)))}
     for name, field, entry in VARIED:
         if scene.torques and field in scene.torques[0].values:
-            value: Any = scene.torques[0].values[field]
-            varied[name] = float(value if entry is None else value[entry]) * (1 + SPREAD * random.random(n))
+            varied[name] = float(scene.torques[0].constant(field, entry)) * (1 + SPREAD * random.random(n))
     yield "and " + ", ".join(varied), {**variations, "parameters": varied}
 
 

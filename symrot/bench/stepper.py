@@ -54,7 +54,7 @@ def measure(tolerance: float, stop: float, rounds: int) -> list[Measurement]:
             rounds,
             partial(
                 _symrot,
-                cache.build(dop853.translation_unit(kernel, "free_body", 7, 3), "free_body_stepper"),
+                cache.build(dop853.translation_unit(kernel, "symrot_free_body", 7, 3), "free_body_stepper"),
                 p,
                 tolerance,
                 stop,
@@ -82,14 +82,14 @@ def _cost_and_error(run: Callable[[], tuple[int, Floats]], exact: Floats) -> tup
 
 
 def _symrot(path: Path, p: tuple[float, ...], tolerance: float, stop: float) -> tuple[int, Floats]:
-    states, stats = dop853.integrate(path, p, INITIAL, 0.0, (stop,), tolerance)
+    states, stats = dop853.integration(path, p, INITIAL, 0.0, tolerance).sample((stop,))
     return stats.evaluations, states[0]
 
 
 def _by_hand(
     path: Path, p: tuple[float, ...], tolerance: float, stop: float, real: Any = ctypes.c_double
 ) -> Callable[[], tuple[int, Floats]]:
-    function = ctypes.CDLL(str(path)).by_hand
+    function = ctypes.CDLL(str(path)).symrot_by_hand
     function.argtypes = (real, real, ctypes.c_void_p, ctypes.c_void_p, real)
     function.restype = ctypes.c_long
     parameters = (real * len(p))(*p)

@@ -195,7 +195,7 @@ def _stepper(
     motion, times = follow(path, p, problem.y0, 0.0, tolerance), np.array([problem.stop])
 
     def task() -> StepsAndState:
-        states, stats = motion.once(times, True)
+        states, stats = motion.sample_sorted(times, True)
         return stats.accepted, states[0]
 
     return task
@@ -217,7 +217,7 @@ def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> T
 
 def _by_hand(library_: Any, method: str, problem: _Problem, steps: int) -> TimedRun:
     """Return a run of a handwritten loop."""
-    function = getattr(library_, method)
+    function = getattr(library_, f"symrot_{method}")
     real = ctypes.c_double
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
     start, p = np.array(problem.y0), np.array(problem.p or [0.0])
@@ -256,8 +256,8 @@ def _contestants(problem: _Problem, settings: bool) -> list[tuple[str, float, Ti
     hairer = cache.build(library_source(problem.plan, problem.kernel), "motion")
     p, q = problem.taylor_p, problem.p
     tasks: list[tuple[str, float, TimedRun]] = []
-    tasks += [("taylor", e, _stepper(taylor.task, ours[orders[e]], p, problem, e)) for e in tolerances]
-    tasks += [("dop853", e, _stepper(dop853.task, hairer, q, problem, e)) for e in tolerances[:-4]]
+    tasks += [("taylor", e, _stepper(taylor.integration, ours[orders[e]], p, problem, e)) for e in tolerances]
+    tasks += [("dop853", e, _stepper(dop853.integration, hairer, q, problem, e)) for e in tolerances[:-4]]
     tasks += _loops(problem)
     for name, how in SETTINGS.items() if settings else list(SETTINGS.items())[:1]:
         for e in (*tolerances, 1e-15, 1e-16):
@@ -349,7 +349,7 @@ def _print_orders(name: str, rounds: int) -> None:
     problem, exact = _Problem(name, 1.0), reference(name)
     paths = {f"{order}": problem.taylor_library(order) for order in ORDERS}
     tasks: list[tuple[str, float, TimedRun]] = [
-        (order, 10.0**-k, _stepper(taylor.task, path, problem.taylor_p, problem, 10.0**-k))
+        (order, 10.0**-k, _stepper(taylor.integration, path, problem.taylor_p, problem, 10.0**-k))
         for k in range(2, 15) for order, path in paths.items()
     ]  # fmt: skip
     runs = raced(tasks, partial(problem.error, exact=exact), rounds)

@@ -14,6 +14,7 @@ import os
 import re
 import stat
 import sys
+from collections.abc import Callable
 from functools import cache as cache_once
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -153,9 +154,7 @@ class Building:
         self._error: Exception | None = None
         self._thread: Any = None
         if self._path is None:
-            from threading import Thread
-
-            self._thread = Thread(target=self._work, args=(source, name, flags), name="symrot compiles")
+            self._thread = _thread(self._work, source, name, flags)
             self._thread.start()
 
     def _work(self, source: str, name: str, flags: tuple[str, ...]) -> None:
@@ -186,6 +185,22 @@ class Building:
             raise self._error
         assert self._path is not None
         return self._path
+
+
+def _thread(work: Callable[..., None], *arguments: object) -> Any:
+    """Return a thread that compiles. All that its work imports is imported here.
+
+    A thread that imports waits for Python's import lock, and Ctrl-C during an import of the main thread can leave this
+    lock held for good: neither the thread nor the process, which waits for its threads, would ever end.
+    """
+    import atexit  # noqa: F401
+    import shutil  # noqa: F401
+    import tempfile  # noqa: F401
+    from threading import Thread
+
+    from symrot.build.compiler import WAITING
+
+    return Thread(target=work, args=arguments, name=WAITING)
 
 
 def stop_compilers() -> None:

@@ -100,12 +100,34 @@ def module_of(name: str) -> str:
 
 @cache
 def derivation(name: str) -> "Derivation":
-    """Derive one entry of the catalogue, once per process.
+    """Derive and prove one entry of the catalogue, once per process.
+
+    Parameters
+    ----------
+    name : str
+        A name that ``symrot derive`` lists, such as ``"intermediate_axis"``.
+
+    Returns
+    -------
+    Derivation
+        ``.steps`` are the proven steps; ``.markdown()``, ``.latex()`` and ``.html()`` print the page.
 
     Raises
     ------
     InputError
         If there is no derivation of that name.
+    ProofError
+        If a step does not hold.
+
+    Notes
+    -----
+    Convention: :mod:`symrot.conventions`. Source: each page cites its own.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> len(symrot.derivation("intermediate_axis").steps)
+    6
     """
     if name not in names():
         raise InputError(f"no derivation is called {name!r}; there are {', '.join(names())}")

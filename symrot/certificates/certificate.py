@@ -1,7 +1,11 @@
-"""The certificate of an emitted kernel: what was proven of its text, as JSON that can be re-checked without symrot.
+"""The certificate of an emitted kernel: statements about its files, and their proofs, as JSON.
 
-Links 1 (laws of the formulas) and 3 (C text = formulas) are proven here, from the texts as they are printed; the other
-links are filled in by their rooms. Same kernel, same bytes, on every machine.
+The program recheck.py checks it without symrot.
+
+
+Two statements are proven here from the printed files: the formulas obey their laws, and the C text computes the
+formulas. The sections about rounding errors and object code are added on request. The same kernel has the same
+certificate, byte for byte, on every machine.
 """
 
 import json
@@ -14,13 +18,13 @@ from typing import Any
 
 from sympy import Expr, Function, Symbol
 
-from symrot.build import cache as library
+from symrot.build import cache as proof_cache
 from symrot.certificates.coq.library import coq_section
 from symrot.certificates.flags import flags_section
-from symrot.certificates.laws.equality import SAFE, Equality, prove_equal
+from symrot.certificates.laws.equality import FUNCTIONS_WITH_LIMIT, Equality, prove_equal
 from symrot.certificates.laws.law_proof import CaseProof
 from symrot.certificates.laws.laws import LawProof, prove_law
-from symrot.certificates.readback.intended_constants import Meant
+from symrot.certificates.readback.intended_constants import IntendedConstant
 from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.codegen.printing.banner import Description
 from symrot.errors import CertificateError
@@ -31,14 +35,14 @@ from symrot.kernels.removable import REMOVABLE
 __all__ = [
     "SCHEMA",
     "Data",
-    "Subject",
+    "KernelUnderTest",
+    "certificate_json",
     "certificate_text",
-    "printed",
-    "said_of",
+    "intended_text",
+    "proven_statement",
     "seal",
-    "shown",
-    "statement",
-    "with_slots",
+    "unproven_statement",
+    "with_sections",
 ]
 
 SCHEMA = "symrot.certificate/1"
@@ -53,10 +57,11 @@ TRUSTED = {
 
 
 @dataclass(frozen=True)
-class Subject:
-    """A kernel to certify: what it is said to compute, and the texts that were printed of it.
+class KernelUnderTest:
+    """A kernel to certify: the formulas and laws that its description states, and the printed files.
 
-    ``files`` maps paths, as seen from the certificate, to texts; ``types`` maps the suffix of a function to its type.
+    ``files`` maps paths, relative to the certificate, to texts; ``types`` maps the suffix of a function's name to its
+    type, such as ``"f"`` to ``"float"``.
     """
 
     name: str
@@ -68,16 +73,18 @@ class Subject:
     laws: tuple[Law, ...]
     files: Mapping[str, str]
     types: Mapping[str, str]
-    parameters: Mapping[str, Expr] = field(default_factory=dict)  # inputs that stand for a formula in constants
+    parameters: Mapping[str, Expr] = field(
+        default_factory=dict
+    )  # symbol of an input -> the formula in constants that it stands for
 
     @property
     def places(self) -> dict[str, tuple[str, str]]:
-        """Return place of an input -> symbol, unit."""
+        """The symbol and unit of each input, by place."""
         return {place: (name, unit) for a in self.inputs for place, (name, unit, _) in _places(a)}
 
     @property
     def formulas(self) -> dict[str, tuple[str, Expr]]:
-        """Return place of an output -> symbol, formula."""
+        """The symbol and formula of each output, by place."""
         return {
             place: (component[0], formula)
             for target, formulas in self.outputs
@@ -86,148 +93,155 @@ class Subject:
 
 
 def _places(argument: Argument) -> list[tuple[str, tuple[str, str, str]]]:
+    """Return the places of an argument, each with its component (symbol, unit, description)."""
     if argument.is_scalar:
         return [(argument.name, argument.components[0])]
     return [(f"{argument.name}[{i}]", component) for i, component in enumerate(argument.components)]
 
 
-def certificate_text(subject: Subject) -> str:
-    """Return the certificate of a kernel, printed; every claim in it is proven, now or when it was last asked for.
+def certificate_text(kernel: KernelUnderTest) -> str:
+    """Return the text of a kernel's certificate, in which every statement is proven.
 
-    Proofs are kept in the cache by what they are about and by the programs that found them.
+    Proofs are read from the cache if they were stored for the same statements by the same version of the provers.
 
     Raises
     ------
     CertificateError
-        If a text is not its formulas, or a law does not follow.
+        If the C text does not compute the formulas, or a law does not follow from them.
     """
-    stated = statement(subject)
-    about = [stated, [[law.text, str(law.vanishing), str(law.relations)] for law in subject.laws], _method()]
-    key = f"certificate {sha256(json.dumps(about).encode()).hexdigest()}"
-    kept = library.fetch(key)
-    if kept is None:
-        kept = json.dumps(_proven(subject))
-        library.store(key, kept)
-    return printed(stated | json.loads(kept))
+    statement = unproven_statement(kernel)
+    key_content = [
+        statement,
+        [[law.text, str(law.vanishing), str(law.relations)] for law in kernel.laws],
+        _prover_digest(),
+    ]
+    key = f"certificate {sha256(json.dumps(key_content).encode()).hexdigest()}"
+    proofs = proof_cache.fetch(key)
+    if proofs is None:
+        proofs = json.dumps(_proven(kernel))
+        proof_cache.store(key, proofs)
+    return certificate_json(statement | json.loads(proofs))
 
 
 PROVERS = (
-    "certificate", "laws/equality", "laws/law_proof", "laws/laws", "readback/c_functions",
+    "certificate", "laws/equality", "laws/fractions", "laws/law_proof", "laws/laws", "readback/c_functions",
     "readback/intended_constants", "readback/operations", "readback/readback", "../kernels/removable",
 )  # fmt: skip
-"""The programs that find proofs: another one of them, other proofs."""
+"""The modules that find proofs; cached proofs are valid only while none of them changes."""
 
 
 @cache
-def _method() -> str:
-    """Return the SHA-256 of the programs that prove."""
+def _prover_digest() -> str:
+    """Return the SHA-256 of the modules that find proofs."""
     here = Path(__file__).parent
     return sha256(b"".join((here / f"{name}.py").read_bytes() for name in PROVERS)).hexdigest()
 
 
-def statement(subject: Subject) -> Data:
-    """Return what a certificate says without proof: what the kernel is, what its files are, what is assumed."""
-    description = subject.description
+def unproven_statement(kernel: KernelUnderTest) -> Data:
+    """Return the parts of a certificate that need no proof: description, formulas, hashes of files, assumptions."""
+    description = kernel.description
     return {
         "schema": SCHEMA,
-        "kernel": subject.name,
-        "title": subject.title,
+        "kernel": kernel.name,
+        "title": kernel.title,
         "regenerate": description.command,
         "convention": description.convention,
         "domain": description.domain,
         "derivation": description.derivation,
-        "files": {path: sha256(text.encode()).hexdigest() for path, text in subject.files.items()},
-        "inputs": [[place, *described] for place, described in subject.places.items()],
+        "files": {path: sha256(text.encode()).hexdigest() for path, text in kernel.files.items()},
+        "inputs": [[place, *described] for place, described in kernel.places.items()],
         "spec": {
-            "parameters": {symbol: str(value) for symbol, value in subject.parameters.items()},
-            "named": [[str(symbol), str(value)] for symbol, value in subject.named],
-            "formulas": [[place, symbol, str(formula)] for place, (symbol, formula) in subject.formulas.items()],
-            "functions": _functions(
-                [*(value for _, value in subject.named), *(f for _, f in subject.formulas.values())]
-            ),
+            "parameters": {symbol: str(value) for symbol, value in kernel.parameters.items()},
+            "named": [[str(symbol), str(value)] for symbol, value in kernel.named],
+            "formulas": [[place, symbol, str(formula)] for place, (symbol, formula) in kernel.formulas.items()],
+            "functions": _functions([*(value for _, value in kernel.named), *(f for _, f in kernel.formulas.values())]),
         },
-        "coq": coq_section(subject.name),
+        "coq": coq_section(kernel.name),
         "flags": flags_section(),
         "trusted": TRUSTED,
     }
 
 
 def _functions(formulas: Sequence[Expr]) -> list[list[str]]:
-    """Return what the functions with a removable singularity are that formulas call, of x, or x and y."""
+    """Return the functions with a removable singularity that formulas call: name, definition as text in x and y."""
     x, y = (Symbol(name, real=True) for name in "xy")
-    found = {type(call).__name__ for formula in formulas for call in formula.atoms(Function)}
+    names = {type(call).__name__ for formula in formulas for call in formula.atoms(Function)}
     texts = {}
-    for safe in SAFE:
+    for safe in FUNCTIONS_WITH_LIMIT:
         limit, formula = (
             each.xreplace(dict(zip(safe.arguments, (x, y), strict=False))) for each in (safe.limit, safe.formula)
         )
         texts[safe.name] = f"x == 0 ? {limit} : {formula}"
     texts |= {name: str(each.formula(x)) for name, each in REMOVABLE.items()}
-    return [[name, text] for name, text in texts.items() if name in found]
+    return [[name, text] for name, text in texts.items() if name in names]
 
 
-def said_of(subject: Subject) -> Data:
-    """Return the certificate of a kernel as symrot proves it, without what is filled in on request, and the seal."""
-    return {key: value for key, value in json.loads(certificate_text(subject)).items() if key != "seal"}
+def proven_statement(kernel: KernelUnderTest) -> Data:
+    """Return the statements about a kernel that symrot derives and proves: its certificate without optional sections.
+
+    The seal is left out too.
+    """
+    return {key: value for key, value in json.loads(certificate_text(kernel)).items() if key != "seal"}
 
 
-def _proven(subject: Subject) -> Data:
-    """Return what is proven: link 1, laws of the formulas, and link 3, that the C text is the formulas."""
-    known = {str(symbol): value for symbol, value in subject.named} | dict(subject.formulas.values())
+def _proven(kernel: KernelUnderTest) -> Data:
+    """Return the proofs of the laws, and the proofs that the C text computes the formulas."""
+    known = {str(symbol): value for symbol, value in kernel.named} | dict(kernel.formulas.values())
     return {
-        "laws": [_law(prove_law(subject.name, law, known)) for law in subject.laws],
+        "laws": [_law(prove_law(kernel.name, law, known)) for law in kernel.laws],
         "readback": {
-            f"{subject.name}{suffix}": _readback(subject, suffix, real) for suffix, real in subject.types.items()
+            f"symrot_{kernel.name}{suffix}": _readback(kernel, suffix, real) for suffix, real in kernel.types.items()
         },
     }
 
 
-def _law(found: LawProof) -> Data:
+def _law(proof: LawProof) -> Data:
     return {
-        "law": found.text, "vanishing": list(found.vanishing), "given": list(found.given),
-        "witness": dict(found.witness), "cases": [_case(case) for case in found.cases],
+        "law": proof.text, "vanishing": list(proof.vanishing), "given": list(proof.hypothesis_names),
+        "witness": dict(proof.witness), "cases": [_case(case) for case in proof.cases],
     }  # fmt: skip
 
 
-def _case(found: CaseProof) -> Data:
+def _case(proof: CaseProof) -> Data:
     return {
-        "case": [list(choice) for choice in found.case],
-        "steps": _plain(found.steps),
-        "relations": list(found.relations),
-        "entries": [[entry.factor, _plain(entry.cofactors)] for entry in found.entries],
+        "case": [list(choice) for choice in proof.case],
+        "steps": _as_lists(proof.steps),
+        "relations": list(proof.relations),
+        "entries": [[entry.factor, _as_lists(entry.cofactors)] for entry in proof.entries],
     }
 
 
-def _plain(value: Any) -> Any:
-    return [_plain(each) for each in value] if isinstance(value, tuple) else value
+def _as_lists(value: Any) -> Any:
+    return [_as_lists(each) for each in value] if isinstance(value, tuple) else value
 
 
-def _readback(subject: Subject, suffix: str, real: str) -> Data:
-    name, file = f"{subject.name}{suffix}", f"{subject.name}.c"
-    text = subject.files[file]
+def _readback(kernel: KernelUnderTest, suffix: str, real: str) -> Data:
+    """Return the ``readback`` entry of one function: its operations and the proof that they are the formulas."""
+    name, file = f"symrot_{kernel.name}{suffix}", f"{kernel.name}.c"
+    text = kernel.files[file]
     one, batch = read_kernel(text, name, file), read_batch(text, f"{name}_batch", file)
     if one.digest() != batch.digest():
         raise CertificateError(f"{file}: expected {name} and {name}_batch to compute the same, and they do not")
-    symbols = {place: symbol for place, (symbol, _) in subject.places.items()}
+    symbols = {place: symbol for place, (symbol, _) in kernel.places.items()}
     proof = prove_equal(
-        one, symbols, {place: f for place, (_, f) in subject.formulas.items()}, subject.named, subject.parameters
+        one, symbols, {place: f for place, (_, f) in kernel.formulas.items()}, kernel.named, kernel.parameters
     )
     return {
         "type": real,
         "operations": one.counts(),
         "digest": one.digest(),
-        "constants": [[str(each.written), shown(each)] for each in proof.rounded],
+        "constants": [[str(each.written), intended_text(each)] for each in proof.rounded],
         "series": _series(proof),
     }
 
 
-def shown(meant: Meant) -> str:
-    """Return what a constant stands for, as text."""
-    return f"{meant.fraction}*pi" if meant.times_pi else str(meant.fraction)
+def intended_text(constant: IntendedConstant) -> str:
+    """Return the number that a constant stands for, as text."""
+    return f"{constant.fraction}*pi" if constant.times_pi else str(constant.fraction)
 
 
 def _series(proof: Equality) -> list[list[Any]]:
-    found = {each.function: each for each in proof.truncations}
+    truncations = {each.function: each for each in proof.truncations}
     return [
         [
             each.function,
@@ -235,7 +249,7 @@ def _series(proof: Equality) -> list[list[Any]]:
             list(map(str, REMOVABLE[each.function].taylor(each.terms))),
             str(each.relative),
         ]
-        for each in found.values()
+        for each in truncations.values()
     ]
 
 
@@ -245,32 +259,32 @@ def seal(data: Data) -> str:
     return sha256(json.dumps(bare, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
 
-SLOTS: dict[str, Callable[[Data, Any], bool]] = {  # what other rooms fill in: whether it is about this certificate
-    "rounding": lambda data, found: (
-        [part["operations_sha256"] for part in found["precisions"]]
+OPTIONAL_SECTIONS: dict[str, Callable[[Data, Any], bool]] = {  # section -> whether it belongs to a certificate
+    "rounding": lambda data, section: (
+        [part["operations_sha256"] for part in section["precisions"]]
         == [function["digest"] for function in data["readback"].values()]
     ),
-    "objects": lambda data, found: data["files"].get(found["source"]["name"]) == found["source"]["sha256"],
+    "objects": lambda data, section: data["files"].get(section["source"]["name"]) == section["source"]["sha256"],
 }
 
 
-def with_slots(text: str, slots: Mapping[str, Any]) -> str:
+def with_sections(text: str, sections: Mapping[str, Any]) -> str:
     """Return a certificate with bounds of rounding errors (``rounding``) and verdicts on object code (``objects``).
 
-    Those are found on request, and kept while the kernel is what they are about: others are left out.
+    A section that is about other operations or another C text, because the kernel has changed, is left out.
     """
     data = json.loads(text)
-    for name, is_about in SLOTS.items():
+    for name, is_about in OPTIONAL_SECTIONS.items():
         try:
-            if slots.get(name) is not None and is_about(data, slots[name]):
-                data[name] = slots[name]
+            if sections.get(name) is not None and is_about(data, sections[name]):
+                data[name] = sections[name]
         except (KeyError, TypeError, AttributeError):
             continue
-    return printed(data)
+    return certificate_json(data)
 
 
-def printed(data: Data) -> str:
-    """Return a certificate as text, its seal at the end."""
+def certificate_json(data: Data) -> str:
+    """Return a certificate as text, with its seal at the end."""
     sealed = {key: value for key, value in data.items() if key != "seal"}
     return _layout(sealed | {"seal": seal(sealed)}) + "\n"
 
@@ -279,7 +293,7 @@ WIDTH = 118
 
 
 def _layout(value: Any, indent: int = 0, key: str = "") -> str:
-    """Return JSON with everything on one line that fits on it."""
+    """Return a value as JSON in which every object or list that fits on a line is on one line."""
     flat = json.dumps(value, ensure_ascii=False)
     if len(flat) + indent + len(key) <= WIDTH or not isinstance(value, (dict, list)) or not value:
         return flat

@@ -1,12 +1,12 @@
-"""Check certificates exactly, from their files alone: what `symrot audit` begins with.
+"""Check certificates exactly, from their files alone; ``symrot audit`` begins with this check.
 
-Every hash; link 3, that the C text is its formulas; link 1, that the formulas obey their laws. Both are evaluated in
-exact arithmetic at random integers, functions of equal arguments being one random integer more: a wrong equation passes
-one run with a chance of about its degree in 2^128. Laws are proven by the cases, steps and cofactors that the
-certificate holds (:mod:`symrot.certificates.laws.laws`). ``recheck.py``, which looks at no proof but at numbers, shares
-with this the seal and the hashes alone. Headers are known by hash alone. Whatever else a certificate says (titles and
-units, counts and digests of operations, flags, theorems, bounds of rounding errors, object code) is a statement that is
-not looked at.
+It checks every hash, that the C text computes the formulas, and that the formulas obey their laws. Equations are
+evaluated in exact arithmetic at random integers, with one more random integer as the value of a function for each
+different argument: a wrong equation passes one run with a chance of about its degree in 2^128. Laws are proven by the
+cases, steps and cofactors in the certificate (:mod:`symrot.certificates.laws.laws`). ``recheck.py``, which evaluates
+numbers and reads no proofs, shares only the seal and the hashes with this module. Headers are checked by hash alone.
+All other statements of a certificate (titles and units, counts and digests of operations, flags, theorems, bounds of
+rounding errors, object code) are not checked here.
 """
 
 import ast
@@ -26,7 +26,11 @@ HEAD = re.compile(r"(static inline |)(void|double|float) (\w+)\( ?([^()]*)\) \{(
 STATEMENT = re.compile(r" (?:\(void\)\w+|const (\w+) (\w+) = ([^=]+)|(\w+\[[^]=]+\]) = ([^=]+)|return (.+))", re.A)
 CHOICE = re.compile(r"([^?:<>=]+) (<|>=|==) ([^?:<>=]+) \? ([^?:<>=]+) : ([^?:<>=]+)")
 NUMBER = re.compile(r"(?<![\w.])(\d+\.\d*(?:e[-+]?\d{1,3})?f?|\d+e[-+]?\d{1,3}f?)(?![\w.])")
-LOOP, BLOCKS, PARTS = (  # a batch: one loop; blocks, done again for angles beyond a range; several loops over a span
+(
+    LOOP,
+    BLOCKS,
+    PARTS,
+) = (  # forms of a batch: one loop; blocks, computed again for large angles; several loops over a block
     re.compile(r"(?: \(void\)\w+;)*" + re.escape(text).replace("@", "([^{}]*)"))
     for text in (
         " SYMROT_INDEPENDENT for (size_t k = 0; k < n; ++k) {@} ",
@@ -41,7 +45,7 @@ LOOP, BLOCKS, PARTS = (  # a batch: one loop; blocks, done again for angles beyo
 OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv}
 CHOICES = {ast.Lt: "select_lt", ast.Eq: "select_eq", ast.GtE: "select_ge"}
 MATH = ["sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sinh", "cosh", "tanh", "sqrt", "atan2", "copysign"]
-SAFE = {  # functions of emitted files: what they are, except where
+SAFE = {  # function of emitted files -> its formula, and its value in an exceptional case
     "sinc": ("sin(x)/x", "1 if x == 0"),
     "arc_ratio": ("atan2(x, y)/x", "1/y if x == 0"),
     "sine_gap": ("(x - sin(x))/x**3", "{series} if x*x < {split}"),
@@ -49,7 +53,7 @@ SAFE = {  # functions of emitted files: what they are, except where
     "select_ge": ("w", "z if x >= y"),
 }
 TAYLOR = {"sine_gap": lambda k: 1, "tangent_gap": lambda k: 2 * k + 2}  # times (-1)^k x^(2 k)/(2 k + 3)!
-FACTS = {  # what functions are, whatever the arguments: left = right = left = right
+FACTS = {  # identities of functions: left = right = left = right
     "sum": "sin(X + Y) = sin(X)*cos(Y) + cos(X)*sin(Y) = cos(X + Y) = cos(X)*cos(Y) - sin(X)*sin(Y)",
     "odd": "sin(-X) = -sin(X) = cos(-X) = cos(X)",
     "quarter": "sin(X + pi/2) = cos(X) = cos(X + pi/2) = -sin(X)",
@@ -62,41 +66,47 @@ RELATIONS = {"circle": "sin(X)**2 + cos(X)**2 - 1", "root": "sqrt(X)**2 - X", "s
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
 
 
-def need(holds, said):
+def require(holds, message):
+    """Return ``holds`` if it is true, else raise ValueError with a message."""
     if not holds:
-        raise ValueError(said)
+        raise ValueError(message)
     return holds
 
 
 def nearest(value, real):
-    """Return the number of a type that is nearest to a value, ties to even."""
+    """Return a value rounded to the nearest number of a type, ties to even."""
     bits, shift = {"double": 53, "float": 24}[real], value.denominator.bit_length() - abs(value.numerator).bit_length()
     scale = Fraction(2) ** (bits + shift - (abs(value) * Fraction(2) ** shift >= 1))
     return round(value * scale) / scale
 
 
-class Drawn(defaultdict):
-    """A random integer for each name, or for each function of arguments."""
+class RandomIntegers(defaultdict):
+    """A random integer for each name, or for each function with its arguments, drawn at the first use."""
 
     def __missing__(self, key):
         return self.setdefault(key, Fraction(secrets.randbits(128)))
 
 
-class Reader:
-    """Values of expressions: of formulas; of C, where functions are given by ``calls``, C name -> name."""
+class Evaluator:
+    """Evaluates formulas, or expressions of C if ``real`` names their type; ``calls`` maps C names to functions."""
 
     def __init__(self, names, functions, real="", calls=None, constants=(), cases=None):
         self.names, self.functions, self.real, self.calls = names, functions, real, calls
         self.constants, self.cases, self.near = dict(constants), cases, set()
 
     def parsed(self, text):
-        need(text.isascii() and not re.search(r"//|\+\+|--|['\"\\#]", text), f"no formula: {text[:60]!r}")
+        """Return the syntax tree of an expression, in which numbers are strings."""
+        require(
+            text.isascii() and not re.search(r"//|\+\+|--|['\"\\#]", text), f"expected a formula, got {text[:60]!r}"
+        )
         return ast.parse(NUMBER.sub(r"'\1'", text.strip()), mode="eval").body
 
     def read(self, text):
+        """Return the value of an expression, a text."""
         return self.value(self.parsed(text))
 
     def value(self, node):
+        """Return the value of a syntax tree."""
         match node:
             case ast.Constant(value=int(number)) if not self.real:
                 return Fraction(number)
@@ -111,7 +121,10 @@ class Reader:
             case ast.BinOp(left=left, op=ast.Pow(), right=right) if not self.real:
                 base, power = self.value(left), self.value(right)
                 base, power = (self.call("sqrt", base), 2 * power) if power.denominator == 2 else (base, power)
-                need(power.denominator == 1 and abs(power) < 99, f"no power: {power}")
+                require(
+                    power.denominator == 1 and abs(power) < 99,
+                    f"expected a power that is a multiple of 1/2 below 99, got {power}",
+                )
                 return base**power
             case ast.BinOp(left=left, op=sign, right=right):
                 return OPERATORS[type(sign)](self.value(left), self.value(right))
@@ -122,45 +135,52 @@ class Reader:
                 if re.match("symrot_(?:(sin|cos)f?$|near_(?!arc_))", name):
                     self.near.add(values[0])
                 return self.call(self.calls[name] if self.real else name, *values)
-        raise ValueError(f"no formula of kernels: {ast.unparse(node)[:60]}")
+        raise ValueError(f"expected a formula of kernels, got {ast.unparse(node)[:60]}")
 
     def call(self, name, *values):
+        """Return the value of a function at some arguments."""
         if self.cases is not None and name == "Abs":
             return self.call("copysign", Fraction(1), *values) * values[0]
         if self.cases is not None and name in SAFE and name != "select_ge":
-            return Reader(dict(zip("xy", values, strict=False)), self.functions).read(SAFE[name][0])
+            return Evaluator(dict(zip("xy", values, strict=False)), self.functions).read(SAFE[name][0])
         if self.cases and name == "select_ge" and values[:2] in self.cases:
             return values[2 if self.cases[values[:2]] == ">=" else 3]
         return self.functions[name, *values]
 
     def run(self, body, places, targets=()):
-        """Return what statements of C assign to targets, by target, or what they return."""
-        self.names, found, statements = dict(places), {}, body.split(";")
-        need(not statements.pop().strip(), f"no statement: {body[-60:]!r}")
+        """Run statements of C; return the values that they assign, by target, or the value that they return."""
+        self.names, results, statements = dict(places), {}, body.split(";")
+        require(not statements.pop().strip(), f"expected a semicolon at the end, got {body[-60:]!r}")
         for place, statement in enumerate(statements, 1):
-            said = need(STATEMENT.fullmatch(statement), f"no statement: {statement[:60]!r}")
-            real, name, formula, target, assigned, returned = said.groups()
+            match = require(STATEMENT.fullmatch(statement), f"expected a statement, got {statement[:60]!r}")
+            real, name, formula, target, assigned, returned = match.groups()
             if returned:
-                need(place == len(statements), "something follows after return")
+                require(place == len(statements), "expected nothing after return")
                 return self.read(CHOICE.sub(r"(\4) if (\1) \2 (\3) else (\5)", returned))
             if name:
-                need(real == self.real and name not in (*self.names, *self.calls, "n", "k"), f"{name} is no new name")
+                require(
+                    real == self.real and name not in (*self.names, *self.calls, "n", "k"),
+                    f"expected a new name, got {name}",
+                )
                 self.names[name] = self.read(formula)
             if target:
                 target = ast.unparse(self.parsed(target))
-                need(target in targets and target not in found, f"{target} is assigned")
-                found[target] = self.read(assigned)
-        return found
+                require(
+                    target in targets and target not in results,
+                    f"expected an output that is not assigned yet, got {target}",
+                )
+                results[target] = self.read(assigned)
+        return results
 
 
-class Kernel:
-    """Link 3: a function, of one sample and of many, is its formulas."""
+class KernelCheck:
+    """The check that the C text of a function, for one sample and in batches, computes its formulas."""
 
-    def __init__(self, name, data, found):
-        self.name, self.said, self.spec, self.found = name, data["readback"][name], data["spec"], found
-        self.real, self.symbols, self.functions = self.said["type"], Drawn(), Drawn()
+    def __init__(self, name, data, c_functions):
+        self.name, self.readback, self.spec, self.c_functions = name, data["readback"][name], data["spec"], c_functions
+        self.real, self.symbols, self.functions = self.readback["type"], RandomIntegers(), RandomIntegers()
         self.end = end = {"double": "", "float": "f"}[self.real]
-        own = [f for f in found if found[f][:2] == ("static inline ", self.real)]
+        own = [f for f in c_functions if c_functions[f][:2] == ("static inline ", self.real)]
         self.own = {f: f.removeprefix("symrot_").removeprefix("near_").removesuffix(end) for f in own}
         ranged = ("sin", "cos", "atan2", "select_lt", "select_eq") if "symrot_math.h" in data["files"] else ()
         self.calls = {f + end: f for f in MATH} | {f"fabs{end}": "Abs"} | {f"symrot_{f}{end}": f for f in ranged}
@@ -168,33 +188,43 @@ class Kernel:
         self.calls |= self.own
         inputs = {place: self.spec["parameters"].get(symbol, symbol) for place, symbol, _ in data["inputs"]}
         parameters = {symbol for place, symbol, _ in data["inputs"] if place.startswith("p[")}
-        need({*self.spec["parameters"]} == parameters, "a parameter is no input")
-        need(all(symbol.isidentifier() for _, symbol, _ in data["inputs"]), "an input is no name")
-        need(len({*inputs.values(), "pi"}) == len(data["inputs"]) + 1, "two inputs are one")
-        formula = Reader(self.symbols, self.functions)
+        require(
+            {*self.spec["parameters"]} == parameters,
+            "expected the same parameters in the formulas and among the inputs",
+        )
+        require(all(symbol.isidentifier() for _, symbol, _ in data["inputs"]), "expected inputs that are names")
+        require(
+            len({*inputs.values(), "pi"}) == len(data["inputs"]) + 1,
+            "expected inputs that differ from each other and from pi",
+        )
+        formula = Evaluator(self.symbols, self.functions)
         self.inputs = {place: formula.read(text) for place, text in inputs.items()}
         for symbol, text in self.spec["named"]:
             self.symbols[symbol] = formula.read(text)
         self.outputs = {place: formula.read(text) for place, _, text in self.spec["formulas"]}
-        self.constants = dict(map(self.constant, self.said["constants"]))
+        self.constants = dict(map(self.constant, self.readback["constants"]))
 
-    def constant(self, said):
-        """Return a number of the C text, and what stands for it in formulas."""
-        written, exact = Fraction(said[0]), Fraction(said[1].removesuffix("*pi"))
-        times_pi = said[1].endswith("*pi")
-        need(
-            nearest(exact * PI if times_pi else exact, self.real) == written, f"{written} does not stand for {said[1]}"
+    def constant(self, pair):
+        """Return a constant of the C text, and the number that it stands for."""
+        written, exact = Fraction(pair[0]), Fraction(pair[1].removesuffix("*pi"))
+        times_pi = pair[1].endswith("*pi")
+        require(
+            nearest(exact * PI if times_pi else exact, self.real) == written, f"{written} does not stand for {pair[1]}"
         )
         return written, exact * self.symbols["pi"] if times_pi else exact
 
     def run(self, body, places, targets=(), near=()):
-        """Return what a body computes; functions for a range of angles may be called for those in ``near`` alone."""
-        reader = Reader({}, self.functions, self.real, self.calls, self.constants if targets else ())
+        """Return the values that a body computes; only the angles ``near`` may go to functions of limited range."""
+        reader = Evaluator({}, self.functions, self.real, self.calls, self.constants if targets else ())
         computed = reader.run(body, places, targets)
-        need(reader.near <= set(map(reader.read, near)), f"{self.name} takes angles beyond their range")
+        require(
+            reader.near <= set(map(reader.read, near)),
+            f"{self.name} calls a function of limited range for an untested angle",
+        )
         return computed
 
     def check(self):
+        """Check the function for one sample and the batch function."""
         for function, bare in self.own.items():
             self.check_own(function, bare)
         places = [*self.inputs, *self.outputs]
@@ -202,66 +232,79 @@ class Kernel:
         for base in bases:
             own = [place for place in places if place.partition("[")[0] == base]
             bases[base] = 0 if own == [base] else len(own)
-            need(own in ([base], [f"{base}[{k}]" for k in range(len(own))]), f"{own[0]} and others are no argument")
+            require(
+                own in ([base], [f"{base}[{k}]" for k in range(len(own))]),
+                f"expected the places of one argument, numbered from 0, got {', '.join(own)}",
+            )
         typed = {base: "const " * (f"{base}[0]" not in self.outputs) + self.real for base in bases}
         one = [f"{typed[base]} {base}[{size}]" if size else f"{self.real} {base}" for base, size in bases.items()]
         many = [one[k] if base == "p" else f"{typed[base]} *SYMROT_RESTRICT {base}" for k, base in enumerate(bases)]
-        need(self.found[self.name][1:3] == ("void", ", ".join(one)), f"{self.name} has other arguments")
-        _, kind, arguments, loops = self.found[f"{self.name}_batch"]
-        need((kind, arguments) == ("void", ", ".join(["size_t n", *many])), f"{self.name}_batch has other arguments")
+        require(self.c_functions[self.name][1:3] == ("void", ", ".join(one)), f"{self.name} has other arguments")
+        _, kind, arguments, loops = self.c_functions[f"{self.name}_batch"]
+        require((kind, arguments) == ("void", ", ".join(["size_t n", *many])), f"{self.name}_batch has other arguments")
 
         def of_sample(place):
             base, _, index = place.partition("[")
-            return place if base == "p" else f"{base}[{index[:-1]} * n + k]" if index else f"{base}[k]"
+            if base == "p" or not index:
+                return place if base == "p" else f"{base}[k]"
+            return f"{base}[{ {'0]': '', '1]': 'n + '}.get(index, index[:-1] + ' * n + ') }k]"
 
         batch = {of_sample(place): value for place, value in self.inputs.items()}
-        self.compare([self.found[self.name][3]], self.inputs, self.outputs)
+        self.compare([self.c_functions[self.name][3]], self.inputs, self.outputs)
         if loop := LOOP.fullmatch(loops) or PARTS.fullmatch(loops):
             return self.compare(loop.groups(), batch, map(of_sample, self.outputs))
-        bits, first, far, again = need(BLOCKS.fullmatch(loops), f"{self.name}_batch is no loop").groups()
-        asked = re.findall(rf"symrot_far{self.end}\(((?:[^()]|\([^()]*\))*)\)", far)
-        holds = far == " + ".join(f"symrot_far{self.end}({each})" for each in asked)
-        need(holds and bits == {"double": "64", "float": "32"}[self.real], f"{far} asks for no range")
-        self.compare([first], batch, map(of_sample, self.outputs), asked)
+        bits, first, far, again = require(
+            BLOCKS.fullmatch(loops), f"{self.name}_batch is not a loop over all samples"
+        ).groups()
+        tested = re.findall(rf"symrot_far{self.end}\(((?:[^()]|\([^()]*\))*)\)", far)
+        holds = far == " + ".join(f"symrot_far{self.end}({each})" for each in tested)
+        require(
+            holds and bits == {"double": "64", "float": "32"}[self.real],
+            f"{far} is not the test of the range of angles",
+        )
+        self.compare([first], batch, map(of_sample, self.outputs), tested)
         self.compare([again], batch, map(of_sample, self.outputs))
 
     def compare(self, bodies, places, targets, near=()):
-        targets, got = [*targets], {}
+        """Check that bodies assign to targets the values of the formulas."""
+        targets, computed = [*targets], {}
         for body in bodies:
-            got |= self.run(body, places, [target for target in targets if target not in got], near)
-        for target, (place, wanted) in zip(targets, self.outputs.items()):
-            need(target in got and got[target] == wanted, f"{place} of {self.name} is not its formula")
+            computed |= self.run(body, places, [target for target in targets if target not in computed], near)
+        for target, (place, expected) in zip(targets, self.outputs.items()):
+            require(target in computed and computed[target] == expected, f"{place} of {self.name} is not its formula")
 
     def check_own(self, function, bare):
-        """Check a function of the file: it is what formulas mean by its name, a series up to a bound that is proven."""
-        (explicit, case), (_, _, arguments, body) = SAFE[bare], self.found[function]
-        for _, split, said, rest in (each for each in self.said["series"] if each[0] == bare):
-            taylor = [(-1) ** k * Fraction(TAYLOR[bare](k), math.factorial(2 * k + 3)) for k in range(len(said) + 1)]
+        """Check that a function of the file computes the function of its name; a series, up to its proven bound."""
+        (explicit, case), (_, _, arguments, body) = SAFE[bare], self.c_functions[function]
+        for _, split, coefficients, rest in (each for each in self.readback["series"] if each[0] == bare):
+            taylor = [
+                (-1) ** k * Fraction(TAYLOR[bare](k), math.factorial(2 * k + 3)) for k in range(len(coefficients) + 1)
+            ]
             falling = [abs(each) * Fraction(split) ** k for k, each in enumerate(taylor)]
-            holds = sorted(falling, reverse=True) == falling and [*map(Fraction, said)] == taylor[:-1]
+            holds = sorted(falling, reverse=True) == falling and [*map(Fraction, coefficients)] == taylor[:-1]
             holds = holds and Fraction(rest) == falling[-1] / (falling[0] - falling[1])
-            need(holds, f"the series of {bare}, or its bound, is another")
+            require(holds, f"the series of {bare}, or its bound, is wrong")
             series = [f"({nearest(each, self.real)})*x**{2 * k}" for k, each in enumerate(taylor[:-1])]
             case = case.format(series=" + ".join(series), split=split)
         names = [argument.removeprefix(f"{self.real} ") for argument in arguments.split(", ")]
         values = [self.symbols[f"an argument {k}"] for k in range(4)]
-        wanted = Reader(dict(zip("xyzw", values)), self.functions).read(f"{case} else {explicit}")
+        expected = Evaluator(dict(zip("xyzw", values)), self.functions).read(f"{case} else {explicit}")
         computed = self.run(body, dict(zip(names, values)), near=names[:1] * function.startswith("symrot_near_"))
-        need(computed == wanted, f"{function} is not {case} else {explicit}")
+        require(computed == expected, f"{function} is not {case} else {explicit}")
 
 
-class Measured(dict):
-    """Functions as they are, but for rounding."""
+class FloatFunctions(dict):
+    """The values of functions in floating-point arithmetic."""
 
     def __missing__(self, call):
         return Fraction(getattr(math, call[0])(*map(float, call[1:])))
 
 
-def hypotheses(given):
-    """Return what vanishes for numbers whose squares sum to one, or for the nine entries of a rotation, row by row."""
-    if len(given) != 9:
-        return [sum(each**2 for each in given) - 1] if given else []
-    rows, pairs = [given[:3], given[3:6], given[6:]], [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
+def hypotheses(values):
+    """Return expressions that are zero for the components of a unit vector, or for the nine entries of a rotation."""
+    if len(values) != 9:
+        return [sum(each**2 for each in values) - 1] if values else []
+    rows, pairs = [values[:3], values[3:6], values[6:]], [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
     columns = [[row[k] for row in rows] for k in range(3)]
     normal = [sum(map(operator.mul, of[i], of[j])) - (i == j) for of in (columns, rows) for i, j in pairs]
     for a, b, c in ((columns[k - 2], columns[k - 1], columns[k]) for k in (2, 0, 1)):
@@ -270,15 +313,19 @@ def hypotheses(given):
 
 
 def prove(law, case, formulas):
-    """Link 1, a law in one case: what vanishes, times a factor, is a sum of cofactors times relations.
+    """Check the proof of a law in one case: each entry, times a factor, is a sum of cofactors times relations.
 
-    Factors and cofactors are taken at the witness as well, where all that is given holds: none of them hides a division
-    by what vanishes.
+    An entry is an expression that the law says is zero.
+    Factors and cofactors are also evaluated at the witness, where the hypotheses hold, so that none of them hides a
+    division by zero.
     """
     witness = {name: Fraction(text) for name, text in law["witness"].items()} | {"pi": PI}
-    there, reader = Reader(witness, Measured(), cases={}), Reader(Drawn(), Drawn(), cases={})
+    there, reader = (
+        Evaluator(witness, FloatFunctions(), cases={}),
+        Evaluator(RandomIntegers(), RandomIntegers(), cases={}),
+    )
     relations, roots = hypotheses([*map(reader.read, law["given"])]), set()
-    need(not any(hypotheses([*map(there.read, law["given"])])), "the witness is none")
+    require(not any(hypotheses([*map(there.read, law["given"])])), "the hypotheses do not hold at the witness")
 
     def combined(value, factor, cofactors):
         holds = abs(there.read(factor)) > 1e-6 and all(abs(there.read(text)) < 1e6 for _, text in cofactors)
@@ -293,7 +340,7 @@ def prove(law, case, formulas):
     for kind, first, *rest in case["steps"]:
         second = rest[0] if rest else ""
         if kind == "name":
-            need(re.fullmatch(r"g\d+_", first) and first not in witness, f"{first} is no new name")
+            require(re.fullmatch(r"g\d+_", first) and first not in witness, f"expected a new name, got {first}")
             reader.names[first], witness[first] = reader.read(second), there.read(second)
             match reader.parsed(second):
                 case ast.Call(func=ast.Name(id="sqrt")):
@@ -303,71 +350,83 @@ def prove(law, case, formulas):
                 case ast.Call(func=ast.Name(id="sin" | "cos" | "atan2" | "copysign")):
                     pass
                 case _:
-                    raise ValueError(f"{first} stands for no function")
+                    raise ValueError(f"expected a function that {first} stands for")
         elif kind == "square":
             square, value = map(reader.read, (first, second))
             holds = never_negative(second) and combined(square - value**2, *rest[1:])
-            reader.functions["sqrt", square] = need(holds, f"{second} is not the root of {first}") and value
+            reader.functions["sqrt", square] = require(holds, f"{second} is not the root of {first}") and value
         else:
             fill = (RELATIONS | FACTS)[kind].replace("WRAPPED", WRAPPED)
-            given = {"X": f"({first})", "Y": f"({second})"}
-            sides = re.sub("[XY]", lambda name, given=given: given[name[0]], fill).split(" = ")
+            arguments = {"X": f"({first})", "Y": f"({second})"}
+            sides = re.sub("[XY]", lambda name, arguments=arguments: arguments[name[0]], fill).split(" = ")
             relations += [reader.read(sides[0])] if kind in RELATIONS else []
             for left, right in zip(sides[::2], sides[1::2]):
                 node = reader.parsed(left)
                 reader.functions[node.func.id, *map(reader.value, node.args)] = reader.read(right)
-    need(relations == [*map(reader.read, case["relations"])], "the relations are not those of the steps")
-    reader.cases = {(reader.read(left), reader.read(right)): way for left, way, right in case["case"]}
+    require(
+        relations == [*map(reader.read, case["relations"])],
+        "the relations of a proof are not those that its steps make",
+    )
+    reader.cases = {(reader.read(left), reader.read(right)): sign for left, sign, right in case["case"]}
     for name, text in formulas:
-        need(name not in reader.names and name.isidentifier(), f"{name} is no new name")
+        require(name not in reader.names and name.isidentifier(), f"expected a new name, got {name}")
         reader.names[name] = reader.read(text)
-    need(len(case["entries"]) == len(law["vanishing"]), f"the law {law['law']!r} has other entries")
+    require(
+        len(case["entries"]) == len(law["vanishing"]),
+        f"the proof of the law {law['law']!r} has another number of entries than the law",
+    )
     for text, entry in zip(law["vanishing"], case["entries"]):
-        need(combined(reader.read(text), *entry), f"the law {law['law']!r} does not follow")
+        require(combined(reader.read(text), *entry), f"the law {law['law']!r} does not follow")
 
 
 def complete(cases):
-    """Tell whether cases are all there are: both ways of one choice, and so on."""
+    """Tell whether cases are complete: both branches of the first choice, and recursively of the choices in them."""
     if not cases or not cases[0]:
         return len(cases) == 1
     left, _, right = cases[0][0]
-    ways = [[case[1:] for case in cases if case and case[0] == [left, way, right]] for way in ("<", ">=")]
-    return len(cases) == sum(map(len, ways)) and all(map(complete, ways))
+    branches = [[case[1:] for case in cases if case and case[0] == [left, sign, right]] for sign in ("<", ">=")]
+    return len(cases) == sum(map(len, branches)) and all(map(complete, branches))
 
 
 def functions_of(text, name, files):
-    """Return name -> (static, type, arguments, body) of the functions of a C file that holds nothing else."""
+    """Return the functions of a C file, name -> (static, type, arguments, body); raise ValueError for other content."""
     odd = re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", text)
-    need(not odd, "there is a backslash, a trigraph, a comment of later C or a control character")
+    require(not odd, "expected no backslash, trigraph, // comment or control character in the C text")
     known = ["#include <math.h>", f'#include "{name}.h"', *['#include "symrot_math.h"'] * ("symrot_math.h" in files)]
     lines = [line for line in re.sub(r"/\*.*?\*/", " ", text, flags=re.S).split("\n") if line.strip() not in known]
-    found, (*chunks, end) = {}, re.split(r"^\}$", "\n".join(lines), flags=re.M)
-    need(not end.strip(), f"no function: {end.strip()[:60]!r}")
+    functions, (*chunks, end) = {}, re.split(r"^\}$", "\n".join(lines), flags=re.M)
+    require(not end.strip(), f"expected a function, got {end.strip()[:60]!r}")
     for chunk in chunks:
-        head = need(HEAD.fullmatch(" ".join(chunk.split()) + " "), f"no function: {chunk.strip()[:60]!r}")
-        need(head[3] not in found and (not head[1] or head[3].startswith("symrot_")), f"{head[3]} is defined twice")
-        found[head[3]] = head.group(1, 2, 4, 5)
-    return found
+        head = require(
+            HEAD.fullmatch(" ".join(chunk.split()) + " "), f"expected a function, got {chunk.strip()[:60]!r}"
+        )
+        require(
+            head[3] not in functions and (not head[1] or head[3].startswith("symrot_")), f"{head[3]} is defined twice"
+        )
+        functions[head[3]] = head.group(1, 2, 4, 5)
+    return functions
 
 
 def check(path):
-    """Return what a certificate shows, in a line; raise one of REFUSALS if it does not."""
+    """Check a certificate; return a line that lists the checks, or raise one of REFUSALS if one of them fails."""
     path = Path(path)
     data = recheck.certified(path)
     name, files, spec, readback = data["kernel"], data["files"], data["spec"], data["readback"]
-    found = functions_of(path.with_name(f"{name}.c").read_text("utf-8"), name, files)
-    wanted = {f"{function}{end}" for function in readback for end in ("", "_batch")}
-    need({f for f in found if not found[f][0]} == wanted, f"expected the functions {', '.join(wanted)}")
+    c_functions = functions_of(path.with_name(f"{name}.c").read_text("utf-8"), name, files)
+    expected = {f"{function}{end}" for function in readback for end in ("", "_batch")}
+    require(
+        {f for f in c_functions if not c_functions[f][0]} == expected, f"expected the functions {', '.join(expected)}"
+    )
     for function in readback:
-        Kernel(function, data, found).check()
+        KernelCheck(function, data, c_functions).check()
     formulas = [*spec["named"], *(item[1:] for item in spec["formulas"])]
-    for law in need(data["laws"], "there are no laws"):
-        need(complete([case["case"] for case in law["cases"]]), f"cases of the law {law['law']!r} are missing")
+    for law in require(data["laws"], "expected laws, got none"):
+        require(complete([case["case"] for case in law["cases"]]), f"cases of the law {law['law']!r} are missing")
         for case in law["cases"]:
             prove(law, case, formulas)
-    functions = " and ".join(readback)
+    checked = " and ".join(readback)
     laws = f"{len(data['laws'])} laws of the formulas"
-    return f"{name}: {len(files)} hashes, C text of {functions} and batches = formulas, {laws} (bounds not looked at)"
+    return f"{name}: {len(files)} hashes, C text of {checked} and batches = formulas, {laws} (bounds not checked)"
 
 
 REFUSALS = (ArithmeticError, AttributeError, LookupError, MemoryError, OSError, RecursionError, SyntaxError, TypeError)
@@ -375,7 +434,8 @@ REFUSALS += (ValueError,)
 
 
 def sentence(reason):
+    """Return an exception of REFUSALS as one sentence."""
     if isinstance(reason, (SyntaxError, LookupError)):
         return f"no text of kernels, or no certificate of the schema ({reason.args[0]!r})"
-    said = str(reason) if isinstance(reason, (ValueError, OSError)) else f"no certificate of the schema ({reason!r})"
-    return said if len(said) <= 400 else f"{said[:200]} .. {said[-200:]}"
+    text = str(reason) if isinstance(reason, (ValueError, OSError)) else f"no certificate of the schema ({reason!r})"
+    return text if len(text) <= 400 else f"{text[:200]} .. {text[-200:]}"

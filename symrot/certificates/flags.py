@@ -1,10 +1,10 @@
-"""Compiler flags and what they do to a certificate: the bits of the C text, its error bounds only, or nothing holds.
+"""The effect of compiler flags on a certificate: bits and error bounds hold, only the bounds hold, or nothing holds.
 
-A certificate speaks of the operations of the C text, each rounded once to nearest. A flag that lets the compiler round
-elsewhere voids it; contraction (a*b + c rounded once) takes roundings away, so that bounds hold and bits do not, but
-for a product that is fused in some places and rounded in others: its error may have cancelled before.
-The table says what a flag may do by its documentation; what a compiler did is seen in its object code
-(:mod:`symrot.certificates.object_code.comparison`). Standard library only.
+A certificate is about the operations of the C text, each rounded once to nearest. A flag that lets the compiler round
+elsewhere voids it. Contraction (a*b + c rounded once) removes roundings: the bits change, but the bounds hold, unless a
+product is fused in some places and rounded in others, so that errors that cancelled no longer cancel.
+The table follows the documentation of the flags; a comparison of object code
+(:mod:`symrot.certificates.object_code.comparison`) shows the effect in one case. Only the standard library is used.
 """
 
 import re
@@ -14,7 +14,18 @@ from dataclasses import dataclass
 
 from symrot.errors import InputError
 
-__all__ = ["BITS", "BOUNDS", "NOTHING", "REQUIRED", "TABLE", "Judgement", "Remark", "Rule", "flags_section", "judge"]
+__all__ = [
+    "BITS",
+    "BOUNDS",
+    "NOTHING",
+    "REQUIRED",
+    "TABLE",
+    "FlagEffect",
+    "FlagRemark",
+    "FlagRule",
+    "classify_flags",
+    "flags_section",
+]
 
 BITS, BOUNDS, NOTHING = "bits", "bounds", "nothing"
 REQUIRED = ("-ffp-contract=off",)
@@ -30,18 +41,18 @@ UNFIXED = "without it a compiler may contract a*b + c where the processor has it
 
 
 @dataclass(frozen=True)
-class Rule:
-    """What flags of one form do. ``sets`` and ``clears`` name what they switch on and off; "" is no effect at all."""
+class FlagRule:
+    """The effect of all flags of one form: the properties of the code that they switch on (``sets``) and off."""
 
-    form: str  # a regular expression for the whole flag
+    form: str  # regular expression that matches the whole flag
     reason: str
     sets: tuple[str, ...] = ()
     clears: tuple[str, ...] = ()
-    takes_next: bool = False  # the word after it belongs to it
+    takes_next: bool = False  # whether the next word is the flag's argument
 
 
 FAST = ("reassociation", "reciprocals", "finite numbers only", "unsigned zeros", "approximate functions")
-VOID: dict[str, str] = {  # what is switched on -> why nothing is certified then
+VOID: dict[str, str] = {  # property that a flag switches on -> why it voids the certificate
     "reassociation": "sums and products are computed in another order: other roundings",
     "reciprocals": "x/y becomes x*(1/y): one rounding more",
     "finite numbers only": "comparisons and ranges assume that there are no infinities and NaN",
@@ -52,79 +63,84 @@ VOID: dict[str, str] = {  # what is switched on -> why nothing is certified then
     "float literals": "literals of double are rounded to float",
 }
 _WORDS = r"[\w.,+\-=/:@%]*"
-TABLE: tuple[Rule, ...] = (
-    Rule(r"-ffp-contract=off", "no contraction: required for the bits of the C text", clears=("contraction",)),
-    Rule(r"-ffp-contract=(fast|on|fast-honor-pragmas)", CONTRACTION, sets=("contraction",)),
-    Rule(r"-ffast-math|-Ofast", "sums in another order, reciprocals, finite numbers only, unsigned zeros; "
-         "at linking it sets flush to zero for the whole process", sets=(*FAST, "flush to zero", "contraction")),
-    Rule(r"-fno-fast-math", "takes -ffast-math back", clears=(*FAST, "flush to zero")),
-    Rule(r"-funsafe-math-optimizations", "sums in another order, reciprocals, unsigned zeros; at linking it sets "
-         "flush to zero", sets=("reassociation", "reciprocals", "unsigned zeros", "flush to zero")),
-    Rule(r"-fno-unsafe-math-optimizations", "takes it back",
-         clears=("reassociation", "reciprocals", "unsigned zeros", "flush to zero")),
-    Rule(r"-fassociative-math", VOID["reassociation"], sets=("reassociation",)),
-    Rule(r"-fno-associative-math", "keeps the order of the C text", clears=("reassociation",)),
-    Rule(r"-freciprocal-math|-mrecip(=.*)?", VOID["reciprocals"], sets=("reciprocals",)),
-    Rule(r"-fno-reciprocal-math|-mno-recip", "keeps divisions", clears=("reciprocals",)),
-    Rule(r"-ffinite-math-only|-fno-honor-(nans|infinities)", VOID["finite numbers only"],
-         sets=("finite numbers only",)),
-    Rule(r"-fno-finite-math-only|-fhonor-(nans|infinities)", "keeps infinities and NaN",
-         clears=("finite numbers only",)),
-    Rule(r"-fno-signed-zeros", VOID["unsigned zeros"], sets=("unsigned zeros",)),
-    Rule(r"-fsigned-zeros", "keeps the sign of zeros", clears=("unsigned zeros",)),
-    Rule(r"-fapprox-func|-fveclib=.*|-mveclibabi=.*", VOID["approximate functions"], sets=("approximate functions",)),
-    Rule(r"-fno-approx-func", "keeps the functions of libm", clears=("approximate functions",)),
-    Rule(r"-mdaz-ftz|-f?denormal-fp-math(-f32)?=(?!ieee).*", VOID["flush to zero"], sets=("flush to zero",)),
-    Rule(r"-mno-daz-ftz|-fdenormal-fp-math(-f32)?=ieee(,ieee)?", "keeps small numbers", clears=("flush to zero",)),
-    Rule(r"-mfpmath=(387|both|sse[+,]387|387[+,]sse)|-mno-sse2?|-m32|-mx32|-mlong-double-64", VOID["excess precision"],
-         sets=("excess precision",)),
-    Rule(r"-mfpmath=sse|-m64", "each operation is rounded to its type", clears=("excess precision",)),
-    Rule(r"-fexcess-precision=(standard|fast)|-ffloat-store", "of no effect where FLT_EVAL_METHOD is 0"),
-    Rule(r"-fexcess-precision=16|-fsingle-precision-constant", VOID["float literals"], sets=("float literals",)),
-    Rule(r"-ffp-model=strict", "no contraction, all roundings kept", clears=(*FAST, "contraction", "flush to zero")),
-    Rule(r"-ffp-model=precise", CONTRACTION, sets=("contraction",), clears=(*FAST, "flush to zero")),
-    Rule(r"-ffp-model=(fast|aggressive)", "as -ffast-math", sets=(*FAST, "flush to zero", "contraction")),
-    Rule(r"-ffp-exception-behavior=\w+|-f(no-)?trapping-math|-f(no-)?signaling-nans", "exceptions are not certified"),
-    Rule(r"-f(no-)?math-errno", "errno is not certified; square roots are correctly rounded either way"),
-    Rule(r"-f(no-)?rounding-math", "rounding is to nearest, which the self-test at load checks"),
-    Rule(r"-f(no-)?cx-(limited-range|fortran-rules)|-fcomplex-arithmetic=\w+", "kernels have no complex numbers"),
-    Rule(r"-O[0123sgz]?", "changes no value: the object code is compared where it can be"),
-    Rule(r"-mfma4?|-march=" + _WORDS, "the processor, which may have fused operations", sets=("fused operations",)),
-    Rule(r"-mno-fma4?", "a processor without fused operations", clears=("fused operations",)),
-    Rule(r"-f(tree-)?slp-vectorize", "vectors of single statements", clears=("no vectors",)),
-    Rule(r"-fno-(tree-)?slp-vectorize", "no vectors of single statements", sets=("no vectors",)),
-    Rule(r"-m(no-)?(sse\w*|ssse3|avx\w*|fma|fma4|bmi2?|popcnt|lzcnt|f16c|movbe|aes|pclmul|adx|sha|neon\w*|altivec|vsx)(=\d+)?"
-         r"|-m(tune|cpu|abi|fpu|float-abi)=" + _WORDS + r"|-mprefer-vector-width=\w+|-mthumb|-marm|-mvzeroupper",
-         "the processor: its operations are rounded as IEEE 754 says; the self-test at load checks it"),
-    Rule(r"-f(no-)?(tree-\w[\w-]*|vectorize|slp-vectorize|inline[\w-]*|unroll-\w+|peel-loops|ipa-[\w-]+|gcse[\w-]*|if-conversion2?"
-         r"|schedule-insns2?|split-loops|loop-[\w-]+|reorder-[\w-]+|align-[\w-]+(=\d+)?|rename-registers|web|ivopts|early-inlining"
-         r"|code-hoisting|expensive-optimizations|move-loop-invariants|vect-cost-model(=\w+)?|partial-inlining|section-anchors)",
-         "order and choice of instructions, no rounding"),
-    Rule(r"-f(no-)?(PIC|pic|PIE|pie|plt|common|ident|builtin(-\w+)?|strict-aliasing|strict-overflow|wrapv|exceptions|rtti"
-         r"|asynchronous-unwind-tables|unwind-tables|omit-frame-pointer|function-sections|data-sections|semantic-interposition"
-         r"|short-enums|signed-char|unsigned-char|freestanding|hosted|openmp|openmp-simd|lto|fat-lto-objects|delete-null-pointer-checks"
-         r"|stack-clash-protection|zero-initialized-in-bss|merge-constants|integrated-as|addrsig|color-diagnostics)"
-         r"|-f(no-)?(stack-protector[\w-]*|stack-check|lto=\w+|cf-protection(=\w+)?|sanitize(-\w+)*=[\w,]+|visibility=\w+"
-         r"|diagnostics-[\w=-]+|file-prefix-map=.*|debug-prefix-map=.*|profile-[\w=-]+|max-errors=\d+|hardened)",
-         "how code is laid out, checked and linked, no rounding"),
-    Rule(r"-(std=(c|gnu|iso9899:|c\+\+|gnu\+\+)\w+|ansi|pedantic(-errors)?|pipe|pthread|c|S|s|static|shared|nostdlib|nodefaultlibs"
-         r"|g[\w+-]*(=\w+)?|v|w|rdynamic|no-pie|pie|P|MD|MMD|MP)", "language, debugging and linking, no rounding"),
-    Rule(r"-W(?![ap],).*", "warnings, and what is passed to the linker"),
-    Rule(r"-(o|x|I|L|MF|MT|MQ|isystem|iquote|idirafter|Xlinker)", "names of files", takes_next=True),
-    Rule(r"-(I|L|l|isystem|iquote).+|-x(c|c\+\+)", "names of files and libraries"),
-    Rule(r"-[DU](NDEBUG|_(GNU|DEFAULT|POSIX_C|XOPEN|ISOC99|ISOC11|BSD|FORTIFY)_SOURCE|_REENTRANT|_GLIBCXX_\w+"
-         r"|(?!SYMROT_|HUGE_|MATH_|FP_|FLT_|DBL_|LDBL_|INT|UINT|SIZE_|M_)[A-Z][A-Z0-9]*_[A-Z0-9_]+)(=.*)?"
-         r"|-DSYMROT_(RESTRICT|INDEPENDENT)=?|-DSYMROT_RESTRICT=(__)?restrict(__)?", "a macro that kernels do not use"),
+TABLE: tuple[FlagRule, ...] = (
+    FlagRule(r"-ffp-contract=off", "no contraction: required for the bits of the C text", clears=("contraction",)),
+    FlagRule(r"-ffp-contract=(fast|on|fast-honor-pragmas)", CONTRACTION, sets=("contraction",)),
+    FlagRule(r"-ffast-math|-Ofast", "sums in another order, reciprocals, finite numbers only, unsigned zeros; "
+             "at linking it sets flush to zero for the whole process", sets=(*FAST, "flush to zero", "contraction")),
+    FlagRule(r"-fno-fast-math", "takes -ffast-math back", clears=(*FAST, "flush to zero")),
+    FlagRule(r"-funsafe-math-optimizations", "sums in another order, reciprocals, unsigned zeros; at linking it sets "
+             "flush to zero", sets=("reassociation", "reciprocals", "unsigned zeros", "flush to zero")),
+    FlagRule(r"-fno-unsafe-math-optimizations", "takes it back",
+             clears=("reassociation", "reciprocals", "unsigned zeros", "flush to zero")),
+    FlagRule(r"-fassociative-math", VOID["reassociation"], sets=("reassociation",)),
+    FlagRule(r"-fno-associative-math", "keeps the order of the C text", clears=("reassociation",)),
+    FlagRule(r"-freciprocal-math|-mrecip(=.*)?", VOID["reciprocals"], sets=("reciprocals",)),
+    FlagRule(r"-fno-reciprocal-math|-mno-recip", "keeps divisions", clears=("reciprocals",)),
+    FlagRule(r"-ffinite-math-only|-fno-honor-(nans|infinities)", VOID["finite numbers only"],
+             sets=("finite numbers only",)),
+    FlagRule(r"-fno-finite-math-only|-fhonor-(nans|infinities)", "keeps infinities and NaN",
+             clears=("finite numbers only",)),
+    FlagRule(r"-fno-signed-zeros", VOID["unsigned zeros"], sets=("unsigned zeros",)),
+    FlagRule(r"-fsigned-zeros", "keeps the sign of zeros", clears=("unsigned zeros",)),
+    FlagRule(r"-fapprox-func|-fveclib=.*|-mveclibabi=.*", VOID["approximate functions"],
+             sets=("approximate functions",)),
+    FlagRule(r"-fno-approx-func", "keeps the functions of libm", clears=("approximate functions",)),
+    FlagRule(r"-mdaz-ftz|-f?denormal-fp-math(-f32)?=(?!ieee).*", VOID["flush to zero"], sets=("flush to zero",)),
+    FlagRule(r"-mno-daz-ftz|-fdenormal-fp-math(-f32)?=ieee(,ieee)?", "keeps small numbers", clears=("flush to zero",)),
+    FlagRule(r"-mfpmath=(387|both|sse[+,]387|387[+,]sse)|-mno-sse2?|-m32|-mx32|-mlong-double-64",
+             VOID["excess precision"],
+             sets=("excess precision",)),
+    FlagRule(r"-mfpmath=sse|-m64", "each operation is rounded to its type", clears=("excess precision",)),
+    FlagRule(r"-fexcess-precision=(standard|fast)|-ffloat-store", "of no effect where FLT_EVAL_METHOD is 0"),
+    FlagRule(r"-fexcess-precision=16|-fsingle-precision-constant", VOID["float literals"], sets=("float literals",)),
+    FlagRule(r"-ffp-model=strict", "no contraction, all roundings kept",
+             clears=(*FAST, "contraction", "flush to zero")),
+    FlagRule(r"-ffp-model=precise", CONTRACTION, sets=("contraction",), clears=(*FAST, "flush to zero")),
+    FlagRule(r"-ffp-model=(fast|aggressive)", "as -ffast-math", sets=(*FAST, "flush to zero", "contraction")),
+    FlagRule(r"-ffp-exception-behavior=\w+|-f(no-)?trapping-math|-f(no-)?signaling-nans",
+             "exceptions are not certified"),
+    FlagRule(r"-f(no-)?math-errno", "errno is not certified; square roots are correctly rounded either way"),
+    FlagRule(r"-f(no-)?rounding-math", "rounding is to nearest, which the self-test at load checks"),
+    FlagRule(r"-f(no-)?cx-(limited-range|fortran-rules)|-fcomplex-arithmetic=\w+", "kernels have no complex numbers"),
+    FlagRule(r"-O[0123sgz]?", "changes no value: the object code is compared where it can be"),
+    FlagRule(r"-mfma4?|-march=" + _WORDS, "the processor, which may have fused operations", sets=("fused operations",)),
+    FlagRule(r"-mno-fma4?", "a processor without fused operations", clears=("fused operations",)),
+    FlagRule(r"-f(tree-)?slp-vectorize", "vectors of single statements", clears=("no vectors",)),
+    FlagRule(r"-fno-(tree-)?slp-vectorize", "no vectors of single statements", sets=("no vectors",)),
+    FlagRule(r"-m(no-)?(sse\w*|ssse3|avx\w*|fma|fma4|bmi2?|popcnt|lzcnt|f16c|movbe|aes|pclmul|adx|sha|neon\w*|altivec|vsx)(=\d+)?"
+             r"|-m(tune|cpu|abi|fpu|float-abi)=" + _WORDS + r"|-mprefer-vector-width=\w+|-mthumb|-marm|-mvzeroupper",
+             "the processor: its operations are rounded as IEEE 754 says; the self-test at load checks it"),
+    FlagRule(r"-f(no-)?(tree-\w[\w-]*|vectorize|slp-vectorize|inline[\w-]*|unroll-\w+|peel-loops|ipa-[\w-]+|gcse[\w-]*|if-conversion2?"
+             r"|schedule-insns2?|split-loops|loop-[\w-]+|reorder-[\w-]+|align-[\w-]+(=\d+)?|rename-registers|web|ivopts|early-inlining"
+             r"|code-hoisting|expensive-optimizations|move-loop-invariants|vect-cost-model(=\w+)?|partial-inlining|section-anchors)",
+             "order and choice of instructions, no rounding"),
+    FlagRule(r"-f(no-)?(PIC|pic|PIE|pie|plt|common|ident|builtin(-\w+)?|strict-aliasing|strict-overflow|wrapv|exceptions|rtti"
+             r"|asynchronous-unwind-tables|unwind-tables|omit-frame-pointer|function-sections|data-sections|semantic-interposition"
+             r"|short-enums|signed-char|unsigned-char|freestanding|hosted|openmp|openmp-simd|lto|fat-lto-objects|delete-null-pointer-checks"
+             r"|stack-clash-protection|zero-initialized-in-bss|merge-constants|integrated-as|addrsig|color-diagnostics)"
+             r"|-f(no-)?(stack-protector[\w-]*|stack-check|lto=\w+|cf-protection(=\w+)?|sanitize(-\w+)*=[\w,]+|visibility=\w+"
+             r"|diagnostics-[\w=-]+|file-prefix-map=.*|debug-prefix-map=.*|profile-[\w=-]+|max-errors=\d+|hardened)",
+             "how code is laid out, checked and linked, no rounding"),
+    FlagRule(r"-(std=(c|gnu|iso9899:|c\+\+|gnu\+\+)\w+|ansi|pedantic(-errors)?|pipe|pthread|c|S|s|static|shared|nostdlib|nodefaultlibs"
+             r"|g[\w+-]*(=\w+)?|v|w|rdynamic|no-pie|pie|P|MD|MMD|MP)", "language, debugging and linking, no rounding"),
+    FlagRule(r"-W(?![ap],).*", "warnings, and what is passed to the linker"),
+    FlagRule(r"-(o|x|I|L|MF|MT|MQ|isystem|iquote|idirafter|Xlinker)", "names of files", takes_next=True),
+    FlagRule(r"-(I|L|l|isystem|iquote).+|-x(c|c\+\+)", "names of files and libraries"),
+    FlagRule(r"-[DU](NDEBUG|_(GNU|DEFAULT|POSIX_C|XOPEN|ISOC99|ISOC11|BSD|FORTIFY)_SOURCE|_REENTRANT|_GLIBCXX_\w+"
+             r"|(?!SYMROT_|HUGE_|MATH_|FP_|FLT_|DBL_|LDBL_|INT|UINT|SIZE_|M_)[A-Z][A-Z0-9]*_[A-Z0-9_]+)(=.*)?"
+             r"|-DSYMROT_(RESTRICT|INDEPENDENT)=?|-DSYMROT_RESTRICT=(__)?restrict(__)?",
+             "a macro that kernels do not use"),
 )  # fmt: skip
 LAUNCHERS = ("ccache", "sccache", "distcc")
 _COMPILER = re.compile(r"(?:.*-)?(?:gcc|g\+\+|clang|clang\+\+|cc|c\+\+|c99|c11)(?:-\d+(?:\.\d+)*)?(?:\.exe)?")
-_X87 = re.compile(r"(?:i[3-6]86|m68k)-.*")  # targets whose compilers round to more digits unless they are told
+_X87 = re.compile(r"(?:i[3-6]86|m68k)-.*")  # targets whose compilers keep more digits by default
 _FILE = re.compile(r"[^@].*\.(?:c|cc|cpp|cxx|h|o|a|so|s|S|d|i|ii|obj|exe|lib|dll|dylib)")
 
 
 @dataclass(frozen=True)
-class Remark:
-    """One flag, or what was missing, and why it matters; ``effect`` is what holds with it alone."""
+class FlagRemark:
+    """A remark on a flag that is set or missing: its ``effect`` on the certificate, and the reason."""
 
     flag: str
     effect: str
@@ -132,11 +148,11 @@ class Remark:
 
 
 @dataclass(frozen=True)
-class Judgement:
-    """What holds under some flags: "bits" of the C text, its error "bounds", or "nothing"; remarks by flag."""
+class FlagEffect:
+    """The effect of all flags of a command: whether "bits", only "bounds" or "nothing" holds, and remarks on flags."""
 
     holds: str
-    remarks: tuple[Remark, ...]
+    remarks: tuple[FlagRemark, ...]
 
     @property
     def accepted(self) -> bool:
@@ -144,8 +160,8 @@ class Judgement:
         return self.holds != NOTHING
 
     def sentence(self) -> str:
-        """Return what holds and why, as one line."""
-        said = {
+        """Return the effect and the reasons as one line."""
+        effect = {
             BITS: "the bits of the C text and its error bounds hold",
             BOUNDS: "the error bounds hold, not the bits",
             NOTHING: "the certificate is void",
@@ -155,21 +171,21 @@ class Judgement:
             if remark.effect == self.holds:
                 why.setdefault(remark.flag, []).append(remark.reason)
         listed = "; ".join(f"{flag}: {', '.join(reasons)}" for flag, reasons in why.items())
-        return f"{said} ({listed})" if listed else said
+        return f"{effect} ({listed})" if listed else effect
 
 
-def judge(flags: str | Sequence[str]) -> Judgement:
-    """Say what of a certificate holds under the flags of a compiler (gcc or clang), in their order.
+def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
+    """Return the effect of the flags of gcc or clang on a certificate; a later flag overrides an earlier one.
 
     Parameters
     ----------
     flags : str or sequence of str
-        As on the command line, with or without the compiler's name in front; names of files are passed over.
+        A command line, with or without the compiler's name in front; names of files are ignored.
 
     Raises
     ------
     InputError
-        For a flag that the table does not know, or a compiler that is neither gcc nor clang.
+        If a flag is not in the table, or the compiler is neither gcc nor clang.
     """
     try:
         words = shlex.split(flags) if isinstance(flags, str) else list(flags)
@@ -178,7 +194,7 @@ def judge(flags: str | Sequence[str]) -> Judgement:
     if not words:
         raise InputError("flags: expected the flags of a compiler, such as 'gcc -O2 -ffp-contract=off', got none")
     compiler, place = _compiler(words)
-    switched: dict[str, str] = {}  # what is on -> the flag that did it
+    switched: dict[str, str] = {}  # property that is on -> the flag that switched it on
     if _X87.fullmatch(compiler):
         switched["excess precision"] = compiler
     is_off = False
@@ -194,19 +210,19 @@ def judge(flags: str | Sequence[str]) -> Judgement:
             switched.pop(name, None)
         switched |= dict.fromkeys(rule.sets, word)
         is_off = (is_off or "contraction" in rule.clears) and "contraction" not in rule.sets
-    remarks = [Remark(flag, NOTHING, VOID[name]) for name, flag in switched.items() if name in VOID]
+    remarks = [FlagRemark(flag, NOTHING, VOID[name]) for name, flag in switched.items() if name in VOID]
     if "contraction" in switched:
-        remarks.append(Remark(switched["contraction"], BOUNDS, CONTRACTION))
+        remarks.append(FlagRemark(switched["contraction"], BOUNDS, CONTRACTION))
     elif not is_off:
-        remarks.append(Remark(REQUIRED[0], BOUNDS, UNFIXED))
+        remarks.append(FlagRemark(REQUIRED[0], BOUNDS, UNFIXED))
     elif "fused operations" in switched and "no vectors" not in switched and "clang" not in compiler:
-        remarks.append(Remark(switched["fused operations"], BOUNDS, VECTORS))
+        remarks.append(FlagRemark(switched["fused operations"], BOUNDS, VECTORS))
     effects = {remark.effect for remark in remarks}
-    return Judgement(NOTHING if NOTHING in effects else BOUNDS if effects else BITS, tuple(remarks))
+    return FlagEffect(NOTHING if NOTHING in effects else BOUNDS if effects else BITS, tuple(remarks))
 
 
 def _compiler(words: Sequence[str]) -> tuple[str, int]:
-    """Return the name of the compiler in front of its flags, if there is one, and where the flags begin."""
+    """Return the name of the compiler in front of its flags, or an empty text, and the place of the first flag."""
     names = [re.split(r"[/\\]", word)[-1] for word in words[:2]]
     place = 1 if names[0] in LAUNCHERS and len(names) > 1 else 0
     if words[place].startswith("-") or _FILE.fullmatch(words[place]):
@@ -217,11 +233,13 @@ def _compiler(words: Sequence[str]) -> tuple[str, int]:
 
 
 def _check_file(word: str) -> None:
+    """Raise InputError if a word is neither a flag nor the name of a file."""
     if not _FILE.fullmatch(word):
         raise InputError(f"flags: expected flags and names of files such as kernel.c, got {word[:80]!r}")
 
 
-def _rule(flag: str) -> Rule:
+def _rule(flag: str) -> FlagRule:
+    """Return the rule for a flag; raise InputError if there is none."""
     for rule in TABLE:
         if re.fullmatch(rule.form, flag):
             return rule
@@ -229,7 +247,7 @@ def _rule(flag: str) -> Rule:
 
 
 def flags_section() -> dict[str, object]:
-    """Return what a certificate says of flags: required, allowed, bounds only, void, each with the reason."""
+    """Return the ``flags`` section of a certificate: flags required, allowed, with bounds only, void, with reasons."""
     void = ("-ffast-math", "-Ofast", "-funsafe-math-optimizations", "-fassociative-math", "-freciprocal-math",
             "-ffinite-math-only", "-fno-signed-zeros", "-fapprox-func", "-mdaz-ftz", "-mfpmath=387",
             "-fsingle-precision-constant")  # fmt: skip

@@ -1,8 +1,8 @@
-"""The self-test: does the machine at hand compute as the certificates assume? As C for a firmware, and as a command.
+"""The self-test: check that a machine computes as the certificates assume, as C for firmware and as a command.
 
-``symrot emit --all`` prints ``symrot_selftest.c`` and ``.h`` beside the kernels, with values of sine, cosine, arc
-tangent and square root that mpmath computed to 60 digits and rounded once. ``symrot selftest`` compiles the same text
-and runs it inside this process, so that a library that was loaded before and changed the arithmetic is found out.
+``symrot emit --all`` prints ``symrot_selftest.c`` and ``.h`` into the folder of the kernels, with values of sine,
+cosine, arc tangent and square root that mpmath computed to 60 digits and rounded once. ``symrot selftest`` compiles the
+same text and runs it inside this process, so that it detects a loaded library that changed the arithmetic.
 """
 
 import ctypes
@@ -20,11 +20,11 @@ from symrot.errors import CompilerError
 __all__ = ["CHECKS", "FLAGS", "SelfTest", "run_selftest", "selftest_files"]
 
 LIBM_ULP = Fraction(1)
-"""Error of sin, cos and atan2 that certificates assume, in units in the last place of the exact value."""
-CORRECT = Fraction(1, 2) + Fraction(1, 1000)  # correctly rounded; the measurement itself rounds
+"""The error of sin, cos and atan2 that certificates assume, in units in the last place of the exact value."""
+CORRECT = Fraction(1, 2) + Fraction(1, 1000)  # error of correct rounding, plus the error of measuring it
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared")
 DIGITS, POINTS, SEED = 60, 40, 5
-FORMATS = {"": (53, -1022), "f": (24, -126)}  # digits, smallest exponent of a normal number
+FORMATS = {"": (53, -1022), "f": (24, -126)}  # suffix of C names -> binary digits, smallest exponent of a normal number
 CHECKS: tuple[tuple[str, str], ...] = (
     ("", "the machine computes as the certificates assume"),
     ("ROUNDING", "expected rounding to nearest, ties to even: the rounding mode of this thread is another one"),
@@ -33,26 +33,28 @@ CHECKS: tuple[tuple[str, str], ...] = (
     ("CONTRACTION", "expected a*b + c to be rounded twice: compile with -ffp-contract=off for the bits of the C "
      "text, whose error bounds hold"),
 )  # fmt: skip
-"""Checks in their order: the name in C and the sentence that says what was expected; functions of libm follow."""
+"""The checks in order: the name in C and the sentence for a failure; the checks of libm functions follow them."""
 
 
 @dataclass(frozen=True)
-class _Checked:
+class _CheckedFunction:
+    """A function of libm to test: its name, the allowed error, and a generator of test arguments."""
+
     name: str
     allowed: Fraction  # ulp
     arguments: Callable[[Random, int], Iterator[tuple[float, float]]]
 
     def sentence(self, suffix: str) -> str:
-        """Return what was expected of the function, for doubles or floats."""
+        """Return the sentence for a failure of the function, for doubles or floats."""
         if self.allowed == CORRECT:
             return f"expected {self.name}{suffix} to be rounded correctly: that of this machine is not"
         return f"expected {self.name}{suffix} right to {self.allowed} ulp: that of this machine errs by more"
 
 
 def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Return angles up to 1e6: near multiples of pi/2, where reduction loses digits, small ones, and many turns.
+    """Return angles up to 1e6: small and large ones, and ones near multiples of pi/2, where reduction loses digits.
 
-    Beyond, libraries are worse: cos of glibc 2.36 errs by 8 ulp at 6381956970095103*2^797.
+    Libraries are less accurate beyond: the cosine of glibc 2.36 has an error of 8 ulp at 6381956970095103*2^797.
     """
     from mpmath import mp, mpf
 
@@ -66,6 +68,7 @@ def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 def _sides(random: Random, digits: int) -> Iterator[tuple[float, float]]:
+    """Return arguments (y, x) of atan2, with ratios of many magnitudes."""
     from mpmath import mpf
 
     for size in (1e-12, 1e-6, 1e-3, 0.3, 1.0, 1.0, 3.0, 1e3, 1e6, 1e12):
@@ -77,6 +80,7 @@ def _sides(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 def _radicands(random: Random, digits: int) -> Iterator[tuple[float, float]]:
+    """Return arguments of the square root, of many magnitudes."""
     from mpmath import mpf
 
     for _ in range(POINTS):
@@ -84,16 +88,16 @@ def _radicands(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 FUNCTIONS = (
-    _Checked("sin", LIBM_ULP, _angles),
-    _Checked("cos", LIBM_ULP, _angles),
-    _Checked("atan2", LIBM_ULP, _sides),
-    _Checked("sqrt", CORRECT, _radicands),
+    _CheckedFunction("sin", LIBM_ULP, _angles),
+    _CheckedFunction("cos", LIBM_ULP, _angles),
+    _CheckedFunction("atan2", LIBM_ULP, _sides),
+    _CheckedFunction("sqrt", CORRECT, _radicands),
 )
 NAMES = tuple(f"{function.name}{suffix}" for suffix in FORMATS for function in FUNCTIONS)
 
 
 def _rounded(value: Any, digits: int) -> float:
-    """Return the nearest number of so many binary digits."""
+    """Return a number rounded to some binary digits."""
     from mpmath import mp, workprec
 
     with workprec(digits):
@@ -101,7 +105,7 @@ def _rounded(value: Any, digits: int) -> float:
 
 
 def _point(name: str, suffix: str, y: float, x: float) -> str:
-    """Return one row: arguments, rounded value, what rounding took in ulp, one ulp."""
+    """Return one row of a table in C: arguments, rounded value, exact minus rounded value in ulp, size of an ulp."""
     from mpmath import floor, log, mp, mpf
 
     digits, smallest = FORMATS[suffix]
@@ -114,7 +118,7 @@ def _point(name: str, suffix: str, y: float, x: float) -> str:
 
 @cache
 def selftest_files() -> dict[str, str]:
-    """Return file name -> text of the self-test in C: the same text everywhere."""
+    """Return the files of the self-test in C, name -> text; the same text on every machine."""
     from mpmath import workdps
 
     tables, rows, sentences = [], [], [text for _, text in CHECKS]
@@ -143,7 +147,7 @@ def selftest_files() -> dict[str, str]:
 
 
 def _string(text: str) -> str:
-    """Return an entry of a table of strings, on as many lines as it needs."""
+    """Return a string as an entry of a table in C, on as many lines as it needs."""
     return "\n".join(f'        "{line}"' for line in wrap(text, 100, drop_whitespace=False)) + ","
 
 
@@ -187,7 +191,7 @@ def _header() -> str:
 
 @dataclass(frozen=True)
 class SelfTest:
-    """What the self-test found: ``passed``, the ``sentence`` that says so or what was expected, worst errors in ulp."""
+    """The result of the self-test: ``passed``, a ``sentence`` about it, and the worst errors by function, in ulp."""
 
     passed: bool
     sentence: str
@@ -197,12 +201,12 @@ class SelfTest:
 
     def lines(self) -> list[str]:
         """Return the result as lines of text."""
-        shown = [f"  {name:<7} {ulp:.3f} ulp" for name, ulp in self.ulps.items()]
-        found = ["worst errors found:", *shown] if shown else []
-        return [f"{'good' if self.passed else 'refused'}: {self.sentence}", *found]
+        rows = [f"  {name:<7} {ulp:.3f} ulp" for name, ulp in self.ulps.items()]
+        error_lines = ["worst errors found:", *rows] if rows else []
+        return [f"{'good' if self.passed else 'refused'}: {self.sentence}", *error_lines]
 
     def facts(self) -> dict[str, Any]:
-        """Return the result as plain data."""
+        """Return the result as data for JSON."""
         return {"passed": self.passed, "sentence": self.sentence, "ulps": self.ulps, "compiler": self.compiler,
                 "flags": list(self.flags)}  # fmt: skip
 
@@ -213,14 +217,14 @@ def run_selftest(bits: bool = True, flags: Sequence[str] = FLAGS) -> SelfTest:
     Parameters
     ----------
     bits : bool
-        Whether a*b + c must be rounded twice: the bits of the C text, not only its error bounds.
+        Whether a*b + c must be rounded twice, so that the bits of the C text hold and not only its error bounds.
     flags : sequence of str
-        As the compiler takes them, for a shared library.
+        The flags for compiling a shared library.
 
     Raises
     ------
     CompilerError
-        If there is no compiler, or it refuses the text: with -ffast-math it does, and says why.
+        If there is no compiler, or it rejects the text, as it does with -ffast-math.
     """
     from symrot.build.cache import build, compiler
 
@@ -236,5 +240,5 @@ def run_selftest(bits: bool = True, flags: Sequence[str] = FLAGS) -> SelfTest:
     ulps = (ctypes.c_double * len(NAMES))(*[-1.0] * len(NAMES))
     failure = library.symrot_selftest(int(bits), ulps)
     sentence = library.symrot_selftest_sentence(failure).decode()
-    found = {name: float(ulp) for name, ulp in zip(NAMES, ulps, strict=True) if not ulp < 0}
-    return SelfTest(failure == 0, sentence, found, " ".join(compiler().command), tuple(flags))
+    worst_errors = {name: float(ulp) for name, ulp in zip(NAMES, ulps, strict=True) if not ulp < 0}
+    return SelfTest(failure == 0, sentence, worst_errors, " ".join(compiler().command), tuple(flags))

@@ -1,4 +1,4 @@
-"""Programs that symrot runs to look at object code and proofs: for a bounded time, with everything that they start."""
+"""Run external programs, such as objdump and coqc, for a limited time; what they start is killed with them."""
 
 import os
 import signal
@@ -18,12 +18,12 @@ def run_tool(
     cwd: Path | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> CompletedProcess[str]:
-    """Return what a program printed, and its exit status.
+    """Run a program and return its output and its exit status.
 
     Raises
     ------
     CompilerError
-        If it cannot be run, or gives no answer in time; it is killed then, and so are the programs that it started.
+        If the program cannot be run, or takes too long; it is then killed, with all programs that it started.
     """
     try:
         process = Popen(

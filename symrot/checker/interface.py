@@ -6,18 +6,33 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from symrot.checker.claim.claims import Claim, Refusal, claim_of_text, read_entries, shown_relation
+from symrot.checker.claim.claims import Claim, Refusal, claim_of_text, read_entries, relation_text
+from symrot.checker.claim.size import MOST_NESTED, nesting
 from symrot.checker.claim.values import decide_value
-from symrot.checker.decide.decision import Decision, Problem, decide_problem, shown
+from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.units.check import check_dimensions, dimensions_of_formulas
 from symrot.checker.verdict import Diagnosis, Verdict
 from symrot.errors import InputError
+from symrot.exact.decision import Decision, flatten
+from symrot.exact.printing import as_text
 
 __all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_readings", "verdicts_of_file"]
 
 
 class RefusedClaims(InputError):
-    """Claims of a file that cannot be read; ``verdicts`` holds those on all claims, ``"refused"`` on the bad ones."""
+    """Some claims of a file cannot be read.
+
+    Attributes
+    ----------
+    verdicts : list of Verdict
+        The verdicts on all claims, ``"refused"`` on those that cannot be read.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> issubclass(symrot.RefusedClaims, symrot.InputError)
+    True
+    """
 
     def __init__(self, verdicts: Sequence[Verdict]) -> None:
         self.verdicts = list(verdicts)
@@ -46,22 +61,26 @@ def check(
         Hypotheses: texts ``"a == b"``, ``"x > 0"``, ``"x != 0"`` for a text; equations, or expressions that are zero,
         for SymPy.
     units : mapping of str to str, optional
-        Units by the name of a symbol, ``{"x": "m"}``; others are those of custom (``I1``, ``omega_1``, ``g``, ``t``,
-        ``phi``), of the symbols of symrot, or inferred. They bear on ``.dimension`` alone.
+        Units by the name of a symbol, ``{"x": "m"}``. Other names have conventional units (``I1``, ``omega_1``, ``g``,
+        ``t``, ``phi``), those of the symbols of symrot, or inferred ones. Only ``.dimension`` depends on units.
     repair : bool
-        Whether to look for what went wrong with a claim that is not true, and for true formulas near it.
+        Whether to diagnose a claim that is not true and to look for true formulas near it.
 
     Returns
     -------
     Verdict
-        ``.verdict`` is ``"true"``, ``"false"``, ``"conditional"`` or ``"undecided"``; ``.dimension`` says beside it
-        whether the units fit.
+        ``.verdict`` is ``"true"``, ``"false"``, ``"conditional"`` or ``"undecided"``; ``.dimension`` says whether the
+        units fit.
 
     Raises
     ------
     InputError
-        For text that is not understood (with its position), undefined names, shapes that do not fit, and divisions by
-        what is zero everywhere. Nothing is evaluated as Python.
+        For text that cannot be read (with its position), undefined names, shapes that do not fit, and divisors that
+        are zero everywhere. Text is never evaluated as Python.
+
+    Notes
+    -----
+    Source: ``docs/exact_decisions.md`` says how claims are decided and why the decision is sound.
 
     Examples
     --------
@@ -79,37 +98,64 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
         if right is not None:
             raise InputError("expected the whole claim 'left == right' as one text, got two arguments")
         if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
-            raise InputError("assume: expected a list of texts like 'a == b' beside a claim as text")
+            raise InputError("assume: expected a list of texts like 'a == b' with a claim as text")
         return check_claim(claim_of_text(left, assume, units or {}), repair)
     if right is None:
         raise InputError("expected two sides, or one text 'left == right'")
+    for side in (left, right):
+        for entry in flatten(side)[0]:
+            if nesting(entry) > MOST_NESTED:
+                raise InputError(f"expected at most {MOST_NESTED} functions and roots inside each other")
     start = perf_counter()
-    decision = decide_problem(Problem(left, right, tuple(assume)))
-    verdict = _verdict(decision, f"{shown(left)} == {shown(right)}", start)
+    decision = decide_equation(Equation(left, right, tuple(assume)))
+    verdict = _verdict(decision, f"{as_text(left)} == {as_text(right)}", start)
     return replace(verdict, dimension=dimensions_of_formulas(left, right, units))
 
 
 def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
     """Return the verdicts on the claims of a TOML file, in its order.
 
+    Parameters
+    ----------
+    path : str or Path
+        A TOML file of claims, as ``docs/checkers.md`` describes it.
+    repair : bool
+        Whether to diagnose claims that are not true, and to search for true formulas near them.
+
+    Returns
+    -------
+    list of Verdict
+        One for each claim, in the order of the file.
+
     Raises
     ------
     InputError
-        For a file that cannot be read as claims.
+        For a file that is not a file of claims.
     RefusedClaims
-        Where some claims are refused, after all others were decided; names the file and the first such claim, and has
-        the verdicts as ``.verdicts``.
+        If some claims are refused, after all others were decided. The message names the file and the first such claim;
+        ``.verdicts`` are the verdicts on all claims.
+
+    Examples
+    --------
+    >>> import symrot, tempfile
+    >>> from pathlib import Path
+    >>> lines = ["schema = 1", "[[claim]]", 'id = "a"', 'symbols = ["x"]', 'claim = "sin(2*x) == 2*sin(x)*cos(x)"']
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder, "claims.toml")
+    ...     _ = path.write_text(chr(10).join(lines))
+    ...     [verdict.verdict for verdict in symrot.check_file(path)]
+    ['true']
     """
-    found = list(verdicts_of_file(path, repair))
-    if any(verdict.verdict == "refused" for verdict in found):
-        raise RefusedClaims(found)
-    return found
+    verdicts = list(verdicts_of_file(path, repair))
+    if any(verdict.verdict == "refused" for verdict in verdicts):
+        raise RefusedClaims(verdicts)
+    return verdicts
 
 
 def verdicts_of_file(
     path: str | Path, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Iterator[Verdict]:
-    """Yield the verdicts on the claims of a file; on a claim that cannot be read it is ``"refused"``, with a reason."""
+    """Yield the verdicts on the claims of a file; ``"refused"``, with the reason, on a claim that cannot be read."""
     for entry in read_entries(path):
         if isinstance(entry, Refusal):
             yield Verdict("refused", reason=entry.reason, id=entry.id, where=entry.where, text=entry.text)
@@ -123,7 +169,7 @@ def verdicts_of_file(
 
 
 def check_claim(claim: Claim, repair: bool = True) -> Verdict:
-    """Return the verdict on a claim that has been read: on its first reading, or on another one that is true."""
+    """Return the verdict on a claim: on its first reading, or on another reading if only that one is true."""
     try:
         verdict, other = check_readings(claim, repair)
     except RecursionError:
@@ -135,19 +181,19 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
 
 
 def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict | None]:
-    """Return the verdict on a claim as it is read first, and that on the first alternative that is true, if any.
+    """Return the verdict on the first reading of a claim, and the verdict on the first other one that is true, or None.
 
-    What went wrong is looked for where no reading is true.
+    A claim of which no reading is true is diagnosed.
     """
     start = perf_counter()
     decision, verdict = _decide(claim)
     if not verdict:
         for relation in claim.alternatives:
-            source = shown_relation(relation)
-            other = replace(claim, relation=relation, alternatives=(), sources={**claim.sources, "claim": source})
-            _, found = _decide(other)
-            if found:
-                return verdict, found
+            source = relation_text(relation)
+            other = claim.with_relation(relation, alternatives=(), sources={**claim.sources, "claim": source})
+            _, other_verdict = _decide(other)
+            if other_verdict:
+                return verdict, other_verdict
     if repair and claim.relation is not None and decision.verdict in ("false", "conditional"):
         verdict = _diagnosed(claim, decision, verdict)
     elif repair and claim.relation is not None and verdict and verdict.conditions:
@@ -158,52 +204,51 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
 def _decide(claim: Claim) -> tuple[Decision, Verdict]:
     start = perf_counter()
     try:
-        decision = decide_value(claim) if claim.relation is None else decide_problem(claim.problem())
+        decision = decide_value(claim) if claim.relation is None else decide_equation(claim.equation)
     except InputError as reason:
         if not claim.id or claim.id in str(reason):
             raise
         raise InputError(f"{claim.id}: {reason}") from None
     verdict = _verdict(decision, claim.text, start)
     if claim.relation is not None:
-        hypotheses = [relation[1:] for relation in claim.given]
-        found = check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)
-        verdict = replace(verdict, dimension=found)
+        hypotheses = [relation[1:] for relation in claim.hypotheses]
+        dimensions = check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)
+        verdict = replace(verdict, dimension=dimensions)
     return decision, replace(verdict, id=claim.id, where=claim.where, seconds=perf_counter() - start)
 
 
 def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
     from symrot.checker.recognition.identification import named_parts
-    from symrot.checker.recognition.nearest import nearby
+    from symrot.checker.recognition.nearest import nearest_known
     from symrot.checker.repair.diagnose import diagnose
 
     diagnosis, repairs = diagnose(claim, decision)
     if diagnosis.code == "none" and verdict.dimension.status == "inconsistent":
         diagnosis = Diagnosis("dimension", f"the units do not fit: {verdict.dimension.text}")
-    notes = (*verdict.notes, *named_parts(claim), *nearby(claim))
+    notes = (*verdict.notes, *named_parts(claim), *nearest_known(claim))
     return replace(verdict, diagnosis=diagnosis, repairs=repairs, notes=notes)
 
 
 def _domain(claim: Claim) -> Diagnosis:
-    """Return the remark that a true claim holds only where one side is defined, when the other is so everywhere."""
+    """Return the remark that one side of a true claim is not defined everywhere, while the other side is."""
     assert claim.relation is not None
-    sides = [replace(claim, relation=("==", side, side)) for side in claim.relation[1:]]
-    left, right = (decide_problem(side.problem()).conditions for side in sides)
+    sides = [claim.with_relation(("==", side, side)) for side in claim.relation[1:]]
+    left, right = (decide_equation(side.equation).conditions for side in sides)
     if bool(left) == bool(right):
         return Diagnosis("none", "")
     narrow, wide = ("left", "right") if left else ("right", "left")
-    where = ", ".join(left or right)
+    where = ", ".join(map(as_text, left or right))
     text = f"it holds only where it is defined: the {narrow} side needs {where}, the {wide} side needs nothing"
     return Diagnosis("domain", text)
 
 
-def _verdict(decision: Any, text: str, start: float) -> Verdict:
+def _verdict(decision: Decision, text: str, start: float) -> Verdict:
     return Verdict(
         verdict=decision.verdict,
-        conditions=decision.conditions,
+        conditions=tuple(map(as_text, decision.conditions)),
         requires=tuple(requirement.text for requirement in decision.requires),
         counterexample=decision.counterexample,
         reason=decision.reason,
-        notes=decision.notes,
         text=text,
         seconds=perf_counter() - start,
     )

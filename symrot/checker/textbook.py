@@ -1,4 +1,4 @@
-"""Verdicts on what a document says, with the doubt that a lossy extraction leaves."""
+"""Verdicts on the claims of a document, with allowance for characters that the extraction of its text lost."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ OUTCOMES = {
     "fails or lost": "does not hold as extracted; the extraction lost characters here that may be the reason",
     "undecided": "undecided",
 }
-"""What became of a claim, from good to bad."""
+"""Outcome of a claim -> its description, from good to bad."""
 
 
 EXPLAINS = {
@@ -28,18 +28,18 @@ EXPLAINS = {
     "dots": {"wrong_symbol"},
     "primes": {"wrong_symbol"},
 }
-"""What a lossy extraction can make of a true formula: characters lost -> codes of the fault that this looks like."""
+"""Characters that an extraction may lose -> codes of the faults that a true formula without them seems to have."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """What was found of one claim: its data, the verdict, another reading that holds, and the outcome."""
+    """The result of checking one claim: its data, the verdict, another reading that holds, and the outcome."""
 
     claim: dict[str, Any]
     verdict: Verdict
     outcome: str
     reading: str  # the alternative that holds, else empty
-    right: str  # what would be right, where the claim is not
+    right: str  # the right formula, if the claim is not true
 
     @property
     def reason(self) -> str:
@@ -54,7 +54,7 @@ class Finding:
 def findings(
     document: Document, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Iterator[Finding]:
-    """Yield what is found of each claim of a document, in its order."""
+    """Yield the finding on each claim of a document, in its order."""
     for claim in read_claims(document.path):
         progress(f"checking {claim.id} ..")
         yield _finding(document.claims[claim.id], claim, repair)
@@ -73,7 +73,7 @@ def _finding(data: dict[str, Any], claim: Claim, repair: bool) -> Finding:
 
 
 def _right_form(claim: Claim, verdict: Verdict) -> str:
-    """Return what would be right: the value, the nearest proven repair, or the side that was derived."""
+    """Return the right formula: the exact value, the nearest proven repair, or the derived side of the claim."""
     if claim.relation is None:
         return verdict.counterexample.lhs if verdict.counterexample else ""
     if verdict.repairs:

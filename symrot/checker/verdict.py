@@ -1,29 +1,31 @@
-"""The answer to a claim: what is known, under which conditions, the evidence, and what would be true instead."""
+"""The verdict on a claim, with its conditions, its evidence, a diagnosis, and true formulas near it."""
 
 from dataclasses import dataclass, field
 from typing import Any
 
-__all__ = ["Counterexample", "Diagnosis", "Dimensions", "Repair", "Verdict"]
+from symrot.exact.evidence import Counterexample
 
-
-@dataclass(frozen=True)
-class Counterexample:
-    """A point, with exact values as text, where the two sides differ; ``entry`` is (row, column) from 1, or None."""
-
-    values: dict[str, str]
-    lhs: str
-    rhs: str
-    entry: tuple[int, int] | None = None
-
-    def __str__(self) -> str:
-        point = ", ".join(f"{name} = {value}" for name, value in self.values.items())
-        place = f"entry {self.entry}: " if self.entry else ""
-        return f"{place}{self.lhs} against {self.rhs}" + (f" at {point}" if point else "")
+__all__ = ["Diagnosis", "Dimensions", "Repair", "Verdict"]
 
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What probably went wrong: a code of the table in :mod:`symrot.checker.codes`, and a sentence."""
+    """The probable fault of a claim.
+
+    Attributes
+    ----------
+    code : str
+        Key of the table of faults, such as ``"factor"``; ``"none"`` without a fault.
+    text : str
+        One sentence.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
+    >>> verdict.diagnosis.code
+    'factor'
+    """
 
     code: str
     text: str
@@ -31,7 +33,26 @@ class Diagnosis:
 
 @dataclass(frozen=True)
 class Repair:
-    """A formula near the claim that is true; ``proven`` by the exact engine; the smaller the cost the nearer."""
+    """A true formula near a claim.
+
+    Attributes
+    ----------
+    text : str
+        The formula.
+    code : str
+        Key of the table of faults.
+    cost : float
+        The smaller, the nearer to the claim.
+    proven : bool
+        Whether the exact engine proved it.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
+    >>> verdict.repairs[0].text
+    'sin(2*x) == 2*sin(x)*cos(x)'
+    """
 
     text: str
     code: str
@@ -41,9 +62,22 @@ class Repair:
 
 @dataclass(frozen=True)
 class Dimensions:
-    """Whether the units fit: ``"consistent"``, ``"inconsistent"`` (``text`` says where) or ``"unknown"``.
+    """Whether the units of a claim fit.
 
-    ``units`` holds what follows for names that came without a unit.
+    Attributes
+    ----------
+    status : str
+        ``"consistent"``, ``"inconsistent"`` or ``"unknown"``.
+    text : str
+        Where they do not fit.
+    units : dict of str to str
+        Units that follow for names that came without a unit.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.check("x == x", units={"x": "m"}).dimension.status
+    'consistent'
     """
 
     status: str = "unknown"
@@ -53,29 +87,38 @@ class Dimensions:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What is known about a claim.
+    """The verdict on a claim.
 
     Attributes
     ----------
     verdict : str
         ``"true"``, ``"false"``, ``"conditional"`` (true under ``requires``) or ``"undecided"``.
     conditions : tuple of str
-        Where both sides are defined, ``"sin(theta) != 0"``; for a conditional claim first what it requires.
+        Conditions under which both sides are defined, ``"sin(theta) != 0"``; of a conditional claim the requirements
+        first.
     requires : tuple of str
-        What a conditional claim needs beyond being defined; any one of them suffices.
+        Requirements of a conditional claim beyond being defined; any one of them suffices.
     counterexample : Counterexample or None
+        An exact point where the sides differ.
     diagnosis : Diagnosis
     repairs : tuple of Repair
         At most three, nearest first.
     reason : str
-        Why a claim is undecided; otherwise empty.
+        The reason why a claim is undecided or refused; otherwise empty.
     dimension : Dimensions
-        Whether the units fit, which has no part in ``verdict``.
+        The result of the check of units, on which ``verdict`` does not depend.
     notes : tuple of str
-        What a reader should know beside the verdict: that no point is known at which the hypotheses hold.
+        Further remarks, such as the name of a matrix in the claim.
     id, where, text : str
-        The claim.
+        The name of the claim, its place in a document, and its text.
     seconds : float
+        The time that it took.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> bool(symrot.check("sin(x)**2 + cos(x)**2 == 1"))
+    True
     """
 
     verdict: str
@@ -94,7 +137,7 @@ class Verdict:
 
     @property
     def entry(self) -> tuple[int, int] | None:
-        """The place in a matrix where the sides differ, (row, column) from 1."""
+        """The entry of a matrix in which the sides differ, (row, column) from 1."""
         return self.counterexample.entry if self.counterexample else None
 
     def __bool__(self) -> bool:
@@ -104,7 +147,7 @@ class Verdict:
         return "\n".join([self.verdict, *(f"  {name}: {text}" for name, text in self.facts())])
 
     def facts(self) -> list[tuple[str, str]]:
-        """Return what goes with the verdict, as pairs of a name and a text for a person."""
+        """Return the rest of the verdict for a reader, as pairs (name, text)."""
         defined = [condition for condition in self.conditions if condition not in self.requires]
         wrong = self.diagnosis.code != "none"
         rows = [
@@ -122,15 +165,15 @@ class Verdict:
 
     def to_json(self) -> dict[str, Any]:
         """Return the verdict as JSON data."""
-        shown = self.counterexample
+        witness = self.counterexample
         return {
             "id": self.id,
             "verdict": self.verdict,
             "entry": list(self.entry) if self.entry else None,
             "conditions": list(self.conditions),
-            "counterexample": shown and {
-                "values": shown.values, "lhs": shown.lhs, "rhs": shown.rhs,
-                "entry": list(shown.entry) if shown.entry else None,
+            "counterexample": witness and {
+                "values": witness.values, "lhs": witness.lhs, "rhs": witness.rhs,
+                "entry": list(witness.entry) if witness.entry else None,
             },
             "diagnosis": {"code": self.diagnosis.code, "text": self.diagnosis.text},
             "repairs": [

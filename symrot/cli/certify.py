@@ -4,6 +4,7 @@ import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
+import symrot
 from symrot.cli.output import FAILED, OK, Command, json_option, progress, say, say_json
 from symrot.errors import CertificateError, InputError
 from symrot.report.layout import one_line
@@ -35,27 +36,25 @@ def _selftest(options: Namespace) -> int:
 
 
 def _bound(options: Namespace) -> int:
-    from symrot.workshop import bounds
-
     progress("bounding ..")
+    report: symrot.RoundingBounds | symrot.LargestBox
     if options.target is None:
         if options.variable:
             raise InputError("--variable: expected --target X as well, since only that search resizes ranges")
-        report = bounds.facts(options.kernel, options.box, options.precision)
+        report = symrot.bound(options.kernel, options.box, options.precision)
     else:
-        report = bounds.target_facts(options.kernel, options.box, options.precision, options.target, options.variable)
+        report = symrot.largest_box(
+            options.kernel, options.target, options.box, options.precision, variables=options.variable
+        )
     progress("")
-    if options.json:
-        say_json(report)
-    else:
-        say((bounds.lines if options.target is None else bounds.target_lines)(report))
+    say_json(report.data) if options.json else say([str(report)])
     return OK
 
 
 def _certify(options: Namespace) -> int:
-    from symrot.workshop import certify as certificates
-
     if options.all:
+        from symrot.workshop import certify as certificates
+
         if options.kernel or options.box or options.no_bounds:
             raise InputError("certify: expected --all without a KERNEL, --box or --no-bounds "
                              "(see `symrot certify --help`)")  # fmt: skip
@@ -65,24 +64,21 @@ def _certify(options: Namespace) -> int:
         return FAILED if options.objects and certificates.refuted(every.values()) else OK
     if not options.kernel:
         raise InputError("certify: expected a KERNEL or --all (see `symrot certify --help`)")
-    certificate, written = certificates.certify(
-        options.kernel, options.box, options.directory, options.objects, not options.no_bounds, progress
-    )
+    certificate = symrot.certify(
+        options.kernel, options.box, directory=options.directory, objects=options.objects,
+        rounding=not options.no_bounds, progress=progress,
+    )  # fmt: skip
     progress("")
-    say_json(certificate) if options.json else say(
-        [*certificates.lines(certificate, options.objects), *map(str, written)]
-    )
-    return FAILED if options.objects and certificates.refuted([certificate]) else OK
+    say_json(certificate.data) if options.json else say([str(certificate), *map(str, certificate.files)])
+    return FAILED if certificate.refuted else OK
 
 
 def _audit(options: Namespace) -> int:
-    from symrot.workshop import certify as certificates
-
     try:
-        under = [] if options.flags is None else certificates.flag_lines(options.flags)
-        reports = certificates.audit_files(
-            options.certificates, options.object, options.rerun_bounds, options.coq, progress
-        )
+        audit = symrot.audit(
+            *options.certificates, object_file=options.object, flags=options.flags, rerun_bounds=options.rerun_bounds,
+            coq=options.coq, progress=progress,
+        )  # fmt: skip
     except CertificateError as reason:
         progress("")
         if options.json:
@@ -91,9 +87,9 @@ def _audit(options: Namespace) -> int:
         return FAILED
     progress("")
     if options.json:
-        say_json({"holds": True, "certificates": reports} | ({"flags": under} if under else {}))
+        say_json({"holds": True, "certificates": audit.statements} | ({"flags": audit.flags} if audit.flags else {}))
     else:
-        say([*(line for each in reports.values() for line in each), *under])
+        say([str(audit)])
     return OK
 
 

@@ -89,7 +89,7 @@ def _run(options: Namespace) -> int:
     propagator = symrot.propagator(scene, options.method, options.tolerance, state=options.state)
     propagator.prepare()
     preparation = perf_counter() - start
-    trajectory = _followed(propagator, options)
+    trajectory = _trajectory(propagator, options)
     if trajectory is None:
         return INTERRUPTED
     report = facts(propagator, trajectory, preparation)
@@ -110,7 +110,7 @@ def _run(options: Namespace) -> int:
     return OK
 
 
-def _followed(propagator: Any, options: Namespace) -> Any:
+def _trajectory(propagator: Any, options: Namespace) -> Any:
     """Return the trajectory, or None after Ctrl-C; if it ends early, write the samples so far to ``--out``."""
     from symrot.propagation.progress import reporting
 
@@ -128,16 +128,16 @@ def _followed(propagator: Any, options: Namespace) -> Any:
         with reporting(show):
             return propagator()
     except PropagationError as error:
-        raise PropagationError(f"{error}{_saved(error, propagator, options)}") from None
+        raise PropagationError(f"{error}{_write_partial(error, propagator, options)}") from None
     except KeyboardInterrupt as error:
         progress("")
         part = getattr(error, "trajectory", None)
         until = f" at t = {float(part.t[-1])!r} s" if part is not None and len(part) else ""
-        sys.stderr.write(f"symrot: interrupted{until}{_saved(error, propagator, options)}\n")
+        sys.stderr.write(f"symrot: interrupted{until}{_write_partial(error, propagator, options)}\n")
         return None
 
 
-def _saved(error: BaseException, propagator: Any, options: Namespace) -> str:
+def _write_partial(error: BaseException, propagator: Any, options: Namespace) -> str:
     """Write the samples before an error to ``--out``, and return the end of the error message about it."""
     part = getattr(error, "trajectory", None)
     if not options.out or part is None or not len(part):
@@ -452,7 +452,7 @@ def _parser(only: str = "") -> _Parser:
     return parser
 
 
-def _known(arguments: Sequence[str]) -> None:
+def _check_command(arguments: Sequence[str]) -> None:
     """Raise InputError for an unknown command, with the nearest known one."""
     if arguments and not arguments[0].startswith("-") and arguments[0] not in COMMANDS:
         from symrot.scene.reader import nearest
@@ -491,7 +491,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if not arguments:
             _parser().print_help(sys.stderr)
             return USAGE_ERROR
-        _known(arguments)
+        _check_command(arguments)
         options = _parser(arguments[0] if arguments[0] in COMMANDS else "").parse_args(arguments)
         code: int = options.function(options)
         sys.stdout.flush()

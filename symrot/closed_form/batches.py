@@ -46,12 +46,12 @@ def attitudes(quaternions: Floats) -> Floats:
 
 def turned(frame: Frame, quaternions: Floats) -> Floats:
     """Return unit quaternions as :meth:`symrot.closed_form.heavy_top.motion.Frame.start` has them, shape (n, 8)."""
-    found = _units(quaternions)
+    attitudes = _units(quaternions)
     if frame.before is not None:
-        found = _product(frame.before, True, found)
+        attitudes = _product(frame.before, True, attitudes)
     if frame.after is not None:
-        found = _product(frame.after, False, found)
-    return _on_grid(*found, _TURNED, lambda i: frame.start(_unit(quaternions[i])))
+        attitudes = _product(frame.after, False, attitudes)
+    return _on_grid(*attitudes, _TURNED, lambda i: frame.start(_unit(quaternions[i])))
 
 
 def _unit(quaternion: Floats) -> Sequence[Fraction]:
@@ -82,14 +82,14 @@ def _sign(i: int, j: int) -> float:
 
 def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
     """Return the products of one unit quaternion, before or after, with others (n, 4), to 2^-102 of a unit."""
-    found: dd.Pair | None = None
+    product: dd.Pair | None = None
     for i, (high, low) in enumerate(map(pair, constant)):
         places = [i ^ k for k in range(4)]  # of which unit i makes unit k
         signs = np.array([_sign(i, j) if before else _sign(j, i) for j in places])
         term = dd.multiply((high * signs, low * signs), (q[0][:, places], q[1][:, places]))
-        found = term if found is None else dd.add(found, term)
-    assert found is not None
-    return found
+        product = term if product is None else dd.add(product, term)
+    assert product is not None
+    return product
 
 
 def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], Sequence[float]]) -> Floats:
@@ -103,29 +103,29 @@ def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], S
     doubtful = abs(abs(steps - np.floor(steps)) - 0.5) < _DOUBT + wide / GRID
     doubtful |= (abs(part - 0.5) < _TIE + wide) | (abs(part - 0.25) < _TIE + wide)
     doubtful |= ((high != 0) | (error > 0)) & (abs(high) <= _SPREAD)
-    found = np.empty((len(high), 8))
-    found[:, ::2], found[:, 1::2] = high + 0.0, np.rint(steps) * (last * GRID) + 0.0  # zeros without a sign
+    pairs = np.empty((len(high), 8))
+    pairs[:, ::2], pairs[:, 1::2] = high + 0.0, np.rint(steps) * (last * GRID) + 0.0  # zeros without a sign
     for i in np.flatnonzero(doubtful.any(axis=1)).tolist():
-        found[i] = exactly(i)
-    return found
+        pairs[i] = exactly(i)
+    return pairs
 
 
 def _pairs(values: Floats) -> Floats:
     """Return doubles with zeros between them."""
-    found = np.zeros((*values.shape[:-1], 2 * values.shape[-1]))
-    found[..., ::2] = values
-    return found
+    pairs = np.zeros((*values.shape[:-1], 2 * values.shape[-1]))
+    pairs[..., ::2] = values
+    return pairs
 
 
 def _columns(values: Sequence[Column], n: int) -> Floats:
     """Return constants as pairs, shape (n, 2 k)."""
-    found = np.zeros((n, 2 * len(values)))
+    columns = np.zeros((n, 2 * len(values)))
     for k, value in enumerate(values):
         if isinstance(value, Fraction):
-            found[:, 2 * k : 2 * k + 2] = pair(value)
+            columns[:, 2 * k : 2 * k + 2] = pair(value)
         else:
-            found[:, 2 * k] = value
-    return found
+            columns[:, 2 * k] = value
+    return columns
 
 
 def _together(values: Sequence[Column], n: int) -> Floats:
@@ -136,8 +136,8 @@ def _together(values: Sequence[Column], n: int) -> Floats:
 def usual(omega: Floats) -> NDArray[np.bool_]:
     """Return which angular velocities (n, 3) lie where these arrays are exact; others are a matter for one motion."""
     largest = abs(omega).max(axis=1)
-    found: NDArray[np.bool_] = (largest <= LARGEST) & ((largest >= SMALLEST) | (largest == 0))
-    return found
+    is_usual: NDArray[np.bool_] = (largest <= LARGEST) & ((largest >= SMALLEST) | (largest == 0))
+    return is_usual
 
 
 def _noticed(omega: Floats) -> Floats:
@@ -173,10 +173,10 @@ def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floa
             exact[i, 6:] = Defect(_integers(table[i].tolist()))(_integers(omega[i].tolist()))
     else:
         own = zip(*([x] * n if isinstance(x, Fraction) else x.tolist() for x in moments), strict=True)
-        for i, (row, given) in enumerate(zip(own, omega.tolist(), strict=True)):
+        for i, (row, rates) in enumerate(zip(own, omega.tolist(), strict=True)):
             integers, shared = common(row)
             exact[i, :6] = gaps(integers, shared)
-            exact[i, 6:] = Defect(integers)(_integers(given))
+            exact[i, 6:] = Defect(integers)(_integers(rates))
     return Batch("free_body", (pairs, _pairs(omega), start, exact, None))
 
 
@@ -188,11 +188,11 @@ def free_bodies_of_tensors(
     ``entries`` are the tensor's xx, yy, zz, xy, xz and yz, the rest as :func:`free_bodies`.
     """
     settled = np.ones(len(omega), np.bool_)
-    found = bodies.principal_bodies(entries, omega)
-    if found is None:
+    principal = bodies.principal_bodies(entries, omega)
+    if principal is None:
         return None, ~settled
-    settled[found.doubtful] = False
-    return Batch("free_body", (found.moments, found.rates, start, found.exact, found.axes)), settled
+    settled[principal.doubtful] = False
+    return Batch("free_body", (principal.moments, principal.rates, start, principal.exact, principal.axes)), settled
 
 
 def _integers(values: list[float]) -> list[int]:
@@ -220,8 +220,8 @@ def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floa
     """Return the motions of gyrostats with a rotor along an axis, the rest as :func:`free_bodies`."""
     named = [(axis + 1) % 3, (axis + 2) % 3, axis]
     rates = _pairs(np.ascontiguousarray(omega[:, named]))
-    given = [_together([across, own], len(omega)), _together([rotor], len(omega))]
-    return Batch("gyrostat", (*given, rates, start, np.array([*map(float, named), 0.0])))
+    constants = [_together([across, own], len(omega)), _together([rotor], len(omega))]
+    return Batch("gyrostat", (*constants, rates, start, np.array([*map(float, named), 0.0])))
 
 
 def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floats, start: Floats) -> Batch:
@@ -242,13 +242,13 @@ def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Flo
     axis = bodies[0].axis
     turned: NDArray[np.bool_] = (omega[:, [axis - 2, axis - 1]] != 0).any(axis=1)
     moving = zip(bodies, omega[:, axis].tolist(), turned.tolist(), strict=True)
-    found = np.zeros((len(omega), 65))  # `axial` of axial.h
-    found[:, 8:26] = [each.moving(rate, across) for each, rate, across in moving]
-    found[turned, 26:40], found[turned, 12:26] = found[turned, 12:26], 0.0
-    found[:, :8] = constants.head(False) if isinstance(constants, Constants) else [c.head(False) for c in constants]
-    found[:, 2] = turned
+    records = np.zeros((len(omega), 65))  # `axial` of axial.h
+    records[:, 8:26] = [each.moving(rate, across) for each, rate, across in moving]
+    records[turned, 26:40], records[turned, 12:26] = records[turned, 12:26], 0.0
+    records[:, :8] = constants.head(False) if isinstance(constants, Constants) else [c.head(False) for c in constants]
+    records[:, 2] = turned
     for k, value in enumerate(bodies[0].shapes(omega[:, axis - 2], omega[:, axis - 1])):
-        found[:, 40 + k] = value
+        records[:, 40 + k] = value
     attitude = start.reshape(-1, 8)[:, ::2]
-    found[:, 49::4], found[:, 50::4] = attitude, np.column_stack(turned_about(axis, list(attitude.T)))
-    return Batch("axial", (found,))
+    records[:, 49::4], records[:, 50::4] = attitude, np.column_stack(turned_about(axis, list(attitude.T)))
+    return Batch("axial", (records,))

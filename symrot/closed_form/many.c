@@ -17,7 +17,7 @@ ptrdiff_t symrot_many(const symrot_many_motions *m, ptrdiff_t first, ptrdiff_t l
     for (ptrdiff_t i = first; i < last; ++i) {
         const double *g[6] = {NULL};
         for (ptrdiff_t k = 0; k < m->arguments; ++k)
-            g[k] = m->given[k] == NULL ? NULL : m->given[k] + i*m->strides[k];
+            g[k] = m->constants[k] == NULL ? NULL : m->constants[k] + i*m->strides[k];
         const int status = m->arguments == 5
             ? ((of_five)m->prepare)(g[0], g[1], g[2], g[3], g[4], m->record)
             : ((of_six)m->prepare)(g[0], g[1], g[2], g[3], g[4], g[5], m->record);
@@ -35,7 +35,7 @@ ptrdiff_t symrot_many_axial(const symrot_many_motions *m, ptrdiff_t first, ptrdi
 {
     for (ptrdiff_t i = first; i < last; ++i)
         if (((axial_samples_of)m->at)(
-                m->given[0] + i*m->strides[0], m->samples, m->times + i*m->times_stride, m->omega + 3*i*m->samples,
+                m->constants[0] + i*m->strides[0], m->samples, m->times + i*m->times_stride, m->omega + 3*i*m->samples,
                 m->quaternion == NULL ? NULL : m->quaternion + 4*i*m->samples))
             return i;
     return last;

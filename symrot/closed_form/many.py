@@ -42,7 +42,7 @@ class _Motions(ctypes.Structure):
 
     _fields_ = (
         ("prepare", ctypes.c_void_p), ("at", ctypes.c_void_p), ("record", ctypes.c_void_p), ("table", ctypes.c_void_p),
-        ("arguments", ctypes.c_ssize_t), ("given", ctypes.c_void_p * 6), ("strides", ctypes.c_ssize_t * 6),
+        ("arguments", ctypes.c_ssize_t), ("constants", ctypes.c_void_p * 6), ("strides", ctypes.c_ssize_t * 6),
         ("times", ctypes.c_void_p), ("times_stride", ctypes.c_ssize_t), ("samples", ctypes.c_ssize_t),
         ("omega", ctypes.c_void_p), ("quaternion", ctypes.c_void_p),
     )  # fmt: skip
@@ -66,7 +66,7 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
         Threads; each does its share.
     """
     run, prepare, at, record, table = _linked(batch)
-    given = [None if values is None else np.ascontiguousarray(values) for values in batch.arguments]
+    arguments = [None if values is None else np.ascontiguousarray(values) for values in batch.arguments]
     times = np.ascontiguousarray(times)
     n, samples = omega.shape[:2]
     if not samples:
@@ -76,13 +76,13 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
         room, refused = record(), []
         polynomials = np.empty(table) if table else None
         motions = _Motions(
-            prepare, at, ctypes.addressof(room), address(polynomials), len(given), times=address(times),
+            prepare, at, ctypes.addressof(room), address(polynomials), len(arguments), times=address(times),
             times_stride=samples if times.ndim == 2 else 0, samples=samples, omega=address(omega),
             quaternion=address(quaternion),
         )  # fmt: skip
-        for k, values in enumerate(given):
+        for k, values in enumerate(arguments):
             if values is not None:
-                motions.given[k] = address(values)
+                motions.constants[k] = address(values)
                 motions.strides[k] = values.shape[1] if values.ndim == 2 else 0
         while first < last and not stop():
             end = min(first + AT_ONCE, last)
@@ -124,10 +124,10 @@ def _linked(batch: Batch) -> _Linked:
     if batch.name == "spin_up":
         from symrot.closed_form.spin_up import compiled as spin_up_compiled
 
-        found = spin_up_compiled.functions()
-        places = _place(found.prepare), _place(found.evaluate)
+        spin_up = spin_up_compiled.functions()
+        places = _place(spin_up.prepare), _place(spin_up.evaluate)
         together = load("spin_up_many")[0].symrot_many_spin_ups_at_once()
-        room = ctypes.c_double * (ctypes.sizeof(found.record) // 8 * together)
+        room = ctypes.c_double * (ctypes.sizeof(spin_up.record) // 8 * together)
         return _Linked(_loop("symrot_many_spin_ups", "spin_up_many"), *places, room, spin_up_compiled.TABLE * together)
     prepare, at, record = functions(batch.name, len(batch.arguments))
     return _Linked(_loop("symrot_many"), _place(prepare), _place(at), record, 0)
@@ -135,8 +135,8 @@ def _linked(batch: Batch) -> _Linked:
 
 def _shared(share: Any, n: int, workers: int) -> Sequence[int]:
     if workers <= 1:
-        found: list[int] = share(0, n)
-        return found
+        statuses: list[int] = share(0, n)
+        return statuses
     from concurrent.futures import ThreadPoolExecutor
     from threading import Event
 

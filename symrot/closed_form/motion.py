@@ -62,8 +62,10 @@ class ExactMotion(ABC):
         rates = np.empty((len(times), 3)) if omega else None
         attitudes = np.empty((len(times), 4)) if quaternion else None
         self._fill(times, rates, attitudes)
-        found = rates if attitudes is None else attitudes
-        if found is not None and len(times) and isnan(found.item(0) + found.item(-1)):  # of times in order, ends tell
+        samples = rates if attitudes is None else attitudes
+        if (
+            samples is not None and len(times) and isnan(samples.item(0) + samples.item(-1))
+        ):  # of times in order, ends tell
             raise InputError(
                 f"expected numbers of a motion that doubles can hold until then, got times {times.item(0)!r} to "
                 f"{times.item(-1)!r} s: nearer times or other units would do"
@@ -126,8 +128,8 @@ def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Call
             raise InputError(refusal()) from None
     prepare, evaluate, record = functions(name, len(arguments))
     constants = record()
-    given = [None if values is None else _packed(values) for values in arguments]
-    status = prepare(*given, ctypes.addressof(constants))
+    arrays = [None if values is None else _packed(values) for values in arguments]
+    status = prepare(*arrays, ctypes.addressof(constants))
     if status == _DOMAIN:
         raise InputError(refusal())
     if status:

@@ -83,37 +83,38 @@ def _free_body(scene: Scene) -> Starts:
 def _is_symmetric_top(scene: Scene) -> bool:
     if _torques(scene) != ["gravity"]:
         return False
-    axis = _only_axis(scene.torques[0].values["center_of_mass"])
+    axis = _only_axis(scene.torques[0].vector("center_of_mass"))
     return axis is not None and _symmetric_about(scene, axis)
 
 
 def _heavy_top(scene: Scene) -> Starts:
     from symrot.closed_form.heavy_top import motion as heavy_top
 
-    given = scene.torques[0].values
-    return heavy_top.starts(_moments(scene), given["weight"], given["center_of_mass"], given["direction"])
+    torque = scene.torques[0]
+    constants = torque.number("weight"), torque.vector("center_of_mass"), torque.vector("direction")
+    return heavy_top.starts(_moments(scene), *constants)
 
 
 def _is_symmetric_gyrostat(scene: Scene) -> bool:
     if _torques(scene) != ["rotor"]:
         return False
-    axis = _only_axis(scene.torques[0].values["angular_momentum"])
+    axis = _only_axis(scene.torques[0].vector("angular_momentum"))
     return axis is not None and _symmetric_about(scene, axis)
 
 
 def _gyrostat(scene: Scene) -> Starts:
     from symrot.closed_form.gyrostat import motion as gyrostat
 
-    return gyrostat.starts(_moments(scene), scene.torques[0].values["angular_momentum"])
+    return gyrostat.starts(_moments(scene), scene.torques[0].vector("angular_momentum"))
 
 
 def push_and_drag(scene: Scene) -> tuple[Vector, Vector]:
     """Return the constant torque in the body and the coefficients of linear damping."""
-    found = []
+    sums = []
     for kind, field in (("constant_body", "torque"), ("damping", "linear")):
-        given = [torque.values[field] for torque in scene.torques if torque.kind == kind]
-        found.append(tuple(sum((vector[i] for vector in given), Fraction(0)) for i in range(3)))
-    return found[0], found[1]
+        vectors = [torque.vector(field) for torque in scene.torques if torque.kind == kind]
+        sums.append(tuple(sum((vector[i] for vector in vectors), Fraction(0)) for i in range(3)))
+    return sums[0], sums[1]
 
 
 def _is_driven(scene: Scene) -> bool:
@@ -168,7 +169,7 @@ def _axial(scene: Scene) -> Starts:
 
 def _field_axis(name: str) -> Callable[[Scene], int | None]:
     """Return what finds the axis that a field of the only torque lies along."""
-    return lambda scene: _only_axis(scene.torques[0].values[name])
+    return lambda scene: _only_axis(scene.torques[0].vector(name))
 
 
 def _is_spun_up(scene: Scene) -> bool:

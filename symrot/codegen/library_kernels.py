@@ -17,9 +17,9 @@ __all__ = ["kernel_description", "kernel_program"]
 @cache
 def kernel_program(name: str) -> Program:
     """Return the straight-line program of a kernel of the library."""
-    found = definition(name)
-    signature = Signature(name, (*found.inputs, *(target for target, _ in found.results)))
-    lowered = lower(signature, found.formulas, found.named, parameter_argument="constant_")
+    kernel = definition(name)
+    signature = Signature(name, (*kernel.inputs, *(target for target, _ in kernel.results)))
+    lowered = lower(signature, kernel.formulas, kernel.named, parameter_argument="constant_")
     known = {"pi": number.PI}
     values = {name: ("number", evaluate(node, known, {"sqrt": number.sqrt})) for name, node in lowered.parameters}
     program = lowered.program
@@ -41,18 +41,18 @@ def _with(node: Node, values: Mapping[str, Node]) -> Node:
     return (node[0], *(_with(child, values) for child in node[1:]))
 
 
-def kernel_description(found: Definition, target: str, errors: str = "") -> Description:
-    """Return what an emitted file says of a kernel; in C also its box and the rounding ``errors`` there, if known."""
-    known = (("Box", _box(found.box)), *((("Errors", errors),) if errors else ()))
+def kernel_description(kernel: Definition, target: str, errors: str = "") -> Description:
+    """Return the head of an emitted file; in C it includes the box and the rounding ``errors`` on it."""
+    known = (("Box", _box(kernel.box)), *((("Errors", errors),) if errors else ()))
     return Description(
-        title=found.title, domain=found.domain, derivation=found.derivation,
-        command=f"symrot emit {found.name} --target {target}",
+        title=kernel.title, domain=kernel.domain, derivation=kernel.derivation,
+        command=f"symrot emit {kernel.name} --target {target}",
         contract=(*known, *CONTRACT) if target == "c" else (),
     )  # fmt: skip
 
 
 def _box(box: Box) -> str:
-    """Return the ranges of the inputs on which rounding errors are bounded, equal ones together."""
+    """Return the ranges of the inputs on which rounding errors are bounded; inputs with equal ranges share an entry."""
     names: dict[tuple[str, str], list[str]] = {}
     for name, (low, high) in box.items():
         names.setdefault((str(low), str(high)), []).append(name)

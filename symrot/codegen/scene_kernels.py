@@ -9,24 +9,24 @@ from sympy import Expr, Symbol
 from symrot import symbols
 from symrot.codegen.lowering.lower import Lowered, lower
 from symrot.codegen.printing.banner import CONTRACT, Description
-from symrot.codegen.printing.c_source import c_function
+from symrot.codegen.printing.c_source import c_function, c_name
 from symrot.dynamics.equations import PLANAR_ANGLE, Equations, equations_of_motion
 from symrot.dynamics.invariants import find_invariants
 from symrot.dynamics.structure import Structure
 from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import text
-from symrot.kinematics.quaternion import dcm_of
+from symrot.kinematics.quaternion import quaternion_to_dcm
 from symrot.planning.scene_kernel import Conserved, Parameters, SceneKernel, bind
 
 __all__ = ["derive_scene_kernel", "rates_program", "rates_source", "scene_description", "with_values"]
 
 MEANING = {
-    **{f"omega_{i + 1}": f"angular velocity about body axis {i + 1}" for i in range(3)},
+    **{f"omega_{i + 1}": "angular velocity, body components" for i in range(3)},
     **{f"q{i}": "attitude, body to space" for i in range(4)},
-    **{name: f"Euler angle {i + 1}" for i, name in enumerate(("phi", "theta", "psi"))},
+    **dict.fromkeys(("phi", "theta", "psi"), "Euler angles, in order of application"),
 }
-PLANAR_MEANING = "angle turned since the start"
-RATES = "symrot_rates"  # the name of the kernel in a compiled library
+PLANAR_MEANING = "angle of rotation since the start"
+RATES = "rates"  # the kernel of a compiled library; its function in C is symrot_rates
 TIME = Argument("t", "in", (("t", "s", "time"),), is_scalar=True)
 
 
@@ -43,15 +43,15 @@ def _state_argument(equations: Equations) -> Argument:
 
 
 def rates_program(equations: Equations, name: str) -> Lowered:
-    """Return the right-hand side ``dy/dt`` of a plan as a program of the given name."""
+    """Return the right-hand side ``dy/dt`` of the equations of motion as a program with this name."""
     per_second = {"rad/s": "rad/s^2", "1": "1/s", "rad": "rad/s"}
-    results = tuple((f"d{s}", per_second[_unit(s)], f"rate of {s}") for s in equations.states)
+    results = tuple((f"d{s}", per_second[_unit(s)], "time derivative of the state") for s in equations.states)
     signature = Signature(name, (TIME, _state_argument(equations), Argument("dy", "out", results)))
     return lower(signature, [(f"d{s}", r) for s, r in zip(equations.states, equations.rates, strict=True)],
                  equations.definitions)  # fmt: skip
 
 
-def _quantities(equations: Equations, found: Mapping[str, Expr]) -> Lowered:
+def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
     outputs: list[tuple[str, str, Expr]] = [
         (f"omega_{i + 1} of t", "rad/s", omega) for i, omega in enumerate(equations.motion.omega_b)
     ]
@@ -61,9 +61,9 @@ def _quantities(equations: Equations, found: Mapping[str, Expr]) -> Lowered:
     outputs.append(("energy", "J", equations.kinetic_energy + equations.potential))
     if equations.motion.quaternion is not None:
         outputs += [(f"q{i} of t", "1", q) for i, q in enumerate(equations.motion.quaternion)]
-        momentum_s = dcm_of(equations.motion.quaternion) * momentum
+        momentum_s = quaternion_to_dcm(equations.motion.quaternion) * momentum
         outputs += [(f"momentum_{axis}", "kg m^2/s", value) for axis, value in zip("xyz", momentum_s, strict=True)]
-    outputs += [(name, "", value) for name, value in found.items()]
+    outputs += [(name, "", value) for name, value in conserved.items()]
     outputs += [(f"{mode} of t", "1", value) for mode, value in equations.modes]
     results = Argument("out", "out", tuple((name, unit, "") for name, unit, _ in outputs))
     signature = Signature("quantities", (TIME, _state_argument(equations), results))
@@ -83,10 +83,10 @@ def derive_scene_kernel(
     source = rates_source(rates)
     on_rates(rates.program, source)
     invariants = find_invariants(equations, structure)
-    kept = {f"conserved_{i}": item.value for i, item in enumerate(invariants) if item.kept}
-    quantities = _quantities(equations, kept)
+    conserved_values = {f"conserved_{i}": item.value for i, item in enumerate(invariants) if item.holds}
+    quantities = _quantities(equations, conserved_values)
     conserved = tuple(
-        Conserved(item.name, item.unit, f"conserved_{i}" if item.kept else "", item.kept, item.reason)
+        Conserved(item.name, item.unit, f"conserved_{i}" if item.holds else "", item.holds, item.reason)
         for i, item in enumerate(invariants)
     )
     return SceneKernel.of(rates.program, rates.parameters, quantities.program, quantities.parameters, conserved, source)
@@ -97,23 +97,24 @@ def rates_source(rates: Lowered) -> str:
     source = c_function(rates.program, "static inline ")
     if rates.parameters:
         return source
-    bare = source.replace(f" {RATES}(", f" {RATES}_bare(", 1)
-    adapter = f"static inline void {RATES}(double t, const double *y, const double *p, double *dy)"
-    return f"{bare}\n{adapter}\n{{\n    (void)p;\n    {RATES}_bare(t, y, dy);\n}}\n"
+    name = c_name(RATES)
+    bare = source.replace(f" {name}(", f" {name}_bare(", 1)
+    adapter = f"static inline void {name}(double t, const double *y, const double *p, double *dy)"
+    return f"{bare}\n{adapter}\n{{\n    (void)p;\n    {name}_bare(t, y, dy);\n}}\n"
 
 
 def with_values(program: Program, parameters: Parameters, constants: Mapping[str, Fraction]) -> Program:
-    """Return the program with the value of each parameter beside its formula, as the emitted head shows them."""
+    """Return the program with formula and value of each parameter as its meaning, for the head of the emitted file."""
     values = bind(parameters, constants)
-    shown = tuple(
+    described = tuple(
         (name, "", f"{text(formula)} = {value!r}") for (name, formula), value in zip(parameters, values, strict=True)
     )
-    arguments = tuple(replace(a, components=shown) if a.name == "p" else a for a in program.signature.arguments)
+    arguments = tuple(replace(a, components=described) if a.name == "p" else a for a in program.signature.arguments)
     return replace(program, signature=replace(program.signature, arguments=arguments))
 
 
 def scene_description(title: str, name: str, target: str, bounds: tuple[tuple[str, str], ...] = ()) -> Description:
-    """Return what an emitted file says of a scene's own kernel; in C also its ``bounds``, if known: heading, text."""
+    """Return the head of the file of a scene's kernel; in C it includes ``bounds``, pairs of heading and text."""
     return Description(
         title=f"equations of motion of the scene {name!r} ({title})",
         domain="all states of finite size; a quaternion is of unit norm, and its rate keeps the norm",

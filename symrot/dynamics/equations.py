@@ -18,7 +18,7 @@ from symrot.dynamics.torques import Motion, TorqueLaw, collected_cross, formula,
 from symrot.errors import InputError
 from symrot.formula.tree import parse
 from symrot.kinematics.euler import dcm, quaternion_of_euler, rate_jacobian
-from symrot.kinematics.quaternion import qmul, quaternion_rates, unit_relation
+from symrot.kinematics.quaternion import quaternion_product, quaternion_rates, unit_relation
 from symrot.symbols import constant
 
 __all__ = ["Equations", "angular_acceleration", "equations_of_motion", "euler_equations", "inertia_matrix", "inverse"]
@@ -128,14 +128,14 @@ def euler_equations(inertia: Any = symbols.principal, torque: Any = symbols.torq
     >>> euler_equations(torque=None)[0]
     omega_2*omega_3*(B - C)/A
     """
-    given = _read(inertia, "inertia: expected 3 principal moments or a symmetric 3x3 tensor in kg m^2")
-    tensor = diag(*given) if len(given) == 3 else given
+    entries = _read(inertia, "inertia: expected 3 principal moments or a symmetric 3x3 tensor in kg m^2")
+    tensor = diag(*entries) if len(entries) == 3 else entries
     if tensor.shape != (3, 3) or not tensor.is_symmetric():
         raise InputError(f"inertia: expected 3 principal moments or a symmetric 3x3 tensor in kg m^2, got {inertia}")
-    spoken = "torque: expected 3 body components in N m"
-    moment = zeros(3, 1) if torque is None else _read(torque, spoken)
+    expected = "torque: expected 3 body components in N m"
+    moment = zeros(3, 1) if torque is None else _read(torque, expected)
     if len(moment) != 3:
-        raise InputError(f"{spoken}, got {torque}")
+        raise InputError(f"{expected}, got {torque}")
     return angular_acceleration(tensor, Matrix(symbols.omega_b), moment.reshape(3, 1))
 
 
@@ -179,7 +179,7 @@ def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr
     if omega_b[axis] == 0:
         return Motion(omega_b, tuple(start), inertia), (), relations
     turn = [cos(PLANAR_ANGLE / 2), *(sin(PLANAR_ANGLE / 2) * eye(3).col(axis))]
-    return Motion(omega_b, tuple(qmul(start, turn)), inertia), (PLANAR_ANGLE,), relations
+    return Motion(omega_b, tuple(quaternion_product(start, turn)), inertia), (PLANAR_ANGLE,), relations
 
 
 def equations_of_motion(structure: Structure) -> Equations:
@@ -205,9 +205,9 @@ def equations_of_motion(structure: Structure) -> Equations:
         rates += list(quaternion_rates("body") * motion.omega_b) if attitude else []
     elif attitude:
         rates.append(motion.omega_b[structure.planar])
-    found = Equations((*states, *attitude), tuple(rates), definitions, motion, laws, momentum_b, tuple(relations))
+    equations = Equations((*states, *attitude), tuple(rates), definitions, motion, laws, momentum_b, tuple(relations))
     held = [(torque, mode) for torque in structure.formula_torques for mode in torque.held]
-    return sliding(found, held) if held else found
+    return sliding(equations, held) if held else equations
 
 
 def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equations:

@@ -15,12 +15,12 @@ from symrot.dynamics.structure import FieldTorque, Pattern, PrincipalInertia, St
 from symrot.dynamics.torques import field_value
 from symrot.exact import is_zero
 from symrot.exact.ring.ratio import TooLarge
-from symrot.kinematics.quaternion import dcm_of
+from symrot.kinematics.quaternion import quaternion_to_dcm
 
 __all__ = ["Invariant", "find_invariants", "rate_along"]
 
 
-SPOKEN = {
+TORQUE_PHRASES = {
     "constant_body": "the torque constant in the body",
     "constant_space": "the torque constant in space",
     "expression": "the torque given by formulas",
@@ -31,12 +31,12 @@ SPOKEN = {
 
 @dataclass(frozen=True)
 class Invariant:
-    """A quantity that a motion keeps or, with ``kept`` false, one that it would keep without some torque."""
+    """A quantity that is constant along a motion; if ``holds`` is false, one that some torque changes."""
 
     name: str
     unit: str
     value: Expr  # in t, the states and the constants
-    kept: bool
+    holds: bool
     reason: str
 
 
@@ -54,7 +54,7 @@ def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[st
         square = momentum.dot(momentum)
         yield "angular momentum", "kg m^2/s", sqrt(square), square
     else:
-        momentum_s = dcm_of(equations.motion.quaternion) * momentum
+        momentum_s = quaternion_to_dcm(equations.motion.quaternion) * momentum
         for axis, component in zip("xyz", momentum_s, strict=True):
             yield f"angular momentum {axis}", "kg m^2/s", component, component
         for torque in structure.torques:
@@ -80,13 +80,13 @@ def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Ite
         yield "Jacobi integral", "J", jacobi, jacobi
 
 
-def _reason(name: str, kept: bool, equations: Equations, kinds: Sequence[str]) -> str:
-    if kept and name.startswith("spin"):
+def _reason(name: str, holds: bool, equations: Equations, kinds: Sequence[str]) -> str:
+    if holds and name.startswith("spin"):
         return "equal moments, and no torque about that axis"
     if not kinds:
         return "no torque acts"
     acting = _listed(kinds)
-    if not kept:
+    if not holds:
         without = [kind for kind, law in zip(kinds, equations.laws, strict=True) if law.potential is None]
         guilty = (without or kinds) if name == "energy" else kinds
         return f"changed by {_listed(guilty)}"
@@ -101,7 +101,7 @@ def _reason(name: str, kept: bool, equations: Equations, kinds: Sequence[str]) -
 
 def _listed(kinds: Sequence[str]) -> str:
     """Return kinds of torque in words, each once."""
-    return " and ".join(SPOKEN.get(kind, kind.replace("_", " ")) for kind in dict.fromkeys(kinds))
+    return " and ".join(TORQUE_PHRASES.get(kind, kind.replace("_", " ")) for kind in dict.fromkeys(kinds))
 
 
 def find_invariants(equations: Equations, structure: Structure) -> tuple[Invariant, ...]:
@@ -110,12 +110,12 @@ def find_invariants(equations: Equations, structure: Structure) -> tuple[Invaria
     What the plan took as constant is among them.
     """
     kinds = [torque.kind for torque in structure.torques]
-    found = []
+    candidates = []
     for name, unit, value, tested in _candidates(equations, structure):
         try:
-            kept = is_zero(rate_along(tested, equations), equations.relations)
-            reason = _reason(name, kept, equations, kinds)
+            holds = is_zero(rate_along(tested, equations), equations.relations)
+            reason = _reason(name, holds, equations, kinds)
         except TooLarge:
-            kept, reason = False, "not decided: the formula of its rate is too large"
-        found.append(Invariant(name, unit, value, kept, reason))
-    return tuple(sorted(found, key=lambda item: not item.kept))
+            holds, reason = False, "not decided: the formula of its rate is too large"
+        candidates.append(Invariant(name, unit, value, holds, reason))
+    return tuple(sorted(candidates, key=lambda item: not item.holds))

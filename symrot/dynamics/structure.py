@@ -161,6 +161,12 @@ class Structure:
         The name of the time at which the clock of the rates shows 0; None: t = 0 of the scene.
     sequence : str, optional
         The Euler sequence of the angles that are the state; None: a quaternion.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.plan("tumbling_prism").structure.moving
+    [0, 1, 2]
     """
 
     inertia: PrincipalInertia | InertiaTensor

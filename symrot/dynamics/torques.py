@@ -34,7 +34,7 @@ from symrot.dynamics.structure import FieldPattern, FormulaTorque, Pattern, Torq
 from symrot.dynamics.torque_kinds import EXPRESSION_NAMES, TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.formula.tree import FUNCTIONS, Node, children, evaluate, parse
-from symrot.kinematics.quaternion import conjugate, dcm_of, qmul, quaternion_rates
+from symrot.kinematics.quaternion import conjugate, quaternion_product, quaternion_rates, quaternion_to_dcm
 from symrot.symbols import constant
 
 __all__ = [
@@ -63,7 +63,7 @@ class Motion:
 
     def to_body(self, vector_s: Matrix) -> Matrix:
         """Return the body components of a vector given in space components."""
-        return dcm_of(self.quaternion).T * vector_s
+        return quaternion_to_dcm(self.quaternion).T * vector_s
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ def _damping(motion: Motion, linear: Matrix, quadratic: Expr) -> TorqueLaw:
 
 
 def _spring(motion: Motion, stiffness: Expr, attitude: Matrix) -> TorqueLaw:
-    error = qmul(conjugate(tuple(attitude)), motion.quaternion)
+    error = quaternion_product(conjugate(tuple(attitude)), motion.quaternion)
     return TorqueLaw(
         -2 * stiffness * error[0] * Matrix(error[1:]),
         potential=2 * stiffness * (1 - error[0] ** 2),

@@ -22,7 +22,21 @@ MOST_WORKERS = 1024
 
 
 class EnsembleStats(NamedTuple):
-    """What the motions cost: steps and evaluations of each (of a series: all its coefficients), seconds in all."""
+    """The cost of an ensemble.
+
+    Attributes
+    ----------
+    steps, evaluations : array, shape (n,)
+        Of each motion; one evaluation of a series computes all its coefficients.
+    seconds : float
+        Time of the whole ensemble.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.propagate_ensemble("t_handle", omega=[[0, 1, 2]], t=[0, 1]).stats.steps.shape
+    (1,)
+    """
 
     steps: NDArray[np.int64]
     evaluations: NDArray[np.int64]
@@ -45,6 +59,12 @@ class Ensemble:
     methods : n texts
         How each was propagated.
     stats : EnsembleStats
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.propagate_ensemble("t_handle", omega=[[0, 1, 2]], t=[0, 1]).quaternion.shape
+    (1, 2, 4)
     """
 
     def __init__(self, scene: Scene, t: Floats, followed: Followed, seconds: float) -> None:
@@ -58,9 +78,9 @@ class Ensemble:
 
     def __repr__(self) -> str:
         broken = int((self.status != 0).sum())
-        said = f", {broken} broken off" if broken else ""
+        ending = f", {broken} broken off" if broken else ""
         kinds = "/".join(dict.fromkeys(self.methods))
-        return f"<Ensemble of {self.scene.name}: {len(self)} trajectories, {self.t.shape[-1]} samples, {kinds}{said}>"
+        return f"<Ensemble of {self.scene.name}: {len(self)} trajectories, {self.t.shape[-1]} samples, {kinds}{ending}>"
 
     @property
     def quaternion(self) -> Floats:
@@ -119,10 +139,19 @@ def propagate_ensemble(
     workers : int
         Threads that step.
 
+    Returns
+    -------
+    Ensemble
+        Angular velocity in rad/s, body components, shape (n, m, 3); attitude, shape (n, m, 4).
+
     Raises
     ------
     InputError
         For a scene, an array or a name that cannot be used.
+
+    Notes
+    -----
+    Convention: :mod:`symrot.conventions`.
 
     Examples
     --------
@@ -132,20 +161,20 @@ def propagate_ensemble(
     (2, 2, 3)
     """
     began = perf_counter()
-    given = scene if isinstance(scene, Scene) else scene.scene if isinstance(scene, Propagator) else load_scene(scene)
-    own = scene.tolerance if isinstance(scene, Propagator) else float(given.tolerance)
-    variation = read_variation(given, omega, quaternion, parameters)
-    times = read_times(t, given, len(variation))
+    source = scene if isinstance(scene, Scene) else scene.scene if isinstance(scene, Propagator) else load_scene(scene)
+    own = scene.tolerance if isinstance(scene, Propagator) else float(source.tolerance)
+    variation = read_variation(source, omega, quaternion, parameters)
+    times = read_times(t, source, len(variation))
     if isinstance(workers, bool) or not isinstance(workers, int) or not 1 <= workers <= MOST_WORKERS:
         raise InputError(f"workers: expected a whole number from 1 to {MOST_WORKERS}, got {number.show(workers)}")
     aim = own if tolerance is None else _tolerance(tolerance)
-    problem = Problem(variation, variation.plan(), float(given.span.start), times, aim, workers)
-    return Ensemble(given, times, follow(problem, method), perf_counter() - began)
+    problem = Problem(variation, variation.plan(), float(source.span.start), times, aim, workers)
+    return Ensemble(source, times, follow(problem, method), perf_counter() - began)
 
 
 def _tolerance(tolerance: float) -> float:
     low, high = TOLERANCES
-    found = number.read(tolerance, "tolerance")
-    if not low <= found <= high:
+    value = number.read(tolerance, "tolerance")
+    if not low <= value <= high:
         raise InputError(f"tolerance: expected a number from {float(low):g} to {float(high):g}, got {tolerance}")
-    return float(found)
+    return float(value)

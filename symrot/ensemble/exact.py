@@ -44,7 +44,7 @@ def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
     A form is chosen by which components are zero and which moments and coefficients are equal: never by other numbers.
     """
     chosen: dict[Kind, list[Rows]] = {}
-    known: dict[Hashable, Kind] = variation.kept("forms", dict)
+    known: dict[Hashable, Kind] = variation.cached("forms", dict)
     for pattern, rows in _patterns(variation):
         kind = known.get(pattern)
         if kind is None:
@@ -113,7 +113,7 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
 
     The angle is that of the trajectory itself, so that its method does not depend on the others.
     """
-    found: list[Solved] = []
+    solved: list[Solved] = []
     for kind, rows in forms_of(variation):
         if kind.form is None:
             continue
@@ -127,8 +127,8 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
             if batch is None and faster:
                 each = each[_angles(variation, times, start)[each] > ALONE_LOSES_BELOW.get(kind.form.library, 0.0)]
             if len(each):
-                found.append(Solved(kind.form, each, batch, usual))
-    return found
+                solved.append(Solved(kind.form, each, batch, usual))
+    return solved
 
 
 def _angles(variation: Variation, times: Floats, start: float) -> Floats:
@@ -171,8 +171,10 @@ def follow_exact(
                 quaternion[rows] = attitudes
     motions = _Alone(variation, form)
     for i in rows[list(alone)].tolist():
-        found, turned = motions(i).evaluate(since if since.ndim == 1 else since[i], quaternion=quaternion is not None)
-        omega[i] = found
+        own_rates, turned = motions(i).evaluate(
+            since if since.ndim == 1 else since[i], quaternion=quaternion is not None
+        )
+        omega[i] = own_rates
         if quaternion is not None:
             quaternion[i] = turned
     _put_starts(variation, rows, times == start, omega, quaternion)
@@ -236,11 +238,11 @@ class _Part(NamedTuple):
     @property
     def start(self) -> Floats:
         """Unit quaternions as pairs of doubles, (n, 8) or (8,)."""
-        variation, found = self.variation, self.variation.attitudes
-        if found is None:
-            own = variation.kept("attitude", lambda: np.array(attitude(variation.scene.initial.quaternion)))
+        variation, attitudes = self.variation, self.variation.attitudes
+        if attitudes is None:
+            own = variation.cached("attitude", lambda: np.array(attitude(variation.scene.initial.quaternion)))
             return own  # type: ignore[no-any-return]
-        return found if len(self.rows) == len(variation) else found[self.rows]
+        return attitudes if len(self.rows) == len(variation) else attitudes[self.rows]
 
     def constant(self, name: str) -> Any:
         """Return a constant as a Fraction, or of each trajectory."""
@@ -296,7 +298,7 @@ def _free(part: _Part) -> tuple["Batch | None", Usual]:
 
     variation = part.variation
     if not variation.columns:
-        body = variation.kept("free body", lambda: Body(variation.scene.body.principal))
+        body = variation.cached("free body", lambda: Body(variation.scene.body.principal))
         return batches.free_bodies(body, part.omega, part.start), True
     if not variation.in_principal_axes:
         entries = [part.constant(name) for name in (*PRINCIPAL, *PRODUCTS)]
@@ -316,7 +318,7 @@ def _top(part: _Part) -> tuple["Batch | None", Usual]:
 
     assert part.axis is not None
     variation = part.variation
-    prefix, torque = variation.prefix(0), variation.scene.torques[0].values
+    prefix, torque = variation.prefix(0), variation.scene.torques[0]
     weight, height = (part.constant(f"{prefix}{name}") for name in ("weight", f"center_of_mass_{part.axis + 1}"))
     fine: Any = True
     if isinstance(weight, Fraction) and isinstance(height, Fraction):
@@ -334,12 +336,12 @@ def _top(part: _Part) -> tuple["Batch | None", Usual]:
             fine = fine & (size < 1e120) & (size > 1e-120)
     sign = 1 if pull.flat[0] > 0 else -1
     axis, key = part.axis, (part.axis, sign)
-    frame = variation.kept(("frame", key), lambda: Frame(axis, [-sign * x for x in torque["direction"]]))
+    frame = variation.cached(("frame", key), lambda: Frame(axis, [-sign * x for x in torque.vector("direction")]))
     if frame.plain:
         start = part.start
     elif variation.quaternion is None:
         own = variation.scene.initial.quaternion
-        start = variation.kept(("turned attitude", key), lambda: np.array(frame.start(own)))
+        start = variation.cached(("turned attitude", key), lambda: np.array(frame.start(own)))
     else:
         start = batches.turned(frame, variation.quaternion[part.rows])
     return batches.tops(*part.moments(), sign * pull, frame, part.omega, start), fine
@@ -356,14 +358,14 @@ def _gyrostat(part: _Part) -> tuple["Batch | None", Usual]:
 def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
     """Return the sum of a component of the torques of a kind; None if it is one of several that vary."""
     variation = part.variation
-    found = [
+    components = [
         part.constant(f"{variation.prefix(k)}{field}_{axis % 3 + 1}")
         for k, torque in enumerate(variation.scene.torques)
         if torque.kind == kind
     ]
-    if all(isinstance(value, Fraction) for value in found):
-        return sum(found, Fraction(0))
-    return found[0] if len(found) == 1 else None
+    if all(isinstance(value, Fraction) for value in components):
+        return sum(components, Fraction(0))
+    return components[0] if len(components) == 1 else None
 
 
 def _driven(part: _Part) -> tuple["Batch | None", Usual]:
@@ -377,17 +379,17 @@ def _driven(part: _Part) -> tuple["Batch | None", Usual]:
     drags = [_driving(part, "damping", "linear", k) for k in (axis, axis - 1)]
     if any(value is None for value in (push, *drags)):
         return None, False
-    given = [*part.moments(), push, *drags]
+    inputs = [*part.moments(), push, *drags]
     try:
-        if all(isinstance(value, Fraction) for value in given):
+        if all(isinstance(value, Fraction) for value in inputs):
             moments = [part.constant(name) for name in PRINCIPAL]
             return batches.driven(Driven(moments, axis, push, *drags).constants, part.omega, part.start), True
-        bounds = [_doubles(value) for value in given]
+        bounds = [_doubles(value) for value in inputs]
         if any((np.abs(x) > _FAR).any() for x in bounds) or any(
             (x < 1 / _FAR).any() for x in map(np.array, bounds[:2])
         ):
             return None, False
-        columns = [[value] * len(part.rows) if isinstance(value, Fraction) else value.tolist() for value in given]
+        columns = [[value] * len(part.rows) if isinstance(value, Fraction) else value.tolist() for value in inputs]
         ratios = [[x.as_integer_ratio() for x in column] for column in columns]
         bodies = [Constants(axis, (a, c), *rest) for a, c, *rest in zip(*ratios, strict=True)]
         return batches.driven(bodies, part.omega, part.start), True

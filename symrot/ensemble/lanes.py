@@ -20,8 +20,8 @@ from symrot.build.address import address
 from symrot.build.sources import c_text
 from symrot.errors import CompilerError
 from symrot.formula.program import Program
-from symrot.propagation.steppers.cut_off import CutOff, why_stuck
-from symrot.propagation.steppers.stepping import DONE, NOT_FINITE, UNDERFLOW, Floats, PathLike, rising
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped, why_stuck
+from symrot.propagation.steppers.stepping import DONE, NOT_FINITE, UNDERFLOW, Floats, PathLike, is_sorted
 from symrot.propagation.steppers.taylor import step_tail
 
 __all__ = ["FLAGS", "Lanes", "Outcome", "Task", "around", "follow", "lanes", "order_for", "translation_unit"]
@@ -131,12 +131,12 @@ class Lanes:
     def jet(self, t: float, y: Sequence[float], p: Sequence[float], unit: float = 1.0) -> Floats:
         """Return the Taylor coefficients of the states at t, shape (order + 1, N), in powers of ``unit``."""
         state, values = np.array(y, dtype=np.float64), np.array(p, dtype=np.float64)
-        found = np.empty((self.order + 1, self.states))
+        coefficients = np.empty((self.order + 1, self.states))
         jet = self._library.symrot_lanes_jet
         pointer, real = ctypes.c_void_p, ctypes.c_double
         jet.argtypes, jet.restype = (real, pointer, pointer, real, ctypes.c_int64, pointer), None
-        jet(t, state.ctypes.data, values.ctypes.data, unit, self.order, found.ctypes.data)
-        return found
+        jet(t, state.ctypes.data, values.ctypes.data, unit, self.order, coefficients.ctypes.data)
+        return coefficients
 
     def work(self, job: _Job, interrupted: Callable[[], bool] = bool) -> None:
         """Follow the legs of a job to their ends, or until interrupted."""
@@ -162,7 +162,7 @@ class _Legs(NamedTuple):
 
 def _legs(t0: float, times: Floats, n: int) -> _Legs:
     samples, motion = times.shape[-1], np.arange(n)
-    if times.ndim == 1 and samples and times[0] >= t0 and rising(times):
+    if times.ndim == 1 and samples and times[0] >= t0 and is_sorted(times):
         rows = np.empty((4, n), dtype=np.int64)
         rows[0], rows[1], rows[2], rows[3] = motion, 0, samples, motion * samples
         return _Legs(times, rows, None)
@@ -211,8 +211,8 @@ class Task:
         self.samples, self.total = times.shape[-1], self.legs.rows.shape[1]
         self.workers = max(1, min(workers, self.total))
         tail, pace = step_tail(tolerance)
-        self._given: dict[str, float] = {"t0": t0, "tail": tail, "pace": pace, "max_steps": float(max_steps)}
-        self._given |= {"y": address(self.y), "p": address(self.p), "times": address(self.legs.table)}
+        self._arguments: dict[str, float] = {"t0": t0, "tail": tail, "pace": pace, "max_steps": float(max_steps)}
+        self._arguments |= {"y": address(self.y), "p": address(self.p), "times": address(self.legs.table)}
         self._rows = self._places(("motion", "first", "count", "row"), self.legs.rows)
 
     def _places(self, names: Sequence[str], table: NDArray[Any]) -> dict[str, int]:
@@ -230,7 +230,7 @@ class Task:
         for k in range(self.workers):
             start, stop = k * total // self.workers, (k + 1) * total // self.workers
             own = {name: place + 8 * start for name, place in rows.items()}
-            jobs.append(_Job(legs=stop - start, states=address(states), **self._given, **own))
+            jobs.append(_Job(legs=stop - start, states=address(states), **self._arguments, **own))
         _share(self.library, jobs)
         counted = np.zeros((2, n), dtype=np.int64)
         if total == n:  # one leg each
@@ -253,7 +253,7 @@ class Task:
             reason = REASONS[int(status[leg])].format(steps=self.max_steps)
             if status[leg] == UNDERFLOW:
                 reason = why_stuck(reason, last, self.t0, stop)
-            messages[motion[leg]] = str(CutOff(last, reason, stop).later(self.epoch))
+            messages[motion[leg]] = str(IntegrationStopped(last, reason, stop).later(self.epoch))
         return tuple(messages)
 
 

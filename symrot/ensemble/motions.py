@@ -30,8 +30,8 @@ from symrot.propagation.compiled_models import (
 from symrot.propagation.method import METHODS, choose_method
 from symrot.propagation.motion import python_rates
 from symrot.propagation.steppers import dop853, taylor
-from symrot.propagation.steppers.cut_off import CutOff
-from symrot.propagation.steppers.smoothness import roughness
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
+from symrot.propagation.steppers.smoothness import non_smooth_torque
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Floats
 from symrot.propagation.trajectory import Trajectory
 
@@ -66,8 +66,8 @@ class Problem(NamedTuple):
 
     def times_of(self, i: int) -> Floats:
         """Return the times of motion i, s, shape (m,)."""
-        found: Floats = self.times if self.times.ndim == 1 else self.times[i]
-        return found
+        times: Floats = self.times if self.times.ndim == 1 else self.times[i]
+        return times
 
 
 def follow(problem: Problem, method: str) -> Followed:
@@ -158,7 +158,7 @@ def _stepping_method(problem: Problem) -> str:
         return "constant"
     if missing_compiler():
         return "scipy"
-    rough = has_formulas(problem.plan) and roughness(problem.plan)  # drag at rest is smooth enough for lanes
+    rough = has_formulas(problem.plan) and non_smooth_torque(problem.plan)  # drag at rest is smooth enough for lanes
     return "dop853" if rough or taylor.refusal(scene_kernel(problem.plan).rates) else "taylor"
 
 
@@ -187,12 +187,12 @@ class _Stepped:
         times = problem.times
         self.times = times if times.ndim == 1 else np.ascontiguousarray(times[list(chosen)])
         self.epoch, self.t0, self.moved = 0.0, problem.t0, (self.plan, self.kernel)
-        if self.times.size and epoch.far(problem.t0, float(self.times.min()), float(self.times.max())):
-            self.epoch, self.t0, self.moved = problem.t0, 0.0, epoch.moved(self.plan, self.kernel)
+        if self.times.size and epoch.starts_far(problem.t0, float(self.times.min()), float(self.times.max())):
+            self.epoch, self.t0, self.moved = problem.t0, 0.0, epoch.time_shifted(self.plan, self.kernel)
         try:
             self.p = self.numbers.bound(self.moved[1].rate_parameters, self.epoch)
         except OverflowError:
-            raise CutOff(self.epoch, NOT_FINITE_SENTENCE) from None
+            raise IntegrationStopped(self.epoch, NOT_FINITE_SENTENCE) from None
 
     def on_clock(self, times: Floats) -> Floats:
         """Return times on the clock of the steppers, which shows 0 at the epoch."""
@@ -204,7 +204,7 @@ class _Stepped:
             return None
 
         def moving() -> tuple[Plan, SceneKernel]:
-            return self.moved if self.epoch else epoch.moved(self.plan, self.kernel)
+            return self.moved if self.epoch else epoch.time_shifted(self.plan, self.kernel)
 
         return epoch.clock(moving, self.numbers.constants(k), self.epoch, make)
 
@@ -213,23 +213,23 @@ class _Stepped:
         chosen = list(self.chosen)
         values: dict[str, Any] = dict(zip(self.plan.states, np.moveaxis(states, -1, 0), strict=True))
         values["t"] = self.times
-        wanted = OMEGA + (QUATERNION if quaternion is not None else ())
-        parameters = self._parameters_of(wanted)
+        outputs = OMEGA + (QUATERNION if quaternion is not None else ())
+        parameters = self._parameters_of(outputs)
         columns = self.numbers.bound(parameters).T
         values |= dict(zip([name for name, _ in parameters], columns[:, :, None], strict=True))
-        found = self.kernel.quantities.evaluate(values, ARRAY_FUNCTIONS, float, wanted)
+        values_of = self.kernel.quantities.evaluate(values, ARRAY_FUNCTIONS, float, outputs)
         for k, name in enumerate(OMEGA):
-            omega[chosen, :, k] = found[name]
+            omega[chosen, :, k] = values_of[name]
         if quaternion is not None:
             for k, name in enumerate(QUATERNION):
-                quaternion[chosen, :, k] = found[name]
+                quaternion[chosen, :, k] = values_of[name]
             size = np.sqrt((quaternion[chosen] ** 2).sum(axis=-1, keepdims=True))
             quaternion[chosen] /= size
 
-    def _parameters_of(self, wanted: Sequence[str]) -> Any:
+    def _parameters_of(self, outputs: Sequence[str]) -> Any:
         """Return the parameters that stand in some quantities."""
         program, parameters = self.kernel.quantities, self.kernel.quantity_parameters
-        needed = set().union(*(names(node) for name, node in program.outputs if name in wanted))
+        needed = set().union(*(names(node) for name, node in program.outputs if name in outputs))
         for name, node in reversed(program.temporaries):
             needed |= names(node) if name in needed else set()
         return tuple([(name, node) for name, node in parameters if name in needed])
@@ -245,7 +245,7 @@ class _Stepped:
                 states[k], stats = integrate(k, self.on_clock(self.problem.times_of(i)))
                 steps[k], evaluations[k] = stats.accepted, stats.evaluations
                 messages.append("")
-            except CutOff as error:
+            except IntegrationStopped as error:
                 messages.append(str(error.later(self.epoch)))
             except PropagationError as error:
                 messages.append(str(error))
@@ -269,7 +269,7 @@ def _enclosed(stepped: _Stepped) -> lanes.Outcome:
     path = taylor_library(plan, kernel, problem.tolerance, projected=False)
 
     def integrate(k: int, times: Floats) -> tuple[Floats, Any]:
-        return taylor.task(path, stepped.p[k], stepped.y[k], stepped.t0, problem.tolerance).sample(times)
+        return taylor.integration(path, stepped.p[k], stepped.y[k], stepped.t0, problem.tolerance).sample(times)
 
     return stepped.one_by_one(integrate)
 
@@ -279,8 +279,8 @@ def _dop853(stepped: _Stepped, method: str) -> lanes.Outcome:
     path = compiled(plan)[1] if stepped.moved[0] is plan else epoch.compiled(*stepped.moved)
 
     def integrate(k: int, times: Floats) -> tuple[Floats, Any]:
-        given = path, stepped.p[k], stepped.y[k], stepped.t0, problem.tolerance
-        return dop853.task(*given, clock=stepped.clock(k)).sample(times)
+        arguments = path, stepped.p[k], stepped.y[k], stepped.t0, problem.tolerance
+        return dop853.integration(*arguments, clock=stepped.clock(k)).sample(times)
 
     return stepped.one_by_one(integrate)
 
@@ -290,9 +290,6 @@ def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
 
     problem, rates = stepped.problem, python_rates(*stepped.moved)
     blocks, scales = error_blocks(stepped.plan)
-    solver = method.partition(":")[2]
-    options: dict[str, Any] = {"blocks": blocks, "scales": scales, **({"method": solver} if solver else {})}
-
     bounds = formula_deviations(*stepped.moved)
     names = [name for name, _ in stepped.moved[1].rate_parameters]
 
@@ -300,7 +297,8 @@ def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
         start = rates, stepped.p[k], stepped.y[k], stepped.t0
         deviations = bounds and bounds(dict(zip(names, stepped.p[k].tolist(), strict=True)))
         clock = stepped.clock(k, python_rates)
-        return fallback.integrate(*start, times, problem.tolerance, deviations=deviations, clock=clock, **options)
+        options = fallback.Options(method, blocks, scales, deviations=deviations, clock=clock)
+        return fallback.integrate(*start, times, problem.tolerance, options)
 
     return stepped.one_by_one(integrate)
 

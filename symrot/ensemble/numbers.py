@@ -56,15 +56,15 @@ class Numbers:
         scene = Plan(self._variation.scene, self._plan.structure, ()).constants
         known = {"pi": number.PI, EPOCH: Fraction(epoch), **scene}
         fixed = {name: value for name, value in known.items() if name not in self._columns}
-        found = np.empty((len(self._chosen), len(parameters)))
+        values = np.empty((len(self._chosen), len(parameters)))
         for k, (_, node) in enumerate(parameters):
             if node[0] == "symbol" and node[1] in self._columns:
-                found[:, k] = self._columns[node[1]]
+                values[:, k] = self._columns[node[1]]
             elif names(node).isdisjoint(self._columns):
-                found[:, k] = float(value_of(node, fixed))
+                values[:, k] = float(value_of(node, fixed))
             else:
-                found[:, k] = self._each(folded(node, fixed), names(node))
-        return found
+                values[:, k] = self._each(folded(node, fixed), names(node))
+        return values
 
     def _each(self, node: tuple[object, ...], used: set[str]) -> list[float]:
         columns: Mapping[str, list[float]] = {

@@ -77,7 +77,7 @@ class Variation:
             return Initial((x, y, z), self.scene.initial.quaternion)
         return Initial((x, y, z), _unit(self.quaternion[i].tolist()))
 
-    def kept(self, key: Hashable, make: Callable[[], Any]) -> Any:
+    def cached(self, key: Hashable, make: Callable[[], Any]) -> Any:
         """Return what the scene alone gives: found once, for all ensembles of the same scene."""
         place = id(self.scene)
         room = _rooms.get(place)
@@ -98,11 +98,11 @@ class Variation:
     @cached_property
     def initial_states(self) -> Floats:
         """Angular velocity and unit quaternion of each trajectory, shape (n, 7), each number the nearest double."""
-        found = np.empty((len(self), 7))
-        found[:, :3] = self.omega
+        states = np.empty((len(self), 7))
+        states[:, :3] = self.omega
         own = [float(q) for q in self.scene.initial.quaternion]
-        found[:, 3:] = own if self.attitudes is None else self.attitudes[:, ::2]
-        return found
+        states[:, 3:] = own if self.attitudes is None else self.attitudes[:, ::2]
+        return states
 
     @property
     def in_principal_axes(self) -> bool:
@@ -118,13 +118,11 @@ class Variation:
         if torque < 0:
             i, j = PLACES[name]
             return self.scene.body.inertia[i][j]
-        value: Any = self.scene.torques[torque].values[field]
-        number_of: Fraction = value if entry is None else value[entry]
-        return number_of
+        return self.scene.torques[torque].constant(*_constant_place(field, entry))
 
     def prefix(self, torque: int) -> str:
         """Return what stands before the names of the constants of a torque."""
-        structure: Structure = self.kept("structure", lambda: general_structure(self.scene))
+        structure: Structure = self.cached("structure", lambda: general_structure(self.scene))
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
@@ -137,17 +135,17 @@ class Variation:
     @property
     def negligible(self) -> Floats:
         """The products of inertia, kg m^2, up to which given axes are principal, shape (n,)."""
-        found: Floats = np.ldexp(abs(self.moments).max(axis=1), -200)
-        return found
+        bounds: Floats = np.ldexp(abs(self.moments).max(axis=1), -200)
+        return bounds
 
     @property
     def moments(self) -> Floats:
         """I_xx, I_yy and I_zz of each trajectory, kg m^2, the nearest doubles, shape (n, 3)."""
-        found = np.empty((len(self), 3))
+        moments = np.empty((len(self), 3))
         for k, name in enumerate(PRINCIPAL):
             value = self.constant(name)
-            found[:, k] = float(value) if isinstance(value, Fraction) else value
-        return found
+            moments[:, k] = float(value) if isinstance(value, Fraction) else value
+        return moments
 
     def _with(self, start: Initial, values: Mapping[str, Fraction]) -> Scene:
         if not values:
@@ -160,9 +158,7 @@ class Variation:
                 i, j = PLACES[name]
                 tensor[i][j] = tensor[j][i] = value
                 continue
-            fields = dict(torques[torque].values)
-            fields[field] = _changed(fields[field], entry, value)
-            torques[torque] = torques[torque]._replace(values=fields)
+            torques[torque] = torques[torque].with_constant(*_constant_place(field, entry), value)
         if not PLACES.keys().isdisjoint(values):
             (xx, xy, xz), (_, yy, yz), (_, _, zz) = tensor
             body = body._replace(inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)), principal=principal_axes(tensor))
@@ -177,8 +173,8 @@ class Variation:
             return self._planned(values)
         moments = [(name, values[name]) for name in PLACES if name in values]
         zeros = [(name, not values[name]) for name in self.columns if name not in PLACES]
-        found: Plan = self.kept(("plan", *moments, *zeros), lambda: self._planned(values))
-        return found
+        plan: Plan = self.cached(("plan", *moments, *zeros), lambda: self._planned(values))
+        return plan
 
     @property
     def _varied(self) -> list[_Place]:
@@ -190,15 +186,15 @@ class Variation:
     def _representative_inertia(self) -> dict[str, Fraction]:
         """Return a tensor with the equalities and zeros that hold in every trajectory, and no others."""
         inertia = self.scene.body.inertia
-        found: dict[str, Fraction] = {}
+        tensor: dict[str, Fraction] = {}
         for k, name in enumerate(PRINCIPAL):
             same = next((j for j in range(k) if self._agree(PRINCIPAL[j], name)), k)
-            found[name] = found[PRINCIPAL[same]] if same < k else DISTINCT[k]
+            tensor[name] = tensor[PRINCIPAL[same]] if same < k else DISTINCT[k]
         for k, name in enumerate(name for name in PLACES if name not in PRINCIPAL):
             i, j = PLACES[name]
             present = self.columns[name].any() if name in self.columns else inertia[i][j] != 0
-            found[name] = Fraction(k + 1, 10) if present else Fraction(0)
-        return found
+            tensor[name] = Fraction(k + 1, 10) if present else Fraction(0)
+        return tensor
 
     def _agree(self, one: str, other: str) -> bool:
         """Whether two moments are equal in every trajectory."""
@@ -209,13 +205,9 @@ class Variation:
         return bool(np.all(left == right))
 
 
-def _changed(old: Any, entry: int | str | None, value: Fraction) -> Any:
-    """Return a field of a torque with one number replaced."""
-    if entry is None:
-        return value
-    if isinstance(entry, str):
-        return {**old, entry: value}
-    return tuple(value if k == entry else kept for k, kept in enumerate(old))
+def _constant_place(field: str, entry: int | str | None) -> tuple[str, int | None]:
+    """Return the name of a torque's constant and, of a vector, the component."""
+    return (entry, None) if isinstance(entry, str) else (field, entry)
 
 
 def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
@@ -253,12 +245,12 @@ def read_variation(
         arrays["quaternion"] = _array(quaternion, (4,), "quaternion", "1")
     columns: dict[str, Floats] = {}
     for name, values in (parameters or {}).items():
-        found = _columns(scene, places, name, values)
-        twice = next((other for other in found if other in columns), None)
+        own_columns = _columns(scene, places, name, values)
+        twice = next((other for other in own_columns if other in columns), None)
         if twice is not None:
             raise InputError(f"parameters: expected each constant once, got {twice} a second time, in {name!r}")
-        columns |= found
-        arrays[name] = next(iter(found.values()))
+        columns |= own_columns
+        arrays[name] = next(iter(own_columns.values()))
     counts = {name: len(array) for name, array in arrays.items()}
     if len(set(counts.values())) > 1:
         listed = ", ".join(f"{count} of {name}" for name, count in counts.items())
@@ -314,10 +306,10 @@ def read_times(t: ArrayLike | None, scene: Scene, n: int) -> Floats:
 
 
 def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> Floats:
-    wanted = "(" + ", ".join(["n", *map(str, shape)]) + ("," if not shape else "") + ")"
-    array = real_array(values, name, f"an array of shape {wanted} in {unit}")
+    expected = "(" + ", ".join(["n", *map(str, shape)]) + ("," if not shape else "") + ")"
+    array = real_array(values, name, f"an array of shape {expected} in {unit}")
     if array.ndim != 1 + len(shape) or array.shape[1:] != shape:
-        raise InputError(f"{name}: expected an array of shape {wanted} in {unit}, got shape {array.shape}")
+        raise InputError(f"{name}: expected an array of shape {expected} in {unit}, got shape {array.shape}")
     if not np.isfinite(array).all():
         place = np.argwhere(~np.isfinite(array))[0]
         raise InputError(
@@ -328,16 +320,16 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
 
 def _places(scene: Scene) -> dict[str, _Place]:
     """Return every constant of a scene that may vary, by the planner's name."""
-    found = {name: _Place(-1, "inertia", None) for name in PLACES}
+    places = {name: _Place(-1, "inertia", None) for name in PLACES}
     for index, torque in enumerate(general_structure(scene).torques):
         if isinstance(torque, FormulaTorque):
-            found |= {f"{torque.prefix}{name}": _Place(index, "parameters", name) for name in torque.parameters}
+            places |= {f"{torque.prefix}{name}": _Place(index, "parameters", name) for name in torque.parameters}
             continue
         for field, pattern in torque.fields:
             entries = [None] if isinstance(pattern, Pattern) else range(len(pattern))
             names = component_names(f"{torque.prefix}{field}", pattern)
-            found |= {name: _Place(index, field, entry) for name, entry in zip(names, entries, strict=True)}
-    return found
+            places |= {name: _Place(index, field, entry) for name, entry in zip(names, entries, strict=True)}
+    return places
 
 
 def _columns(scene: Scene, places: dict[str, _Place], name: str, values: ArrayLike) -> dict[str, Floats]:

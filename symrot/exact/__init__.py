@@ -1,12 +1,13 @@
 """Exact decision of equality of formulas.
 
-``normal_form``, ``is_zero`` and ``Verdict`` are found here on first use; ``decide`` is in :mod:`symrot.exact.decide`.
+``normal_form``, ``is_zero`` and ``Decision`` are imported here on first use; ``decide`` is in
+:mod:`symrot.exact.decide`.
 """
 
 from importlib import import_module
 from typing import Any
 
-_HOME = {"normal_form": "decide", "is_zero": "decide", "Verdict": "decide"}
+_HOME = {"normal_form": "decide", "is_zero": "decide", "Decision": "decision"}
 
 
 def __getattr__(name: str) -> Any:

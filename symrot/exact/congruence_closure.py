@@ -29,9 +29,9 @@ def proof_by_congruence(
     rings: list[FormulaRing] = []
     while True:
         ring = FormulaRing([left, right], hypotheses, domain)
-        found = proof(ring, ring.difference(left, right).numerator)
-        if found is not None:
-            return (*rings, ring, *found)
+        further_rings = proof(ring, ring.difference(left, right).numerator)
+        if further_rings is not None:
+            return (*rings, ring, *further_rings)
         names: list[Expr] = [leaf for leaf in ring.symbols if type(leaf) in _NAMES and leaf.free_symbols]
         for old, new, further in _equal_pairs(names, hypotheses, domain) if len(names) <= MOST_SYMBOLS else ():
             replaced = left.xreplace({old: new}), right.xreplace({old: new})
@@ -53,6 +53,6 @@ def _equal_pairs(
             if not hypotheses and not seems_zero(second - other, domain):
                 continue
             ring = FormulaRing([second, other], hypotheses, domain)
-            found = proof(ring, ring.difference(second, other).numerator)
-            if found is not None:
-                yield second, other, (ring, *found)
+            further_rings = proof(ring, ring.difference(second, other).numerator)
+            if further_rings is not None:
+                yield second, other, (ring, *further_rings)

@@ -19,13 +19,14 @@ from sympy.polys.rings import PolyElement
 
 from symrot.errors import InputError
 from symrot.exact.angles.angles import base_angle
+from symrot.exact.evidence import Counterexample
 from symrot.exact.floats import NoValue, float_at
 from symrot.exact.intervals import enclosure, is_nonnegative_at, surely_nonnegative_number
 from symrot.exact.ring.ratio import Ratio, TooLarge
 from symrot.exact.ring.ring import FormulaRing
 from symrot.exact.size import pieces
 
-__all__ = ["Counterexample", "closed_form_witness", "rational_witness"]
+__all__ = ["closed_form_witness", "rational_witness"]
 
 ATTEMPTS = 60
 """Random points tried: a nonzero polynomial of degree d vanishes at one with a chance of about d/40."""
@@ -48,25 +49,6 @@ _TRIANGLES = [Rational(n, d) for n, d in ((3, 5), (-4, 5), (3, 4), (-4, 3), (1, 
 
 _TURNS = [Rational(n, d) * pi for n, d in ((1, 1), (-1, 1), (2, 1), (1, 2), (-1, 2), (3, 1), (1, 3), (3, 2), (-2, 3))]
 """Values of angles at which sines and cosines are simple."""
-
-
-@dataclass(frozen=True)
-class Counterexample:
-    """A point where the two sides differ.
-
-    ``values`` pairs what is given with its exact value; ``entry`` is the place in a matrix, (row, column) from 1, or
-    None; ``lhs`` and ``rhs`` are exact numbers.
-    """
-
-    values: tuple[tuple[Expr, Expr], ...]
-    entry: tuple[int, int] | None
-    lhs: Expr
-    rhs: Expr
-
-    def __str__(self) -> str:
-        place = f", entry {self.entry}" if self.entry else ""
-        point = ", ".join(f"{name} = {value}" for name, value in self.values)
-        return f"at {point}{place}: {self.lhs} against {self.rhs}" if point else f"{self.lhs} against {self.rhs}{place}"
 
 
 @dataclass(frozen=True)
@@ -168,15 +150,15 @@ def closed_form_witness(
     coordinates, solved = _coordinates(ring)
     bound = {number for hypothesis in ring.hypothesis_numerators for number in _occurring(hypothesis)}
     tied = [c for c in coordinates if bound & set(c.generators)]
-    radicands = [found.base for found in ring.radicals.values()]
-    spoken = (left, right, *ring.ratios.sources, *ring.domain, *radicands)  # SymPy may have cancelled a divisor
-    variables = sorted({variable for formula in spoken for variable in _variables(formula)}, key=str)
+    radicands = [radical.base for radical in ring.radicals.values()]
+    formulas = (left, right, *ring.ratios.sources, *ring.domain, *radicands)  # SymPy may have cancelled a divisor
+    variables = sorted({variable for formula in formulas for variable in _variables(formula)}, key=str)
     source = Random(2)
     simple = [Rational(1), Rational(2), Rational(-1), Rational(1, 2), Rational(3), Rational(-1, 3)]
     if left.has(*_INVERSE) or right.has(*_INVERSE):
         simple = _TRIANGLES
     angles = _pure_angles(ring)
-    within = [*(found.base for found in ring.radicals.values() if found.base != -1), *ring.domain]
+    within = [*(radical.base for radical in ring.radicals.values() if radical.base != -1), *ring.domain]
     for attempt in range(ATTEMPTS):
         early = attempt < ATTEMPTS // 2
         pool = simple if early else [Rational(n, 7) for n in range(-40, 41) if n]
@@ -217,8 +199,8 @@ def _move_within(
             continue
         own = formula.free_symbols
         trials = ({**values, leaf: v} for leaf in movable if leaf in own for v in simple if _assumed(leaf, v))
-        found = next((t for t in trials if _seems_nonnegative(formula, t) and _nonnegative(formula, t)), values)
-        values.update(found)
+        moved = next((t for t in trials if _seems_nonnegative(formula, t) and _nonnegative(formula, t)), values)
+        values.update(moved)
 
 
 def _pure_angles(ring: FormulaRing) -> set[Expr]:
@@ -236,8 +218,8 @@ def _enclosure(formula: Expr, values: dict[Expr, Expr]) -> Any:
 
 def _nonnegative(formula: Expr, values: dict[Expr, Expr]) -> bool:
     """Return whether a formula is proven not to be negative; ``1 + cos(x)`` is exactly zero at pi."""
-    shown = is_nonnegative_at(formula, values)
-    return shown or (_is_flat(formula) and surely_nonnegative_number(formula.xreplace(values)))
+    is_proven = is_nonnegative_at(formula, values)
+    return is_proven or (_is_flat(formula) and surely_nonnegative_number(formula.xreplace(values)))
 
 
 def _seems_nonnegative(formula: Expr, values: dict[Expr, Expr]) -> bool:
@@ -267,10 +249,10 @@ def _shortest(number: Expr) -> Expr:
         own = FormulaRing([number])
         if len(own.roots) > MOST_ROOTS_SHORTENED:
             return number
-        found = own.expression(own.ratio(number))
+        short = own.expression(own.ratio(number))
     except InputError:  # beyond the budget
         return number
-    return found if found.is_Rational else number
+    return short if short.is_Rational else number
 
 
 def _occurring(poly: PolyElement) -> set[int]:
@@ -283,26 +265,26 @@ def _occurring(poly: PolyElement) -> set[int]:
 
 def _coordinates(ring: FormulaRing) -> tuple[list[Coordinate], list[tuple[int, PolyElement]]]:
     """Return what can be chosen freely, and the hypotheses that then fix a generator each (linear in it)."""
-    taken: set[int] = set()
+    fixed: set[int] = set()
     coordinates: list[Coordinate] = []
     solved: list[tuple[int, PolyElement]] = []
     leaf_numbers = set(ring.symbols.values())
     for hypothesis in ring.hypothesis_numerators:
         sphere = _sphere(hypothesis)
-        if sphere and not taken & set(sphere):
+        if sphere and not fixed & set(sphere):
             coordinates.append(Coordinate(sphere, _simple_sphere(len(sphere)), _random_sphere(len(sphere))))
-            taken |= set(sphere)
+            fixed |= set(sphere)
             continue
         degrees = hypothesis.degrees() if hypothesis else ()
-        linear = [n for n, degree in enumerate(degrees) if degree == 1 and n in leaf_numbers - taken]
+        linear = [n for n, degree in enumerate(degrees) if degree == 1 and n in leaf_numbers - fixed]
         if linear:
             solved.append((linear[0], hypothesis))
-            taken.add(linear[0])
+            fixed.add(linear[0])
     for atom, place in ring.sines.items():
         pair = (place, ring.cosines[atom])
         coordinates.append(Coordinate(pair, _simple_circle(), _random_sphere(2), atom))
     for leaf, number in ring.symbols.items():
-        if number not in taken:
+        if number not in fixed:
             simple = tuple((Fraction(v),) for v in (0, 1, -1, 2, 3) if _assumed(leaf, Fraction(v)))
             coordinates.append(Coordinate((number,), simple, _random_number(leaf)))
     return coordinates, solved[::-1]
@@ -471,13 +453,13 @@ def _angles_are_free(ring: FormulaRing) -> bool:
 
 def _variables(expression: Expr) -> list[Expr]:
     """Return symbols, functions of time and their derivatives, outermost first, in an order free of hashing."""
-    found: list[Expr] = []
+    variables: list[Expr] = []
     stack = [expression]
     while stack:
         node = stack.pop()
         if node.is_Symbol or isinstance(node, AppliedUndef) or node.is_Derivative:
-            if node not in found:
-                found.append(node)
+            if node not in variables:
+                variables.append(node)
         else:
             stack.extend(node.args)
-    return sorted(found, key=str)
+    return sorted(variables, key=str)

@@ -11,40 +11,35 @@ nothing, and "false" is said only with a witness. Nothing is true of sides that 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-from sympy import Expr, Ge, I, Integer, Matrix, MatrixBase, MatrixExpr, Ne, sympify, zeros
+from sympy import Expr, Ge, I, Integer, Matrix, Ne
 
 from symrot.errors import InputError
 from symrot.exact.budget import one_decision
-from symrot.exact.congruence_closure import proof_by_congruence
-from symrot.exact.counterexample import Counterexample, closed_form_witness, rational_witness
+from symrot.exact.counterexample import closed_form_witness, rational_witness
+from symrot.exact.decision import (
+    Case,
+    Decision,
+    Shape,
+    congruence,
+    first_decision,
+    flatten,
+    matched_sides,
+    prove,
+    refute,
+    subtract,
+)
 from symrot.exact.domain.domain import divisors, is_dense, radicands, split_radicands
 from symrot.exact.domain.everywhere import fails_everywhere
 from symrot.exact.domain.known_points import known_point
 from symrot.exact.domain.needs import Need, needs_of
-from symrot.exact.inverse_sums import proof, vanishes
+from symrot.exact.inverse_sums import vanishes
 from symrot.exact.ring.ring import FormulaRing, as_zero
+from symrot.exact.ring.roots import written
 
-__all__ = ["Verdict", "decide", "is_zero", "normal_form"]
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """What is known about ``left = right`` and why.
-
-    ``verdict`` is ``"true"`` (proven wherever both sides are defined, and a point is known where they are),
-    ``"false"`` (``counterexample`` shows it) or ``"undecided"`` (``stopped_by`` holds the terms about which too little
-    is known). ``conditions`` are the denominators that must not vanish and the radicands that must not be negative;
-    ``residual`` is the normal form of left - right.
-    """
-
-    verdict: str
-    residual: Any
-    conditions: tuple[Any, ...] = ()
-    counterexample: Counterexample | None = None
-    stopped_by: tuple[Expr, ...] = ()
+__all__ = ["decide", "is_zero", "normal_form"]
 
 
 def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
@@ -69,6 +64,10 @@ def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
         If the formula holds a float or an infinity, divides by something that is zero everywhere, or if the
         hypotheses contradict each other.
 
+    Notes
+    -----
+    Source: ``docs/exact_decisions.md`` says how the decision works and why it is sound.
+
     Examples
     --------
     >>> from symrot.symbols import theta
@@ -89,7 +88,7 @@ def is_zero(expression: Any, relations: Sequence[Any] = ()) -> bool:
     return all(vanishes(ring, ring.ratio(entry).numerator) for entry in entries)
 
 
-def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Verdict:
+def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Decision:
     """Decide ``left = right`` under hypotheses.
 
     Parameters
@@ -99,98 +98,86 @@ def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Verdict:
     relations : sequence of Expr or Eq
         Hypotheses, as for :func:`normal_form`.
 
+    Returns
+    -------
+    Decision
+        ``.verdict`` is ``"true"``, ``"false"`` or ``"undecided"``.
+
     Raises
     ------
     InputError
         If the shapes differ, for what :func:`normal_form` refuses, or if a side is proven to be no real number
         anywhere.
     """
-    (lefts, shape), (rights, other) = flatten(left), flatten(right)
-    if shape is not None and other is None and rights == [0]:
-        rights, other = list(zeros(*shape)), shape
-    if shape != other:
-        raise InputError(f"two sides of an equation have one shape, got {_shape_text(shape)} = {_shape_text(other)}")
+    lefts, rights, shape = matched_sides(left, right)
     with one_decision():
-        return _decided(lefts, rights, shape, relations)
+        ring = FormulaRing([*lefts, *rights], [as_zero(relation) for relation in relations])
+        case = _FormulaCase(lefts, rights, shape, ring)
+        decision = first_decision(case, STAGES)
+    return replace(decision, residual=case.residual())
 
 
-def _decided(lefts: list[Expr], rights: list[Expr], shape: tuple[int, int] | None, relations: Sequence[Any]) -> Verdict:
-    ring = FormulaRing([*lefts, *rights], [as_zero(relation) for relation in relations])
-    differences = [ring.difference(a, b) for a, b in zip(lefts, rights, strict=True)]
-    proofs = [proof(ring, value.numerator) for value in differences]
-    pairs = zip(differences, proofs, strict=True)
-    residuals = [ring.expression(value) if found is None else Integer(0) for value, found in pairs]
-    conditions = _conditions([ring, *(lift for found in proofs if found for lift in found)])
-    residual = _shaped(residuals, shape)
-    wrong = [place for place, value in enumerate(residuals) if value != 0]
-    if not wrong:
-        return _true(residual, [*lefts, *rights], ring, conditions)
-    for search in (rational_witness, closed_form_witness):
-        for place in wrong[:4]:
-            entry = None if shape is None else (place // shape[1] + 1, place % shape[1] + 1)
-            found = search(ring, lefts[place], rights[place], entry)
-            if found is not None:
-                return Verdict("false", residual, conditions, found)
-    lifted = [_congruent(ring, lefts[place], rights[place]) for place in wrong]
-    if all(found is not None for found in lifted):
-        conditions = _conditions([ring, *(lift for found in lifted if found for lift in found)])
-        return _true(_shaped([Integer(0)] * len(lefts), shape), [*lefts, *rights], ring, conditions)
+@dataclass
+class _FormulaCase(Case):
+    """An equation between formulas, complex ones included, under hypotheses that the caller vouches for."""
+
+    normal_forms: dict[int, Expr] = field(default_factory=dict)
+
+    def residual(self) -> Any:
+        """Return the normal form of left - right, in which proven entries are zero."""
+        forms = {place: self.normal_forms[place] for place in self.unproven}
+        return _shaped([forms.get(place, Integer(0)) for place in range(len(self.lefts))], self.shape)
+
+    def conditions_of(self, rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
+        nonzero = [Ne(source, 0) for ring in (self.ring, *rings) for source, _ in divisors(ring)]
+        unique = dict.fromkeys([*nonzero, *(Ge(base, 0) for base in radicands(self.ring))])
+        return tuple(sorted(unique, key=written))
+
+    def confirmed(self) -> Decision:
+        """Return the verdict "true", or "undecided" if no point is known where the sides are defined.
+
+        In the polynomial core the sides are defined on a dense set; with roots, logarithms and inverse functions a
+        point is sought. The caller must know that the hypotheses can hold. Formulas with ``i`` are complex numbers,
+        which are defined wherever no divisor is zero.
+        """
+        needs = [need for need in needs_of(self.sides) if not need.formula.has(I)]
+        if not any(side.has(I) for side in self.sides):
+            needs += [Need(formula, ">= 0") for formula in split_radicands(self.ring)]
+        if not needs or (is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)):
+            return Decision("true", self.conditions)
+        nowhere = next((need for need in needs_of(self.sides) if fails_everywhere(need)), None)
+        if nowhere is not None:
+            raise InputError(f"the sides are real numbers nowhere: {nowhere} does not hold at any real point")
+        nonzero = [Need(condition.lhs, "!= 0") for condition in self.conditions if isinstance(condition, Ne)]
+        if known_point([*(need for need in needs if need.sign != "real"), *nonzero]) is None:
+            return Decision("undecided", self.conditions, stopped_by=tuple(need.formula for need in needs))
+        return Decision("true", self.conditions)
+
+
+# -- the stages for formulas ------------------------------------------------------------------------------------------
+
+
+def normalise(case: _FormulaCase) -> None:
+    """Bring unproven entries into normal form, which may show that they are zero."""
+    case.normal_forms = {place: case.ring.expression(case.residuals[place]) for place in case.unproven}
+    case.unproven = [place for place, form in case.normal_forms.items() if form != 0]
+
+
+def witness(case: _FormulaCase) -> None:
+    """Look for a counterexample: a rational point first, then a point with closed-form values."""
+    case.rely_on(case.proof_rings)
+    case.counterexample = case.search(rational_witness, closed_form_witness)
+
+
+def leave_open(case: _FormulaCase) -> Decision:
+    """Name the terms about which too little is known."""
+    ring = case.ring
     stopped_by = (*ring.outside_scope, *(root.expression for root in ring.roots), *ring.hypotheses)
-    return Verdict("undecided", residual, conditions, None, stopped_by)
+    return Decision("undecided", case.conditions, stopped_by=stopped_by)
 
 
-def _true(residual: Any, sides: Sequence[Expr], ring: FormulaRing, conditions: tuple[Any, ...]) -> Verdict:
-    """Return the verdict "true", or "undecided" where no point is known at which the sides are defined.
-
-    In the polynomial core the sides are defined on a dense set; with roots, logarithms and inverse functions a point
-    is looked for. Whether the hypotheses can hold is for the caller to know. Formulas with ``i`` are complex numbers,
-    of which nothing is asked but that no divisor is zero.
-    """
-    needs = [need for need in needs_of(sides) if not need.formula.has(I)]
-    needs += [Need(formula, ">= 0") for formula in split_radicands(ring) if not any(side.has(I) for side in sides)]
-    if not needs or (is_dense(ring) and all(need.sign == "!= 0" for need in needs)):
-        return Verdict("true", residual, conditions)
-    nowhere = next((need for need in needs_of(sides) if fails_everywhere(need)), None)
-    if nowhere is not None:
-        raise InputError(f"the sides are real numbers nowhere: {nowhere} does not hold at any real point")
-    nonzero = [Need(condition.lhs, "!= 0") for condition in conditions if isinstance(condition, Ne)]
-    if known_point([*(need for need in needs if need.sign != "real"), *nonzero]) is None:
-        return Verdict("undecided", residual, conditions, None, tuple(need.formula for need in needs))
-    return Verdict("true", residual, conditions)
+STAGES = (subtract, normalise, prove, witness, refute, congruence, leave_open)
 
 
-def _congruent(ring: FormulaRing, left: Expr, right: Expr) -> tuple[FormulaRing, ...] | None:
-    return proof_by_congruence(left, right, ring.hypotheses, ring.domain)
-
-
-def flatten(expression: Any) -> tuple[list[Expr], tuple[int, int] | None]:
-    """Return the entries of a formula row by row, and its shape (None for a scalar).
-
-    Raises
-    ------
-    InputError
-        If it is neither a scalar formula nor a matrix of them.
-    """
-    expression = sympify(expression)
-    if isinstance(expression, MatrixExpr):
-        expression = expression.as_explicit()
-    if isinstance(expression, MatrixBase):
-        return list(expression), (int(expression.rows), int(expression.cols))
-    if not isinstance(expression, Expr):
-        raise InputError(f"exact decision takes a formula or a matrix of formulas, got {expression!r}")
-    return [expression], None
-
-
-def _conditions(rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
-    """Return what both sides need to be defined, and proofs to hold, less what the assumptions on the symbols grant."""
-    nonzero = [Ne(source, 0) for ring in rings for source, _ in divisors(ring)]
-    unique = dict.fromkeys([*nonzero, *(Ge(base, 0) for base in radicands(rings[0]))])
-    return tuple(sorted(unique, key=str))
-
-
-def _shaped(entries: list[Expr], shape: tuple[int, int] | None) -> Any:
+def _shaped(entries: list[Expr], shape: Shape) -> Any:
     return entries[0] if shape is None else Matrix(*shape, entries)
-
-
-def _shape_text(shape: tuple[int, int] | None) -> str:
-    return "a scalar" if shape is None else f"a {shape[0]} x {shape[1]} matrix"

@@ -52,12 +52,12 @@ def float_at(formula: Expr, values: Mapping[Expr, float], known: dict[Expr, floa
     """
     if formula not in known:
         try:
-            found = _computed(formula, values, known)
+            value = _computed(formula, values, known)
         except (KeyError, ValueError, OverflowError, ZeroDivisionError, TypeError):
             raise NoValue from None
-        if isinstance(found, complex) or not math.isfinite(found):
+        if isinstance(value, complex) or not math.isfinite(value):
             raise NoValue
-        known[formula] = found
+        known[formula] = value
     return known[formula]
 
 

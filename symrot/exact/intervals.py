@@ -155,13 +155,13 @@ def _interval(value: Value) -> Any:
 
 def _value(node: Expr, values: Mapping[Expr, Any], known: dict[Expr, Value]) -> Value:
     if node not in known:
-        found = _computed(node, values, known)
-        if isinstance(found, Fraction):
-            if max(found.numerator.bit_length(), found.denominator.bit_length()) > MOST_BITS_EXACT:
-                found = _interval(found)
-        elif not (found.a > -iv.inf and found.b < iv.inf):
+        value = _computed(node, values, known)
+        if isinstance(value, Fraction):
+            if max(value.numerator.bit_length(), value.denominator.bit_length()) > MOST_BITS_EXACT:
+                value = _interval(value)
+        elif not (value.a > -iv.inf and value.b < iv.inf):
             raise ValueError(f"{node} has a pole in its interval")
-        known[node] = found
+        known[node] = value
     return known[node]
 
 
@@ -169,8 +169,8 @@ def _computed(node: Expr, values: Mapping[Expr, Any], known: dict[Expr, Value]) 
     if node.is_Rational:
         return Fraction(int(node.p), int(node.q))
     if node in values:
-        given = values[node]
-        return _value(given, {}, {}) if isinstance(given, Expr) else given
+        value = values[node]
+        return _value(value, {}, {}) if isinstance(value, Expr) else value
     if node in _NUMBERS:
         return _NUMBERS[node]()
     if node.is_Add or node.is_Mul:

@@ -54,7 +54,7 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
     for lift in lifts(ring, numerator, only_zero=not ring.hypotheses):
         further = [proof(lift.ring, poly) for poly in lift.numerators]
         if None not in further:
-            return (lift.ring, *(other for found in further if found for other in found))
+            return (lift.ring, *(other for rings in further if rings for other in rings))
     return None
 
 

@@ -13,7 +13,7 @@ from sympy import Expr, Integer, Mul, cos, sin
 from sympy.polys.rings import PolyElement
 
 from symrot.exact.angles.angles import base_angle
-from symrot.exact.decide import flatten
+from symrot.exact.decision import flatten
 from symrot.exact.functions import TRIGONOMETRIC
 from symrot.exact.ring.ratio import Ratio
 from symrot.exact.ring.relations import Rule
@@ -62,12 +62,12 @@ def chains(left: Any, right: Any, relations: Sequence[Any] = ()) -> tuple[Chain,
     """
     (lefts, shape), (rights, _) = flatten(left), flatten(right)
     hypotheses = [as_zero(relation) for relation in relations]
-    found = []
+    entry_chains = []
     for place, (a, b) in enumerate(zip(lefts, rights, strict=True)):
         if a != b:
             entry = None if shape is None else (place // shape[1] + 1, place % shape[1] + 1)
-            found.append(Chain(entry, _chain(a, b, hypotheses)))
-    return tuple(found)
+            entry_chains.append(Chain(entry, _chain(a, b, hypotheses)))
+    return tuple(entry_chains)
 
 
 def _chain(left: Expr, right: Expr, hypotheses: list[Expr]) -> tuple[Link, ...]:
@@ -90,11 +90,11 @@ def _reversed(start: Expr, way: list[Link]) -> Iterator[Link]:
 
 def _cleaned(links: list[Link]) -> tuple[Link, ...]:
     """Return the links without those that repeat the expression before."""
-    kept = links[:1]
+    distinct = links[:1]
     for link in links[1:]:
-        if link.expression != kept[-1].expression:
-            kept.append(link)
-    return tuple(kept)
+        if link.expression != distinct[-1].expression:
+            distinct.append(link)
+    return tuple(distinct)
 
 
 def _way(ring: FormulaRing, side: Expr) -> Iterator[Link]:
@@ -109,7 +109,7 @@ def _way(ring: FormulaRing, side: Expr) -> Iterator[Link]:
         reduced = type(ring.relations)((rule,)).reduce(numerator)
         if reduced != numerator:
             numerator = reduced
-            yield Link(_fraction(ring, numerator, value), "a relation", _shown(ring, rule))
+            yield Link(_fraction(ring, numerator, value), "a relation", _rule_formulas(ring, rule))
     if ring.relations.basis:
         quotients, rest = numerator.div(list(ring.relations.basis))
         if rest != numerator:
@@ -132,8 +132,8 @@ def _angles(ring: FormulaRing, side: Expr) -> Iterator[tuple[Expr, Expr]]:
 
 
 def _plain(ring: FormulaRing, poly: PolyElement) -> Expr:
-    found: Expr = poly.as_expr(*ring.generators)
-    return found
+    formula: Expr = poly.as_expr(*ring.generators)
+    return formula
 
 
 def _fraction(ring: FormulaRing, numerator: PolyElement, value: Ratio) -> Expr:
@@ -142,5 +142,5 @@ def _fraction(ring: FormulaRing, numerator: PolyElement, value: Ratio) -> Expr:
     return Mul(_plain(ring, numerator), Mul(*below, Integer(value.constant)) ** -1)
 
 
-def _shown(ring: FormulaRing, rule: Rule) -> tuple[Expr, Expr]:
+def _rule_formulas(ring: FormulaRing, rule: Rule) -> tuple[Expr, Expr]:
     return ring.generators[rule.generator] ** rule.power, _plain(ring, rule.replacement)

@@ -8,11 +8,11 @@ from collections import Counter
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypedDict
 
 from symrot.formula.tree import Node, evaluate, names, operations
 
-__all__ = ["Argument", "Program", "Signature", "node_from_json", "node_to_json"]
+__all__ = ["Argument", "Program", "ProgramRecord", "Signature", "node_from_json", "node_to_json"]
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,15 @@ class Signature:
             if argument.name == name:
                 return argument
         raise KeyError(name)
+
+
+class ProgramRecord(TypedDict):
+    """A :class:`Program` as data for JSON; formulas are nested lists, see :func:`node_to_json`."""
+
+    name: str
+    arguments: list[tuple[str, str, list[list[str]], bool]]  # name, role, components, is_scalar
+    temporaries: list[tuple[str, list[Any]]]
+    outputs: list[tuple[str, list[Any]]]
 
 
 @dataclass(frozen=True)
@@ -100,22 +109,22 @@ class Program:
             known[name] = evaluate(node, known, functions, number)
         return {name: evaluate(node, known, functions, number) for name, node in outputs}
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> ProgramRecord:
         """Return plain data from which :meth:`from_json` makes an equal program."""
         return {
             "name": self.signature.name,
             "arguments": [
-                [a.name, a.role, [list(c) for c in a.components], a.is_scalar] for a in self.signature.arguments
+                (a.name, a.role, [list(c) for c in a.components], a.is_scalar) for a in self.signature.arguments
             ],
-            "temporaries": [[name, node_to_json(node)] for name, node in self.temporaries],
-            "outputs": [[name, node_to_json(node)] for name, node in self.outputs],
+            "temporaries": [(name, node_to_json(node)) for name, node in self.temporaries],
+            "outputs": [(name, node_to_json(node)) for name, node in self.outputs],
         }
 
     @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> "Program":
+    def from_json(cls, data: ProgramRecord) -> "Program":
         """Return the program that :meth:`to_json` saved."""
         arguments = tuple(
-            Argument(name, role, tuple(tuple(c) for c in components), scalar)
+            Argument(name, role, tuple((component, unit, meaning) for component, unit, meaning in components), scalar)
             for name, role, components, scalar in data["arguments"]
         )
         return cls(

@@ -67,6 +67,6 @@ def uniform(
         raise InputError(f"{prefix}expected a {shape.name} that fills space, got corners in one plane")
     total = mass if density is None else density * measure
     assert total is not None
-    found = {key: Fraction(evaluate(form, {**values, "m": total})) for key, form in forms.items()}
-    inertia = tensor.matrix([[found["".join(sorted(i + j))] for j in "xyz"] for i in "xyz"])
-    return MassProperties(total, tensor.vector([found[f"center_{axis}"] for axis in "xyz"]), inertia)
+    properties = {key: Fraction(evaluate(form, {**values, "m": total})) for key, form in forms.items()}
+    inertia = tensor.matrix([[properties["".join(sorted(i + j))] for j in "xyz"] for i in "xyz"])
+    return MassProperties(total, tensor.vector([properties[f"center_{axis}"] for axis in "xyz"]), inertia)

@@ -52,23 +52,23 @@ def _points(part: Part, dimensions: Mapping[str, Any], where: str) -> MassProper
 def _of_density(shape: Shape, dimensions: Mapping[str, Any], density: Node, part: Part, where: str) -> MassProperties:
     from symrot.inertia.integration import exact_moments  # here, so that a uniform body does not load it
 
-    found = exact_moments(shape, dimensions, density, part.density, where)
-    if found.zeroth <= 0:
+    integrals = exact_moments(shape, dimensions, density, part.density, where)
+    if integrals.zeroth <= 0:
         raise InputError(
             f"{_prefix(where)}expected a density with a positive mass, got {show(part.density)} with a mass of "
-            f"{float(found.zeroth):.15g} kg"
+            f"{float(integrals.zeroth):.15g} kg"
         )
-    center = tensor.vector([moment / found.zeroth for moment in found.first])
-    about_origin = tensor.inertia_of_second_moments(found.second)
-    return MassProperties(found.zeroth, center, tensor.about_center_of_mass(about_origin, found.zeroth, center))
+    center = tensor.vector([moment / integrals.zeroth for moment in integrals.first])
+    about_origin = tensor.inertia_of_second_moments(integrals.second)
+    return MassProperties(integrals.zeroth, center, tensor.about_center_of_mass(about_origin, integrals.zeroth, center))
 
 
 def _positive(value: Any, name: str, where: str) -> Fraction:
     dot = f"{where}.{name}" if where else name
-    found = read(value, dot)
-    if found <= 0:
+    amount = read(value, dot)
+    if amount <= 0:
         raise InputError(f"{dot}: expected a positive number, got {show(value)}")
-    return found
+    return amount
 
 
 def _density_node(density: Any, where: str) -> Node:
@@ -86,9 +86,9 @@ def _in_own_axes(part: Part, where: str) -> MassProperties:
     if shape.kind == "points":
         return _points(part, dimensions, where)
     if (part.mass is None) == (part.density is None):
-        given = "both" if part.mass is not None else "neither"
-        wanted = f"either a mass (kg) or a density ({shape.density_unit})"
-        raise InputError(f"{_prefix(where)}expected {wanted} of the {shape.name}, got {given}")
+        arrived = "both" if part.mass is not None else "neither"
+        expected = f"either a mass (kg) or a density ({shape.density_unit})"
+        raise InputError(f"{_prefix(where)}expected {expected} of the {shape.name}, got {arrived}")
     if part.mass is not None:
         return uniform(shape, dimensions, mass=_positive(part.mass, "mass", where), where=where)
     density = _density_node(part.density, where)

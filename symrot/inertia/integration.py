@@ -56,9 +56,9 @@ class Moments(NamedTuple):
 
 def _lifted(text: str, values: Mapping[str, Polynomial]) -> Polynomial:
     functions = {"cos": lambda angle: cosine(angle.symbol()), "sin": lambda angle: sine(angle.symbol())}
-    found = evaluate(parse(text), values, functions, constant)
-    assert isinstance(found, Polynomial)
-    return found
+    polynomial = evaluate(parse(text), values, functions, constant)
+    assert isinstance(polynomial, Polynomial)
+    return polynomial
 
 
 def _determinant(rows: list[list[Polynomial]]) -> Polynomial:
@@ -87,8 +87,8 @@ def domain(shape: Shape, known: Mapping[str, Fraction] | None = None) -> Domain:
 
     The names are those of :func:`symrot.inertia.shapes.scalar_names`.
     """
-    found = known or {}
-    values = {n: constant(found[n]) if n in found else generator(n) for n in scalar_names(shape)}
+    numbers = known or {}
+    values = {n: constant(numbers[n]) if n in numbers else generator(n) for n in scalar_names(shape)}
     values["pi"] = generator("pi")
     limits = tuple((c, _lifted(c.lower, values), _lifted(c.upper, values)) for c in shape.coordinates)
     values |= {c.name: generator(c.name) for c in shape.coordinates}
@@ -158,7 +158,7 @@ def _degree(node: Node) -> int:
     return left + right if kind in "*/" else max(left, right)
 
 
-def density_polynomial(density: Node, values: Mapping[str, Polynomial], shown: object, where: str = "") -> Polynomial:
+def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: object, where: str = "") -> Polynomial:
     """Return a density over the coordinates of a map.
 
     Parameters
@@ -167,7 +167,7 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], shown: o
         A formula in x, y, z (m, axes of the shape) and the names of ``values``.
     values : mapping of str to Polynomial
         x, y, z and the dimensions.
-    shown : object
+    source : object
         The density as the user wrote it.
 
     Raises
@@ -176,11 +176,11 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], shown: o
         If it is no polynomial in x, y, z, is of a degree above LARGEST_DEGREE, or uses another name.
     """
     prefix = f"{where}: " if where else ""
-    expected = f"{prefix}expected a density that is a polynomial in x, y, z, got {show(shown)}"
+    expected = f"{prefix}expected a density that is a polynomial in x, y, z, got {show(source)}"
     try:
         if _degree(density) > LARGEST_DEGREE:
             raise InputError(f"{expected} (its degree exceeds {LARGEST_DEGREE})")
-        found = evaluate(density, values, None, constant)
+        polynomial = evaluate(density, values, None, constant)
     except KeyError as unknown:
         names = ", ".join(sorted(values))
         raise InputError(f"{expected} ({unknown.args[0]!r} is not one of {names})") from None
@@ -188,8 +188,8 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], shown: o
         if isinstance(reason, InputError):
             raise
         raise InputError(f"{expected} ({reason})") from None
-    assert isinstance(found, Polynomial)
-    return found
+    assert isinstance(polynomial, Polynomial)
+    return polynomial
 
 
 def moments(region: Domain, density: Polynomial | None = None) -> Moments:
@@ -215,7 +215,7 @@ def moments_per_measure(region: Domain, density: Polynomial | None = None) -> tu
 
 
 def exact_moments(
-    shape: Shape, dimensions: Mapping[str, Any], density: Node, shown: object, where: str = ""
+    shape: Shape, dimensions: Mapping[str, Any], density: Node, source: object, where: str = ""
 ) -> Moments:
     """Return the moments of a shape with a polynomial density as numbers: kg, kg m, kg m^2.
 
@@ -231,9 +231,9 @@ def exact_moments(
         region = region._replace(jacobian=-region.jacobian)
     values = dict(zip("xyz", region.position, strict=True))
     values |= {name: constant(value) for name, value in numbers.items()}
-    found = moments(region, density_polynomial(density, values | {"pi": constant(PI)}, shown, where))
+    integrals = moments(region, density_polynomial(density, values | {"pi": constant(PI)}, source, where))
     return Moments(
-        found.zeroth.value(_PI),
-        tuple(entry.value(_PI) for entry in found.first),
-        tuple(tuple(entry.value(_PI) for entry in row) for row in found.second),
+        integrals.zeroth.value(_PI),
+        tuple(entry.value(_PI) for entry in integrals.first),
+        tuple(tuple(entry.value(_PI) for entry in row) for row in integrals.second),
     )

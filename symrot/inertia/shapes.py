@@ -274,18 +274,18 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
     """
     check_names(shape, dimensions, where)
     dot = f"{where}." if where else ""
-    found = {d.name: _read_dimension(dimensions[d.name], d, dot + d.name) for d in shape.dimensions}
+    checked = {d.name: _read_dimension(dimensions[d.name], d, dot + d.name) for d in shape.dimensions}
     for left, relation, right in shape.conditions:
-        if not _RELATIONS[relation](found[left], found[right]):
+        if not _RELATIONS[relation](checked[left], checked[right]):
             raise InputError(
                 f"{_prefix(where)}expected {left} {relation} {right} of the {shape.name}; "
                 f"got {left} = {show(dimensions[left])}, {right} = {show(dimensions[right])}"
             )
     lists = [d.name for d in shape.dimensions if d.form != "length" and d.size is None]
-    if len({len(found[name]) for name in lists}) > 1:
-        counts = ", ".join(f"{len(found[name])} {name}" for name in lists)
+    if len({len(checked[name]) for name in lists}) > 1:
+        counts = ", ".join(f"{len(checked[name])} {name}" for name in lists)
         raise InputError(f"{_prefix(where)}expected as many {' as '.join(lists)}; got {counts}")
-    return found
+    return checked
 
 
 def scalar_names(shape: Shape) -> tuple[str, ...]:
@@ -301,6 +301,6 @@ def scalars(shape: Shape, dimensions: Mapping[str, Any]) -> dict[str, Any]:
     """Return the dimensions as single numbers by name; corner n of ``vertices`` becomes ``xn``, ``yn``, ``zn``."""
     values: list[Any] = []
     for d in shape.dimensions:
-        given = dimensions[d.name]
-        values += [component for point in given for component in point] if d.form == "points" else [given]
+        value = dimensions[d.name]
+        values += [component for point in value for component in point] if d.form == "points" else [value]
     return dict(zip(scalar_names(shape), values, strict=True))

@@ -82,6 +82,12 @@ class Solid:
     center_of_mass : ImmutableMatrix, shape (3, 1), m
     inertia : ImmutableMatrix, shape (3, 3), kg m^2
         About the centre of mass, products with the minus sign.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.solid("cone").inertia[2, 2]
+    3*R**2*m/10
     """
 
     name: str
@@ -116,8 +122,8 @@ class Solid:
     @cached_property
     def limits(self) -> tuple[tuple[Symbol, Expr, Expr], ...]:
         """The coordinates of the map, each with its lower and upper limit."""
-        found = _mapped(self.name).limits
-        return tuple((_MAP_SYMBOLS[c.name], self._over(low), self._over(high)) for c, low, high in found)
+        limits = _mapped(self.name).limits
+        return tuple((_MAP_SYMBOLS[c.name], self._over(low), self._over(high)) for c, low, high in limits)
 
     @cached_property
     def steps(self) -> tuple[Integral, ...]:
@@ -127,14 +133,14 @@ class Solid:
         weight = self.density.xreplace(dict(zip(symbols.position, self.position, strict=True))) * self.jacobian
         inertia = tensor.matrix(self.inertia_about((0, 0, 0)))
         half_trace = tensor.trace(inertia) / 2
-        wanted = [("measure", self.jacobian, self.measure), ("mass", weight, self.mass)]
+        integrals = [("measure", self.jacobian, self.measure), ("mass", weight, self.mass)]
         for i, axis in enumerate("xyz"):
-            wanted.append((f"first moment {axis}", self.position[i] * weight, self.mass * self.center_of_mass[i]))
+            integrals.append((f"first moment {axis}", self.position[i] * weight, self.mass * self.center_of_mass[i]))
         for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)):
             value = half_trace - inertia[i][i] if i == j else -inertia[i][j]
             integrand = self.position[i] * self.position[j] * weight
-            wanted.append((f"second moment {'xyz'[i]}{'xyz'[j]}", integrand, value))
-        return tuple(Integral(name, integrand, self.limits, _tidy(value)) for name, integrand, value in wanted)
+            integrals.append((f"second moment {'xyz'[i]}{'xyz'[j]}", integrand, value))
+        return tuple(Integral(name, integrand, self.limits, _tidy(value)) for name, integrand, value in integrals)
 
     def inertia_about(self, point: Any) -> ImmutableMatrix:
         """Return the inertia tensor about a point (m, axes of the shape), by the parallel axis theorem, kg m^2."""
@@ -193,12 +199,12 @@ def _properties(
     region: Domain, values: Mapping[str, Expr], density: Polynomial | None = None
 ) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
     """Return mass, centre of mass, and inertia per mass about it; of unit density unless one is given."""
-    measure, found = moments_per_measure(region, density)
-    if not found.zeroth:
+    measure, specific_moments = moments_per_measure(region, density)
+    if not specific_moments.zeroth:
         raise InputError("expected a density with a positive mass, got one with a mass of 0 kg")
-    mass = _expression(measure, values) * _expression(found.zeroth, values)
-    center = [_ratio(entry, found.zeroth, values) for entry in found.first]
-    second = [[_ratio(entry, found.zeroth, values) for entry in row] for row in found.second]
+    mass = _expression(measure, values) * _expression(specific_moments.zeroth, values)
+    center = [_ratio(entry, specific_moments.zeroth, values) for entry in specific_moments.first]
+    second = [[_ratio(entry, specific_moments.zeroth, values) for entry in row] for row in specific_moments.second]
     specific = tensor.inertia_of_second_moments(second)
     return mass, ImmutableMatrix(center), _tidied(tensor.about_center_of_mass(specific, Integer(1), center))
 
@@ -242,60 +248,60 @@ def _rational(value: Fraction) -> Rational:
 
 
 def _dimension(value: Any, dimension: Dimension, shape: Shape) -> Expr:
-    found = _scalar(value)
-    refused = {"positive": found.is_nonpositive, "zero": found.is_negative, "any": False}[dimension.least]
-    if refused or found is nan or found.is_real is False or found.is_finite is False:
+    length = _scalar(value)
+    refused = {"positive": length.is_nonpositive, "zero": length.is_negative, "any": False}[dimension.least]
+    if refused or length is nan or length.is_real is False or length.is_finite is False:
         least = {"positive": "positive", "zero": "zero or positive", "any": "finite"}[dimension.least]
         meant = f"{dimension.name} of the {shape.name} ({dimension.meaning})"
         raise InputError(f"expected a {least} {meant}, got {show(value)}")
-    return found
+    return length
 
 
-def _dimensions(shape: Shape, given: Mapping[str, Any]) -> dict[str, Expr]:
+def _dimensions(shape: Shape, dimensions: Mapping[str, Any]) -> dict[str, Expr]:
     """Return an expression for each single number of the shape: the one given, or its default symbol."""
-    check_names(shape, {d.name: None for d in shape.dimensions} | dict(given))
-    found: dict[str, Expr] = dict(_default_dimensions(shape.name))
+    check_names(shape, {d.name: None for d in shape.dimensions} | dict(dimensions))
+    numbers: dict[str, Expr] = dict(_default_dimensions(shape.name))
     for d in shape.dimensions:
-        if d.name not in given:
+        if d.name not in dimensions:
             continue
         if d.form == "length":
-            found[d.name] = _dimension(given[d.name], d, shape)
+            numbers[d.name] = _dimension(dimensions[d.name], d, shape)
             continue
-        points = _points(given[d.name], d)
-        found |= {f"{axis}{n}": p[k] for n, p in enumerate(points, 1) for k, axis in enumerate("xyz")}
+        points = _points(dimensions[d.name], d)
+        numbers |= {f"{axis}{n}": p[k] for n, p in enumerate(points, 1) for k, axis in enumerate("xyz")}
     for left, relation, right in shape.conditions:
-        gap = found[right] - found[left]
+        gap = numbers[right] - numbers[left]
         if gap.is_negative or (relation == "<" and gap.is_zero):
             expected = f"expected {left} {relation} {right} of the {shape.name}"
-            raise InputError(f"{expected}, got {found[left]}, {found[right]}")
-    return found
+            raise InputError(f"{expected}, got {numbers[left]}, {numbers[right]}")
+    return numbers
 
 
-def _points(given: Any, dimension: Dimension) -> list[tuple[Expr, ...]]:
+def _points(corners: Any, dimension: Dimension) -> list[tuple[Expr, ...]]:
     try:
-        points = [tuple(map(_scalar, tensor.vector(point))) for point in given]
+        points = [tuple(map(_scalar, tensor.vector(point))) for point in corners]
     except (TypeError, ValueError) as reason:
         if isinstance(reason, InputError):
             raise
-        raise InputError(f"expected {dimension.meaning} as lists of three, got {show(given)}") from None
+        raise InputError(f"expected {dimension.meaning} as lists of three, got {show(corners)}") from None
     if len(points) != (dimension.size or len(points)):
         raise InputError(f"expected {dimension.size} points, {dimension.meaning}, got {len(points)}")
     return points
 
 
-def _density(given: Any, dimensions: Mapping[str, Expr]) -> Poly:
+def _density(density: Any, dimensions: Mapping[str, Expr]) -> Poly:
     """Return a density as a polynomial in x, y, z with symbolic coefficients."""
     axes = {str(axis): axis for axis in symbols.position}
-    if isinstance(given, str):
-        found = _formula(given, {**_DIMENSION_SYMBOLS, "rho": symbols.rho, **dimensions, **axes})
+    if isinstance(density, str):
+        formula = _formula(density, {**_DIMENSION_SYMBOLS, "rho": symbols.rho, **dimensions, **axes})
     else:
-        found = _scalar(given)
-    found = found.xreplace({free: axes[free.name] for free in found.free_symbols if free.name in axes})
-    if not found.is_polynomial(*symbols.position):
-        raise InputError(f"expected a density that is a polynomial in x, y, z, got {show(given)}")
-    polynomial = Poly(found, *symbols.position)
+        formula = _scalar(density)
+    formula = formula.xreplace({free: axes[free.name] for free in formula.free_symbols if free.name in axes})
+    if not formula.is_polynomial(*symbols.position):
+        raise InputError(f"expected a density that is a polynomial in x, y, z, got {show(density)}")
+    polynomial = Poly(formula, *symbols.position)
     if polynomial.total_degree() > LARGEST_DEGREE:
-        raise InputError(f"expected a density of degree at most {LARGEST_DEGREE} in x, y, z, got {show(given)}")
+        raise InputError(f"expected a density of degree at most {LARGEST_DEGREE} in x, y, z, got {show(density)}")
     return polynomial
 
 
@@ -313,6 +319,11 @@ def solid(name: str, *, mass: Any = None, density: Any = None, **dimensions: Any
         the names of the dimensions: ``"1 + z/height"``.
     **dimensions : number, str or Expr, m
         By the names of the table; a dimension left out is its symbol of the table.
+
+    Returns
+    -------
+    Solid
+        Mass in kg; centre of mass in m and inertia in kg m^2, shape (3, 3), in the axes of the shape.
 
     Raises
     ------

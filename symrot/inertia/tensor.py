@@ -37,14 +37,14 @@ def matrix(source: Any) -> Tensor:
 
 def vector(source: Any) -> Vector:
     """Return a vector, row or column of three as a tuple; ``ValueError`` when it has not three components."""
-    found = _items(source)
-    if len(found) == 1:
-        found = _items(found[0])
-    if len(found) == 3 and all(isinstance(item, list) and len(item) == 1 for item in found):
-        found = tuple(item for (item,) in found)
-    if len(found) != 3:
-        raise ValueError(f"expected 3 components, got {len(found)}")
-    return found
+    components = _items(source)
+    if len(components) == 1:
+        components = _items(components[0])
+    if len(components) == 3 and all(isinstance(item, list) and len(item) == 1 for item in components):
+        components = tuple(item for (item,) in components)
+    if len(components) != 3:
+        raise ValueError(f"expected 3 components, got {len(components)}")
+    return components
 
 
 def _entrywise(operation: Callable[..., Any], *tensors: Any) -> Tensor:

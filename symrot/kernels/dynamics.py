@@ -10,7 +10,7 @@ from symrot.dynamics.equations import angular_acceleration
 from symrot.formula.program import Argument
 from symrot.kernels.definition import Box, Definition, Law, argument, boxed, interval, result, scalar
 from symrot.kernels.quaternion import QUATERNION, QUATERNION_BOX, Named, halved, quaternion_rate, turned
-from symrot.kinematics.quaternion import dcm_of, qmul, unit_relation
+from symrot.kinematics.quaternion import quaternion_product, quaternion_to_dcm, unit_relation
 
 __all__ = ["OMEGA", "OMEGA_BOX", "TENSOR", "TENSOR_BOX", "definitions", "tensor_argument"]
 
@@ -127,7 +127,7 @@ def _attitude_rate(half: tuple[Symbol, ...]) -> tuple[Argument, tuple[Expr, ...]
 
 def _law_of_attitude() -> Law:
     q, dq = symbols.quaternion, symbols.quaternion_rates
-    return Law("dq/dt is q (0, omega) / 2", tuple(Matrix(dq) - qmul(q, [0, *symbols.omega_b]) / 2))
+    return Law("dq/dt is q (0, omega) / 2", tuple(Matrix(dq) - quaternion_product(q, [0, *symbols.omega_b]) / 2))
 
 
 _WEIGHT = symbols.W
@@ -140,7 +140,7 @@ def _heavy_top(name: str, body: str) -> Definition:
     _, inertia = _BODIES[body]
     symmetric = body == "symmetric"
     center = Matrix([0, 0, _DISTANCE]) if symmetric else Matrix(symbols.center_of_mass)
-    omega, upward = Matrix(symbols.omega_b), dcm_of().T.col(2)
+    omega, upward = Matrix(symbols.omega_b), quaternion_to_dcm().T.col(2)
     vertical = Matrix(_symbols("half_vertical"))
     weighed, lever = _weighed(center)
     acceleration = angular_acceleration(inertia, omega, vertical.cross(weighed))
@@ -167,8 +167,10 @@ def _heavy_top(name: str, body: str) -> Definition:
 
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
     """Return twice the weight times the centre of mass as symbols, zero where that is zero, and what they are."""
-    found = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
-    return Matrix(found), tuple((symbol, 2 * _WEIGHT * c) for symbol, c in zip(found, center, strict=True) if c)
+    components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
+    return Matrix(components), tuple(
+        (symbol, 2 * _WEIGHT * c) for symbol, c in zip(components, center, strict=True) if c
+    )
 
 
 _MOMENTUM_S = tuple(Symbol(f"L_{i}", real=True) for i in "xyz")
@@ -194,8 +196,8 @@ def _momentum_body(name: str) -> Definition:
     omega = Matrix(symbols.omega_b)
 
     def laws() -> tuple[Law, ...]:
-        found = Matrix(_MOMENTUM_B)
-        return (Law("it is the inertia tensor times omega", tuple(found - TENSOR * omega)),)
+        momentum = Matrix(_MOMENTUM_B)
+        return (Law("it is the inertia tensor times omega", tuple(momentum - TENSOR * omega)),)
 
     return Definition(
         name, "angular momentum in body axes", (tensor_argument(), OMEGA),
@@ -210,9 +212,9 @@ def _momentum_space(name: str) -> Definition:
     named = (*zip(_MOMENTUM_B, TENSOR * omega, strict=True), *named)
 
     def laws() -> tuple[Law, ...]:
-        found = Matrix(_MOMENTUM_S)
-        return (Law("it is the dcm times the momentum in body axes", tuple(found - dcm_of() * TENSOR * omega),
-                    (unit_relation(),)),)  # fmt: skip
+        momentum = Matrix(_MOMENTUM_S)
+        rotated = quaternion_to_dcm() * TENSOR * omega
+        return (Law("it is the dcm times the momentum in body axes", tuple(momentum - rotated), (unit_relation(),)),)
 
     return Definition(
         name, "angular momentum in space axes", (tensor_argument(), OMEGA, QUATERNION),

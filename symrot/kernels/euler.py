@@ -12,7 +12,7 @@ from symrot.kernels.quaternion import Named
 from symrot.kernels.removable import select_ge
 from symrot.kinematics.chart import RateMatrix
 from symrot.kinematics.euler import dcm, euler_of_quaternion, quaternion_of_euler, rate_jacobian
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.kinematics.rotations import skew
 
 __all__ = ["definitions"]
@@ -61,7 +61,7 @@ def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
     What they are multiplied by, a function of the middle angle, is taken out of the sums.
     """
     named: dict[Expr, Symbol] = {}
-    found = []
+    formulas = []
     for entry in entries:
         sums: dict[Expr, Expr] = {}
         for term in Add.make_args(expand(entry)):
@@ -72,8 +72,8 @@ def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
                 product = named.setdefault(product, Symbol(f"outer_{len(named) + 1}", real=True))
             middle = Mul(*(f for f in factors if f not in outer))
             sums[middle] = sums.get(middle, Integer(0)) + coefficient * product
-        found.append(Add(*(middle * value for middle, value in sums.items())))
-    return tuple((symbol, product) for product, symbol in named.items()), found
+        formulas.append(Add(*(middle * value for middle, value in sums.items())))
+    return tuple((symbol, product) for product, symbol in named.items()), formulas
 
 
 def _dcm(name: str, sequence: str) -> Definition:
@@ -81,10 +81,10 @@ def _dcm(name: str, sequence: str) -> Definition:
     named, formulas = _by_outer_products(matrix)
 
     def laws() -> tuple[Law, ...]:
-        found = Matrix(3, 3, symbols.rotation_entries)
+        entries = Matrix(3, 3, symbols.rotation_entries)
         return (
             Law("it is the dcm of the product of the three turns as quaternions",
-                tuple(found - dcm_of(quaternion_of_euler(sequence)))),
+                tuple(entries - quaternion_to_dcm(quaternion_of_euler(sequence)))),
         )  # fmt: skip
 
     return Definition(
@@ -96,12 +96,12 @@ def _dcm(name: str, sequence: str) -> Definition:
 
 def _jacobian(frame: str, name: str, sequence: str) -> Definition:
     def laws() -> tuple[Law, ...]:
-        found, matrix = Matrix(3, 3, JACOBIAN), dcm(sequence)
+        jacobian, matrix = Matrix(3, 3, JACOBIAN), dcm(sequence)
         columns = []
         for place, angle in enumerate(symbols.angles):
             rate = matrix.diff(angle)
             turning = matrix.T * rate if frame == "body" else rate * matrix.T
-            columns += list(turning - skew(found[:, place]))
+            columns += list(turning - skew(jacobian[:, place]))
         return (Law("skew(B dq/dt) is the spin tensor of the dcm", tuple(columns)),)
 
     return Definition(
@@ -149,7 +149,7 @@ def _quaternion(name: str, sequence: str) -> Definition:
     named, formulas = _by_outer_products(quaternion_of_euler(sequence))
 
     def laws() -> tuple[Law, ...]:
-        return (Law("its dcm is that of the angles", tuple(dcm_of() - dcm(sequence))),
+        return (Law("its dcm is that of the angles", tuple(quaternion_to_dcm() - dcm(sequence))),
                 Law("it is of unit norm", (unit_relation(),)))  # fmt: skip
 
     return Definition(
@@ -169,7 +169,7 @@ def _of_quaternion(name: str, sequence: str) -> Definition:
     first, middle, last = euler_of_quaternion(sequence)
 
     def laws() -> tuple[Law, ...]:
-        return (Law("the dcm of the angles is that of the quaternion", tuple(dcm(sequence) - dcm_of()),
+        return (Law("the dcm of the angles is that of the quaternion", tuple(dcm(sequence) - quaternion_to_dcm()),
                     (unit_relation(),)),)  # fmt: skip
 
     return Definition(

@@ -12,7 +12,7 @@ from symrot.inertia.solids import solid
 from symrot.kernels.definition import Definition, Law, argument, boxed, result, scalar
 from symrot.kernels.dynamics import ENTRIES, TENSOR, TENSOR_BOX, tensor_argument
 from symrot.kernels.quaternion import QUATERNION, QUATERNION_BOX, dcm_by_halves
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 
 __all__ = ["definitions"]
 
@@ -99,7 +99,7 @@ def _rotated(name: str) -> Definition:
     named = (*doubled, *zip(turn, matrix, strict=True), *zip(half, turn * TENSOR, strict=True))
 
     def laws() -> tuple[Law, ...]:
-        matrix = dcm_of()
+        matrix = quaternion_to_dcm()
         return (Law("I' R is R I: the tensor turns with the body", tuple(_tensor(_MOVED) * matrix - matrix * TENSOR),
                     (unit_relation(),)),)  # fmt: skip
 

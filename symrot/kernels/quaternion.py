@@ -10,10 +10,10 @@ from symrot.kernels.definition import Definition, Law, argument, boxed, result
 from symrot.kernels.removable import select_ge
 from symrot.kinematics.quaternion import (
     conjugate,
-    dcm_of,
     norm_squared,
-    qmul,
     quaternion_of_dcm,
+    quaternion_product,
+    quaternion_to_dcm,
     rotation_relations,
     unit_relation,
 )
@@ -61,7 +61,7 @@ def halved(omega: Sequence[Expr]) -> tuple[Named, tuple[Symbol, ...]]:
 
 def quaternion_rate(q: Sequence[Expr], half: Sequence[Expr], frame: str = "body") -> ImmutableMatrix:
     """Return ``dq/dt`` from half the angular velocity: q (0, omega/2) in body axes, (0, omega/2) q in space axes."""
-    return qmul(q, [0, *half]) if frame == "body" else qmul([0, *half], q)
+    return quaternion_product(q, [0, *half]) if frame == "body" else quaternion_product([0, *half], q)
 
 
 def _dcm(name: str) -> Definition:
@@ -69,11 +69,13 @@ def _dcm(name: str) -> Definition:
     named, matrix = dcm_by_halves(q0, axis, [2 * q for q in axis])
 
     def laws() -> tuple[Law, ...]:
-        found, q = Matrix(3, 3, symbols.rotation_entries), symbols.quaternion
-        turned = Matrix.hstack(*(qmul(q, [0, *axis], conjugate(q))[1:, 0] for axis in Matrix.eye(3).tolist()))
+        entries, q = Matrix(3, 3, symbols.rotation_entries), symbols.quaternion
+        turned = Matrix.hstack(
+            *(quaternion_product(q, [0, *axis], conjugate(q))[1:, 0] for axis in Matrix.eye(3).tolist())
+        )
         return (
-            Law("its columns are the turned axes q e q*", tuple(found - turned), (unit_relation(),)),
-            Law("it is orthogonal", tuple(found.T * found - Matrix.eye(3)), (unit_relation(),)),
+            Law("its columns are the turned axes q e q*", tuple(entries - turned), (unit_relation(),)),
+            Law("it is orthogonal", tuple(entries.T * entries - Matrix.eye(3)), (unit_relation(),)),
         )
 
     return Definition(
@@ -89,16 +91,22 @@ def _of_dcm(name: str) -> Definition:
     first, second = (_larger(a, b) for a, b in (branches[:2], branches[2:]))
     divisor, row = _larger(first, second)
     quotient = 2 * sqrt(divisor)
-    found = [entry / quotient for entry in row]
+    formulas = [entry / quotient for entry in row]
 
     def laws() -> tuple[Law, ...]:
         q = symbols.quaternion
-        return (Law("its dcm is the given one, of a rotation", tuple(dcm_of(q) - matrix), rotation_relations(matrix)),)
+        return (
+            Law(
+                "its dcm is the given one, of a rotation",
+                tuple(quaternion_to_dcm(q) - matrix),
+                rotation_relations(matrix),
+            ),
+        )
 
     return Definition(
         name, "quaternion of a direction cosine matrix dcm_sb, by the branch that divides by its largest component",
         (argument("dcm", "in", symbols.rotation_entries, "entry of dcm_sb, row by row"),),
-        (result("q", found, symbols.quaternion, "attitude, body to space"),),
+        (result("q", formulas, symbols.quaternion, "attitude, body to space"),),
         "rotations; q and -q are one attitude", "derivations/euler_parameters.md",
         boxed(symbols.rotation_entries, -1, 1), laws,
     )  # fmt: skip
@@ -125,7 +133,7 @@ def _rates(frame: str, name: str) -> Definition:
     named, half = halved(omega)
 
     def laws() -> tuple[Law, ...]:
-        doubled = qmul(conjugate(q), dq) if frame == "body" else qmul(dq, conjugate(q))
+        doubled = quaternion_product(conjugate(q), dq) if frame == "body" else quaternion_product(dq, conjugate(q))
         return (
             Law("2 q* dq/dt is (0, omega)" if frame == "body" else "2 dq/dt q* is (0, omega)",
                 tuple(2 * doubled - Matrix([0, *omega])), (unit_relation(),)),
@@ -141,38 +149,38 @@ def _rates(frame: str, name: str) -> Definition:
 
 
 def _product(name: str) -> Definition:
-    left, right, found = symbols.second_quaternion, symbols.quaternion, symbols.product_quaternion
+    left, right, product = symbols.second_quaternion, symbols.quaternion, symbols.product_quaternion
 
     def laws() -> tuple[Law, ...]:
-        matrices = (dcm_of(each, "homogeneous") for each in (found, left, right))
+        matrices = (quaternion_to_dcm(each, "homogeneous") for each in (product, left, right))
         turned, first, second = matrices
         return (
             Law("its dcm is the product of the dcms", tuple(turned - first * second)),
-            Law("norms multiply", (norm_squared(found) - norm_squared(left) * norm_squared(right),)),
+            Law("norms multiply", (norm_squared(product) - norm_squared(left) * norm_squared(right),)),
         )
 
     return Definition(
         name, "Hamilton product p q of two quaternions: the turn q, then the turn p, in space",
         (argument("left", "in", left, "left factor p"), argument("right", "in", right, "right factor q")),
-        (result("product", qmul(left, right), found, "p q"),),
+        (result("product", quaternion_product(left, right), product, "p q"),),
         "all quaternions", "derivations/composition.md", boxed((*left, *right), -1, 1), laws,
     )  # fmt: skip
 
 
 def _rotate(towards: str, name: str) -> Definition:
-    vector, found = Matrix(symbols.vector), symbols.turned_vector
+    vector, rotated = Matrix(symbols.vector), symbols.turned_vector
     to_space = towards == "space"
-    matrix = dcm_of() if to_space else dcm_of().T
+    matrix = quaternion_to_dcm() if to_space else quaternion_to_dcm().T
     here, there = ("body", "space") if to_space else ("space", "body")
     named, formulas = turned(symbols.quaternion if to_space else conjugate(symbols.quaternion), vector)
 
     def laws() -> tuple[Law, ...]:
-        return (Law("it is the dcm times the vector", tuple(Matrix(found) - matrix * vector), (unit_relation(),)),)
+        return (Law("it is the dcm times the vector", tuple(Matrix(rotated) - matrix * vector), (unit_relation(),)),)
 
     return Definition(
         name, f"{there} components of a vector given in {here} axes, by a unit quaternion",
         (QUATERNION, argument("vector", "in", tuple(vector), f"{here} components")),
-        (result("turned", formulas, found, f"{there} components"),),
+        (result("turned", formulas, rotated, f"{there} components"),),
         _UNIT, "derivations/euler_parameters.md", QUATERNION_BOX | boxed(tuple(vector), -1, 1), laws, named,
     )  # fmt: skip
 

@@ -10,7 +10,7 @@ from symrot.formula.program import Argument
 from symrot.kernels.definition import Box, Definition, Law, argument, boxed, result
 from symrot.kernels.quaternion import OMEGA, QUATERNION, QUATERNION_BOX, Named, dcm_by_halves, halved, quaternion_rate
 from symrot.kernels.removable import select_ge
-from symrot.kinematics.quaternion import dcm_of, norm_squared, unit_relation
+from symrot.kinematics.quaternion import norm_squared, quaternion_to_dcm, unit_relation
 from symrot.kinematics.rodrigues import CLASSICAL, MODIFIED, Projection, shadow
 
 __all__ = ["definitions"]
@@ -56,11 +56,11 @@ def _dcm(which: Projection, name: str) -> Definition:
     named = (*square, (norm, whole))
 
     def laws() -> tuple[Law, ...]:
-        found = Matrix(3, 3, symbols.rotation_entries)
+        entries = Matrix(3, 3, symbols.rotation_entries)
         return (
             Law("it is the dcm of the quaternion of the parameters",
-                tuple(found - dcm_of(which.homogeneous(), "normalised"))),
-            Law("it is orthogonal", tuple(found.T * found - Matrix.eye(3))),
+                tuple(entries - quaternion_to_dcm(which.homogeneous(), "normalised"))),
+            Law("it is orthogonal", tuple(entries.T * entries - Matrix.eye(3))),
         )  # fmt: skip
 
     return Definition(
@@ -91,7 +91,7 @@ def _of_quaternion(which: Projection, name: str) -> Definition:
         formulas = list(which.of_quaternion(symbols.quaternion))
 
     def laws() -> tuple[Law, ...]:
-        return (Law("its dcm is that of the quaternion", tuple(which.dcm() - dcm_of()), (unit_relation(),)),)
+        return (Law("its dcm is that of the quaternion", tuple(which.dcm() - quaternion_to_dcm()), (unit_relation(),)),)
 
     domain = "unit quaternions" + ("; the set of length at most 1" if which.centre else " but half turns, q0 = 0")
     box = QUATERNION_BOX if which.centre else QUATERNION_BOX | boxed((q0,), "1/10", 1)
@@ -106,7 +106,7 @@ def _rates(frame: str, which: Projection, name: str) -> Definition:
     square, scalar = _ray(which)
     named, half = halved(OMEGA[frame])
     scalar_rate, *vector_rate = quaternion_rate((scalar, *p), half, frame)  # of the ray, along which dp is taken out
-    found = [rate - p * scalar_rate for rate, p in zip(vector_rate, p, strict=True)]
+    formulas = [rate - p * scalar_rate for rate, p in zip(vector_rate, p, strict=True)]
 
     def laws() -> tuple[Law, ...]:
         vanishing = Matrix(which.rate_matrix(frame)) * Matrix(rates) - omega
@@ -115,7 +115,7 @@ def _rates(frame: str, which: Projection, name: str) -> Definition:
     return Definition(
         name, f"rate of {_CALLED[which.name]} from the angular velocity in {frame} axes",
         (_input(which), argument("omega", "in", OMEGA[frame], f"angular velocity, {frame} components")),
-        (result("rates", found, rates, "rate of the parameter"),),
+        (result("rates", formulas, rates, "rate of the parameter"),),
         "all finite parameters", _DERIVATION, _box(which) | boxed(OMEGA[frame], -10, 10), laws,
         (*square, *named),
     )  # fmt: skip

@@ -9,7 +9,7 @@ from symrot import symbols
 from symrot.kernels.definition import Definition, Law, argument, boxed, result
 from symrot.kernels.quaternion import OMEGA, QUATERNION, QUATERNION_BOX
 from symrot.kernels.removable import arc_ratio, copysign, sinc, sine_gap, tangent_gap
-from symrot.kinematics.quaternion import dcm_of
+from symrot.kinematics.quaternion import quaternion_to_dcm
 from symrot.kinematics.rotation_vector import dcm, jacobian, quaternion_of_rotation_vector
 from symrot.kinematics.rotations import skew
 
@@ -40,9 +40,10 @@ def _quaternion(name: str) -> Definition:
 
     def laws() -> tuple[Law, ...]:
         derived = quaternion_of_rotation_vector(_VECTOR)
-        found = Matrix(symbols.quaternion)
-        return (Law("it is the quaternion derived from axis and angle", tuple(found - derived)),
-                Law("its dcm is the exponential of skew(v)", tuple(dcm_of(found) - dcm(_VECTOR))))  # fmt: skip
+        quaternion = Matrix(symbols.quaternion)
+        return (Law("it is the quaternion derived from axis and angle", tuple(quaternion - derived)),
+                Law("its dcm is the exponential of skew(v)",
+                    tuple(quaternion_to_dcm(quaternion) - dcm(_VECTOR))))  # fmt: skip
 
     formulas = [cos(half), *(sinc(half) / 2 * v for v in _VECTOR)]
     return Definition(
@@ -61,7 +62,7 @@ def _of_quaternion(name: str) -> Definition:
 
     def laws() -> tuple[Law, ...]:
         norm = sum(q**2 for q in symbols.quaternion)
-        return (Law("its dcm is that of the quaternion", tuple(dcm(_VECTOR) - dcm_of()), (norm - 1,)),)
+        return (Law("its dcm is that of the quaternion", tuple(dcm(_VECTOR) - quaternion_to_dcm()), (norm - 1,)),)
 
     return Definition(
         name, "rotation vector of a quaternion (the logarithm), of length at most pi", (QUATERNION,),

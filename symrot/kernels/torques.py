@@ -13,7 +13,7 @@ from symrot.formula.program import Argument
 from symrot.kernels.definition import Box, Definition, Law, boxed, interval, result, scalar
 from symrot.kernels.dynamics import OMEGA, OMEGA_BOX, TENSOR, TENSOR_BOX, tensor_argument
 from symrot.kernels.quaternion import QUATERNION, QUATERNION_BOX, turned
-from symrot.kinematics.quaternion import conjugate, dcm_of, unit_relation
+from symrot.kinematics.quaternion import conjugate, quaternion_to_dcm, unit_relation
 
 __all__ = ["definitions"]
 
@@ -36,8 +36,8 @@ class _Turned(Motion):
     """A motion that turns vectors by the quaternion itself: fewer operations than by the dcm."""
 
     def to_body(self, vector_s: Matrix) -> Matrix:
-        named, found = turned(conjugate(self.quaternion), vector_s)
-        return found.xreplace(dict(named))
+        named, components = turned(conjugate(self.quaternion), vector_s)
+        return components.xreplace(dict(named))
 
 
 _MOTION = _Turned(Matrix(symbols.omega_b), symbols.quaternion, TENSOR)
@@ -58,9 +58,9 @@ def _field_argument(field: Field) -> Argument:
     return Argument(field.name, "in", components, is_scalar=size == 1)
 
 
-def _field_box(given: Argument) -> Box:
-    largest = interval(0, _RANGE.get(given.name, 1))
-    return {name: largest if given.is_scalar else (-largest[1], largest[1]) for name, *_ in given.components}
+def _field_box(field: Argument) -> Box:
+    largest = interval(0, _RANGE.get(field.name, 1))
+    return {name: largest if field.is_scalar else (-largest[1], largest[1]) for name, *_ in field.components}
 
 
 def _law_of(kind: str, fields: tuple[str, ...]) -> TorqueLaw:
@@ -78,7 +78,7 @@ def _torque(name: str) -> Definition:
     kind, fields = _KERNELS[name]
     law = _law_of(kind, fields)
     torque = law.torque - _MOTION.omega_b.cross(law.momentum)  # a rotor acts on the body through its momentum
-    given = tuple(_field_argument(field) for field in TORQUE_KINDS[kind].fields if field.name in fields)
+    parameters = tuple(_field_argument(field) for field in TORQUE_KINDS[kind].fields if field.name in fields)
     used = torque.free_symbols | {s for _, value in law.definitions for s in value.free_symbols}
     states = (
         ((symbols.t,), scalar(symbols.t, "time"), boxed((symbols.t,), 0, 1000)),
@@ -86,40 +86,46 @@ def _torque(name: str) -> Definition:
         (symbols.omega_b, OMEGA, OMEGA_BOX),
         (symbols.quaternion, QUATERNION, QUATERNION_BOX),
     )
-    taken = [(state, box) for needed, state, box in states if used & set(needed)]
-    box = {key: value for each in (*(box for _, box in taken), *map(_field_box, given)) for key, value in each.items()}
+    inputs = [(state, box) for needed, state, box in states if used & set(needed)]
+    box = {
+        key: value
+        for each in (*(box for _, box in inputs), *map(_field_box, parameters))
+        for key, value in each.items()
+    }
     about = f"torque of the kind {kind!r} ({', '.join(fields)}), body components: {TORQUE_KINDS[kind].meaning}"
     return Definition(
-        name, about, (*(state for state, _ in taken), *given),
+        name, about, (*(state for state, _ in inputs), *parameters),
         (result("torque_b", torque, symbols.torque_b, "torque, body components"),),
-        "unit quaternions" if any(state is QUATERNION for state, _ in taken) else "all finite values",
+        "unit quaternions" if any(state is QUATERNION for state, _ in inputs) else "all finite values",
         "derivations/euler_equations.md", box, partial(_laws, kind, fields, law), law.definitions,
     )  # fmt: skip
 
 
 def _laws(kind: str, fields: tuple[str, ...], law: TorqueLaw) -> tuple[Law, ...]:
-    found, omega = Matrix(symbols.torque_b), _MOTION.omega_b
+    torque_b, omega = Matrix(symbols.torque_b), _MOTION.omega_b
     unit = (unit_relation(),)
     if kind == "rotor":
-        return (Law("it is minus omega x h", tuple(found + omega.cross(law.momentum))),
-                Law("it does no work", (found.dot(omega),)))  # fmt: skip
+        return (Law("it is minus omega x h", tuple(torque_b + omega.cross(law.momentum))),
+                Law("it does no work", (torque_b.dot(omega),)))  # fmt: skip
     if law.potential is not None:
         return (Law("its work is what the potential loses, for every angular velocity",
-                    tuple(found - torque_of_potential(law)), unit),)  # fmt: skip
+                    tuple(torque_b - torque_of_potential(law)), unit),)  # fmt: skip
     if kind == "damping":
-        return _damping_laws(found, fields)
-    matrix = dcm_of() if kind == "constant_space" else eye(3)
-    given = field_value("torque", (FREE,) * 3)
-    return (Law("carried to the axes of the given torque it is that torque", tuple(matrix * found - given), unit),)
+        return _damping_laws(torque_b, fields)
+    matrix = quaternion_to_dcm() if kind == "constant_space" else eye(3)
+    space_torque = field_value("torque", (FREE,) * 3)
+    return (
+        Law("carried to the axes of the given torque it is that torque", tuple(matrix * torque_b - space_torque), unit),
+    )
 
 
-def _damping_laws(found: Matrix, fields: tuple[str, ...]) -> tuple[Law, ...]:
+def _damping_laws(torque_b: Matrix, fields: tuple[str, ...]) -> tuple[Law, ...]:
     omega = _MOTION.omega_b
     if fields == ("linear",):
         drag = field_value("linear", (FREE,) * 3).multiply_elementwise(omega)
-        return (Law("each component is minus its coefficient times omega", tuple(found + drag)),)
+        return (Law("each component is minus its coefficient times omega", tuple(torque_b + drag)),)
     power = field_value("quadratic", FREE) * sqrt(omega.dot(omega)) ** 3
     return (
-        Law("it is along omega", tuple(found.cross(omega))),
-        Law("its power is minus the coefficient times the cube of |omega|", (found.dot(omega) + power,)),
+        Law("it is along omega", tuple(torque_b.cross(omega))),
+        Law("its power is minus the coefficient times the cube of |omega|", (torque_b.dot(omega) + power,)),
     )

@@ -51,6 +51,6 @@ def convert(source: str, target: str, values: Sequence[Any] | Matrix | None = No
         In place of the symbols of ``source``; they must obey its relations (unit norm).
     """
     start = chart(source)
-    given = expressions(start.parameters if values is None else values, len(start.parameters), source)
-    q = start.quaternion.xreplace(dict(zip(start.parameters, given, strict=True)))
+    parameters = expressions(start.parameters if values is None else values, len(start.parameters), source)
+    q = start.quaternion.xreplace(dict(zip(start.parameters, parameters, strict=True)))
     return chart(target).of_quaternion(q)

@@ -50,10 +50,22 @@ _NUMBERS = {S.Integers: "n any integer", S.Naturals: "n = 1, 2, ...", S.Naturals
 
 @dataclass(frozen=True)
 class SingularSet:
-    """Where ``equation`` vanishes: the values of ``variable``, solved for exactly.
+    """The set where an expression vanishes, solved for one variable exactly.
 
-    ``variable`` is an expression in the parameters of the chart (an angle, the length of a vector);
-    ``values`` is a SymPy set of real numbers, empty for a chart that is regular wherever it is defined.
+    Attributes
+    ----------
+    equation : Expr
+        The expression that vanishes.
+    variable : Expr
+        An angle, rad, or another expression in the parameters of the chart.
+    values : Set
+        SymPy set of real numbers; empty for a chart that is regular wherever it is defined.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.rate_jacobian("ZXZ").singular_set.points()
+    (0, pi)
     """
 
     equation: Expr
@@ -67,9 +79,9 @@ class SingularSet:
     def points(self) -> tuple[Expr, ...]:
         """Return the distinct values within one turn, in increasing order: the first turn from 0 that has any."""
         for turn in (Interval.Ropen(0, 2 * pi), Interval.Ropen(2 * pi, 4 * pi)):
-            found = self.values.intersect(turn)
-            if found is not S.EmptySet:
-                return tuple(sorted(found, key=float))
+            points = self.values.intersect(turn)
+            if points is not S.EmptySet:
+                return tuple(sorted(points, key=float))
         return ()
 
     def __contains__(self, value: Any) -> bool:
@@ -112,9 +124,9 @@ def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
     period = periodicity(fraction(together(equation))[0], variable)
     if period is None or not (4 * pi / period).is_integer:
         return solution
-    found = sorted(solution.intersect(Interval.Ropen(4 * pi, 8 * pi)), key=float)
-    spacing, first = 4 * pi / len(found), found[0] - 4 * pi
-    if any(after - before != spacing for before, after in pairwise(found)):
+    zeros = sorted(solution.intersect(Interval.Ropen(4 * pi, 8 * pi)), key=float)
+    spacing, first = 4 * pi / len(zeros), zeros[0] - 4 * pi
+    if any(after - before != spacing for before, after in pairwise(zeros)):
         return solution
     numbers = {S.Reals: S.Integers, Interval(0, oo): S.Naturals0, Interval.open(0, oo): S.Naturals}[domain]
     if first != 0 and numbers is S.Naturals:
@@ -124,10 +136,26 @@ def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
 
 @dataclass(frozen=True)
 class Limit:
-    """What the inverse rate matrix does when the chart nears one of its singular points from one side.
+    """What the inverse rate matrix tends to as the chart approaches a singular point from one side.
 
-    ``limit`` holds the limits of its entries (infinite ones with their sign); ``residue`` those of
-    ``(variable - point)`` times the inverse: how large a rate a unit of omega asks for, times the distance.
+    Attributes
+    ----------
+    variable : Expr
+        The parameter that approaches the point, such as an angle in rad.
+    point : Expr
+        The singular value of the variable.
+    side : str
+        ``"+"`` from above, ``"-"`` from below.
+    limit : ImmutableMatrix
+        Limits of the entries; infinite limits have their sign.
+    residue : ImmutableMatrix
+        Limits of ``(variable - point)`` times the entries.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.rate_jacobian("ZXZ").limits[0].point
+    0
     """
 
     variable: Expr
@@ -178,6 +206,12 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
         Largest over smallest singular value (2-norm). A property here, where SymPy has a method.
     limits : tuple of Limit
         Behaviour of the inverse toward each singular point of one turn, from both sides.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> isinstance(symrot.rate_jacobian("ZXZ"), symrot.RateMatrix)
+    True
     """
 
     facts: RateFacts

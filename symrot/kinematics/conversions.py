@@ -285,8 +285,8 @@ def quaternion_to_axis_angle(q: Any, degrees: bool = False) -> tuple[Array, Arra
     At zero angle, where there is no axis, the axis is (1, 0, 0); a half turn as in
     :func:`quaternion_to_rotation_vector`.
     """
-    found = _by_components(_axis_angle, array_of(q, 4, what="a quaternion"), 4)
-    return found[..., :3], np.degrees(found[..., 3]) if degrees else found[..., 3]
+    axis_angle = _by_components(_axis_angle, array_of(q, 4, what="a quaternion"), 4)
+    return axis_angle[..., :3], np.degrees(axis_angle[..., 3]) if degrees else axis_angle[..., 3]
 
 
 # Rodrigues parameters
@@ -315,8 +315,8 @@ def quaternion_to_rodrigues(q: Any) -> tuple[Array, Mask]:
 
     There are none at a half turn, where they are infinite: the mask is True and the row is NaN.
     """
-    found = _by_components(_rodrigues, array_of(q, 4, what="a quaternion"), 4)
-    return found[..., :3], found[..., 3] == 1
+    rodrigues = _by_components(_rodrigues, array_of(q, 4, what="a quaternion"), 4)
+    return rodrigues[..., :3], rodrigues[..., 3] == 1
 
 
 def _quaternion_of_mrp(*s: Array) -> Components:
@@ -408,12 +408,12 @@ def euler_to_quaternion(angles: Any, sequence: str, degrees: bool = False) -> Ar
         (c1, c2, c3), (s1, s2, s3) = map(np.cos, half), map(np.sin, half)
         a, b, c, d = c1 * c2, s1 * c2, c1 * s2, s1 * s2  # along 1, e_first, e_middle, e_first x e_middle
         if first == last:
-            found = (a * c3 - b * s3, a * s3 + b * c3, c * c3 + d * s3, d * c3 - c * s3)
+            components = (a * c3 - b * s3, a * s3 + b * c3, c * c3 + d * s3, d * c3 - c * s3)
         else:  # e_last = sign e_first x e_middle
             s3 = sign * s3
-            found = (a * c3 - d * s3, b * c3 + c * s3, c * c3 - b * s3, a * s3 + d * c3)
-        by_axis = {first: found[1], middle: found[2], cross: sign * found[3]}
-        return found[0], by_axis[0], by_axis[1], by_axis[2]
+            components = (a * c3 - d * s3, b * c3 + c * s3, c * c3 - b * s3, a * s3 + d * c3)
+        by_axis = {first: components[1], middle: components[2], cross: sign * components[3]}
+        return components[0], by_axis[0], by_axis[1], by_axis[2]
 
     angles = array_of(angles, 3, what=f"a set of {sequence} angles")
     return _by_components(product, np.radians(angles) if degrees else angles, 4)
@@ -473,9 +473,9 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
         turned = (left, tilt, right if proper or sign < 0 else -right)
         return *(turned if intrinsic else turned[::-1]), locked.astype(np.float64)
 
-    found = _by_components(angles_of, array_of(q, 4, what="a quaternion"), 4)
-    angles = found[..., :3]
-    return np.degrees(angles) if degrees else angles, found[..., 3] == 1
+    angles_and_lock = _by_components(angles_of, array_of(q, 4, what="a quaternion"), 4)
+    angles = angles_and_lock[..., :3]
+    return np.degrees(angles) if degrees else angles, angles_and_lock[..., 3] == 1
 
 
 def _sum(x: Array, y: Array, odd: Mask) -> Array:

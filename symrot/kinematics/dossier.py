@@ -29,6 +29,12 @@ class LockedPoint:
         Angle rates that turn nothing: the null vector of B. Only a combination of first and third angle counts.
     lost_axis_b : ImmutableMatrix, shape (3, 1)
         The unit direction (body components) about which no angle rates can turn the body: ``lost^T B = 0``.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.singularity_dossier("ZXZ").locked[0].combination
+    phi + psi
     """
 
     middle: Expr
@@ -60,6 +66,12 @@ class SingularityDossier:
         intrinsic, psi if extrinsic), with the other outer angle zero.
     singular_sequences : tuple of str
         Sequences that lock wherever this one does.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.singularity_dossier("ZYX").sequence
+    'ZYX'
     """
 
     sequence: str
@@ -173,12 +185,32 @@ def _locked_point(sequence: str, middle: Expr) -> LockedPoint:
 
 @cache
 def singularity_dossier(sequence: str) -> SingularityDossier:
-    """Return the dossier of an Euler sequence; ``print(singularity_dossier("ZXZ"))`` shows it.
+    """Return where an Euler sequence is singular, what happens there, and which sequences are regular there.
+
+    Parameters
+    ----------
+    sequence : str
+        Intrinsic in upper case (``"ZXZ"``), extrinsic in lower case (``"zxz"``).
+
+    Returns
+    -------
+    SingularityDossier
+        Angles in rad; rate matrices in body and in space components. ``print`` shows all of it.
 
     Raises
     ------
     InputError
         For an unknown sequence.
+
+    Notes
+    -----
+    Proof: ``derivations/euler_singularities.md``.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> [point.middle for point in symrot.singularity_dossier("ZXZ").locked]
+    [0, pi]
     """
     jacobian = rate_jacobian(sequence)
     meetings = sequences_at_lock(sequence)

@@ -29,7 +29,7 @@ from sympy import (
 from symrot import exact, symbols
 from symrot.conventions import SEQUENCES, parse_sequence
 from symrot.kinematics.chart import Chart, RateFacts, RateMatrix, zeros_of
-from symrot.kinematics.quaternion import elementary_quaternion, qmul
+from symrot.kinematics.quaternion import elementary_quaternion, quaternion_product
 from symrot.kinematics.rotations import check_frame, cross_sign, elementary_rotation, expressions, unit_vector
 
 __all__ = [
@@ -96,6 +96,11 @@ def dcm(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
     angles : sequence of 3 Expr, optional
         rad, in order of application; phi, theta, psi when left out.
 
+    Returns
+    -------
+    ImmutableMatrix, shape (3, 3), dimensionless
+        ``v_s = dcm_sb * v_b``.
+
     Raises
     ------
     InputError
@@ -106,6 +111,12 @@ def dcm(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
     Intrinsic: ``R1(q1) R2(q2) R3(q3)``; extrinsic: ``R3(q3) R2(q2) R1(q1)``. Equal to SciPy's
     ``Rotation.from_euler(sequence, angles).as_matrix()``. Source: Goldstein, Classical Mechanics, 3rd ed., (4.46)
     is the transpose for ZXZ.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.dcm("ZXZ")[2, 2]
+    cos(theta)
     """
     first, middle, last = factors(sequence, angles)
     return ImmutableMatrix(first.rotation * middle.rotation * last.rotation)
@@ -165,6 +176,12 @@ class EulerRateMatrix(RateMatrix):
     sequence : str
     regular_sequences : tuple of str
         The other sequences that are regular at every attitude where this one locks.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.rate_jacobian("ZXZ").determinant
+    -sin(theta)
     """
 
     @property
@@ -182,8 +199,10 @@ class EulerRateMatrix(RateMatrix):
         With symbols among the angles: those that are not singular for all values of the symbols. A float stands for
         the rational number it is.
         """
-        given = expressions(self.parameters if angles is None else angles, 3, f"the Euler sequence {self.sequence}")
-        attitude = dcm(self.sequence, [Rational(angle) if angle.is_Float else angle for angle in given])
+        own_angles = expressions(
+            self.parameters if angles is None else angles, 3, f"the Euler sequence {self.sequence}"
+        )
+        attitude = dcm(self.sequence, [Rational(angle) if angle.is_Float else angle for angle in own_angles])
         return tuple(other for other in SEQUENCES if not _is_one(lock_indicator(other, attitude) ** 2))
 
 
@@ -230,8 +249,8 @@ def rate_jacobian(sequence: str, frame: str = "body", angles: Sequence[Any] | No
     Matrix([[cos(theta), 0, 1]])
     """
     first, middle, last = factors(sequence, angles)
-    given = tuple(factor.angle for factor in sorted((first, middle, last), key=lambda factor: factor.place))
-    carry, core, order = _core(sequence, frame, given)
+    parameters = tuple(factor.angle for factor in sorted((first, middle, last), key=lambda factor: factor.place))
+    carry, core, order = _core(sequence, frame, parameters)
     determinant, inverse = _solved(carry, core, order)
     cosine = Abs((first.direction.T * middle.rotation * last.direction)[0])
     return EulerRateMatrix.build(
@@ -239,13 +258,13 @@ def rate_jacobian(sequence: str, frame: str = "body", angles: Sequence[Any] | No
         RateFacts(
             name=sequence,
             frame=frame,
-            parameters=given,
+            parameters=parameters,
             relations=(),
             inverse=inverse,
             determinant=determinant,
             condition_number=oo if inverse is None else sqrt((1 + cosine) / (1 - cosine)),
-            variable=given[1],
-            along=partial(_along, sequence, frame, given),
+            variable=parameters[1],
+            along=partial(_along, sequence, frame, parameters),
         ),
     )
 
@@ -265,18 +284,18 @@ def sequences_at_lock(sequence: str) -> dict[str, Set]:
     for point in rate_jacobian(sequence).singular_set.points():
         _, locked, _ = factors(sequence, (0, point, 0))
         attitudes.append(left.rotation * locked.rotation)
-    found = {}
+    locks = {}
     for other in SEQUENCES:
         if other != sequence:
             indicators = {lock_indicator(other, attitude) for attitude in attitudes}
-            found[other] = Union(*(zeros_of((c - 1) * (c + 1), chi) for c in indicators))
-    return found
+            locks[other] = Union(*(zeros_of((c - 1) * (c + 1), chi) for c in indicators))
+    return locks
 
 
 def quaternion_of_euler(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
     """Return the unit quaternion of an Euler sequence, shape (4, 1): the product of its three turns."""
     turns = (elementary_quaternion(factor.axis, factor.angle) for factor in factors(sequence, angles))
-    return ImmutableMatrix(qmul(*turns).applyfunc(expand))
+    return ImmutableMatrix(quaternion_product(*turns).applyfunc(expand))
 
 
 def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
@@ -297,7 +316,7 @@ def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quate
     proper = first.axis == last.axis
     if not proper:
         quarter = [1, *unit_vector(middle.axis)]
-        q = qmul(q, quarter)
+        q = quaternion_product(q, quarter)
     a, b, c, d = q[0], q[1 + first.axis], q[1 + middle.axis], sign * q[1 + cross]
     half_sum, half_difference = atan2(b, a), atan2(d, c)
     low, high = sqrt(a**2 + b**2), sqrt(c**2 + d**2)

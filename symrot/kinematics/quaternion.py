@@ -19,14 +19,14 @@ from symrot.kinematics.rotations import check_frame, cross_sign, expressions, un
 __all__ = [
     "chart",
     "conjugate",
-    "dcm_of",
     "elementary_quaternion",
     "left_matrix",
     "norm_squared",
-    "qmul",
     "quaternion_of_dcm",
+    "quaternion_product",
     "quaternion_rate_jacobian",
     "quaternion_rates",
+    "quaternion_to_dcm",
     "right_matrix",
     "rotation_relations",
     "unit_relation",
@@ -68,8 +68,37 @@ def right_matrix(q: Sequence[Any] | Matrix) -> ImmutableMatrix:
     return ImmutableMatrix(matrix)
 
 
-def qmul(*factors: Sequence[Any] | Matrix) -> ImmutableMatrix:
-    """Return the Hamilton product of quaternions, shape (4, 1), from left to right; 1 of none."""
+def quaternion_product(*factors: Sequence[Any] | Matrix) -> ImmutableMatrix:
+    """Return the Hamilton product of quaternions, multiplied from left to right.
+
+    The product of rotations is the product of their quaternions in the same order.
+
+    Parameters
+    ----------
+    *factors : sequences of 4 Expr
+        Quaternions of any norm, scalar first, dimensionless.
+
+    Returns
+    -------
+    ImmutableMatrix, shape (4, 1), dimensionless
+        ``(1, 0, 0, 0)`` without factors.
+
+    Raises
+    ------
+    InputError
+        For a factor without exactly four components.
+
+    Notes
+    -----
+    Convention: ``i j = k``. Proof: ``derivations/composition.md``.
+    Source: W. R. Hamilton, Elements of Quaternions, 1866, book II.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.quaternion_product((0, 1, 0, 0), (0, 0, 1, 0)).T
+    Matrix([[0, 0, 0, 1]])
+    """
     product = ImmutableMatrix([1, 0, 0, 0])
     for q in factors:
         product = left_matrix(product) * ImmutableMatrix(expressions(q, 4, "a quaternion"))
@@ -108,26 +137,43 @@ def elementary_quaternion(axis: int | str, angle: Any) -> ImmutableMatrix:
     return ImmutableMatrix([cos(half), *(sin(half) * unit_vector(axis))])
 
 
-def dcm_of(q: Sequence[Any] | Matrix = symbols.quaternion, form: str = "unit") -> ImmutableMatrix:
-    """Return ``dcm_sb`` of a quaternion, shape (3, 3), whose columns are the turned axes ``q e_i q*``.
+def quaternion_to_dcm(q: Sequence[Any] | Matrix = symbols.quaternion, form: str = "unit") -> ImmutableMatrix:
+    """Return ``dcm_sb`` of a quaternion; column i is the body axis ``q e_i q*`` in space components.
 
     Parameters
     ----------
-    q : sequence of 4 Expr
+    q : sequence of 4 Expr, optional
+        Scalar first, body to space, dimensionless; the symbols q0 to q3 by default.
     form : str
-        ``"homogeneous"``: ``q e_i q*`` as it is, quadratic in q, which is ``|q|^2`` times a rotation.
-        ``"unit"``: the relation ``|q|^2 = 1`` used on the diagonal, ``1 - 2 (q2^2 + q3^2)`` and so on; a rotation
-        only for unit q. ``"normalised"``: homogeneous over ``|q|^2``, a rotation for every q but 0.
+        ``"unit"``: uses ``|q|^2 = 1`` on the diagonal, ``1 - 2 (q2^2 + q3^2)`` and so on; a rotation only for unit q.
+        ``"homogeneous"``: ``q e_i q*``, quadratic in q, which is ``|q|^2`` times a rotation. ``"normalised"``:
+        homogeneous over ``|q|^2``, a rotation for every q except 0.
+
+    Returns
+    -------
+    ImmutableMatrix, shape (3, 3), dimensionless
+        ``v_s = dcm_sb * v_b``.
 
     Raises
     ------
     InputError
         For another form, or not four components.
+
+    Notes
+    -----
+    Proof: ``derivations/euler_parameters.md``.
+    Source: Goldstein, Classical Mechanics, 3rd ed., eq. (4.47), transposed.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.quaternion_to_dcm()[2, 2]
+    -2*q1**2 - 2*q2**2 + 1
     """
     if form not in FORMS:
         raise InputError(f"the form of a dcm is one of {', '.join(map(repr, FORMS))}; got {form!r}")
     q = expressions(q, 4, "a quaternion")
-    columns = [qmul(q, [0, *unit_vector(i)], conjugate(q))[1:, 0].applyfunc(expand) for i in range(3)]
+    columns = [quaternion_product(q, [0, *unit_vector(i)], conjugate(q))[1:, 0].applyfunc(expand) for i in range(3)]
     homogeneous = Matrix.hstack(*columns)
     if form == "unit":
         homogeneous += (1 - norm_squared(q)) * Matrix.eye(3)
@@ -166,15 +212,36 @@ def _four_q_q(dcm_sb: Matrix) -> Matrix:
 
 
 def quaternion_rates(frame: str = "body", q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-    """Return M(q), shape (4, 3), of ``dq/dt = M(q) * omega``.
+    """Return M(q) of ``dq/dt = M(q) * omega``.
 
-    Body: ``1/2 q (0, omega_b)``; space: ``1/2 (0, omega_s) q``: the last three columns of L(q)/2 or R(q)/2. The
-    norm of q is kept exactly, for any q.
+    Its columns are the last three of L(q)/2 (body) or R(q)/2 (space). The norm of q stays exactly constant, for any q.
+
+    Parameters
+    ----------
+    frame : str
+        ``"body"`` or ``"space"``: the components of omega, rad/s.
+    q : sequence of 4 Expr, optional
+        Scalar first, body to space, dimensionless; the symbols q0 to q3 by default.
+
+    Returns
+    -------
+    ImmutableMatrix, shape (4, 3), dimensionless
 
     Raises
     ------
     InputError
-        If ``frame`` is neither ``"body"`` nor ``"space"``.
+        If ``frame`` is neither ``"body"`` nor ``"space"``, or q does not have four components.
+
+    Notes
+    -----
+    Convention: body ``dq/dt = 1/2 q (0, omega_b)``; space ``dq/dt = 1/2 (0, omega_s) q``.
+    Proof: ``derivations/quaternion_rates.md``.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.quaternion_rates("body").row(0)
+    Matrix([[-q1/2, -q2/2, -q3/2]])
     """
     product = left_matrix(q) if check_frame(frame) == "body" else right_matrix(q)
     return ImmutableMatrix(product[:, 1:] / 2)
@@ -219,7 +286,7 @@ def chart() -> Chart:
         name="quaternion",
         parameters=symbols.quaternion,
         relations=(unit_relation(),),
-        dcm=dcm_of(),
+        dcm=quaternion_to_dcm(),
         quaternion=ImmutableMatrix(symbols.quaternion),
         of_quaternion=ImmutableMatrix,
         rate_matrix=quaternion_rate_jacobian,

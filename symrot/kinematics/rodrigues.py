@@ -15,7 +15,7 @@ from sympy import Expr, ImmutableMatrix, Integer, Interval, Matrix, Symbol, canc
 from symrot import symbols
 from symrot.errors import InputError
 from symrot.kinematics.chart import Chart, RateFacts, RateMatrix, condition_of
-from symrot.kinematics.quaternion import conjugate, dcm_of, left_matrix, norm_squared, right_matrix
+from symrot.kinematics.quaternion import conjugate, left_matrix, norm_squared, quaternion_to_dcm, right_matrix
 from symrot.kinematics.rotations import check_frame, expressions
 
 __all__ = ["CLASSICAL", "MODIFIED", "Projection", "chart", "projection", "shadow"]
@@ -84,7 +84,7 @@ class Projection:
 
 @cache
 def _dcm(which: Projection, p: tuple[Any, ...]) -> ImmutableMatrix:
-    return ImmutableMatrix(dcm_of(which.homogeneous(p), "normalised").applyfunc(factor))
+    return ImmutableMatrix(quaternion_to_dcm(which.homogeneous(p), "normalised").applyfunc(factor))
 
 
 @cache

@@ -38,10 +38,10 @@ def check_frame(frame: str) -> str:
 
 def expressions(values: Any, size: int, what: str) -> tuple[Expr, ...]:
     """Return ``size`` values as SymPy expressions; ``InputError`` for another number of them."""
-    found = tuple(sympify(value) for value in values)
-    if len(found) != size:
-        raise InputError(f"{what} takes {size} values, got {len(found)}: {found}")
-    return found
+    formulas = tuple(sympify(value) for value in values)
+    if len(formulas) != size:
+        raise InputError(f"{what} takes {size} values, got {len(formulas)}: {formulas}")
+    return formulas
 
 
 def axis_number(axis: int | str) -> int:

@@ -1,1 +1,1 @@
-"""From a scene to what has to be computed for it."""
+"""From a scene to its plan: the equations that have to be integrated, and the kernels derived from them."""

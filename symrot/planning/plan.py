@@ -45,7 +45,7 @@ PRODUCTS = {"I_xy": (0, 1), "I_xz": (0, 2), "I_yz": (1, 2)}
 MOMENTS = {"I_xx": (0, 0), "I_yy": (1, 1), "I_zz": (2, 2)}
 NEVER_NEEDS_ATTITUDE = ("constant_body", "damping", "rotor")
 DIRECTED = {"constant_space": "torque", "gravity": "direction"}  # fixed in space: the field that says along what
-UNIT_FIELDS = ("direction", "attitude")  # fields whose components may be exactly one
+UNIT_FIELDS = ("direction", "attitude")  # fields in which a component of exactly one is a pattern of its own
 START_CONSTANTS = frozenset({f"omega_{i}" for i in (1, 2, 3)} | {f"initial_q{i}" for i in range(4)})
 """The constants of a structure that are numbers of the initial state; all others are the scene's."""
 RESERVED = frozenset(
@@ -59,20 +59,26 @@ STATES = ("omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3", "theta")
 
 
 class RuleOutcome(NamedTuple):
-    """What one rule of a plan decided: a line of the explained plan.
+    """The decision of one rule of a plan: a line of the explained plan.
 
     Attributes
     ----------
     structure : Structure
         After the rule.
     skipped : bool
-        Whether something is left out.
+        Whether the rule left something out.
     why : str
         The reason.
     derivation : str
-        Name of the derivation that justifies it; empty where it follows from what was asked for.
+        Name of the derivation that justifies it; empty where the requested output alone decides.
     item : str
-        What the rule is about, as the table of rules names it; a rule leaves it empty.
+        The subject of the rule in the table of rules; a rule itself leaves it empty.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.plan("tumbling_prism").rows[0].skipped
+    True
     """
 
     structure: Structure
@@ -84,7 +90,23 @@ class RuleOutcome(NamedTuple):
 
 @dataclass(frozen=True)
 class Plan:
-    """The least set of equations for a scene, with the numbers that go into it."""
+    """The least set of equations for a scene, with the numbers that go into it.
+
+    Attributes
+    ----------
+    scene : Scene
+        The problem.
+    structure : Structure
+        Which equations the motion obeys.
+    rows : tuple of RuleOutcome
+        What each rule decided, and why.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.plan("tumbling_prism").states[:3]
+    ('omega_1', 'omega_2', 'omega_3')
+    """
 
     scene: Scene
     structure: Structure
@@ -97,18 +119,18 @@ class Plan:
 
     @cached_property
     def scene_constants(self) -> dict[str, Fraction]:
-        """Those of :attr:`constants` that do not depend on the initial state."""
+        """The part of :attr:`constants` that does not depend on the initial state."""
         return _scene_constants(self.scene, self.structure)
 
     @property
     def start_constants(self) -> dict[str, Fraction]:
-        """Those of :attr:`constants` that are numbers of the initial state."""
+        """The part of :attr:`constants` that are numbers of the initial state."""
         initial = self.scene.initial
         return {name: initial[part][place] for name, part, place in self._start_places}
 
     @cached_property
     def _start_places(self) -> tuple[tuple[str, int, int], ...]:
-        """The names of those constants, and where in an initial state each stands."""
+        """The names of the constants of the start, each with its part of the initial state and its place there."""
         rates = enumerate(self.structure.constant)
         quaternion = enumerate(self.structure.initial_quaternion or ())
         return (
@@ -118,7 +140,7 @@ class Plan:
 
     @property
     def switches(self) -> list[str]:
-        """The functions that switch in the torques of a plan whose modes may change, as they are written."""
+        """The functions with switches in the torques, as the scene writes them; empty unless modes may change."""
         return [switch.label for torque in self.structure.formula_torques for switch in torque.switches]
 
     @cached_property
@@ -143,13 +165,13 @@ class Plan:
 
     @cached_property
     def _places(self) -> tuple[int, ...]:
-        """Where each state stands among omega, attitude and the angle of a planar rotation."""
+        """The place of each state among omega, attitude and the angle of a planar rotation."""
         return tuple([STATES.index(name) for name in self.states])
 
     def from_start(self, initial: Initial) -> "Plan":
         """Return the plan of the same scene and structure from another initial state.
 
-        ``initial`` must have the :func:`structure_key` of the plan's own: nothing is decided anew.
+        ``initial`` must have the :func:`structure_key` of the plan's own start: the rules are not applied again.
         """
         scene, plan = object.__new__(Scene), object.__new__(Plan)
         scene.__dict__.update(self.scene.__dict__, initial=initial)
@@ -158,14 +180,16 @@ class Plan:
 
     @cached_property
     def _shared(self) -> dict[str, Any]:
-        """What plans from other starts take over, by name."""
+        """The attributes that plans from other starts share, by name."""
         names = ("structure", "rows", "scene_constants", "states", "_places", "_start_places")
-        found: dict[str, Any] = {name: getattr(self, name) for name in names}
-        found["_shared"] = found
-        return found
+        attributes: dict[str, Any] = {name: getattr(self, name) for name in names}
+        attributes["_shared"] = attributes
+        return attributes
 
 
-def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False, switched: bool = False) -> Plan:
+def make_plan(
+    scene: Scene, initial: Initial | None = None, external_torque: bool = False, switched: bool = False
+) -> Plan:
     """Return the plan of a scene, perhaps with another initial state.
 
     Parameters
@@ -174,18 +198,18 @@ def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False
         The problem.
     initial : Initial, optional
         Instead of the scene's own.
-    driven : bool
-        Whether a torque acts too that is no formula: nothing is left out that it could change.
+    external_torque : bool
+        Whether a torque that is no formula acts too: then the plan keeps everything that such a torque could change.
     switched : bool
-        Whether the plan may have modes, which whoever follows it changes where a switch is passed.
+        Whether the plan may have modes, which the propagator changes when the motion passes a switch.
 
     Raises
     ------
     InputError
-        If a torque has switches (step, sign, min, ..) and ``switched`` is false: there are no equations that hold all
-        along. If the scene has a table of samples and ``driven`` is false: it is no formula to derive a kernel from.
+        If a torque has switches (step, sign, min, ..) and ``switched`` is false: no single set of equations holds
+        throughout. If the scene has a table of samples and ``external_torque`` is false: a kernel needs formulas.
     """
-    if scene.table is not None and not driven:
+    if scene.table is not None and not external_torque:
         raise InputError(
             f"{scene.name}: expected torques that are formulas, got one of kind table: samples have no equations to "
             "emit, certify, vary or compare; symrot run and symrot.propagator follow them"
@@ -199,7 +223,7 @@ def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False
         )
     structure = general_structure(scene, switched)
     rows = []
-    for item, rule in _RULES_WHEN_DRIVEN if driven else RULES:
+    for item, rule in _RULES_UNDER_EXTERNAL_TORQUE if external_torque else RULES:
         outcome = rule(scene, structure)
         structure = outcome.structure
         rows.append(outcome._replace(item=item))
@@ -210,40 +234,38 @@ def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False
 
 
 def structure_key(scene: Scene, initial: Initial) -> Hashable:
-    """Return what the rules look at in an initial state: starts of one key have plans that differ in numbers alone.
+    """Return a key of an initial state: plans of starts with the same key differ in numbers alone.
 
-    That is which components of omega are zero. A body that may rotate about one axis only is looked at more closely: by
-    the components of its attitude that are zero or one, and by the axes along which torques fixed in space lie.
+    The key says which components of omega are zero. If the body may rotate about a single axis, it also says which
+    components of the attitude are zero or one, and along which body axes the torques fixed in space lie.
     """
-    turning = tuple([x.numerator != 0 for x in initial.omega_b])
-    if turning.count(True) > 1:
-        return turning
+    rotates_about = tuple([x.numerator != 0 for x in initial.omega_b])
+    if rotates_about.count(True) > 1:
+        return rotates_about
     pattern = tuple([_pattern(q, unit=True) for q in initial.quaternion])
     fixed = [torque for torque in scene.torques if torque.kind in DIRECTED]
-    lying = tuple([_small_components(torque.values[DIRECTED[torque.kind]], initial) for torque in fixed])
-    return turning, pattern, lying
+    small = tuple([_small_components(torque.vector(DIRECTED[torque.kind]), initial) for torque in fixed])
+    return rotates_about, pattern, small
 
 
 # --- the general structure --------------------------------------------------------------------------------------------
 
 
 def switched(scene: Scene) -> bool:
-    """Return whether a torque of a scene jumps or bends where what changes passes some value."""
+    """Return whether a torque of a scene jumps or bends somewhere along the motion."""
     return any(
         has_switches(expression.parse(formula, switching=True))
         for torque in scene.torques
-        if torque.kind == "expression"
-        for formula in torque.values["torque"]
+        for formula in torque.formulas
     )
 
 
 def _switching_function(scene: Scene) -> str:
-    """Return a function in the torques of a scene that is known to those alone who follow switches, or nothing."""
+    """Return the name of a function with switches in the torques of a scene, or an empty text."""
     calls = {
         name
         for torque in scene.torques
-        if torque.kind == "expression"
-        for formula in torque.values["torque"]
+        for formula in torque.formulas
         for name in expression.operations(expression.parse(formula, switching=True))
     }
     return min(calls & set(expression.SWITCHING), default="")
@@ -258,14 +280,12 @@ def general_structure(scene: Scene, switched: bool = False) -> Structure:
 
 def _general_torque(number: int, torque: Torque, known: set[str], switched: bool) -> TorqueStructure:
     """Return the structure of one torque, its constants free; their names are added to those ``known``."""
-    if torque.kind == "expression":
-        found = _formula_torque(torque, switched)
-        prefix = _prefix(number, list(found.parameters), known)
-        return found._replace(prefix=prefix)
+    if torque.formulas:
+        general = _formula_torque(torque, switched)
+        prefix = _prefix(number, list(general.parameters), known)
+        return general._replace(prefix=prefix)
     fields: list[tuple[str, FieldPattern]] = [
-        (name, (FREE,) * len(value) if isinstance(value, tuple) else FREE)
-        for name, value in torque.values.items()
-        if value is not None
+        (name, (FREE,) * len(value) if isinstance(value, tuple) else FREE) for name, value in torque.values.items()
     ]
     prefix = _prefix(number, [name for field in fields for name in component_names(*field)], known)
     return FieldTorque(torque.kind, prefix, tuple(fields))
@@ -273,8 +293,7 @@ def _general_torque(number: int, torque: Torque, known: set[str], switched: bool
 
 def _formula_torque(torque: Torque, switched: bool) -> FormulaTorque:
     """Return the structure of a torque given by formulas, without a prefix."""
-    formulas, parameters = tuple(torque.values["torque"]), tuple(torque.values["parameters"])
-    frame: str = torque.values["frame"]
+    formulas, parameters, frame = torque.formulas, tuple(torque.values), torque.frame
     if not (switched and any(has_switches(expression.parse(text, switching=True)) for text in formulas)):
         return FormulaTorque("", formulas, parameters, frame)
     form = smooth(formulas)
@@ -297,7 +316,7 @@ def _switch(switch: Switch) -> TorqueSwitch:
 
 
 def _prefix(number: int, names: list[str], known: set[str]) -> str:
-    """Return what precedes the names of a torque's constants, so that none of them is known; now all of them are."""
+    """Return a prefix that makes the names of a torque's constants new, and add the new names to those ``known``."""
     prefix = ""
     while known & {f"{prefix}{name}" for name in names}:
         prefix = f"{prefix}_" if prefix else f"torque{number}_"
@@ -323,18 +342,18 @@ def _scene_constants(scene: Scene, structure: Structure) -> dict[str, Fraction]:
     else:
         places = MOMENTS | PRODUCTS
         constants = {name: inertia[places[name][0]][places[name][1]] for name in pattern.entries}
-    for torque, given in zip(structure.torques, scene.torques, strict=True):
+    for torque, scene_torque in zip(structure.torques, scene.torques, strict=True):
         prefix = torque.prefix
         if isinstance(torque, FormulaTorque):
-            constants |= {f"{prefix}{name}": value for name, value in given.values["parameters"].items()}
+            constants |= {f"{prefix}{name}": scene_torque.number(name) for name in scene_torque.values}
             constants |= {f"{prefix}{switch.mode}": Fraction(1) for switch in torque.switches}
             continue
         for name, field in torque.fields:
-            value = given.values[name]
             if isinstance(field, Pattern):
-                constants |= {f"{prefix}{name}": value} if field is FREE else {}
+                constants |= {f"{prefix}{name}": scene_torque.number(name)} if field is FREE else {}
                 continue
-            for component, entry, mark in zip(component_names(name, field), value, field, strict=True):
+            vector = scene_torque.vector(name)
+            for component, entry, mark in zip(component_names(name, field), vector, field, strict=True):
                 constants |= {f"{prefix}{component}": entry} if mark is FREE else {}
     return constants
 
@@ -372,17 +391,17 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
     torques: list[TorqueStructure] = []
     special: dict[Pattern, list[str]] = {ZERO: [], ONE: [], MINUS_ONE: [], FREE: []}
     silent: list[str] = []
-    for torque, given in zip(structure.torques, scene.torques, strict=True):
+    for torque, scene_torque in zip(structure.torques, scene.torques, strict=True):
         if isinstance(torque, FormulaTorque):
             torques.append(torque)
-            silent += _silent(torque, given)
+            silent += _silent(torque, scene_torque)
             continue
         fields: list[tuple[str, FieldPattern]] = []
         for name, general in torque.fields:
-            value, unit = given.values[name], name in UNIT_FIELDS
-            many = isinstance(general, tuple)
-            marks = tuple([_pattern(entry, unit) for entry in (value if many else (value,))])
-            fields.append((name, marks if many else marks[0]))
+            value, unit = scene_torque.values[name], name in UNIT_FIELDS
+            entries = value if isinstance(value, tuple) else (value,)
+            marks = tuple([_pattern(entry, unit) for entry in entries])
+            fields.append((name, marks if isinstance(value, tuple) else marks[0]))
             for component, mark in zip(component_names(name, general), marks, strict=True):
                 special[mark].append(component)
         torques.append(torque._replace(fields=tuple(fields)))
@@ -394,9 +413,9 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
     return RuleOutcome(replace(structure, torques=tuple(torques)), bool(reasons), why)
 
 
-def _silent(torque: FormulaTorque, given: Torque) -> list[str]:
-    """Return in words the axes about which formulas give no torque."""
-    axes = [str(i + 1) for i, formula in enumerate(given.values["torque"]) if _is_zero(formula)]
+def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
+    """Return a sentence that names the axes about which formulas give no torque, in a list that may be empty."""
+    axes = [str(i + 1) for i, formula in enumerate(scene_torque.formulas) if _is_zero(formula)]
     if not axes:
         return []
     listed = f"axis {axes[0]}" if len(axes) == 1 else f"axes {', '.join(axes[:-1])} and {axes[-1]}"
@@ -423,9 +442,9 @@ def _depends_on_attitude(torque: TorqueStructure) -> bool:
 
 
 def _attitude(scene: Scene, structure: Structure) -> RuleOutcome:
-    asked = [name for name in scene.output.quantities if name in ATTITUDE_QUANTITIES]
-    if asked:
-        return RuleOutcome(structure, False, f"the output asks for {', '.join(asked)}", "quaternion_rates")
+    requested = [name for name in scene.output.quantities if name in ATTITUDE_QUANTITIES]
+    if requested:
+        return RuleOutcome(structure, False, f"the output asks for {', '.join(requested)}", "quaternion_rates")
     kinds = [torque.kind for torque in structure.torques if _depends_on_attitude(torque)]
     if kinds:
         return RuleOutcome(structure, False, f"the torque {', '.join(kinds)} depends on it", "quaternion_rates")
@@ -438,8 +457,8 @@ def _only_along(vector: tuple[Pattern, ...], axis: int) -> bool:
     return all(vector[i] is ZERO for i in range(3) if i != axis)
 
 
-def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, given: Torque) -> bool:
-    """Whether the torque keeps to a body axis while the body turns about that axis only."""
+def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque: Torque) -> bool:
+    """Return whether a torque stays along a body axis while the body rotates about that axis alone."""
     if isinstance(torque, FormulaTorque):
         return False
     if torque.kind == "constant_body":
@@ -447,9 +466,9 @@ def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, given: Torqu
     if torque.kind == "rotor":
         return _only_along(torque.vector("angular_momentum"), axis)
     if torque.kind == "constant_space":
-        return _lies_along(given.values["torque"], axis, scene)
-    if torque.kind == "gravity":  # a pendulum: level axis, centre of mass beside it
-        level = _small_components(given.values["direction"], scene.initial)[axis]
+        return _lies_along(scene_torque.vector("torque"), axis, scene)
+    if torque.kind == "gravity":  # a pendulum: level axis, centre of mass off the axis
+        level = _small_components(scene_torque.vector("direction"), scene.initial)[axis]
         return level and torque.vector("center_of_mass")[axis] is ZERO
     return torque.kind == "damping"
 
@@ -466,7 +485,7 @@ def _in_body(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[Fraction
     return tuple(scalar * v + t - 2 * q0 * c for v, t, c in zip(vector_s, twice, turned, strict=True))
 
 
-CLEARLY = 1e-12  # of a vector: a component that doubles tell from zero
+CLEARLY = 1e-12  # of a vector: doubles show that a larger component is not zero
 
 
 def _negligible(value: Fraction, vector: tuple[Fraction, ...]) -> bool:
@@ -474,7 +493,7 @@ def _negligible(value: Fraction, vector: tuple[Fraction, ...]) -> bool:
 
 
 def _small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[bool, ...]:
-    """Return which body components of a vector in space components are zero at the start, to 2^-200."""
+    """Return which body components of a vector, given in space components, are zero at the start, to 2^-200."""
     if _all_large(vector_s, initial):
         return False, False, False
     vector = _in_body(vector_s, initial)
@@ -503,12 +522,14 @@ def _one_axis(scene: Scene, structure: Structure) -> RuleOutcome:
     omega_b = scene.initial.omega_b
     if not isinstance(structure.inertia, PrincipalInertia):
         return RuleOutcome(structure, False, "the axes of the body are not principal axes")
-    turning = [i for i in range(3) if omega_b[i] != 0]
-    axes = turning if len(turning) == 1 else [] if turning else [0, 1, 2]
+    rotates_about = [i for i in range(3) if omega_b[i] != 0]
+    axes = rotates_about if len(rotates_about) == 1 else [] if rotates_about else [0, 1, 2]
     pairs = list(zip(structure.torques, scene.torques, strict=True))
-    along = [axis for axis in axes if all(_torque_along(torque, axis, scene, given) for torque, given in pairs)]
+    along = [
+        axis for axis in axes if all(_torque_along(torque, axis, scene, scene_torque) for torque, scene_torque in pairs)
+    ]
     if not along:
-        why = "the body does not turn about one principal axis only"
+        why = "the body does not rotate about one principal axis only"
         if axes and any(structure.formula_torques):
             why = "a torque given by formulas is not taken to keep the rotation about one axis"
         return RuleOutcome(structure, False, why)
@@ -534,14 +555,14 @@ def _constant_spin(scene: Scene, structure: Structure) -> RuleOutcome:
         if others[0] == others[1] and all(_no_moment_about(torque, axis) for torque in structure.torques):
             why = f"equal moments about the other axes and no torque about axis {axis + 1}"
             if scene.initial.omega_b[axis] == 0 and not structure.torques:
-                why += ", and no spin: the body turns steadily about an axis across"
+                why += ", and no spin: the body rotates steadily about an axis across"
                 return RuleOutcome(replace(structure, constant=_constant(scene, 0, 1, 2)), True, why, "symmetric_spin")
             return RuleOutcome(replace(structure, constant=_constant(scene, axis)), True, why, "symmetric_spin")
     return RuleOutcome(structure, False, "no axis of symmetry without torque about it")
 
 
 def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None, Pattern | None]:
-    """Return the pattern of each constant component of omega_b, zero or free; None for those of the other axes."""
+    """Return the pattern of each constant component of omega_b, zero or free; None for the other axes."""
     first, second, third = (
         _pattern(w, unit=False) if axis in axes else None for axis, w in enumerate(scene.initial.omega_b)
     )
@@ -549,7 +570,7 @@ def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None,
 
 
 def _no_moment_about(torque: TorqueStructure, axis: int) -> bool:
-    """Whether a torque on a body with symmetry about the axis has no component along it, for every motion."""
+    """Return whether a torque on a body with symmetry about the axis has no component along it, in every motion."""
     if isinstance(torque, FormulaTorque):
         return torque.frame == "body" and torque.formulas[axis].strip() in ("0", "0.0")
     if torque.kind == "constant_body":
@@ -579,14 +600,14 @@ def _whole_motion(scene: Scene, structure: Structure) -> RuleOutcome:
     return RuleOutcome(structure, False, why)
 
 
-def _terms_when_driven(scene: Scene, structure: Structure) -> RuleOutcome:
+def _terms_under_external_torque(scene: Scene, structure: Structure) -> RuleOutcome:
     if not scene.torques:
         return RuleOutcome(structure, False, "the torque that is no formula acts alone")
     return _special_constants(scene, structure)
 
 
-_RULES_WHEN_DRIVEN: tuple[tuple[str, Callable[[Scene, Structure], RuleOutcome]], ...] = (
+_RULES_UNDER_EXTERNAL_TORQUE: tuple[tuple[str, Callable[[Scene, Structure], RuleOutcome]], ...] = (
     *RULES[:2],
-    ("torque terms", _terms_when_driven),
+    ("torque terms", _terms_under_external_torque),
     ("attitude", _whole_motion),
 )

@@ -1,18 +1,18 @@
-"""The kernels of one plan as saved data: rates, quantities, what is kept, and the C text. No SymPy.
+"""The kernels of one plan as saved data: rates, quantities, conserved quantities, and the C text. No SymPy.
 
-:mod:`symrot.codegen.scene_kernels` derives it; the cache keeps it as JSON; the propagator binds it to numbers.
+:mod:`symrot.codegen.scene_kernels` derives them, the cache stores them as JSON, the propagator binds them to numbers.
 """
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypedDict
 
 from symrot.formula import exact_numbers as number
-from symrot.formula.program import Program, node_from_json, node_to_json
+from symrot.formula.program import Program, ProgramRecord, node_from_json, node_to_json
 from symrot.formula.tree import Node, evaluate
 
-__all__ = ["EPOCH", "EXACT_FUNCTIONS", "Conserved", "Parameters", "SceneKernel", "bind"]
+__all__ = ["EPOCH", "EXACT_FUNCTIONS", "Conserved", "KernelRecord", "Parameters", "SceneKernel", "bind"]
 
 EXACT_FUNCTIONS: dict[str, Callable[..., Fraction]] = {
     "sqrt": number.sqrt,
@@ -21,29 +21,60 @@ EXACT_FUNCTIONS: dict[str, Callable[..., Fraction]] = {
     "abs": abs,
     "without_turns": number.without_turns,
 }
-EPOCH = "epoch"  # of formulas of parameters: the time, s, that the clock of a moved kernel calls 0
+EPOCH = "epoch"  # name in formulas of parameters: the time of the scene, s, at which a moved clock shows 0
 
 Parameters = tuple[tuple[str, Node], ...]  # name in the kernel, formula over the physical constants
 
 
 class Conserved(NamedTuple):
-    """A candidate for a conserved quantity: name, unit, the output that holds it, whether it is kept, and why."""
+    """A candidate for a conserved quantity.
+
+    Attributes
+    ----------
+    name, unit : str
+    output : str
+        The quantity of the kernel that is its value; empty where it is not conserved.
+    holds : bool
+        Whether it is conserved.
+    reason : str
+        Why it is, or why it is not.
+    """
 
     name: str
     unit: str
     output: str
-    kept: bool
+    holds: bool
     reason: str
 
 
+SavedParameters = list[tuple[str, list[Any]]]  # name, formula as nested lists
+
+
+class KernelRecord(TypedDict):
+    """A :class:`SceneKernel` as data for JSON."""
+
+    rates: ProgramRecord
+    rate_parameters: SavedParameters
+    quantities: ProgramRecord
+    quantity_parameters: SavedParameters
+    conserved: list[tuple[str, str, str, bool, str]]  # the fields of Conserved
+    source: str
+
+
 class SceneKernel:
-    """What is derived once for a structure and used for every scene that has it.
+    """The kernels derived once for a structure and used for every scene that has it.
 
     Programs are made from the saved data when they are first used: a propagation in C never needs the rates.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> "symrot_rates" in symrot.propagator("t_handle").kernel.source
+    True
     """
 
-    def __init__(self, data: Mapping[str, Any]) -> None:
-        self.data = data
+    def __init__(self, record: KernelRecord) -> None:
+        self.record = record
 
     @classmethod
     def of(
@@ -57,48 +88,53 @@ class SceneKernel:
                 "rate_parameters": _saved(rate_parameters),
                 "quantities": quantities.to_json(),
                 "quantity_parameters": _saved(quantity_parameters),
-                "conserved": [list(item) for item in conserved],
+                "conserved": [(item.name, item.unit, item.output, item.holds, item.reason) for item in conserved],
                 "source": source,
             }
         )
 
+    def without_invariants(self, reason: str) -> "SceneKernel":
+        """Return the kernel with all candidates for conserved quantities marked as not conserved, with a reason."""
+        lost = [(name, unit, output, False, reason) for name, unit, output, *_ in self.record["conserved"]]
+        return SceneKernel({**self.record, "conserved": lost})
+
     @cached_property
     def rates(self) -> Program:
         """``dy/dt`` of the states."""
-        return Program.from_json(self.data["rates"])
+        return Program.from_json(self.record["rates"])
 
     @cached_property
     def rate_parameters(self) -> Parameters:
-        """What the parameters of the rates are."""
-        return _loaded(self.data["rate_parameters"])
+        """The parameters of the rates: names, and formulas of the constants of the scene."""
+        return _loaded(self.record["rate_parameters"])
 
     @cached_property
     def quantities(self) -> Program:
-        """Angular velocity, attitude, momentum, energy and what is conserved, of time and states."""
-        return Program.from_json(self.data["quantities"])
+        """Angular velocity, attitude, momentum, energy and conserved quantities as functions of time and states."""
+        return Program.from_json(self.record["quantities"])
 
     @cached_property
     def quantity_parameters(self) -> Parameters:
-        """What the parameters of the quantities are."""
-        return _loaded(self.data["quantity_parameters"])
+        """The parameters of the quantities: names, and formulas of the constants of the scene."""
+        return _loaded(self.record["quantity_parameters"])
 
     @cached_property
     def conserved(self) -> tuple[Conserved, ...]:
-        """The candidates for conserved quantities, those that are kept first."""
-        return tuple(Conserved(*item) for item in self.data["conserved"])
+        """The candidates for conserved quantities, the conserved ones first."""
+        return tuple(Conserved(*item) for item in self.record["conserved"])
 
     @property
     def source(self) -> str:
-        """C text of the rates, the function ``symrot_rates``, taking parameters even if it has none."""
-        return str(self.data["source"])
+        """C text of the rates: the function ``symrot_rates``, which always takes an array of parameters."""
+        return self.record["source"]
 
 
-def _saved(parameters: Parameters) -> list[Any]:
-    return [[name, node_to_json(node)] for name, node in parameters]
+def _saved(parameters: Parameters) -> SavedParameters:
+    return [(name, node_to_json(node)) for name, node in parameters]
 
 
-def _loaded(data: list[Any]) -> Parameters:
-    return tuple((name, node_from_json(node)) for name, node in data)
+def _loaded(saved: SavedParameters) -> Parameters:
+    return tuple((name, node_from_json(node)) for name, node in saved)
 
 
 def bind(parameters: Parameters, constants: Mapping[str, Fraction]) -> list[float]:

@@ -25,7 +25,8 @@ from sympy import (
 )
 
 from symrot.errors import SymrotError
-from symrot.exact.decide import Verdict, decide, is_zero, normal_form
+from symrot.exact.decide import decide, is_zero, normal_form
+from symrot.exact.decision import Decision
 from symrot.exact.ring.ring import as_zero
 from symrot.proof.notation.latex_reader import Unread, key, parts, read
 from symrot.proof.notation.printer import formula
@@ -36,7 +37,14 @@ __all__ = ["Derivation", "Passage", "PrintedPage", "ProofError", "Section", "Ste
 
 
 class ProofError(SymrotError):
-    """Raised for a step of a derivation that does not hold."""
+    """A step of a derivation does not hold.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> issubclass(symrot.ProofError, symrot.SymrotError)
+    True
+    """
 
 
 @dataclass
@@ -79,6 +87,12 @@ class Derivation(PrintedPage):
         The meaning of names on the page, and the rates of variables (:meth:`notation`).
 
     The other parameters are those of :class:`symrot.proof.page.Page`.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.derivation("intermediate_axis").title
+    'The intermediate axis is unstable'
     """
 
     assumed: list[Expr] = field(default_factory=list)
@@ -188,8 +202,8 @@ class Derivation(PrintedPage):
             raise ProofError(f"{self.name}, {claim!r}: the signs of the symbols do not make {reduced} positive")
         return self._add(Step(claim, _frozen(expression), S.Zero, because, ">", named=named, display=reduced))
 
-    def _proven(self, claim: str, left: Any, right: Any, relations: Sequence[Any]) -> Verdict:
-        """Return the verdict on an equation; raise ProofError unless the equation holds."""
+    def _proven(self, claim: str, left: Any, right: Any, relations: Sequence[Any]) -> Decision:
+        """Return the decision on an equation; raise ProofError unless the equation holds."""
         verdict = decide(left, right, relations)
         if verdict.verdict != "true":
             where = f" ({verdict.counterexample})" if verdict.counterexample else ""

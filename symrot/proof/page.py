@@ -52,6 +52,12 @@ class Step:
     printed : (bool, bool)
         For each side: True if the page displays the proven expression itself, or a form that was read back and proven
         equal to it; False if it displays a name or words in LaTeX instead.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> isinstance(symrot.derivation("intermediate_axis").steps[0], symrot.Step)
+    True
     """
 
     claim: str

@@ -1,12 +1,10 @@
-"""The functions that formulas of scenes call, for arrays of NumPy."""
-
-from typing import Any
+"""The functions that formulas of scenes may call, for NumPy arrays."""
 
 import numpy as np
 
 __all__ = ["ARRAY_FUNCTIONS"]
 
-ARRAY_FUNCTIONS: dict[str, Any] = {
+ARRAY_FUNCTIONS: dict[str, np.ufunc] = {
     "sqrt": np.sqrt, "sin": np.sin, "cos": np.cos, "tan": np.tan, "exp": np.exp, "log": np.log, "abs": np.abs,
     "sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan,
     "atan2": np.arctan2,

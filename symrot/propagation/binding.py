@@ -1,7 +1,8 @@
 """The parameters of kernels as numbers, for one start of a scene after another.
 
-Most of them are the scene's: masses, moments, torques. They are evaluated once for a structure. Only those whose
-formulas hold a number of the initial state, such as a constant spin, are evaluated again for another start.
+Most parameters depend on the scene alone: masses, moments, torques. They are evaluated once for a structure. Only
+parameters whose formulas contain a number of the initial state, such as a constant spin, are evaluated again for
+another start.
 """
 
 from collections.abc import Callable, Mapping
@@ -22,7 +23,7 @@ def one_double(top: int, bottom: int) -> tuple[float, ...]:
 
 
 def two_doubles(top: int, bottom: int) -> tuple[float, ...]:
-    """Return the double nearest to a ratio, and what rounding to it left out."""
+    """Return the double nearest to a ratio, and the double nearest to its rounding error."""
     return quotient(top, bottom)
 
 
@@ -32,11 +33,11 @@ class Binding:
     Parameters
     ----------
     parameters : pairs of name and formula
-        As a :class:`symrot.planning.scene_kernel.SceneKernel` holds them.
+        Parameters of a :class:`symrot.planning.scene_kernel.SceneKernel`.
     plan : Plan
         Of the structure, with any start.
     rounded : function
-        From a ratio of integers to the doubles that stand for it.
+        From a ratio of integers to the doubles that represent it.
     known : mapping
         More constants of the formulas, by name.
 
@@ -66,16 +67,16 @@ class Binding:
 
     def __call__(self, plan: Plan) -> list[float]:
         """Return the numbers for a plan of the structure: exact arithmetic, one rounding each."""
-        found = self._numbers.copy()
+        numbers = self._numbers.copy()
         if self._moving:
             constants = plan.start_constants
             for place, moving in self._moving:
-                found[place] = self._rounded(*moving.ratio(constants))
-        return found
+                numbers[place] = self._rounded(*moving.ratio(constants))
+        return numbers
 
 
 class _Moving:
-    """A formula of numbers of the start; most are a coefficient times a power of one, which integers give at once."""
+    """A formula in numbers of the start; a monomial in one of them is evaluated with integers, which is faster."""
 
     def __init__(self, formula: Node) -> None:
         self._formula, self._monomial = formula, _monomial(formula)
@@ -112,7 +113,7 @@ def value_of(formula: Node, constants: Mapping[str, Fraction]) -> Fraction:
 
 
 def folded(node: Node, known: Mapping[str, Fraction]) -> Node:
-    """Return a formula with each largest part that holds known constants alone as a number."""
+    """Return a formula in which every part that contains known constants only is replaced by its value."""
     if names(node) <= known.keys():
         return ("number", value_of(node, known))
     if node[0] == "call":

@@ -1,4 +1,4 @@
-"""The kernel of a plan: from the cache if it is there, else derived, emitted and compiled, and kept.
+"""The kernel of a plan: from the cache, or derived, emitted, compiled and stored there.
 
 The key is the structure of the plan and the version of symrot's own files; numbers are not part of it. While the
 compiler works on the rates, the invariants are proven.
@@ -52,7 +52,7 @@ RATE_SCALE = 0.0  # an error of omega counts relative to omega
 
 @cache
 def _version() -> str:
-    """Return what identifies the code that derives: names, sizes and times of its files."""
+    """Return a text that identifies the code that derives kernels: names, sizes and times of its files."""
     states = [(file, (PACKAGE / file).stat()) for file in FILES]
     folders = [str(PACKAGE / folder) for folder in FOLDERS]
     for folder in folders:  # grows while it is walked
@@ -78,7 +78,7 @@ def _structure_text(structure: Structure) -> str:
 def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda rates, source: None) -> SceneKernel:
     """Return the kernel of a plan, from the cache or derived.
 
-    ``on_rates`` gets the rates and their C text as soon as they are derived; not those of a kernel from the cache.
+    ``on_rates`` gets the rates and their C text as soon as they are derived; it is not called for a cached kernel.
     """
     saved = library.fetch(kernel_key(plan))
     if saved is not None:
@@ -86,7 +86,7 @@ def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda
     from symrot.codegen.scene_kernels import derive_scene_kernel
 
     kernel = derive_scene_kernel(plan.structure, on_rates)
-    library.store(kernel_key(plan), json.dumps(kernel.data))
+    library.store(kernel_key(plan), json.dumps(kernel.record))
     return kernel
 
 
@@ -129,12 +129,12 @@ def motion_library(plan: Plan, kernel: SceneKernel) -> Path:
 def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected: bool = True) -> Path:
     """Return the library that steps a plan by Taylor series, of the order that suits the tolerance.
 
-    ``projected`` says whether it holds the motion on its invariants.
+    ``projected`` says whether the library projects the motion onto its invariants.
 
     Raises
     ------
     InputError
-        If the rates have no Taylor series, as where they hold the absolute value of what changes.
+        If the rates have no Taylor series, for example since they contain the absolute value of a state.
     """
     from symrot.propagation.invariants import invariant_source
     from symrot.propagation.steppers import taylor
@@ -169,7 +169,7 @@ def _unit(plan: Plan, source: str, parameters: int, rates: Callable[[], Program]
 
 
 def has_formulas(plan: Plan) -> bool:
-    """Return whether a torque is given by formulas, which may have features that no step sees."""
+    """Return whether a torque is given by formulas, which may have features that a step misses."""
     return any(plan.structure.formula_torques)
 
 
@@ -195,9 +195,9 @@ def _degree(node: Node) -> int:
 
 
 def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[str, float]], Deviations] | None":
-    """Return what makes, of parameters of the rates, that which steps in Python must be held to.
+    """Return a function from parameters of the rates to the deviations that limit steps in Python.
 
-    None where no torque is given by formulas that hide something.
+    None if no formula of a torque can have a feature that a step misses.
     """
     if not has_formulas(plan):
         return None

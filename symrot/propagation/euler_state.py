@@ -1,21 +1,22 @@
-"""Euler angles as state, for teaching: what textbooks step, where it fails, and the way around.
+"""Euler angles as state, for teaching: the state that textbooks use, where it fails, and how to go on there.
 
 The states are omega_b and the three angles of a sequence, with ``dq/dt = B(q)^-1 omega_b``. B is singular at gimbal
-lock: near it the angles turn ever faster, steps shrink, and at it the motion cannot be followed. With switching the
-angles are exchanged, a good way before, for those of a sequence that is at its best there (:func:`partner`).
+lock: near it the angles change ever faster, steps shrink, and at it the motion cannot be followed. With switching, the
+motion continues well before the lock in angles of another sequence, which is regular there (:func:`partner`).
 
-The result is an ordinary trajectory, its quaternion rebuilt from the angles: what is compared is the motion.
+The result is an ordinary trajectory whose quaternion is computed from the angles, so that it can be compared with any
+other trajectory of the scene.
 """
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,15 +27,15 @@ from symrot.dynamics.structure import Structure
 from symrot.errors import InputError, PropagationError
 from symrot.kinematics import conversions
 from symrot.planning.plan import Plan
-from symrot.planning.scene_kernel import SceneKernel, bind
-from symrot.propagation import time_shift as epoch
-from symrot.propagation.compiled_models import ATTITUDE_SCALE, RATE_SCALE, has_formulas, kernel_key
+from symrot.planning.scene_kernel import KernelRecord, SceneKernel, bind
+from symrot.propagation import time_shift
+from symrot.propagation.compiled_models import ATTITUDE_SCALE, RATE_SCALE, has_formulas, kernel_key, scene_kernel
 from symrot.propagation.method import Choice
-from symrot.propagation.motion import Motion
+from symrot.propagation.motion import Motion, Setup
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.steppers import dop853, taylor
-from symrot.propagation.steppers.smoothness import roughness
-from symrot.propagation.steppers.stepping import Stats, Task, both_sides
+from symrot.propagation.steppers.smoothness import non_smooth_torque
+from symrot.propagation.steppers.stepping import Integration, Stats, split_at
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene.scene import Scene
 
@@ -49,11 +50,11 @@ NAMES = ("phi", "theta", "psi")
 
 
 def partner(sequence: str) -> str:
-    """Return the sequence to change to near gimbal lock: the same first two turns and the other third one.
+    """Return the sequence to change to near gimbal lock: the same first two rotations and the other third one.
 
-    The two lock where entries of one row (extrinsic: column) of the attitude matrix are 1 or -1. Their squares add up
-    to 1 at most, so that where one locks the other is perfectly regular, and one of them always has
-    ``|det B| >= sqrt(1/2)``.
+    Each of the two sequences locks where its entry of one row (extrinsic: column) of the attitude matrix is 1 or -1.
+    The squares of the two entries add up to at most 1: where one sequence locks the other is perfectly regular, and
+    one of them always has ``|det B| >= sqrt(1/2)``.
     """
     axes, intrinsic = parse_sequence(sequence)
     other = ({0, 1, 2} - {axes[1], axes[2]}).pop()
@@ -64,15 +65,15 @@ def regularity(sequence: str, angles: ArrayLike) -> Floats:
     """Return ``|det B|``, from 0 at gimbal lock to 1, of angles of shape (..., 3)."""
     axes, _ = parse_sequence(sequence)
     middle = np.asarray(angles, dtype=np.float64)[..., 1]
-    found: Floats = np.abs(np.sin(middle) if axes[0] == axes[2] else np.cos(middle))
-    return found
+    determinant: Floats = np.abs(np.sin(middle) if axes[0] == axes[2] else np.cos(middle))
+    return determinant
 
 
 def angles_of(quaternion: Floats, sequence: str) -> Floats:
     """Return the angles, rad, that give a quaternion back with its sign, shape (3,).
 
-    A full rotation more about the first axis changes that sign. Torques that are odd in q see it: the sign must
-    survive every change of sequence.
+    One more full rotation about the first axis changes that sign. Torques that are odd in q depend on it, so that the
+    sign must survive every change of sequence.
     """
     angles: Floats = conversions.quaternion_to_euler(quaternion, sequence)[0]
     if conversions.euler_to_quaternion(angles, sequence) @ quaternion < 0.0:
@@ -83,23 +84,25 @@ def angles_of(quaternion: Floats, sequence: str) -> Floats:
 class _Kernel(NamedTuple):
     """Equations of motion in the angles of one sequence, compiled with a stepper, and their parameters."""
 
-    library: Any
+    library: Path
     parameters: list[float]
     clock: dop853.Clock | None
 
 
 class _Block(NamedTuple):
-    """Some steps in one sequence: from, to, and omega and quaternion in between."""
+    """Some steps in one sequence: first and last time, s, and omega and quaternion between them."""
 
     first: float
     last: float
     states: Callable[[Floats], Floats]
 
 
+@final
 class EulerMotion(Motion):
-    """The motion of a scene with Euler angles in place of the quaternion."""
+    """The motion of a scene with Euler angles in place of the quaternion.
 
-    movable = False  # angles start anew on the way, each time at a time of the scene
+    It uses the clock of the scene: at a change of sequence the new angles start at a time of the scene.
+    """
 
     def __init__(self, plan: Plan, method: str, tolerance: float, sequence: str, switching: bool) -> None:
         structure = plan.structure if plan.structure.planar is None else plan.structure.unreduced()
@@ -108,11 +111,11 @@ class EulerMotion(Motion):
             if name in plan.constants:
                 raise InputError(f"state: expected a scene without a constant {name!r}, which is the name of an angle")
         if method == "auto":
-            method = "dop853" if roughness(plan) else "taylor"
+            method = "dop853" if non_smooth_torque(plan) else "taylor"
         other = f", {partner(sequence)} near its gimbal lock" if switching else ", without switching"
-        self.plan, self.tolerance, self.library = plan, tolerance, None
-        self.choice = Choice(method, f"the state is the Euler angles {sequence}{other}")
-        self.start = float(plan.scene.span.start)
+        choice = Choice(method, f"the state is the Euler angles {sequence}{other}")
+        start = float(plan.scene.span.start)
+        super().__init__(Setup(plan, choice, tolerance, start, lambda: scene_kernel(plan)), plan)
         self.sequence, self.switching = sequence, switching
         self._kernels: dict[str, _Kernel] = {}
         self._count = [0, 0, 0, 0]  # accepted, rejected, evaluations, switches
@@ -161,15 +164,19 @@ class EulerMotion(Motion):
 
             return self.plan, from_epoch(kernel)
 
-        return epoch.clock(moving, self.plan.constants, make=self._library_of)
+        return time_shift.clock(moving, self.plan.constants, make=self._library_of)
 
-    def _task(self, sequence: str, t: float, state: Floats) -> Task:
+    def _integration(self, sequence: str, t: float, state: Floats) -> Integration:
         kernel = self._kernel_of(sequence)
         start = kernel.library, kernel.parameters, state, t, self.tolerance
-        return taylor.task(*start) if self.choice.method == "taylor" else dop853.task(*start, clock=kernel.clock)
+        return (
+            taylor.integration(*start)
+            if self.choice.method == "taylor"
+            else dop853.integration(*start, clock=kernel.clock)
+        )
 
     def _blocks(self, end: float) -> Iterator[_Block]:
-        """Yield the motion from its start to an end, piece by piece; what it costs is added to the counts."""
+        """Yield the motion from its start to an end, piece by piece, and add its cost to the counts."""
         count, t, sequence = self._moving, self.start, self.sequence
         whole = np.array(self.plan.initial_state)
         while t != end:
@@ -178,66 +185,66 @@ class EulerMotion(Motion):
                 sequence = partner(sequence)
                 self._count[3] += 1
                 angles = angles_of(whole[count:], sequence)
-            task = self._task(sequence, t, np.concatenate([whole[:count], angles]))
-            for first, last, rows in self._steps(task, sequence, end):
-                block = _Block(first, last, self._states_of(task, sequence, rows))
+            integration = self._integration(sequence, t, np.concatenate([whole[:count], angles]))
+            for first, last, rows in self._steps(integration, sequence, end):
+                block = _Block(first, last, self._states_of(integration, sequence, rows))
                 yield block
                 t = last
             if t != end:
                 whole = block.states(np.array([t]))[0]
 
-    def _steps(self, task: Any, sequence: str, end: float) -> Iterator[tuple[float, float, Floats]]:
-        """Yield the recorded steps of a task, up to the end or to where the sequence is to be changed."""
+    def _steps(self, integration: Integration, sequence: str, end: float) -> Iterator[tuple[float, float, Floats]]:
+        """Yield the recorded steps of an integration, up to the end or to where the sequence is to be changed."""
         count, broken = self._moving, None
         try:
-            with closing(task.runs(end)) as runs:
+            with closing(integration.runs(end)) as runs:
                 run = next(runs)
-                run.pace = abs(end - self.start) * task.pace  # one allowance for the whole motion
+                run.pace = abs(end - self.start) * integration.pace  # one allowance for the whole motion
                 while run.t != run.stop:
-                    first, rows = run.t, np.empty((ROWS, task.stepper.row))
+                    first, rows = run.t, np.empty((ROWS, integration.stepper.row))
                     try:
-                        task.advance(run, None, 0, None, rows.ctypes.data, ROWS)
+                        integration.advance(run, None, 0, None, rows.ctypes.data, ROWS)
                     except PropagationError as error:
                         broken = error
                     rows = rows[: run.recorded]
                     ends = np.append(rows[1:, 0], run.t) if len(rows) else np.empty(0)
                     if self.switching and len(rows):
-                        near = regularity(sequence, task.stepper.dense(rows, ends)[:, count:]) < SWITCH
+                        near = regularity(sequence, integration.stepper.dense(rows, ends)[:, count:]) < SWITCH
                         if near.any():
                             place = int(np.argmax(near))
                             yield first, float(ends[place]), rows[: place + 1]
                             return
                     if broken is not None:
-                        raise self._said(broken, sequence)
+                        raise self._with_hint(broken, sequence)
                     yield first, float(run.t), rows
         finally:
-            self._count[:3] = (a + b for a, b in zip(self._count, task.stats()[:3], strict=False))
+            self._count[:3] = (a + b for a, b in zip(self._count, integration.stats()[:3], strict=False))
 
-    def _said(self, error: PropagationError, sequence: str) -> PropagationError:
+    def _with_hint(self, error: PropagationError, sequence: str) -> PropagationError:
         hint = f"the Euler angles {sequence} are the state, which fail at gimbal lock"
         return PropagationError(f"{error} ({hint}{'' if self.switching else '; switching=True goes around it'})")
 
-    def _states_of(self, task: Task, sequence: str, rows: Floats) -> Callable[[Floats], Floats]:
+    def _states_of(self, integration: Integration, sequence: str, rows: Floats) -> Callable[[Floats], Floats]:
         count = self._moving
 
         def states(times: Floats) -> Floats:
-            found = task.stepper.dense(rows, times)
-            quaternion = conversions.euler_to_quaternion(found[:, count:], sequence)
-            return np.hstack([found[:, :count], quaternion])
+            stepped = integration.stepper.dense(rows, times)
+            quaternion = conversions.euler_to_quaternion(stepped[:, count:], sequence)
+            return np.hstack([stepped[:, :count], quaternion])
 
         return states
 
-    def integrate(self, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
-        """Return omega and quaternion at the times, shape (n, N), and what it cost."""
+    def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
+        """Return omega and quaternion at the times, shape (n, N), and their cost."""
         began = perf_counter()
         self._count = [0, 0, 0, 0]
         states = np.empty((len(times), len(self.plan.states)))
         states[times == self.start] = self.plan.initial_state
-        for part in both_sides(times, self.start):
-            asked = np.abs(times[part] - self.start)
+        for part in split_at(times, self.start):
+            distances = np.abs(times[part] - self.start)
             for block in self._blocks(float(times[part[-1]])):
                 low, high = abs(block.first - self.start), abs(block.last - self.start)
-                inside = part[np.searchsorted(asked, low, "right") : np.searchsorted(asked, high, "right")]
+                inside = part[np.searchsorted(distances, low, "right") : np.searchsorted(distances, high, "right")]
                 if len(inside):
                     states[inside] = block.states(times[inside])
         accepted, rejected, evaluations, switches = self._count
@@ -261,13 +268,13 @@ class EulerMotion(Motion):
         return at
 
 
-def _derived(structure: Structure) -> Mapping[str, Any]:
+def _derived(structure: Structure) -> KernelRecord:
     """Return the saved form of the equations of motion in Euler angles."""
     from symrot.codegen.scene_kernels import RATES, rates_program, rates_source
     from symrot.dynamics.equations import equations_of_motion
 
     rates = rates_program(equations_of_motion(structure), RATES)
-    return SceneKernel.of(rates.program, rates.parameters, rates.program, (), (), rates_source(rates)).data
+    return SceneKernel.of(rates.program, rates.parameters, rates.program, (), (), rates_source(rates)).record
 
 
 class EulerPropagator(Propagator):
@@ -287,7 +294,7 @@ class EulerPropagator(Propagator):
         return EulerMotion(plan, self._method, self.tolerance, self._sequence, self._switching)
 
     def __call__(self, t: ArrayLike | None = None, *, events: Any = None, **state: Any) -> Trajectory:
-        """Return the motion as :class:`symrot.propagation.propagator.Propagator` does; events are not sought."""
+        """Return the motion as :class:`symrot.propagation.propagator.Propagator` does; events are not searched for."""
         if events is not None:
-            raise InputError("events: expected the quaternion as state; events are not sought in Euler angles")
+            raise InputError("events: expected the quaternion as state; events are not located in Euler angles")
         return super().__call__(t, **state)

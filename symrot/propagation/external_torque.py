@@ -1,16 +1,18 @@
 """A torque that is no formula: a function in Python or C, or a table of samples, with declared switching times.
 
-It acts besides the torques of the scene. Dormand and Prince's method steps the motion; at every switching time it stops
-exactly and starts anew behind it, so that a jump costs no accuracy and no rejected steps.
+It acts in addition to the torques of the scene. Dormand and Prince's method steps the motion. At every switching time
+it stops exactly and restarts behind it, so that a jump costs no accuracy and no rejected steps.
 """
 
 import ctypes
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from pathlib import Path
+from typing import Any, ClassVar, TypeVar, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,27 +22,27 @@ from symrot.build.sources import c_text
 from symrot.errors import InputError, PropagationError
 from symrot.formula import exact_numbers as number
 from symrot.planning.plan import Plan, make_plan
-from symrot.planning.scene_kernel import SceneKernel
 from symrot.propagation.compiled_models import enclosure_text, error_blocks, has_formulas, scene_kernel
-from symrot.propagation.method import DRIVEN
-from symrot.propagation.motion import Motion
+from symrot.propagation.method import EXTERNAL_TORQUE
+from symrot.propagation.motion import Motion, RestartableMotion, Setup, SteppedInC
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers import dop853
-from symrot.propagation.steppers.stepping import MAX_STEPS, Recording, Stats, Task
+from symrot.propagation.steppers.stepping import MAX_STEPS, Integration, Recording, Stats
 from symrot.scene.scene import Initial, Scene
 
-__all__ = ["DrivenPropagator"]
+__all__ = ["ExternallyDrivenPropagator"]
 
 Floats = NDArray[np.float64]
+Result = TypeVar("Result")
 CALLBACK = ctypes.CFUNCTYPE(
     ctypes.c_int, ctypes.c_double, ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_double),
     ctypes.POINTER(ctypes.c_double), ctypes.c_void_p,
 )  # fmt: skip
-SAMPLES_PER_STEP = 8.0  # of a table: a longer step could pass over what they say
+SAMPLES_PER_STEP = 8.0  # of a table: a longer step could pass over features of the samples
 DEFECT = 1e4  # times the error allowed in a step: more, and the dense output missed something inside
-BEND = 2.0**-50  # of the torque: what the last bits of samples bend their spline by, from one to the next
-OVERSHOOT = 100.0  # times the largest sample: a spline that goes so far says nothing of the torque
+BEND = 2.0**-50  # of the torque: rounding of samples bends their spline by as much, from one sample to the next
+OVERSHOOT = 100.0  # times the largest sample: a spline that goes so far does not represent the torque
 MOST_STEPS = 30_000_000  # under a table, some 20 s; others end at stepping.MAX_STEPS
 UNKNOWN = (
     "the torque is a function without a formula: each step is checked inside, but a feature narrower than a step may "
@@ -49,64 +51,102 @@ UNKNOWN = (
 FORMS = "a function of (t, omega, quaternion), a C function of ctypes, or a table (times, samples)"
 
 
-class _Function:
-    """A function in Python as one in C; keeps the exception that ends a motion."""
+class TorqueSource(ABC):
+    """The source of a torque without a formula: a function in Python, a function in C, or a table.
 
-    user: Any = None
-    samples = False
-    longest_step = math.inf
-    most_steps = MAX_STEPS
+    Attributes
+    ----------
+    samples : bool
+        Whether the torque is known by samples, which say how long a step may be.
+    longest_step, most_steps : float, int
+        Limits of the steps, s, and of their number.
+    knots : sequence of float
+        Times, s, at which a step ends since the torque bends there.
+    user : array or None
+        The argument ``user`` of the function in C.
+    """
+
+    samples: ClassVar[bool] = False
+    most_steps: ClassVar[int] = MAX_STEPS
+    longest_step: float = math.inf
     knots: Sequence[float] = ()
+    user: Floats | None = None
+
+    @abstractmethod
+    def pointer_in(self, library: Path) -> Any:
+        """Return the function in C, which may be in the library of the motion."""
+
+    @abstractmethod
+    def check(self, low: float, high: float) -> None:
+        """Prepare for a motion over times from ``low`` to ``high``, s, or refuse them."""
+
+    @abstractmethod
+    def failure(self) -> BaseException | None:
+        """Return the exception that the torque raised during the last motion, or None."""
+
+
+@final
+class _Function(TorqueSource):
+    """A function in Python, called from C; stores the exception that ends a motion."""
 
     def __init__(self, function: Callable[[float, Floats, Floats], ArrayLike]) -> None:
-        self.function, self.error = function, None  # type: tuple[Callable[..., Any], BaseException | None]
+        self.function = function
+        self.error: BaseException | None = None
         self.pointer = CALLBACK(self._call)
 
     def _call(self, t: float, omega: Any, quaternion: Any, torque: Any, user: Any) -> int:
         if self.error is not None:
             return 1
         try:
-            found = np.asarray(self.function(t, np.array(omega[:3]), np.array(quaternion[:4])), dtype=np.float64)
-            if found.shape != (3,) or not np.isfinite(found).all():
+            values = np.asarray(self.function(t, np.array(omega[:3]), np.array(quaternion[:4])), dtype=np.float64)
+            if values.shape != (3,) or not np.isfinite(values).all():
                 raise InputError(
-                    f"torque: expected three finite numbers in N m, got {number.show(found.tolist())} at t = {t!r} s"
+                    f"torque: expected three finite numbers in N m, got {number.show(values.tolist())} at t = {t!r} s"
                 )
-            torque[0], torque[1], torque[2] = found.tolist()
+            torque[0], torque[1], torque[2] = values.tolist()
         except InputError as error:
             self.error = error
         except Exception as error:
             self.error = InputError(f"torque: the function raised {type(error).__name__}: {error}, at t = {t!r} s")
             self.error.__cause__ = error
-        except BaseException as error:  # an interrupt: handed on as it is
+        except BaseException as error:  # an interrupt: raised again as it is
             self.error = error
         return int(self.error is not None)
 
+    def pointer_in(self, library: Path) -> Any:
+        """Return the callback."""
+        return self.pointer
+
     def check(self, low: float, high: float) -> None:
+        """Forget the exception of the last motion."""
         self.error = None
 
     def failure(self) -> BaseException | None:
+        """Return the exception that the function raised, or None."""
         return self.error
 
 
-class _CFunction:
+@final
+class _CFunction(TorqueSource):
     """A function of a C library: ``int (double, const double[3], const double[4], double[3], void *)``."""
-
-    user: Any = None
-    samples = False
-    longest_step = math.inf
-    most_steps = MAX_STEPS
-    knots: Sequence[float] = ()
 
     def __init__(self, function: Any) -> None:
         self.pointer = function
 
-    def check(self, low: float, high: float) -> None: ...
+    def pointer_in(self, library: Path) -> Any:
+        """Return the function."""
+        return self.pointer
+
+    def check(self, low: float, high: float) -> None:
+        """Accept all times."""
 
     def failure(self) -> BaseException | None:
+        """Return None: a function in C raises nothing."""
         return None
 
 
-class _Table:
+@final
+class _Table(TorqueSource):
     """Samples, interpolated by cubic splines between switching times."""
 
     samples = True
@@ -131,19 +171,24 @@ class _Table:
         self.span = float(t[0]), float(t[-1])
         self.longest_step = SAMPLES_PER_STEP * float(np.diff(t).max())
         self.user, self.knots = _pieces(t, values, switching)
-        self.pointer: Any = None  # set when the library is loaded
+
+    def pointer_in(self, library: Path) -> Any:
+        """Return the function that interpolates the table, which is part of the library of the motion."""
+        return ctypes.CDLL(str(library)).symrot_table_torque
 
     def check(self, low: float, high: float) -> None:
+        """Refuse times beyond the table."""
         if low < self.span[0] or high > self.span[1]:
-            asked = low if low < self.span[0] else high
-            raise InputError(f"torque: the table covers {self.span[0]} to {self.span[1]} s, asked for {asked} s")
+            beyond = low if low < self.span[0] else high
+            raise InputError(f"torque: the table covers {self.span[0]} to {self.span[1]} s, asked for {beyond} s")
 
     def failure(self) -> BaseException | None:
+        """Return None: a table raises nothing."""
         return None
 
 
 def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floats, list[float]]:
-    """Return the table of ``symrot_table_torque``, one spline between each two switching times; and where steps end."""
+    """Return the data of ``symrot_table_torque``, a spline between each two switching times, and the ends of steps."""
     from scipy.interpolate import CubicSpline
 
     cuts = [0]
@@ -166,28 +211,29 @@ def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floa
 
 
 def _check_overshoot(spline: Any, largest: float) -> None:
-    """Refuse samples so unevenly spaced that the spline through them is far from all of them."""
+    """Raise InputError if samples are so unevenly spaced that the spline through them overshoots all of them."""
     starts, gaps = spline.x[:-1], np.diff(spline.x)
-    found = np.max([np.abs(spline(starts + part * gaps)).max(axis=1) for part in (0.25, 0.5, 0.75)], axis=0)
-    worst = int(np.argmax(found))
+    reach = np.max([np.abs(spline(starts + part * gaps)).max(axis=1) for part in (0.25, 0.5, 0.75)], axis=0)
+    worst = int(np.argmax(reach))
     before, after = map(float, spline.x[worst : worst + 2])
-    if not found[worst] <= OVERSHOOT * largest:
+    if not reach[worst] <= OVERSHOOT * largest:
         raise InputError(
             f"torque: expected samples that a cubic spline keeps near, got samples of at most {largest:.3g} N m that "
-            f"send it to {found[worst]:.3g} N m between {before!r} and {after!r} s; a jump is a switching time with "
+            f"send it to {reach[worst]:.3g} N m between {before!r} and {after!r} s; a jump is a switching time with "
             "two samples, before and after"
         )
 
 
 def _bends(spline: Any) -> list[float]:
-    """Return the samples at which the third derivative jumps: not those between pieces of one line, or constant."""
+    """Return the times of samples at which the third derivative jumps, so not inside a straight line or a constant."""
     gaps, cubic = np.diff(spline.x)[:, None], spline.c[0]
     jumps = np.abs(np.diff(cubic, axis=0)) * np.minimum(gaps[1:], gaps[:-1]) ** 3
-    found: list[float] = spline.x[1:-1][(jumps > BEND * np.abs(spline.c[3]).max(axis=0)).any(axis=1)].tolist()
-    return found
+    bends: list[float] = spline.x[1:-1][(jumps > BEND * np.abs(spline.c[3]).max(axis=0)).any(axis=1)].tolist()
+    return bends
 
 
-def _drive(torque: Any, switching: Sequence[float]) -> Any:
+def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
+    """Return the source of a torque in one of the forms that a propagator takes."""
     if isinstance(torque, ctypes._CFuncPtr):  # type: ignore[attr-defined]
         return _CFunction(torque)
     if callable(torque):
@@ -206,87 +252,113 @@ def _address(pointer: Any) -> int:
     return int(ctypes.cast(pointer, ctypes.c_void_p).value or 0)
 
 
-class DrivenMotion(Motion):
-    """The motion of a scene under one more torque."""
+@final
+@dataclass(frozen=True, eq=False)
+class ExternalSetup:
+    """The part that motions under one more torque share, whatever their start.
 
-    movable, restarts = False, True  # the torque is asked for at the times of the scene
+    Attributes
+    ----------
+    setup : Setup
+    library : Path
+        Kernel and stepper; the kernel calls the torque.
+    source : TorqueSource
+        The source of the torque.
+    torque_parameters : tuple of float
+        The parameters of the kernel after those of the rates: two addresses, the frame, the inverse of the inertia.
+    breaks : tuple of float
+        Times at which a step ends, s: switching times, and times at which an interpolated table bends.
+    longest_step : float
+        s.
+    """
 
-    def __init__(
-        self, plan: Plan, tolerance: float, drive: Any, in_space: bool, switching: Sequence[float], max_step: float
-    ) -> None:
-        plan = replace(plan, structure=replace(plan.structure.unreduced(), attitude=True))
-        self.plan, self.tolerance = plan, tolerance
-        self.choice = DRIVEN
-        self.start = float(plan.scene.span.start)
-        self._drive, self.switching = drive, switching
-        self.longest_step = min(drive.longest_step, max_step)
-        self.warnings = () if drive.samples or math.isfinite(max_step) else (UNKNOWN,)
-        bare = scene_kernel(plan)
-        own = len(bare.rate_parameters)
-        text = "\n".join(
-            (
-                bare.source,
-                f"#define SYMROT_OWN {own}",
-                c_text("propagation/external_torque.c"),
-            )
-        )
-        edges, scales = error_blocks(plan)
-        bounds = (enclosure_text(plan, lambda: bare.rates, edges),) if has_formulas(plan) else ()
-        text = f"#define SYMROT_DEFECT {DEFECT!r}\n{text}"
-        source = dop853.translation_unit(text, "symrot_driven", len(plan.states), own + 12, edges, scales, *bounds)
-        self.library = library.build(source, "driven")
-        if drive.pointer is None:
-            self._loaded = ctypes.CDLL(str(self.library))
-            drive.pointer = self._loaded.symrot_table_torque
-        user = 0 if drive.user is None else drive.user.ctypes.data
-        inverse = np.linalg.inv(np.array([[float(x) for x in row] for row in plan.scene.body.inertia]))
-        self._more = [_bits(_address(drive.pointer)), _bits(user), float(in_space), *inverse.ravel().tolist()]
-        lost = [[*item[:3], False, "changed by the torque that is no formula"] for item in bare.data["conserved"]]
-        self._kernel = SceneKernel({**bare.data, "conserved": lost})
+    setup: Setup
+    library: Path
+    source: TorqueSource
+    torque_parameters: tuple[float, ...]
+    breaks: tuple[float, ...]
+    longest_step: float
 
-    @property
-    def kernel(self) -> SceneKernel:
-        """The kernels of the scene, whose invariants are lost."""
-        return self._kernel
 
-    @property
-    def driven_parameters(self) -> list[float]:
-        """Those of the rates, then those of the torque."""
-        return [*self.rate_parameters, *self._more]
+def external_setup(
+    plan: Plan, tolerance: float, source: TorqueSource, in_space: bool, switching: Sequence[float], max_step: float
+) -> ExternalSetup:
+    """Return the setup of motions under one more torque, with kernel, torque and stepper in one library."""
+    plan = replace(plan, structure=replace(plan.structure.unreduced(), attitude=True))
+    scene_alone = scene_kernel(plan)
+    own = len(scene_alone.rate_parameters)
+    parts = (
+        f"#define SYMROT_DEFECT {DEFECT!r}",
+        scene_alone.source,
+        f"#define SYMROT_OWN {own}",
+        c_text("propagation/external_torque.c"),
+    )
+    edges, scales = error_blocks(plan)
+    bounds = (enclosure_text(plan, lambda: scene_alone.rates, edges),) if has_formulas(plan) else ()
+    size = len(plan.states), own + 12
+    text = dop853.translation_unit("\n".join(parts), "symrot_driven", *size, edges, scales, *bounds)
+    path = library.build(text, "driven")
+    pointer = source.pointer_in(path)
+    user = 0 if source.user is None else source.user.ctypes.data
+    inverse = np.linalg.inv(np.array([[float(x) for x in row] for row in plan.scene.body.inertia]))
+    addresses = _bits(_address(pointer)), _bits(user)
+    kernel = scene_alone.without_invariants("changed by the torque that is no formula")
+    warnings = () if source.samples or math.isfinite(max_step) else (UNKNOWN,)
+    setup = Setup(plan, EXTERNAL_TORQUE, tolerance, float(plan.scene.span.start), lambda: kernel, warnings=warnings)
+    return ExternalSetup(
+        setup,
+        path,
+        source,
+        (*addresses, float(in_space), *inverse.ravel().tolist()),
+        tuple(sorted({*switching, *source.knots})),
+        min(source.longest_step, max_step),
+    )
+
+
+@final
+class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
+    """The motion of a scene under one more torque, which is evaluated at the times of the scene."""
+
+    def __init__(self, shared: ExternalSetup, plan: Plan) -> None:
+        super().__init__(shared.setup, plan)
+        self._shared = shared
+
+    def from_start(self, initial: Initial) -> "ExternallyDrivenMotion":
+        """Return the motion from another initial state of the same structure."""
+        return ExternallyDrivenMotion(self._shared, self.setup.plan.from_start(initial))
 
     @cached_property
-    def stepping(self) -> Task:
-        """The motion as the stepper in C follows it."""
-        assert self.library is not None
-        return dop853.task(
-            self.library, self.driven_parameters, self.plan.initial_state, self.start, self.tolerance,
-            max_step=self.longest_step, max_steps=self._drive.most_steps,
-            breaks=sorted({*self.switching, *self._drive.knots}),
+    def stepping(self) -> Integration:
+        """The integration of the motion, restarted at each switching time."""
+        shared = self._shared
+        return dop853.integration(
+            shared.library, [*self.rate_parameters, *shared.torque_parameters], self.plan.initial_state, self.start,
+            self.tolerance, max_step=shared.longest_step, max_steps=shared.source.most_steps, breaks=shared.breaks,
         )  # fmt: skip
 
-    def guarded(self, low: float, high: float, run: Callable[[], Any]) -> Any:
-        """Return what a run gives, or raise what the torque raised in it."""
-        self._drive.check(min(low, self.start), max(high, self.start))
+    def _guarded(self, low: float, high: float, run: Callable[[], Result]) -> Result:
+        """Return the result of a run, or raise the exception that the torque raised in it."""
+        source = self._shared.source
+        source.check(min(low, self.start), max(high, self.start))
         try:
             return run()
         except PropagationError:
-            failure = self._drive.failure()
+            failure = source.failure()
             if failure is None:
                 raise
             raise failure from failure.__cause__
 
-    def integrate(self, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times, shape (n, N), and what it cost."""
+    def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
+        """Return the states at the times, shape (n, N), and their cost."""
         low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
-        found: tuple[Floats, Stats] = self.guarded(low, high, lambda: self.stepping.again().sample(times))
-        return found
+        return self._guarded(low, high, lambda: self.stepping.restarted().sample(times))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        recording: Recording = self.guarded(*span, lambda: self.stepping.again().record(span))
-        return recording
+        """Return the states as a function of time."""
+        return self._guarded(*span, lambda: self.stepping.restarted().record(span))
 
 
-class DrivenPropagator(Propagator):
+class ExternallyDrivenPropagator(Propagator):
     """Propagates a scene under one more torque; made by :func:`symrot.propagator` with ``torque``."""
 
     def __init__(
@@ -300,11 +372,12 @@ class DrivenPropagator(Propagator):
             raise InputError(f"torque_frame: expected 'body' or 'space', got {frame!r}")
         self._switching = tuple(sorted(set(switching.tolist())))
         self._max_step = max_step
-        self._torque, self._in_space = _drive(torque, self._switching), frame == "space"
+        self._source, self._in_space = _torque_source(torque, self._switching), frame == "space"
         super().__init__(scene, "dop853", tolerance)
 
     def _planned(self, initial: Initial | None = None) -> Plan:
-        return make_plan(self.scene, initial, driven=True)
+        return make_plan(self.scene, initial, external_torque=True)
 
     def _prepare(self, plan: Plan) -> Motion:
-        return DrivenMotion(plan, self.tolerance, self._torque, self._in_space, self._switching, self._max_step)
+        shared = external_setup(plan, self.tolerance, self._source, self._in_space, self._switching, self._max_step)
+        return ExternallyDrivenMotion(shared, shared.setup.plan)

@@ -1,6 +1,6 @@
-"""What a scene's motion keeps, for the Taylor stepper: the C text of its invariants, and their parameters as numbers.
+"""The invariants of a motion for the Taylor stepper: their C text, and their parameters as numbers.
 
-Which quantities are kept is proven when the kernel is derived; the norm of the quaternion is added.
+The derivation of the kernel proves which quantities are conserved; the norm of the quaternion is added.
 """
 
 from collections.abc import Sequence
@@ -15,18 +15,18 @@ __all__ = ["invariant_parameters", "invariant_source"]
 
 
 def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
-    """Return what :func:`symrot.propagation.steppers.taylor.translation_unit` takes as ``invariants``."""
+    """Return the argument ``invariants`` of :func:`symrot.propagation.steppers.taylor.translation_unit`."""
     from symrot.codegen.taylor.invariant_source import invariant_definitions
 
-    kept = [item.output for item in kernel.conserved if item.kept]
-    return invariant_definitions(kernel.quantities, kept, states, [name for name, _ in kernel.quantity_parameters])
+    outputs = [item.output for item in kernel.conserved if item.holds]
+    return invariant_definitions(kernel.quantities, outputs, states, [name for name, _ in kernel.quantity_parameters])
 
 
 def invariant_parameters(kernel: SceneKernel, plan: Plan) -> list[float]:
-    """Return the parameters of the invariants: for each its double, and what rounding to it left out."""
+    """Return the parameters of the invariants, each as the nearest double and the double nearest to its error."""
     values = {"pi": number.PI, **plan.constants}
-    found: list[float] = []
+    pairs: list[float] = []
     for _, node in kernel.quantity_parameters:
         exact = Fraction(evaluate(node, values, EXACT_FUNCTIONS))
-        found += [float(exact), float(exact - Fraction(float(exact)))]
-    return found
+        pairs += [float(exact), float(exact - Fraction(float(exact)))]
+    return pairs

@@ -1,4 +1,4 @@
-"""Choose the method by which a motion is followed, and say why."""
+"""Choose the method that follows a motion, and give the reason."""
 
 from typing import NamedTuple
 
@@ -6,19 +6,19 @@ from symrot.build import cache as library
 from symrot.closed_form.registry import FORMS, Form, exact_form
 from symrot.errors import CompilerError, InputError
 from symrot.planning.plan import Plan
-from symrot.propagation.steppers.smoothness import roughness
+from symrot.propagation.steppers.smoothness import non_smooth_torque
 
-__all__ = ["DRIVEN", "METHODS", "Choice", "choose_method"]
+__all__ = ["EXTERNAL_TORQUE", "METHODS", "Choice", "choose_method"]
 
 METHODS = {
-    "auto": "the first of the table that fits",
+    "auto": "the first method of this table that fits",
     "constant": "every state keeps its value",
     "exact": "closed form, at any time without stepping",
     "taylor": "Taylor series stepped in C from the emitted recurrences",
     "dop853": "Dormand-Prince 8(5,3), stepped in C around the emitted kernel",
     "scipy": "SciPy around the emitted NumPy kernel",
 }
-"""Every method by name, with what it is; ``scipy`` stands for its DOP853, ``scipy:NAME`` for another of SciPy's."""
+"""Every method by name, with a description; ``scipy`` means SciPy's DOP853, ``scipy:NAME`` another of its methods."""
 
 
 class Choice(NamedTuple):
@@ -30,21 +30,21 @@ class Choice(NamedTuple):
 
 
 def _automatic(plan: Plan) -> Choice:
-    """Return the first that fits of no method at all, a closed form, Taylor series, Dormand-Prince and SciPy."""
+    """Return the first method that fits: none for a constant motion, a closed form, Taylor, Dormand-Prince, SciPy."""
     if not plan.states:
         return Choice("constant", "the plan leaves no state to integrate")
     if form := exact_form(plan.scene):
         return Choice("exact", form.name, form)
     if no_compiler := library.missing():
         return Choice("scipy", no_compiler)
-    if rough := roughness(plan):
+    if rough := non_smooth_torque(plan):
         return Choice("dop853", f"{rough}, and a C compiler is there")
     between = " between its switches" if plan.switches else ""
     return Choice("taylor", f"the torque is smooth{between}, and a C compiler is there")
 
 
-DRIVEN = Choice("dop853", "a torque that is no formula has no Taylor series")
-"""The method for such a torque, and why."""
+EXTERNAL_TORQUE = Choice("dop853", "a torque that is no formula has no Taylor series")
+"""The method for motions under a torque that is no formula."""
 
 
 def choose_method(plan: Plan, method: str = "auto") -> Choice:
@@ -55,12 +55,12 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
     InputError
         If there is no such method.
     CompilerError
-        If the method asked for steps in C and there is no compiler.
+        If the method needs a compiler and there is none.
     """
     if plan.scene.table is not None:
         if method not in ("auto", "dop853"):
             raise InputError(f"method: expected 'auto' or 'dop853' for a torque that is no formula, got {method!r}")
-        return DRIVEN
+        return EXTERNAL_TORQUE
     if method == "auto":
         return _automatic(plan)
     if method == "exact":
@@ -83,4 +83,4 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
         return choose_method(plan)
     if name in ("taylor", "dop853") and (reason := library.missing()):
         raise CompilerError(f"method: {reason}, or use method 'scipy'")
-    return Choice(method, "asked for")
+    return Choice(method, "the method was requested")

@@ -1,36 +1,45 @@
-"""A plan bound to numbers: the states at any times by the chosen method, and quantities of them."""
+"""A plan bound to numbers: the states at any times by the chosen method, and quantities of them.
 
+A :class:`Motion` begins at one start of a scene. Its :class:`Setup` holds the part that all starts of the same
+structure share: the method, the kernel, the numbers of the scene. Each method of following a motion is a final class.
+"""
+
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symrot.closed_form.registry import Exact, Form
+from symrot.closed_form.registry import Exact, Form, Starts
 from symrot.errors import PropagationError
 from symrot.planning.plan import Plan, RuleOutcome
 from symrot.planning.scene_kernel import EPOCH, SceneKernel
-from symrot.propagation import time_shift as epoch
+from symrot.propagation import time_shift
 from symrot.propagation.array_functions import ARRAY_FUNCTIONS
 from symrot.propagation.binding import Binding, two_doubles
 from symrot.propagation.compiled_models import compiled, error_blocks, formula_deviations, scene_kernel, taylor_library
 from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.method import Choice
 from symrot.propagation.steppers import dop853, taylor
-from symrot.propagation.steppers.cut_off import CutOff
-from symrot.propagation.steppers.dop853 import Stats
-from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Recording, Task
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
+from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Integration, Recording, Stats
 from symrot.scene.scene import Initial
 
 if TYPE_CHECKING:
     from symrot.propagation.enclosures.step_limit import Deviations
+    from symrot.propagation.steppers.fallback import Options
 
-__all__ = ["Motion", "MotionInParts", "on_own_clock", "python_rates", "unreduced"]
+__all__ = [
+    "ClosedFormMotion", "ConstantMotion", "Motion", "MotionInParts", "RestartableMotion", "SciPyMotion", "Setup",
+    "SteppedInC", "SteppedMotion", "make_motion", "on_clock", "on_own_clock", "python_rates", "stepped_motion",
+    "with_full_state",
+]  # fmt: skip
 
 Floats = NDArray[np.float64]
 
@@ -43,8 +52,8 @@ def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
     return function if kernel.rate_parameters else lambda t, y, p: function(t, y)
 
 
-def unreduced(plan: Plan, form: Form) -> Plan:
-    """Return the plan of a motion in closed form, which has all its components and skips the stepping."""
+def with_full_state(plan: Plan, form: Form) -> Plan:
+    """Return the plan of a motion in closed form: it has all components of the state and skips the stepping."""
     structure = plan.structure.unreduced()
     rows, before = [], structure.reductions
     for row in plan.rows:
@@ -56,124 +65,197 @@ def unreduced(plan: Plan, form: Form) -> Plan:
     return replace(plan, structure=structure, rows=tuple(rows))
 
 
-OF_START = (
-    "rate_parameters", "taylor_parameters", "stepping", "exact", "_quantity_values", "_initial", "_on_own_clock",
-    "_clock", "_python_clock",
-)  # fmt: skip
-"""What a motion keeps that depends on its start."""
+# ------------------------------------------------------------------------------------------------ what starts share
 
 
-class Motion:
-    """A plan with its kernel, bound to numbers.
+@final
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """The part that motions of one plan share, whatever their start: method, kernel, numbers of the scene.
 
-    Its clock shows 0 at the time ``epoch`` of the scene.
+    Attributes
+    ----------
+    plan : Plan
+        With any start of the structure.
+    choice : Choice
+        The method, and why.
+    tolerance : float
+        Error of the trajectory to aim for.
+    start : float
+        Initial time, s, on the clock of the motions.
+    load_kernel : function
+        Returns the kernel. It is called when the kernel is first needed, which an exact motion may never do.
+    epoch : float
+        Time of the scene, s, at which the clock of the motions shows 0.
+    allows_time_shift : bool
+        Whether stepped motions may take another clock.
+    warnings : tuple of str
+        Sentences about accuracy that cannot be guaranteed.
     """
 
-    epoch = 0.0
-    movable = True  # whether another clock may be taken
-    switched = False  # whether its torques have switches
-    warnings: tuple[str, ...] = ()  # on what cannot be guaranteed
-    restarts = True  # whether from_start knows the class; each class says so for itself
-    first: "Motion | None" = None  # of the same structure, whose kernels, library and numbers are used
-
-    def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
-        self.plan, self.choice, self.tolerance = plan, choice, tolerance
-        self.library: Path | None = None
-        if choice.method == "exact":
-            assert choice.form is not None
-            choice.form.begin()
-            self.form, self.plan = choice.form, unreduced(plan, choice.form)
-        elif choice.method == "dop853":
-            self.kernel, self.library = compiled(plan)
-        elif choice.method == "taylor":
-            self.kernel = scene_kernel(plan)
-            self.library = taylor_library(plan, self.kernel, tolerance)
-        self.start = float(plan.scene.span.start)
-
-    def from_start(self, initial: Initial) -> "Motion":
-        """Return the motion from another initial state of the same structure; nothing is looked up or derived again.
-
-        Of the same structure is a start with the same :func:`symrot.planning.plan.structure_key`.
-        """
-        other: Motion = object.__new__(type(self))
-        other.__dict__.update(self.__dict__)
-        for name in OF_START:
-            other.__dict__.pop(name, None)
-        other.plan, other.first = self.plan.from_start(initial), self.first or self
-        return other
+    plan: Plan
+    choice: Choice
+    tolerance: float
+    start: float
+    load_kernel: Callable[[], SceneKernel]
+    epoch: float = 0.0
+    allows_time_shift: bool = True
+    warnings: tuple[str, ...] = ()
 
     @cached_property
     def kernel(self) -> SceneKernel:
-        """The derived kernels; of an exact motion, only when something other than omega and attitude is asked for."""
-        return self.first.kernel if self.first else scene_kernel(self.plan)
+        """The derived kernels."""
+        return self.load_kernel()
 
     @cached_property
-    def _timed(self) -> bool:
-        """Whether the time stands in the rates."""
-        return self.first._timed if self.first else self.kernel.rates.uses("t")
-
-    @property
-    def _on_clocks(self) -> bool:
+    def moves_clock(self) -> bool:
         """Whether the clock of the rates is moved along with the steps."""
-        return bool(self.movable or self.epoch) and self._timed
+        return self.allows_time_shift and self.kernel.rates.uses("t")
 
     @cached_property
-    def _rates_binding(self) -> Binding:
-        return self.first._rates_binding if self.first else Binding(self.kernel.rate_parameters, self.plan)
+    def rate_binding(self) -> Binding:
+        """The parameters of the rates, as numbers."""
+        return Binding(self.kernel.rate_parameters, self.plan, known={EPOCH: Fraction(self.epoch)})
 
     @cached_property
-    def _quantities_binding(self) -> Binding:
-        """The parameters of quantities, each as two doubles."""
-        if self.first:
-            return self.first._quantities_binding
+    def quantity_binding(self) -> Binding:
+        """The parameters of the quantities, each as two doubles."""
         return Binding(self.kernel.quantity_parameters, self.plan, two_doubles)
 
     @cached_property
-    def rate_parameters(self) -> list[float]:
-        return self._rates_binding(self.plan)
+    def python_rates(self) -> Callable[..., Any]:
+        """The emitted NumPy kernel as ``f(t, y, p)``."""
+        return python_rates(self.plan, self.kernel)
 
     @cached_property
-    def stepping(self) -> Task:
-        """The motion as its stepper in C follows it: checked once, followed as often as asked."""
-        assert self.library is not None
-        parameters = self.taylor_parameters if self.choice.method == "taylor" else self.rate_parameters
-        if self.first and not self._on_clocks:  # whose clock would be that of another start
-            return self.first.stepping.from_start(parameters, self.plan.initial_state)
-        start = (parameters, self.plan.initial_state, self.start)
-        if self.choice.method == "taylor":
-            return taylor.task(self.library, *start, self.tolerance)
-        clock = (lambda since: self._clock(since)) if self._on_clocks else None
-        return dop853.task(self.library, *start, self.tolerance, clock=clock)
+    def deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
+        """A function from parameters of the rates to the bounds that limit steps in Python; None without bounds."""
+        return formula_deviations(self.plan, self.kernel)
 
-    @cached_property
-    def _clock(self) -> dop853.Clock:
-        """The clock of the rates, once it is moved."""
-        return epoch.clock(self._moved, self.plan.constants, self.epoch)
-
-    def _moved(self) -> tuple[Plan, SceneKernel]:
+    def shifted(self) -> tuple[Plan, SceneKernel]:
         """Return plan and kernel on a clock that can be moved."""
-        return epoch.moved(self.plan, self.kernel)
+        is_shifted = self.plan.structure.clock is not None
+        return (self.plan, self.kernel) if is_shifted else time_shift.time_shifted(self.plan, self.kernel)
 
     @cached_property
-    def taylor_parameters(self) -> list[float]:
-        """Those of the rates, then those of the invariants."""
-        return [*self.rate_parameters, *self._quantities_binding(self.plan)]
+    def on_own_clock(self) -> "Setup":
+        """A copy on a clock that shows 0 at the start, see :mod:`symrot.propagation.time_shift`."""
+        plan, kernel = time_shift.time_shifted(self.plan, self.kernel)
+        return replace(self, plan=plan, start=0.0, epoch=self.start, load_kernel=lambda: kernel)
+
+
+@final
+class SteppedSetup:
+    """The part that motions stepped in C share: the setup, and the library of kernel and stepper."""
+
+    def __init__(self, setup: Setup, library: Path) -> None:
+        self.setup, self.library = setup, library
+
+    @cached_property
+    def integration(self) -> Integration:
+        """The integration from the start of the setup's plan, with its input checked."""
+        setup, plan = self.setup, self.setup.plan
+        parameters, state = setup.rate_binding(plan), plan.initial_state
+        if setup.choice.method == "dop853":
+            return dop853.integration(self.library, parameters, state, setup.start, setup.tolerance)
+        parameters = [*parameters, *setup.quantity_binding(plan)]
+        return taylor.integration(self.library, parameters, state, setup.start, setup.tolerance)
+
+    @cached_property
+    def on_own_clock(self) -> "SteppedSetup":
+        """A copy on a clock that shows 0 at the start."""
+        setup = self.setup.on_own_clock
+        if setup.plan is self.setup.plan:  # the rates do not depend on the time
+            return SteppedSetup(setup, self.library)
+        return _stepped_on_own_clock(setup)
+
+
+def _stepped_on_own_clock(setup: Setup) -> SteppedSetup:
+    if setup.choice.method == "taylor":
+        return SteppedSetup(setup, taylor_library(setup.plan, setup.kernel, setup.tolerance))
+    return SteppedSetup(setup, time_shift.compiled(setup.plan, setup.kernel))
+
+
+@final
+class ClosedFormSetup:
+    """The part that motions in closed form share: the setup, and the form."""
+
+    def __init__(self, setup: Setup, form: Form) -> None:
+        self.setup, self.form = setup, form
+
+    @cached_property
+    def starts(self) -> Starts:
+        """The closed form of the body and its torques, from an initial state to its motion."""
+        return self.form.starts(self.setup.plan.scene)
+
+
+# ------------------------------------------------------------------------------------------------ motions
+
+
+class Motion(ABC):
+    """A plan with its kernel, bound to numbers. Its clock shows 0 at the time ``epoch`` of the scene."""
+
+    def __init__(self, setup: Setup, plan: Plan) -> None:
+        self.setup, self.plan = setup, plan
+
+    @property
+    def choice(self) -> Choice:
+        """The method, and why."""
+        return self.setup.choice
+
+    @property
+    def tolerance(self) -> float:
+        """Error of the trajectory to aim for."""
+        return self.setup.tolerance
+
+    @property
+    def start(self) -> float:
+        """Initial time, s, on the clock of the motion."""
+        return self.setup.start
+
+    @property
+    def epoch(self) -> float:
+        """Time of the scene, s, at which the clock of the motion shows 0."""
+        return self.setup.epoch
+
+    @property
+    def kernel(self) -> SceneKernel:
+        """The derived kernels; of an exact motion, only needed for more than omega and attitude."""
+        return self.setup.kernel
+
+    @property
+    def rates(self) -> Callable[..., Any]:
+        """The emitted NumPy kernel as ``f(t, y, p)``."""
+        return self.setup.python_rates
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences about accuracy that cannot be guaranteed."""
+        return self.setup.warnings
+
+    @cached_property
+    def rate_parameters(self) -> list[float]:
+        """The parameters of the rates, from this start."""
+        try:
+            return self.setup.rate_binding(self.plan)
+        except OverflowError:
+            raise IntegrationStopped(self.start, NOT_FINITE_SENTENCE) from None
 
     @cached_property
     def _quantity_values(self) -> dict[str, float]:
         names = [name for name, _ in self.kernel.quantity_parameters]
-        return dict(zip(names, self._quantities_binding(self.plan)[::2], strict=True))
+        return dict(zip(names, self.setup.quantity_binding(self.plan)[::2], strict=True))
 
     def evaluate(self, t: Floats, states: Floats, names: Sequence[str]) -> Floats:
         """Return quantities of the kernel at states of shape (n, N), as an array of shape (n, len(names))."""
         columns = [name.removesuffix(" of t") for name in names]
-        if set(columns) <= set(self.plan.states):  # what is asked for is what was integrated
+        if set(columns) <= set(self.plan.states):  # every quantity is a state
             return states[:, [self.plan.states.index(name) for name in columns]]
         values: dict[str, Any] = {"t": t, **dict(zip(self.plan.states, states.T, strict=True)), **self._quantity_values}
-        found = self.kernel.quantities.evaluate(values, ARRAY_FUNCTIONS, float, names)
+        quantities = self.kernel.quantities.evaluate(values, ARRAY_FUNCTIONS, float, names)
         result = np.empty((len(t), len(names)))
         for index, name in enumerate(names):
-            result[:, index] = found[name]
+            result[:, index] = quantities[name]
         return result
 
     @cached_property
@@ -187,210 +269,322 @@ class Motion:
         output = next(item.output for item in self.kernel.conserved if item.name == name)
         return float(self.evaluate(*self._initial, [output])[0, 0])
 
-    def on_clock(self, times: Floats) -> "Motion":
-        """Return the motion on the clock that suits such times: this one, or one that shows 0 at the start."""
-        if not (self.start and self.movable and len(times) and self.choice.method.partition(":")[0] in STEPPED):
-            return self
-        return self._on_own_clock if epoch.far(self.start, float(times.min()), float(times.max())) else self
+    @abstractmethod
+    def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats | tuple[Floats, ...], Stats]:
+        """Return the states at the times, shape (n, N), and their cost.
 
-    @cached_property
-    def _on_own_clock(self) -> "Motion":
-        return self.first._on_own_clock.from_start(self.plan.scene.initial) if self.first else _OnOwnClock(self)
+        An exact motion returns angular velocity and attitude in an array each. ``in_order`` says that the times are
+        finite and never fall.
+        """
 
-    def integrate(self, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times, shape (n, N), and what it cost; ``rise``: they are known to be in order."""
-        motion = self.on_clock(times) if self.start else self
-        if motion is not self:
-            try:
-                return motion.integrate(times - motion.epoch, rise)
-            except CutOff as error:
-                raise error.later(motion.epoch) from None
-        return INTEGRATORS[self.choice.method.partition(":")[0]](self, times, rise)
+    @abstractmethod
+    def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
+        """Return the states as a function of time."""
 
-    def follow(self, times: Floats, rise: bool = False) -> tuple[Floats | tuple[Floats, ...], Stats]:
-        """Return as :meth:`integrate`, but of an exact motion angular velocity and attitude in an array each."""
-        return _exact_parts(self, times, rise) if self.choice.method == "exact" else self.integrate(times, rise)
-
-    @cached_property
-    def rates(self) -> Callable[..., Any]:
-        """The emitted NumPy kernel as ``f(t, y, p)``."""
-        return self.first.rates if self.first else python_rates(self.plan, self.kernel)
-
-    @cached_property
-    def _python_clock(self) -> Callable[[float], Any]:
-        """The clock of :attr:`rates`, once it is moved."""
-        return epoch.clock(self._moved, self.plan.constants, self.epoch, python_rates)
-
-    @cached_property
-    def exact(self) -> Exact:
-        """The motion in closed form."""
-        return self._starts(self.plan.scene.initial)
-
-    @cached_property
-    def _starts(self) -> Callable[[Initial], Exact]:
-        """The closed form of the body and its torques, with all that its starts share."""
-        return self.first._starts if self.first else self.form.starts(self.plan.scene)
+    def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
+        """Return the states at the times in one array, shape (n, N), and their cost; see :meth:`follow`."""
+        states, stats = self.follow(times, in_order)
+        return np.concatenate(states, axis=1) if isinstance(states, tuple) else states, stats
 
     def solution(self, times: Floats, with_attitude: bool) -> Callable[[ArrayLike], Floats]:
-        """Return omega, and the quaternion if asked for, as a function of time from the start over all the times."""
+        """Return omega, and perhaps the quaternion, as a function of time from the start over all the times."""
         span = (
             (min(self.start, float(times.min())), max(self.start, float(times.max())))
             if len(times)
             else (self.start,) * 2
         )
-        motion = self.on_clock(np.array(span))
+        motion = on_clock(self, np.array(span))
         zero = motion.epoch
-        states = motion.dense((span[0] - zero, span[1] - zero))
+        try:
+            states = motion.dense((span[0] - zero, span[1] - zero))
+        except IntegrationStopped as error:
+            raise (error.later(zero) if zero else error) from None
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if with_attitude else []
 
         def at(t: ArrayLike) -> Floats:
-            wanted = np.asarray(t, dtype=float)
-            flat = np.atleast_1d(wanted).ravel()
-            found = self.evaluate(flat, states(flat - zero if zero else flat), names).T
-            return found.reshape(len(names), *wanted.shape)
+            instants = np.asarray(t, dtype=float)
+            flat = np.atleast_1d(instants).ravel()
+            values = self.evaluate(flat, states(flat - zero if zero else flat), names).T
+            return values.reshape(len(names), *instants.shape)
 
         return at
 
+
+class RestartableMotion(Motion):
+    """A motion that can begin from another initial state of the same structure, with nothing looked up or derived.
+
+    Starts have the same structure if they have the same :func:`symrot.planning.plan.structure_key`.
+    """
+
+    @abstractmethod
+    def from_start(self, initial: Initial) -> "RestartableMotion":
+        """Return the motion from another initial state of the same structure."""
+
+
+class SteppedInC(ABC):
+    """The interface of motions that a stepper in C follows."""
+
+    @property
+    @abstractmethod
+    def stepping(self) -> Integration:
+        """The integration of the motion: its input is checked once, then it can be sampled any number of times."""
+
+
+class ShiftableMotion(RestartableMotion):
+    """A motion that is stepped, on the clock of the scene or on one that shows 0 at the start."""
+
+    @property
+    @abstractmethod
+    def on_own_clock(self) -> "ShiftableMotion":
+        """The motion on a clock that shows 0 at the start."""
+
+    @abstractmethod
+    def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
+        """Return the states at times on the clock of the motion, shape (n, N), and their cost."""
+
+    def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
+        """Return the states at the times, stepped on the clock that suits these times, and their cost."""
+        if not self._shifts(times):
+            return self.steps(times, in_order)
+        motion = self.on_own_clock
+        try:
+            return motion.steps(times - motion.epoch, in_order)
+        except IntegrationStopped as error:
+            raise error.later(motion.epoch) from None
+
+    def _shifts(self, times: Floats) -> bool:
+        """Return whether another clock suits such times better."""
+        if not (self.start and self.setup.allows_time_shift and len(times)):
+            return False
+        return time_shift.starts_far(self.start, float(times.min()), float(times.max()))
+
+
+def on_clock(motion: Motion, times: Floats) -> Motion:
+    """Return a motion on the clock that suits such times: its own, or one that shows 0 at the start."""
+    return motion.on_own_clock if isinstance(motion, ShiftableMotion) and motion._shifts(times) else motion
+
+
+@final
+class ConstantMotion(RestartableMotion):
+    """A motion whose plan leaves no state to integrate."""
+
+    def from_start(self, initial: Initial) -> "ConstantMotion":
+        """Return the motion from another initial state of the same structure."""
+        return ConstantMotion(self.setup, self.setup.plan.from_start(initial))
+
+    def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
+        """Return an empty array, shape (n, 0): no state is integrated."""
+        return np.empty((len(times), 0)), Stats(0, 0, 0, 0.0)
+
+    def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
+        """Return a function from times to empty arrays: no state is integrated."""
+        return lambda t: np.empty((len(t), 0))
+
+
+@final
+class ClosedFormMotion(RestartableMotion):
+    """A motion in closed form, which is evaluated at each time independently."""
+
+    def __init__(self, shared: ClosedFormSetup, plan: Plan) -> None:
+        super().__init__(shared.setup, plan)
+        self._shared = shared
+
+    def from_start(self, initial: Initial) -> "ClosedFormMotion":
+        """Return the motion from another initial state of the same structure."""
+        return ClosedFormMotion(self._shared, self.setup.plan.from_start(initial))
+
+    @property
+    def form(self) -> Form:
+        """The class of motions in closed form that this one belongs to."""
+        return self._shared.form
+
+    @cached_property
+    def exact(self) -> Exact:
+        """The motion in closed form."""
+        return self._shared.starts(self.plan.scene.initial)
+
+    def follow(self, times: Floats, in_order: bool = False) -> tuple[tuple[Floats, ...], Stats]:
+        """Return angular velocity and, if it is computed, attitude at the times, in an array each."""
+        attitude, exact = self.plan.structure.attitude, self.exact
+        began, start = perf_counter(), self.start
+        omega, quaternion = exact.evaluate(times - start if start else times, quaternion=attitude)
+        assert omega is not None
+        if not (in_order and len(times) and times.item(0) > start):  # exactly, as with every other method
+            at_start: Any
+            if not in_order:
+                at_start = times == start
+            elif len(times) > 1 and times.item(0) == start < times.item(1):
+                at_start = 0
+            else:
+                at_start = slice(times.searchsorted(start, "left"), times.searchsorted(start, "right"))
+            omega[at_start] = self.plan.initial_state[:3]
+            if quaternion is not None:
+                quaternion[at_start] = self.plan.initial_state[3:]
+        return (omega,) if quaternion is None else (omega, quaternion), Stats(0, 0, 0, perf_counter() - began)
+
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
         """Return the states as a function of time."""
-        if self.choice.method == "constant":
-            return lambda t: np.empty((len(t), 0))
-        if self.choice.method == "exact":
-            return lambda t: _exact(self, t)[0]
-        start = (self.rate_parameters, self.plan.initial_state, self.start)
-        if self.library is not None:
-            recording: Recording = self.stepping.again().record(span)
-        else:
-            from symrot.propagation.steppers import fallback
+        return lambda t: self.integrate(t)[0]
 
-            recording = fallback.record(self.rates, *start, span, self.tolerance, **self.scipy_options)
+
+@final
+class SteppedMotion(ShiftableMotion, SteppedInC):
+    """A motion that a stepper in C follows, by Taylor series or by Dormand and Prince's method."""
+
+    def __init__(self, shared: SteppedSetup, plan: Plan) -> None:
+        super().__init__(shared.setup, plan)
+        self._shared = shared
+
+    def from_start(self, initial: Initial) -> "SteppedMotion":
+        """Return the motion from another initial state of the same structure."""
+        return SteppedMotion(self._shared, self.setup.plan.from_start(initial))
+
+    @property
+    def library(self) -> Path:
+        """The compiled library of kernel and stepper."""
+        return self._shared.library
+
+    @cached_property
+    def on_own_clock(self) -> "SteppedMotion":
+        """The motion on a clock that shows 0 at the start."""
+        shared = self._shared.on_own_clock
+        return SteppedMotion(shared, shared.setup.plan.from_start(self.plan.scene.initial))
+
+    @cached_property
+    def taylor_parameters(self) -> list[float]:
+        """The parameters of the rates, then those of the invariants."""
+        return [*self.rate_parameters, *self.setup.quantity_binding(self.plan)]
+
+    @cached_property
+    def stepping(self) -> Integration:
+        """The integration of the motion."""
+        state = self.plan.initial_state
+        if self.choice.method == "taylor":  # which holds the time in two parts and moves no clock
+            parameters = self.taylor_parameters
+            return self._shared.integration.from_start(parameters, state)
+        parameters = self.rate_parameters
+        if not self.setup.moves_clock:
+            return self._shared.integration.from_start(parameters, state)
+        start = (self.library, parameters, state, self.start, self.tolerance)
+        return dop853.integration(*start, clock=lambda since: self._clock(since))
+
+    @cached_property
+    def _clock(self) -> dop853.Clock:
+        """The clock of the rates, once it is moved."""
+        return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch)
+
+    def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
+        """Return the states at times on the clock of the motion, shape (n, N), and their cost."""
+        return self.stepping.sample_sorted(times, in_order)
+
+    def dense(self, span: tuple[float, float]) -> Recording:
+        """Return the states as a function of time."""
+        recording = self.stepping.restarted().record(span)
         recording.epoch = self.epoch
         return recording
 
-    def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
-        """Return what steps in Python are held to, for parameters of the rates; derived when first asked for."""
-        if self._deviations is None:
-            return None
-        names = [name for name, _ in self.kernel.rate_parameters]
-        return self._deviations(dict(zip(names, parameters, strict=True)))
+
+@final
+class SciPyMotion(ShiftableMotion):
+    """A motion that one of SciPy's methods follows."""
+
+    def from_start(self, initial: Initial) -> "SciPyMotion":
+        """Return the motion from another initial state of the same structure."""
+        return SciPyMotion(self.setup, self.setup.plan.from_start(initial))
 
     @cached_property
-    def _deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
-        return self.first._deviations if self.first else formula_deviations(self.plan, self.kernel)
+    def on_own_clock(self) -> "SciPyMotion":
+        """The motion on a clock that shows 0 at the start."""
+        setup = self.setup.on_own_clock
+        return SciPyMotion(setup, setup.plan.from_start(self.plan.scene.initial))
 
-    @property
-    def scipy_options(self) -> dict[str, Any]:
-        """How the fallback judges errors, and by which of SciPy's methods it steps."""
-        return self.scipy_options_for(self.rate_parameters)
+    @cached_property
+    def _clock(self) -> Callable[[float], Any]:
+        """The clock of :attr:`rates`, once it is moved."""
+        return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch, python_rates)
 
-    def scipy_options_for(self, parameters: Sequence[float]) -> dict[str, Any]:
-        """Return the options of the fallback for parameters of the rates."""
+    def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
+        """Return the bounds that limit steps in Python, for parameters of the rates."""
+        if self.setup.deviations is None:
+            return None
+        names = [name for name, _ in self.kernel.rate_parameters]
+        return self.setup.deviations(dict(zip(names, parameters, strict=True)))
+
+    def options(self, parameters: Sequence[float]) -> "Options":
+        """Return how SciPy steps the motion and judges errors, for parameters of the rates."""
+        from symrot.propagation.steppers.fallback import Options
+
         blocks, scales = error_blocks(self.plan)
-        solver = self.choice.method.partition(":")[2]
-        named = {"method": solver} if solver else {}
-        limits = {"deviations": self.deviations(parameters), "clock": self._python_clock if self._on_clocks else None}
-        return {"blocks": blocks, "scales": scales, **limits, **named}
+        clock = self._clock if self.setup.moves_clock else None
+        deviations = self.deviations(parameters)
+        return Options(self.choice.method, blocks, scales, deviations=deviations, clock=clock)
+
+    def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
+        """Return the states at times on the clock of the motion, shape (n, N), and their cost."""
+        from symrot.propagation.steppers import fallback
+
+        start = (self.rate_parameters, self.plan.initial_state, self.start)
+        return fallback.integrate(self.rates, *start, times, self.tolerance, self.options(self.rate_parameters))
+
+    def dense(self, span: tuple[float, float]) -> Recording:
+        """Return the states as a function of time."""
+        from symrot.propagation.steppers import fallback
+
+        start = (self.rate_parameters, self.plan.initial_state, self.start)
+        recording = fallback.record(self.rates, *start, span, self.tolerance, self.options(self.rate_parameters))
+        recording.epoch = self.epoch
+        return recording
 
 
 class MotionInParts(Motion):
     """A motion that is smooth from one switch of its torques to the next."""
 
-    switched = True
-
+    @abstractmethod
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to an end as polynomials and at any time; what cut it off in ``broken``."""
-        raise NotImplementedError
+        """Return the motion from its start to an end as polynomials and at any time, an early end in ``broken``."""
 
 
-def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> Motion:
-    """Return the motion of a plan on a clock that shows 0 at its start; its rates may take another epoch each time.
+# ------------------------------------------------------------------------------------------------ from plans to motions
 
-    Where no time stands in the rates, there is but one clock.
+
+def make_motion(plan: Plan, choice: Choice, tolerance: float) -> RestartableMotion:
+    """Return the motion of a plan by the chosen method, from the start of the plan's scene."""
+    if choice.form is not None:
+        choice.form.begin()
+        plan = with_full_state(plan, choice.form)
+        return ClosedFormMotion(ClosedFormSetup(_setup(plan, choice, tolerance), choice.form), plan)
+    if choice.method in ("taylor", "dop853"):
+        return stepped_motion(plan, choice, tolerance)
+    setup = _setup(plan, choice, tolerance)
+    return ConstantMotion(setup, plan) if choice.method == "constant" else SciPyMotion(setup, plan)
+
+
+def _setup(plan: Plan, choice: Choice, tolerance: float) -> Setup:
+    return Setup(plan, choice, tolerance, float(plan.scene.span.start), lambda: scene_kernel(plan))
+
+
+def stepped_motion(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion:
+    """Return the motion of a plan by a stepper in C."""
+    if choice.method == "taylor":
+        kernel = scene_kernel(plan)
+        library = taylor_library(plan, kernel, tolerance)
+    else:
+        kernel, library = compiled(plan)
+    setup = Setup(plan, choice, tolerance, float(plan.scene.span.start), lambda: kernel)
+    return SteppedMotion(SteppedSetup(setup, library), plan)
+
+
+def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion | SciPyMotion:
+    """Return the stepped motion of a plan on a clock that shows 0 at its start; its rates may take any epoch.
+
+    If the rates do not depend on the time, the clock of the scene is used.
     """
-    motion: Motion = object.__new__(Motion)
-    motion.plan, motion.choice, motion.tolerance, motion.library = plan, choice, tolerance, None
-    motion.start = float(plan.scene.span.start)
-    return _OnOwnClock(motion) if motion.kernel.rates.uses("t") else Motion(plan, choice, tolerance)
-
-
-class _OnOwnClock(Motion):
-    """A motion on a clock that shows 0 at its start, see :mod:`symrot.propagation.time_shift`."""
-
-    movable, restarts = False, True
-
-    def __init__(self, motion: Motion) -> None:
-        self.choice, self.tolerance, self.library = motion.choice, motion.tolerance, motion.library
-        self.epoch, self.start = motion.start, 0.0
-        self.plan, self.kernel = epoch.moved(motion.plan, motion.kernel)
-        if self.plan is motion.plan:  # no time stands in the rates
-            return
-        if self.choice.method == "taylor":
-            self.library = taylor_library(self.plan, self.kernel, self.tolerance)
-        elif self.choice.method == "dop853":
-            self.library = epoch.compiled(self.plan, self.kernel)
-
-    @cached_property
-    def _rates_binding(self) -> Binding:
-        if self.first:
-            return self.first._rates_binding
-        return Binding(self.kernel.rate_parameters, self.plan, known={EPOCH: Fraction(self.epoch)})
-
-    @cached_property
-    def rate_parameters(self) -> list[float]:
-        try:
-            return self._rates_binding(self.plan)
-        except OverflowError:
-            raise CutOff(self.epoch, NOT_FINITE_SENTENCE) from None
-
-    def _moved(self) -> tuple[Plan, SceneKernel]:
-        return self.plan, self.kernel
-
-
-def _keep(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
-    return np.empty((len(times), 0)), Stats(0, 0, 0, 0.0)
-
-
-def _stepped(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
-    return motion.stepping.once(times, rise)
-
-
-def _exact_parts(motion: Motion, times: Floats, rise: bool) -> tuple[tuple[Floats, ...], Stats]:
-    attitude, exact = motion.plan.structure.attitude, motion.exact
-    began, start = perf_counter(), motion.start
-    omega, quaternion = exact.evaluate(times - start if start else times, quaternion=attitude)
-    assert omega is not None
-    if not (rise and len(times) and times.item(0) > start):  # to the last bit, as every method has it
-        at_start: Any
-        if not rise:
-            at_start = times == start
-        elif len(times) > 1 and times.item(0) == start < times.item(1):
-            at_start = 0
-        else:
-            at_start = slice(times.searchsorted(start, "left"), times.searchsorted(start, "right"))
-        omega[at_start] = motion.plan.initial_state[:3]
-        if quaternion is not None:
-            quaternion[at_start] = motion.plan.initial_state[3:]
-    return (omega,) if quaternion is None else (omega, quaternion), Stats(0, 0, 0, perf_counter() - began)
-
-
-def _exact(motion: Motion, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
-    parts, stats = _exact_parts(motion, times, rise)
-    return np.concatenate(parts, axis=1), stats
-
-
-def _scipy(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
-    from symrot.propagation.steppers import fallback
-
-    start = (motion.rate_parameters, motion.plan.initial_state, motion.start)
-    return fallback.integrate(motion.rates, *start, times, motion.tolerance, **motion.scipy_options)
-
-
-STEPPED = ("taylor", "dop853", "scipy")
-INTEGRATORS: dict[str, Callable[[Motion, Floats, bool], tuple[Floats, Stats]]] = {
-    "constant": _keep,
-    "exact": _exact,
-    "taylor": _stepped,
-    "dop853": _stepped,
-    "scipy": _scipy,
-}
+    setup = _setup(plan, choice, tolerance)
+    timed, steps_in_c = setup.kernel.rates.uses("t"), choice.method in ("taylor", "dop853")
+    if not timed:
+        return stepped_motion(plan, choice, tolerance) if steps_in_c else SciPyMotion(setup, plan)
+    setup = setup.on_own_clock
+    if steps_in_c:
+        return SteppedMotion(_stepped_on_own_clock(setup), setup.plan)
+    return SciPyMotion(setup, setup.plan)

@@ -1,4 +1,4 @@
-"""Tell how far a long motion has come, to whoever asked: a command line that shows it, or nobody."""
+"""Report how far a long motion has come, to a reporter such as a command line, if there is one."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -7,14 +7,14 @@ from contextvars import ContextVar
 __all__ = ["report", "reporting", "within"]
 
 Reporter = Callable[[float, float, float], object]
-"""Gets the time reached, the start and the end, s, every few hundredths of a second."""
+"""Takes the time reached, the start and the end, s; it is called every few hundredths of a second."""
 
 _whole: ContextVar[tuple[float, float, Callable[[], float]] | None] = ContextVar("whole", default=None)
 _reporter: ContextVar[Reporter | None] = ContextVar("reporter", default=None)
 
 
 def report(t: float, start: float, stop: float) -> None:
-    """Tell the reporter, if there is one; of a motion that is part of another one, by the span of the whole."""
+    """Call the reporter, if there is one; for a part of a motion, with the span of the whole motion."""
     reporter = _reporter.get()
     if reporter is not None:
         whole = _whole.get()
@@ -28,7 +28,7 @@ def report(t: float, start: float, stop: float) -> None:
 def within(start: float, stop: float, zero: Callable[[], float] = lambda: 0.0) -> Iterator[None]:
     """Have motions report how far they have come on the way from ``start`` to ``stop``, s, of which they are parts.
 
-    ``zero`` returns what the clock of the whole shows where that of the part shows 0.
+    ``zero`` returns the time on the clock of the whole at which the clock of the part shows 0.
     """
     token = _whole.set(_whole.get() or (start, stop, zero))
     try:

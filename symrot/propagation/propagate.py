@@ -1,4 +1,4 @@
-"""From a scene to its propagator: which kind of motion it is, and which options it takes."""
+"""From a scene to its propagator: the kind of its motion, and the options that this kind takes."""
 
 from math import inf
 from pathlib import Path
@@ -46,26 +46,42 @@ def propagator(
         *user)``, which returns 0, with ``user`` null; or a table (times, samples of shape (n, 3)), which is
         interpolated by cubic splines between the switching times. The method is then ``dop853``.
     switching_times : array, optional
-        Times, s, at which that torque jumps: the motion is stepped exactly to each and started anew. A function is
-        asked just inside them; a table has two samples at each, before and after the jump.
+        Times, s, at which that torque jumps: the motion is stepped exactly to each and restarted. A function is
+        called just inside them; a table has two samples at each, before and after the jump.
     torque_frame : str
-        ``"body"`` or ``"space"``: whose components that torque has.
+        ``"body"`` or ``"space"``: the axes of the components of that torque.
     state : str
         ``"quaternion"``, or an Euler sequence such as ``"ZXZ"`` to step its angles instead, for teaching; see
         :mod:`symrot.propagation.euler_state`.
     switching : bool
-        Whether such angles are exchanged for those of a regular sequence before they reach gimbal lock; ``stats``
+        Whether the motion changes to angles of a regular sequence before such angles reach gimbal lock; ``stats``
         counts how often.
     max_step : float
-        Longest step, s, under such a torque: shorter than its narrowest feature. Formulas need none, and tables have
-        that of their samples.
+        Longest step, s, under that torque: shorter than its narrowest feature. Formulas need no such limit; the
+        limit of a table follows from its samples.
+
+    Returns
+    -------
+    Propagator
+        Call it with times, s, as often as needed.
 
     Raises
     ------
     InputError
         For a scene or an option that cannot be used.
     CompilerError
-        If ``dop853`` is asked for and there is no compiler, or the compiler refuses the kernel.
+        If the method needs a compiler and there is none, or the compiler refuses the kernel.
+
+    Notes
+    -----
+    Convention: :mod:`symrot.conventions`. Source: ``docs/step_control.md`` says how errors are controlled.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> propagator = symrot.propagator("t_handle")
+    >>> propagator([0.0, 1.0, 2.0]).omega.shape
+    (3, 3)
     """
     if not isinstance(scene, Scene):
         scene = load_scene(scene)
@@ -99,11 +115,11 @@ def propagator(
         raise InputError(f"method: expected 'auto' or 'dop853' for a torque that is no formula, got {method!r}")
     if switched(scene):
         raise InputError(
-            f"torque: expected none beside formulas that jump or bend (abs, sign, ..), got {number.show(torque)}"
+            f"torque: expected none besides formulas that jump or bend (abs, sign, ..), got {number.show(torque)}"
         )
-    from symrot.propagation.external_torque import DrivenPropagator
+    from symrot.propagation.external_torque import ExternallyDrivenPropagator
 
-    return DrivenPropagator(scene, aim, torque, switching_times, torque_frame, _longest_step(max_step))
+    return ExternallyDrivenPropagator(scene, aim, torque, switching_times, torque_frame, _longest_step(max_step))
 
 
 def _longest_step(max_step: float) -> float:
@@ -117,14 +133,50 @@ def _tolerance(tolerance: float) -> float:
     from symrot.scene.scene import TOLERANCES
 
     low, high = TOLERANCES
-    found = float(number.read(tolerance, "tolerance"))
-    if not float(low) <= found <= float(high):  # as doubles: 0.01 is above 1/100
+    value = float(number.read(tolerance, "tolerance"))
+    if not float(low) <= value <= float(high):  # as doubles: 0.01 is above 1/100
         raise InputError(f"tolerance: expected a number from {float(low):g} to {float(high):g}, got {tolerance}")
-    return found
+    return value
 
 
 def propagate(
     scene: Scene | str | Path, method: str = "auto", tolerance: float | None = None, events: Any = None
 ) -> Trajectory:
-    """Return the motion of a scene at its own sample times; see :func:`propagator` and :class:`Propagator`."""
+    """Return the motion of a scene at its own sample times.
+
+    Parameters
+    ----------
+    scene : Scene, str or Path
+        A scene, the name of a shipped scene, or the path of a scene file.
+    method : str
+        As for :func:`propagator`.
+    tolerance : float, optional
+        Error of the trajectory to aim for; default: the scene's own.
+    events : sequence, optional
+        Formulas whose zeros are located, as for :class:`Propagator`: ``["omega_3 == 0"]``.
+
+    Returns
+    -------
+    Trajectory
+        Angular velocity in rad/s, body components; attitude as unit quaternions, body to space.
+
+    Raises
+    ------
+    InputError
+        For a scene or an option that cannot be used.
+    PropagationError
+        If the motion cannot be propagated to its last time; its ``trajectory`` holds the samples before.
+    CompilerError
+        If the method needs a compiler and there is none.
+
+    Notes
+    -----
+    Convention: :mod:`symrot.conventions`.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.propagate("t_handle", events=["omega_3 == 0"]).t_events[0][:2].round(8).tolist()
+    [1.18541555, 3.55624666]
+    """
     return propagator(scene, method, tolerance)(events=events)

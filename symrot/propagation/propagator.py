@@ -1,4 +1,4 @@
-"""Propagate a scene: choose a method, bind the kernel to numbers once, then propagate as often as asked."""
+"""Propagate a scene: choose a method, bind the kernel to numbers once, then propagate any number of times."""
 
 from fractions import Fraction
 from functools import cached_property
@@ -14,10 +14,10 @@ from symrot.formula import exact_numbers as number
 from symrot.planning.plan import Plan, make_plan, structure_key
 from symrot.planning.scene_kernel import SceneKernel
 from symrot.propagation.method import choose_method
-from symrot.propagation.motion import Motion
+from symrot.propagation.motion import ClosedFormMotion, Motion, RestartableMotion, make_motion
 from symrot.propagation.real_array import real_array
-from symrot.propagation.steppers.cut_off import Samples
-from symrot.propagation.steppers.stepping import Stats, rising
+from symrot.propagation.steppers.integration_stopped import Samples
+from symrot.propagation.steppers.stepping import Stats, is_sorted
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene.scene import Initial, Scene
 
@@ -32,48 +32,61 @@ Floats = NDArray[np.float64]
 class Propagator:
     """Propagates one scene; made by :func:`symrot.propagator`.
 
-    Derivation, compilation and binding are done when it is made; a call does the motion and nothing else.
+    Derivation, compilation and binding are done when it is made; a call only computes the motion.
+
+    Attributes
+    ----------
+    scene : Scene
+    tolerance : float
+        Error of the trajectory to aim for.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> propagator = symrot.propagator("t_handle")
+    >>> propagator([0.0, 0.5], omega=[0.0, 2.0, 0.1]).omega[0].tolist()
+    [0.0, 2.0, 0.1]
     """
 
     def __init__(self, scene: Scene, method: str, tolerance: float) -> None:
         self.scene, self.tolerance, self._method = scene, tolerance, method
         self._motion = self._prepare(self._planned())
-        self._by_structure = {structure_key(scene, scene.initial): self._motion}
+        self._by_structure = {structure_key(scene, scene.initial): self._motion}  # the first start of each
 
     def _planned(self, initial: Initial | None = None) -> Plan:
         return make_plan(self.scene, initial)
 
     def _prepare(self, plan: Plan) -> Motion:
-        return Motion(plan, choose_method(plan, self._method), self.tolerance)
+        return make_motion(plan, choose_method(plan, self._method), self.tolerance)
 
     def motion_from(self, initial: Initial) -> Motion:
         """Return the motion from another initial state.
 
-        The first start of each structure is planned and prepared as a new scene would be. The others take over all but
-        the numbers of the start.
+        The first start of each structure is planned and prepared like a new scene. Later starts change only the numbers
+        that depend on the start.
         """
-        if not vars(type(self._motion)).get("restarts"):
+        if not isinstance(self._motion, RestartableMotion):
             return self._prepare(self._planned(initial))
         key = structure_key(self.scene, initial)
         first = self._by_structure.get(key)
-        if first is None:
-            first = self._by_structure[key] = self._prepare(self._planned(initial))
-            return first
-        return first.from_start(initial)
+        if isinstance(first, RestartableMotion):
+            return first.from_start(initial)
+        motion = self._by_structure[key] = self._prepare(self._planned(initial))
+        return motion
 
     @property
     def plan(self) -> Plan:
-        """What is computed, what is skipped."""
+        """The plan: the parts of the motion that are computed or skipped."""
         return self._motion.plan
 
     @property
     def method(self) -> str:
-        """The method that is used."""
+        """The name of the method."""
         return self._motion.choice.method
 
     @property
     def reason(self) -> str:
-        """Why that method."""
+        """The reason for the method."""
         return self._motion.choice.reason
 
     @property
@@ -82,9 +95,9 @@ class Propagator:
         return self._motion.kernel
 
     def prepare(self) -> None:
-        """Do now what otherwise waits for the first use: derive what an exact motion keeps while its form compiles."""
+        """Do now the work of the first use: derive the kernel of an exact motion while its form compiles."""
         self._motion.kernel  # noqa: B018
-        if self.method == "exact":
+        if isinstance(self._motion, ClosedFormMotion):
             self._motion.exact  # noqa: B018
 
     @cached_property
@@ -112,7 +125,7 @@ class Propagator:
         quaternion : array, shape (4,), optional
             Another initial attitude, scalar first; it is normalised.
         events : sequence, optional
-            Formulas whose zeros are sought: text, :class:`symrot.propagation.events.events.Event` or mappings with its
+            Formulas whose zeros are located: text, :class:`symrot.propagation.events.events.Event` or mappings with its
             fields; see ``t_events`` of the trajectory. Samples end with one at a terminal event.
 
         Raises
@@ -123,31 +136,31 @@ class Propagator:
             If the motion cannot be followed to the last time; its ``trajectory`` holds the samples before.
         """
         times = self.sample_times if t is None else _times(t)
-        rise = _in_order(times)
+        in_order = _in_order(times)
         motion = self._motion
         if omega is not None or quaternion is not None:
             motion = self.motion_from(read_start(self.scene, omega, quaternion))
         message, began = f"{motion.choice.method}: {motion.choice.reason}", perf_counter()
         try:
             if events is not None:
-                from symrot.propagation.events.eventful import follow
+                from symrot.propagation.events.event_result import integrate_with_events
                 from symrot.propagation.events.events import read_events
 
-                found = follow(motion, times, read_events(events))
-                return Trajectory(motion, found.t, found.states, motion.choice.method, found.stats, message, found)
-            states, stats = motion.follow(times, rise)
+                result = integrate_with_events(motion, times, read_events(events))
+                return Trajectory(motion, result.t, result.states, motion.choice.method, result.stats, message, result)
+            states, stats = motion.follow(times, in_order)
         except (PropagationError, KeyboardInterrupt) as error:
-            raise self._cut_off(error, motion, times, began) from None
+            raise self._with_samples(error, motion, times, began) from None
         return Trajectory(motion, times, states, motion.choice.method, stats, message)
 
-    def _cut_off(self, error: BaseException, motion: Motion, times: Floats, began: float) -> BaseException:
-        """Return what ends a motion early, with the trajectory of the samples before."""
+    def _with_samples(self, error: BaseException, motion: Motion, times: Floats, began: float) -> BaseException:
+        """Return the exception that ends a motion early, with the trajectory of the samples before."""
         samples: Samples | None = getattr(error, "samples", None)
         ended: BaseException = error
         if isinstance(error, PropagationError):
             ended = PropagationError(f"{self.scene.name}: {error}")
         if samples is not None:
-            numbers = np.argsort(samples.numbers)  # as they were asked for
+            numbers = np.argsort(samples.numbers)  # in the order of the requested times
             states, stats = samples.states[numbers], Stats(*samples.cost, perf_counter() - began)
             message = str(ended) or "interrupted"
             part = Trajectory(motion, times[samples.numbers[numbers]], states, motion.choice.method, stats, message)
@@ -164,10 +177,10 @@ def _times(t: ArrayLike) -> Floats:
 
 
 def _in_order(times: Floats) -> bool:
-    """Return whether times never fall; refuse those that are not finite: of times in order, the ends tell."""
+    """Return whether times never fall; raise InputError unless they are finite (of sorted times, the ends tell)."""
     if not len(times):
         return True
-    if isfinite(times.item(0)) and isfinite(times.item(-1)) and rising(times):
+    if isfinite(times.item(0)) and isfinite(times.item(-1)) and is_sorted(times):
         return True
     if not np.isfinite(times).all():
         raise InputError(f"t: expected finite times in s, got {times[~np.isfinite(times)][0]}")
@@ -176,28 +189,28 @@ def _in_order(times: Floats) -> bool:
 
 def _vector(values: ArrayLike, size: int, name: str, unit: str) -> list[float]:
     array = real_array(values, name, f"{size} numbers in {unit}")
-    found: list[float] = array.tolist()
-    if array.shape != (size,) or not all(map(isfinite, found)):
-        raise InputError(f"{name}: expected {size} finite numbers in {unit}, got {number.show(found)}")
-    return found
+    numbers: list[float] = array.tolist()
+    if array.shape != (size,) or not all(map(isfinite, numbers)):
+        raise InputError(f"{name}: expected {size} finite numbers in {unit}, got {number.show(numbers)}")
+    return numbers
 
 
 def _exact(value: float, name: str) -> Fraction:
-    """Return the exact value of a finite double; one below all normal doubles is refused as a scene's is."""
+    """Return the exact value of a finite double; a subnormal double is an InputError, as in a scene."""
     return _lowest(*value.as_integer_ratio()) if abs(value) >= SMALLEST or not value else number.read(value, name)
 
 
 def _lowest(top: int, bottom: int) -> Fraction:
-    """Return a fraction in lowest terms, whose greatest common divisor need not be sought."""
-    found: Any = object.__new__(Fraction)
-    found._numerator, found._denominator = top, bottom  # as Fraction._from_coprime_ints of Python 3.12 does
-    return found  # type: ignore[no-any-return]
+    """Return a fraction of numbers without a common divisor, which is not searched for."""
+    fraction: Any = object.__new__(Fraction)
+    fraction._numerator, fraction._denominator = top, bottom  # as Fraction._from_coprime_ints of Python 3.12 does
+    return fraction  # type: ignore[no-any-return]
 
 
 def _unit(q: list[float]) -> tuple[Fraction, ...]:
-    """Return :func:`symrot.formula.exact_numbers.unit` of doubles, to 2^-320 as well, in half the time.
+    """Return :func:`symrot.formula.exact_numbers.unit` of doubles, with the same accuracy of 2^-320, in half the time.
 
-    All is over powers of two.
+    All denominators are powers of two.
     """
     ratios = [x.as_integer_ratio() for x in q]
     shared = max([bottom for _, bottom in ratios])  # all are powers of two
@@ -207,20 +220,20 @@ def _unit(q: list[float]) -> tuple[Fraction, ...]:
     if norm * norm == square:
         return number.unit(q)
     shift = max(0, _UNIT_BITS - square.bit_length() // 2)
-    norm, found = isqrt(square << 2 * shift), []
+    norm, components = isqrt(square << 2 * shift), []
     length = _UNIT_BITS + norm.bit_length()
     for x in tops:
         bits = length - x.bit_length()
         if bits > shift and x:
             # odd, so that nothing cancels: the last of some 322 bits may be either
-            found.append(_lowest((x << bits) // norm | 1, 1 << bits - shift))
+            components.append(_lowest((x << bits) // norm | 1, 1 << bits - shift))
         else:
-            found.append(Fraction((x << bits) // norm >> bits - shift if x else 0))
-    return tuple(found)
+            components.append(Fraction((x << bits) // norm >> bits - shift if x else 0))
+    return tuple(components)
 
 
 def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None) -> Initial:
-    """Return the initial state that a call of a propagator asks for, exact; what is None is the scene's own."""
+    """Return the exact initial state of a call of a propagator; None stands for the value of the scene."""
     initial = scene.initial
     if omega is not None:
         x, y, z = (_exact(value, "omega") for value in _vector(omega, 3, "omega", "rad/s"))

@@ -1,4 +1,4 @@
-"""Arrays of real numbers as they may be given: nothing that NumPy would silently read as one."""
+"""Arrays of real numbers from arguments, refusing values that NumPy would silently convert."""
 
 from typing import Any
 
@@ -25,30 +25,30 @@ NO_NUMBERS = (bool, np.bool_, np.datetime64, np.timedelta64, np.complexfloating,
 
 
 def real_array(values: Any, place: str, expected: str, ndmin: int = 0) -> NDArray[np.float64]:
-    """Return an array of doubles of its own.
+    """Return a new array of doubles.
 
     Parameters
     ----------
     place, expected : str
-        Where the values are given and what they should be, such as ``"t"`` and ``"times in s"``, for the error.
+        Name of the argument and its expected content, such as ``"t"`` and ``"times in s"``, for the error.
     ndmin : int
         Fewest dimensions.
 
     Raises
     ------
     InputError
-        For dates, differences of dates, complex numbers, true and false, text, objects that are no real numbers (as
-        fractions are), and what is no array.
+        For dates, differences of dates, complex numbers, true and false, text, objects that are not real numbers
+        (fractions are), and values that do not form an array.
     """
     try:
-        given = np.asarray(values)
-        kind = given.dtype.kind
-        if kind in "iuf" or (kind == "O" and all(map(_is_number, given.ravel()))):
-            return np.array(given, dtype=np.float64, ndmin=ndmin)
+        array = np.asarray(values)
+        kind = array.dtype.kind
+        if kind in "iuf" or (kind == "O" and all(map(_is_number, array.ravel()))):
+            return np.array(array, dtype=np.float64, ndmin=ndmin)
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"{place}: expected {expected}, got {number.show(values)}") from None
     advice = ADVICE.get(kind, "write numbers").format(place)
-    raise InputError(f"{place}: expected {expected}, got an array of type {given.dtype}; {advice}")
+    raise InputError(f"{place}: expected {expected}, got an array of type {array.dtype}; {advice}")
 
 
 def _is_number(item: Any) -> bool:

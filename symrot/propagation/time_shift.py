@@ -1,14 +1,14 @@
-"""Motions on a clock that shows 0 where they start, for those that start far from t = 0.
+"""Motions that start far from t = 0, on a clock that shows 0 at their start.
 
-Steppers then never see the large numbers: neither phases such as ``a*t + b`` nor the ends of short steps lose digits to
-them. The clock is moved only where all differences of times are exact, for times between half the start and twice the
-start; a motion that goes farther loses no more than one that starts at 0 and goes as far. Such a one keeps its phases
-too: Taylor steps have the time in two parts, and under those of DOP853 the clock of the rates alone is moved again and
-again (:mod:`symrot.propagation.steppers.dop853`), and SciPy starts anew on a moved clock where its steps
-are short (:mod:`symrot.propagation.steppers.fallback`).
+The numbers in the steppers are then small: neither phases such as ``a*t + b`` nor the ends of short steps lose digits.
+The clock is moved only where all differences of times are exact, for times between half the start and twice the start;
+a motion that goes farther loses no more digits than one that starts at 0 and goes as far. Long motions from 0 keep the
+digits of their phases in other ways: Taylor steps hold the time in two parts, DOP853 moves the clock of the rates
+repeatedly (:mod:`symrot.propagation.steppers.dop853`), and SciPy restarts on a moved clock where its steps are short
+(:mod:`symrot.propagation.steppers.fallback`).
 
-Motions under a torque that is no formula, which is asked for at the times of the scene, keep the clock of the scene:
-there a phase ``a*t`` is off by up to ``1e-16*|a*t|`` rad. Those in Euler angles start on it, wherever that is.
+A torque that is no formula is evaluated at the times of the scene, so that motions under it use the clock of the scene:
+there a phase ``a*t`` is off by up to ``1e-16*|a*t|`` rad. Motions in Euler angles start on the clock of the scene too.
 """
 
 import json
@@ -26,20 +26,20 @@ from symrot.formula.tree import Node, children, evaluate, names
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import EPOCH, EXACT_FUNCTIONS, Parameters, SceneKernel
 from symrot.propagation.compiled_models import kernel_key, motion_library
-from symrot.propagation.steppers.cut_off import CutOff
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE
 
-__all__ = ["Following", "clock", "compiled", "far", "moved", "moved_parameters"]
+__all__ = ["ShiftedParameters", "clock", "compiled", "starts_far", "time_shifted"]
 
 
-def far(start: float, low: float, high: float) -> bool:
+def starts_far(start: float, low: float, high: float) -> bool:
     """Return whether a motion starts so far from t = 0 that its clock is moved, for times from low to high, s."""
     nearest, farthest = sorted((0.5 * start, 2.0 * start))
     return start != 0.0 and nearest <= low and high <= farthest  # time - start is exact there (Sterbenz)
 
 
-def moved(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
-    """Return a plan and its kernel for a clock that shows 0 at an epoch; the same where no time stands in the rates."""
+def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
+    """Return a plan and its kernel on a clock that shows 0 at an epoch; unchanged if the rates have no time."""
     if not kernel.rates.uses("t"):
         return plan, kernel
     plan = replace(plan, structure=replace(plan.structure, clock=EPOCH))
@@ -49,28 +49,23 @@ def moved(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
     from symrot.codegen.taylor.time_shift import from_epoch
 
     kernel = from_epoch(kernel)
-    library.store(kernel_key(plan), json.dumps(kernel.data))
+    library.store(kernel_key(plan), json.dumps(kernel.record))
     return plan, kernel
 
 
-def moved_parameters(kernel: SceneKernel, constants: Mapping[str, Fraction], epoch: float) -> list[float]:
-    """Return the parameters of moved rates for the constants of a scene: exact arithmetic, one rounding each."""
-    return Following(kernel.rate_parameters, constants).parameters(Fraction(epoch))
-
-
-class Following:
+class ShiftedParameters:
     """The parameters of formulas with a moved clock, for one epoch after another.
 
-    What does not depend on the epoch is computed once.
+    The parts that do not depend on the epoch are computed once.
 
     Parameters
     ----------
     parameters : pairs of name and formula
-        Such as those of the rates of a kernel that :func:`moved` returns.
+        For example the parameters of the rates of a kernel that :func:`time_shifted` returns.
     constants : mapping
         Of the scene.
     start : float
-        What the clock of the scene shows, s, where that of the motion shows 0.
+        Time of the scene, s, at which the clock of the motion shows 0.
     """
 
     def __init__(self, parameters: Parameters, constants: Mapping[str, Fraction], start: float = 0.0) -> None:
@@ -81,7 +76,7 @@ class Following:
         self._lines = [_line(node) for node in self._formulas]
 
     def parameters(self, epoch: float | Fraction) -> list[float]:
-        """Return them for an epoch, s, on the clock of the motion: exact arithmetic, one rounding each."""
+        """Return the parameters for an epoch, s, on the clock of the motion: exact arithmetic, one rounding each."""
         time = self._start + Fraction(epoch)
         top, bottom, values = time.numerator, time.denominator, {EPOCH: time}
         try:
@@ -92,7 +87,7 @@ class Following:
                 for node, line in zip(self._formulas, self._lines, strict=True)
             ]
         except OverflowError:
-            raise CutOff(float(epoch), NOT_FINITE_SENTENCE) from None
+            raise IntegrationStopped(float(epoch), NOT_FINITE_SENTENCE) from None
 
 
 def _line(node: Node) -> tuple[int, int, int] | None:
@@ -129,7 +124,7 @@ def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
 
 
 def compiled(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the library of a moved plan: kernel and stepper of DOP853."""
+    """Return the library of kernel and DOP853 for a plan on a moved clock."""
     return motion_library(plan, kernel)
 
 
@@ -139,22 +134,22 @@ def clock(
     start: float = 0.0,
     make: Callable[[Plan, SceneKernel], Any] = compiled,
 ) -> Callable[[float], tuple[Any, list[float]]]:
-    """Return the clock of what ``moving`` returns as :func:`moved` does, once it is first moved.
+    """Return the clock of the plan and kernel that ``moving`` returns, as :func:`time_shifted` does, on first use.
 
-    ``constants`` and ``start`` are those of :class:`Following`; ``make`` returns what the stepper calls: the library of
-    DOP853, or a function of Python.
+    ``constants`` and ``start`` are arguments of :class:`ShiftedParameters`. ``make`` returns the library that DOP853
+    calls, or the function in Python that SciPy calls.
     """
 
     @cache
-    def following() -> tuple[Any, Following]:
+    def following() -> tuple[Any, ShiftedParameters]:
         plan, kernel = moving()
-        return make(plan, kernel), Following(kernel.rate_parameters, constants, start)
+        return make(plan, kernel), ShiftedParameters(kernel.rate_parameters, constants, start)
 
     return lambda since: (following()[0], following()[1].parameters(since))
 
 
 def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:
-    """Return a formula with every part that the epoch does not stand in as a number."""
+    """Return a formula in which every part without the epoch is replaced by its value."""
     if node == ("symbol", EPOCH):
         return node
     if EPOCH not in names(node):

@@ -1,17 +1,19 @@
-"""A motion at its sample times: states, and every quantity computed from them when it is asked for."""
+"""A motion at its sample times: states, and quantities that are computed from them on first use."""
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symrot.errors import InputError
 from symrot.kinematics import conversions
-from symrot.propagation.events.eventful import Eventful
+from symrot.planning.plan import Plan
+from symrot.propagation.events.event_result import EventResult
 from symrot.propagation.motion import Motion
-from symrot.propagation.steppers.dop853 import Stats
+from symrot.propagation.steppers.stepping import Stats
+from symrot.scene.scene import Scene
 
 __all__ = ["Invariant", "Trajectory"]
 
@@ -21,8 +23,22 @@ Floats = NDArray[np.float64]
 class Invariant(NamedTuple):
     """A conserved quantity along a trajectory.
 
-    ``drift`` is the largest change since the start, relative to ``scale``: the kinetic plus potential magnitude for an
-    energy, the length of the angular momentum for its components, one for the norm of the quaternion.
+    Attributes
+    ----------
+    name, unit, reason : str
+        Its name, its SI unit, and why it is conserved.
+    values : array, shape (n,)
+    scale : float
+        Kinetic plus potential magnitude for an energy, length of the angular momentum for its components, 1 for the
+        norm of the quaternion.
+    drift : float
+        Largest change since the start, relative to ``scale``.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.propagate("t_handle").invariants[0].unit
+    'J'
     """
 
     name: str
@@ -34,25 +50,32 @@ class Invariant(NamedTuple):
 
 
 class Trajectory:
-    """What a propagator returns. Conventions: :mod:`symrot.conventions`.
+    """The motion that a propagator returns. Conventions: :mod:`symrot.conventions`.
 
     Attributes
     ----------
     t : array, shape (n,)
-        Sample times in s, as they were asked for.
+        The requested sample times, s; a terminal event ends them.
     y : array, shape (N, n)
         The integrated states, in the order of ``states`` (solve_ivp's layout).
     method, stats : str, Stats
-        How it was propagated, and what that cost: steps, evaluations, seconds.
+        The method, and the cost of the motion: steps, evaluations, seconds.
     status, message, success : int, str, bool
-        As of solve_ivp: 1 where a terminal event ended the motion, else 0. A motion that cannot be followed raises a
+        As in solve_ivp: 1 if a terminal event ended the motion, else 0. A motion that cannot be followed raises a
         PropagationError; its ``trajectory`` holds the samples before, with status -1 and ``success`` false.
     warnings : tuple of str
-        Sentences on what cannot be guaranteed, such as the accuracy under a torque without a formula.
+        Sentences about accuracy that cannot be guaranteed, as under a torque without a formula.
     t_events, y_events : list of arrays or None
-        Per event that was asked for: its times, shape (k,), and the states there, shape (k, N).
+        Per requested event: its times, shape (k,), and the states there, shape (k, N).
     event_kinds : list of lists of str, or None
         Per event: ``"rising"``, ``"falling"`` or ``"touching"`` for each of its times.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> trajectory = symrot.propagate("t_handle")
+    >>> max(invariant.drift for invariant in trajectory.invariants) < 1e-12
+    True
     """
 
     def __init__(
@@ -63,9 +86,9 @@ class Trajectory:
         method: str,
         stats: Stats,
         message: str,
-        events: Eventful | None = None,
+        events: EventResult | None = None,
     ) -> None:
-        self._motion, self._found = motion, states
+        self._motion, self._parts = motion, states
         self.t, self.method, self.stats, self.message = t, method, stats, message
         self.t_events = events and events.t_events
         self.y_events = events and events.y_events
@@ -82,16 +105,16 @@ class Trajectory:
 
     @property
     def success(self) -> bool:
-        """Whether the motion was followed to the end that was asked for, or to a terminal event."""
+        """Whether the motion reached its last sample time, or a terminal event."""
         return self.status >= 0
 
     @property
-    def plan(self) -> Any:
-        """The plan that was followed."""
+    def plan(self) -> Plan:
+        """The plan of the motion."""
         return self._motion.plan
 
     @property
-    def scene(self) -> Any:
+    def scene(self) -> Scene:
         """The scene, with the initial state that was used."""
         return self._motion.plan.scene
 
@@ -102,8 +125,8 @@ class Trajectory:
 
     @cached_property
     def _states(self) -> Floats:
-        """The integrated states, shape (n, N); those of an exact motion are put side by side when asked for."""
-        return np.concatenate(self._found, axis=1) if isinstance(self._found, tuple) else self._found
+        """The integrated states, shape (n, N); the two arrays of an exact motion are joined on first use."""
+        return np.concatenate(self._parts, axis=1) if isinstance(self._parts, tuple) else self._parts
 
     @property
     def y(self) -> Floats:
@@ -116,7 +139,7 @@ class Trajectory:
 
     @property
     def has_attitude(self) -> bool:
-        """Whether the attitude was computed; the plan skips it when nothing asks for it."""
+        """Whether the attitude was computed; the plan skips it if neither a torque nor the output needs it."""
         return self._motion.plan.structure.attitude
 
     def _need_attitude(self) -> None:
@@ -129,16 +152,17 @@ class Trajectory:
     @cached_property
     def omega(self) -> Floats:
         """Angular velocity, body components, rad/s, shape (n, 3)."""
-        if isinstance(self._found, tuple):
-            return self._found[0].copy()
+        if isinstance(self._parts, tuple):
+            return self._parts[0].copy()
         return self._evaluate("omega_1 of t", "omega_2 of t", "omega_3 of t")
 
     @cached_property
     def quaternion(self) -> Floats:
         """Attitude, unit, scalar first, body to space, shape (n, 4)."""
         self._need_attitude()
-        found = self._found[1] if isinstance(self._found, tuple) else self._evaluate(*(f"q{i} of t" for i in range(4)))
-        return conversions.normalize(found)
+        if isinstance(self._parts, tuple):
+            return conversions.normalize(self._parts[1])
+        return conversions.normalize(self._evaluate(*(f"q{i} of t" for i in range(4))))
 
     @cached_property
     def dcm(self) -> Floats:
@@ -210,16 +234,18 @@ class Trajectory:
     @cached_property
     def invariants(self) -> list[Invariant]:
         """The conserved quantities of the scene along this trajectory, each proven when the kernel was derived."""
-        found = []
-        kept = [item for item in self._motion.kernel.conserved if item.kept]
-        for item in kept:
+        invariants = []
+        conserved = [item for item in self._motion.kernel.conserved if item.holds]
+        for item in conserved:
             values = self._evaluate(item.output)[:, 0]
-            found.append(self._invariant(item.name, item.unit, item.reason, values, self._scale(item.name, values)))
+            invariants.append(
+                self._invariant(item.name, item.unit, item.reason, values, self._scale(item.name, values))
+            )
         if "q0" in self.states:
             first = self.states.index("q0")
             norm = np.sqrt(np.einsum("ni,ni->n", self._states[:, first:], self._states[:, first:]))
-            found.append(self._invariant("quaternion norm", "1", "rotations keep lengths", norm, 1.0))
-        return found
+            invariants.append(self._invariant("quaternion norm", "1", "rotations keep lengths", norm, 1.0))
+        return invariants
 
     def _invariant(self, name: str, unit: str, reason: str, values: Floats, scale: float) -> Invariant:
         start = self._motion.initial_quantity(name)
@@ -250,10 +276,12 @@ class Trajectory:
         """Return a quantity by the name that scenes use for it (``output.quantities``)."""
         if name == "euler":
             output = self.scene.output
+            if output.sequence is None:
+                raise InputError('euler: expected an Euler sequence as output.sequence of the scene, such as "ZXZ"')
             return self.euler(output.sequence, degrees=output.degrees)
         value: Floats = getattr(self, name)
         return value
 
     def as_mapping(self) -> Mapping[str, Floats]:
-        """Return time and the quantities that the scene asks for, by name."""
+        """Return time and the output quantities of the scene, by name."""
         return {"t": self.t, **{name: self.quantity(name) for name in self.scene.output.quantities}}

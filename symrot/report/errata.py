@@ -17,31 +17,31 @@ def survey(
     names: Sequence[str] = DOCUMENTS, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Survey:
     """Return the findings of some documents."""
-    found = []
+    documents = []
     for name in names:
         source = document(name)
-        found.append((source, list(findings(source, repair, progress))))
-    return found
+        documents.append((source, list(findings(source, repair, progress))))
+    return documents
 
 
-def _total(found: Sequence[Finding]) -> str:
-    counts = Counter(finding.outcome for finding in found)
+def _total(items: Sequence[Finding]) -> str:
+    counts = Counter(finding.outcome for finding in items)
     listed = ", ".join(f"{counts[name]} {OUTCOMES[name].split(';')[0]}" for name in OUTCOMES if counts[name])
-    return f"{len(found)} claims: {listed}."
+    return f"{len(items)} claims: {listed}."
 
 
-def lines(found: Survey) -> list[str]:
+def lines(survey: Survey) -> list[str]:
     """Return the findings as text: a line for each claim, more for those that do not hold, and a summary."""
-    shown: list[str] = []
-    for source, items in found:
-        shown += [f"{source.title} [{source.name}]", ""]
+    text: list[str] = []
+    for source, items in survey:
+        text += [f"{source.title} [{source.name}]", ""]
         for item in items:
             where = one_line(item.claim["where"])
-            shown.append(f"  {item.outcome:<13} {item.claim['id']} ({where})")
+            text.append(f"  {item.outcome:<13} {item.claim['id']} ({where})")
             if item.outcome != "holds":
-                shown += [f"      {label:<8} {one_line(words)}" for label, words in _details(item) if words]
-        shown += ["", f"  {_total(items)}", ""]
-    return shown[:-1]
+                text += [f"      {label:<8} {one_line(words)}" for label, words in _details(item) if words]
+        text += ["", f"  {_total(items)}", ""]
+    return text[:-1]
 
 
 def _details(item: Finding) -> list[tuple[str, str]]:
@@ -55,7 +55,7 @@ def _details(item: Finding) -> list[tuple[str, str]]:
     ]
 
 
-def facts(found: Survey) -> list[dict[str, Any]]:
+def facts(survey: Survey) -> list[dict[str, Any]]:
     """Return the findings as JSON data."""
     return [
         {
@@ -68,12 +68,12 @@ def facts(found: Survey) -> list[dict[str, Any]]:
             "right": item.right,
             "against": item.claim.get("against", ""),
         }
-        for source, items in found
+        for source, items in survey
         for item in items
     ]
 
 
-def page(found: Survey) -> str:
+def page(survey: Survey) -> str:
     """Return ``errata.md``: for each document what does not hold, its right form, the reason and the proof."""
     text = [
         "# Errata",
@@ -85,7 +85,7 @@ def page(found: Survey) -> str:
         "The documents are known here as text extracted from PDF files, which loses characters. Where what was lost",
         "may be the reason, or another reading holds, the entry says so.",
     ]
-    for source, items in found:
+    for source, items in survey:
         text += ["", f"## {source.title}", "", _total(items), ""]
         for item in items:
             if item.outcome != "holds":

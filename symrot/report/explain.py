@@ -1,12 +1,15 @@
 """A plan as a table: what is kept, what is skipped, the rule, the derivation behind it, and the operations it saves."""
 
 from collections import Counter
-from typing import Any
+from typing import TYPE_CHECKING
 
 from symrot.dynamics.structure import Structure
 from symrot.planning.plan import Plan
 from symrot.report.layout import apart, columns, one_line, room
 from symrot.scene.scene import QUANTITIES
+
+if TYPE_CHECKING:
+    from symrot.report.records import PlanReport, PlanRow
 
 __all__ = ["explanation", "facts", "lines"]
 
@@ -23,14 +26,12 @@ def _operations(structure: Structure) -> Counter[str]:
     return Counter({name: count for name, count in counts.items() if name not in FREE})
 
 
-def _row(
-    item: str, skipped: bool, why: str, derivation: str = "", operations: Counter[str] | None = None
-) -> dict[str, Any]:
+def _row(item: str, skipped: bool, why: str, derivation: str = "", operations: Counter[str] | None = None) -> "PlanRow":
     counts = None if operations is None else dict(sorted(operations.items()))
     return {"item": item, "skipped": skipped, "why": why, "derivation": derivation, "operations": counts, "saved": None}
 
 
-def _ladder(plan: Plan) -> list[dict[str, Any]]:
+def _ladder(plan: Plan) -> "list[PlanRow]":
     """Return the rows of the rules, from the general structure down, with what each leaves and saves."""
     from symrot.planning.plan import general_structure
 
@@ -45,7 +46,7 @@ def _ladder(plan: Plan) -> list[dict[str, Any]]:
     return rows
 
 
-def _others(plan: Plan) -> list[dict[str, Any]]:
+def _others(plan: Plan) -> "list[PlanRow]":
     """Return the rows that no rule of the plan decides: states, motion, outputs, derivation."""
     from symrot.build import cache as library
     from symrot.propagation.compiled_models import kernel_key
@@ -71,7 +72,7 @@ def _others(plan: Plan) -> list[dict[str, Any]]:
 BENDS = frozenset({"abs", "min", "max", "clip"})
 
 
-def _formulas(plan: Plan, method: str) -> list[dict[str, Any]]:
+def _formulas(plan: Plan, method: str) -> "list[PlanRow]":
     """Return the rows of what is done so that no narrow feature and no switch of a formula is stepped over."""
     from symrot.propagation.compiled_models import has_formulas
 
@@ -82,7 +83,7 @@ def _formulas(plan: Plan, method: str) -> list[dict[str, Any]]:
     return [_narrow_features(plan), *([_switches(plan.switches)] if plan.switches else [])]
 
 
-def _narrow_features(plan: Plan) -> dict[str, Any]:
+def _narrow_features(plan: Plan) -> "PlanRow":
     from symrot.codegen.enclosure.terms import enclosure
     from symrot.codegen.taylor.recurrences import recurrences
     from symrot.errors import InputError
@@ -99,7 +100,7 @@ def _narrow_features(plan: Plan) -> dict[str, Any]:
     return _row("narrow features", False, why)
 
 
-def _switches(functions: list[str]) -> dict[str, Any]:
+def _switches(functions: list[str]) -> "PlanRow":
     """Return the row of functions that jump or bend."""
     named = [(text, text.partition("(")[0] in BENDS) for text in dict.fromkeys(functions)]
     parts = [
@@ -114,7 +115,7 @@ def _switches(functions: list[str]) -> dict[str, Any]:
     return _row("switches", False, one_line(why))
 
 
-def _samples(plan: Plan) -> list[dict[str, Any]]:
+def _samples(plan: Plan) -> "list[PlanRow]":
     """Return the row of a torque by samples, whose operations are not among those counted."""
     table = plan.scene.table
     if table is None:
@@ -125,7 +126,7 @@ def _samples(plan: Plan) -> list[dict[str, Any]]:
     return [_row("torque by samples", False, f"{why}; besides the operations counted here")]
 
 
-def facts(plan: Plan) -> dict[str, Any]:
+def facts(plan: Plan) -> "PlanReport":
     """Return the table as data for JSON: ``operations`` are those left after a row, by kind, ``saved`` their change."""
     scene = plan.scene
     ladder = _ladder(plan)
@@ -134,13 +135,13 @@ def facts(plan: Plan) -> dict[str, Any]:
         "scene": {"name": scene.name, "title": scene.title, "source": scene.source},
         "rows": rows,
         "operations": {
-            "general": sum(ladder[0]["operations"].values()),
-            "specialised": sum(ladder[-1]["operations"].values()),
+            "general": sum((ladder[0]["operations"] or {}).values()),
+            "specialised": sum((ladder[-1]["operations"] or {}).values()),
         },
     }
 
 
-def _spoken(counts: dict[str, int] | None) -> str:
+def _counts_text(counts: dict[str, int] | None) -> str:
     order = ("mul", "add", "div")
     if counts is None:
         return ""
@@ -148,20 +149,20 @@ def _spoken(counts: dict[str, int] | None) -> str:
     return ", ".join(f"{counts[name]} {name}" for name in names if counts.get(name)) or "none"
 
 
-def lines(found: dict[str, Any]) -> list[str]:
+def lines(report: "PlanReport") -> list[str]:
     """Return the lines for people that say what :func:`facts` says; the first is the title."""
     rows = [HEAD]
-    for row in found["rows"]:
+    for row in report["rows"]:
         changed = row["saved"] != 0
         saved = str(row["saved"]) if changed and row["saved"] else ""
         verdict = "skipped" if row["skipped"] else "kept"
-        left = _spoken(row["operations"]) if changed else ""
+        left = _counts_text(row["operations"]) if changed else ""
         rows.append((row["item"], verdict, one_line(row["why"]), row["derivation"], left, saved))
     table = columns(rows, width=room(118), wrap=2, right=(5,))
-    counts = found["operations"]
+    counts = report["operations"]
     rule = "-" * max(map(len, table))
     last = f"One evaluation of the rates costs {counts['specialised']} operations instead of {counts['general']}."
-    title = f"{one_line(found['scene']['title'])} [{one_line(found['scene']['name'])}]"
+    title = f"{one_line(report['scene']['title'])} [{one_line(report['scene']['name'])}]"
     return [title, "", table[0], rule, *table[1:], rule, last]
 
 

@@ -57,15 +57,15 @@ def labelled(trajectory: Any) -> list[Labelled]:
     difference of two of its angles means something.
     """
     output = trajectory.scene.output
-    found = [Labelled("t", trajectory.t, ("t",), "s", "", "time")]
+    quantities = [Labelled("t", trajectory.t, ("t",), "s", "", "time")]
     for name in output.quantities:
         unit, meaning = QUANTITIES[name]
         components = COMPONENTS.get(name, ())
         if name == "euler":
             components, unit, meaning = _euler(output)
-        found.append(Labelled(name, trajectory.quantity(name), components, unit, FRAMES.get(name, ""), meaning))
+        quantities.append(Labelled(name, trajectory.quantity(name), components, unit, FRAMES.get(name, ""), meaning))
         if name == "euler":
             locked = np.asarray(trajectory.gimbal_lock(output.sequence))
             meaning = "1 where the Euler sequence is at gimbal lock, else 0"
-            found.append(Labelled(LOCK, locked, (LOCK,), "1", FRAMES[LOCK], meaning))
-    return found
+            quantities.append(Labelled(LOCK, locked, (LOCK,), "1", FRAMES[LOCK], meaning))
+    return quantities

@@ -8,7 +8,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import TextIO
 
-__all__ = ["WIDTH", "apart", "columns", "duration", "emphasis", "exact", "fields", "one_line", "room", "shown"]
+__all__ = ["WIDTH", "apart", "columns", "duration", "emphasis", "exact", "fields", "number_text", "one_line", "room"]
 
 WIDTH = 110
 NARROWEST = 40  # no text is wrapped to less
@@ -24,7 +24,7 @@ def one_line(text: str) -> str:
     return "".join(c if c.isprintable() else "?" for c in " ".join(text.split()))
 
 
-def shown(value: float | Fraction, digits: int = 6) -> str:
+def number_text(value: float | Fraction, digits: int = 6) -> str:
     """Return a number for people."""
     return f"{float(value):.{digits}g}"
 
@@ -34,9 +34,9 @@ def apart(*values: float) -> list[str]:
     ordered = sorted({float(value) for value in values})
     nearest = min((after - before for before, after in pairwise(ordered)), default=math.inf)
     digits = 6
-    while digits < DIGITS and any(abs(float(shown(value, digits)) - value) > SEEN * nearest for value in ordered):
+    while digits < DIGITS and any(abs(float(number_text(value, digits)) - value) > SEEN * nearest for value in ordered):
         digits += 1
-    return [shown(value, digits) for value in values]
+    return [number_text(value, digits) for value in values]
 
 
 def exact(value: Fraction) -> str:
@@ -54,8 +54,8 @@ def duration(seconds: float) -> str:
 
 def emphasis(text: str, stream: TextIO) -> str:
     """Return text bold, if the stream is a terminal that wants it (https://no-color.org)."""
-    wanted = stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
-    return f"\x1b[1m{text}\x1b[0m" if wanted else text
+    bold = stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+    return f"\x1b[1m{text}\x1b[0m" if bold else text
 
 
 def room(most: int = WIDTH) -> int:

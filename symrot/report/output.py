@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
@@ -12,12 +12,16 @@ from symrot.files.writing import write
 from symrot.report.labels import LOCK, Labelled, labelled
 from symrot.report.layout import columns, exact, one_line
 
+if TYPE_CHECKING:
+    from symrot.propagation.trajectory import Trajectory
+    from symrot.report.records import FileRecord
+
 __all__ = ["FORMATS", "metadata", "save"]
 
 ROWS_AT_ONCE = 4096
 
 
-def metadata(trajectory: Any, arrays: list[Labelled], tolerance: float) -> dict[str, Any]:
+def metadata(trajectory: "Trajectory", arrays: list[Labelled], tolerance: float) -> "FileRecord":
     """Return what a file says of its numbers: scene, method, what each array holds, conventions."""
     scene, stats = trajectory.scene, trajectory.stats
     return {
@@ -48,15 +52,16 @@ def _conventions() -> str:
     return (conventions.__doc__ or "").split("\n", 2)[-1].strip()
 
 
-def _npz(stream: BinaryIO, arrays: list[Labelled], about: dict[str, Any]) -> None:
+def _npz(stream: BinaryIO, arrays: list[Labelled], about: "FileRecord") -> None:
     content: dict[str, Any] = {item.name: item.values for item in arrays}
     np.savez_compressed(stream, metadata=np.array(json.dumps(about, indent=1)), **content)
 
 
-def _head(arrays: list[Labelled], about: dict[str, Any]) -> Iterator[str]:
+def _head(arrays: list[Labelled], about: "FileRecord") -> Iterator[str]:
     yield f"symrot {about['symrot']}: {one_line(about['title'])}"
-    for key in ("scene", "source", "method", "tolerance"):
-        yield f"{key}: {one_line(str(about[key]))}"
+    head = {"scene": about["scene"], "source": about["source"], "method": about["method"]}
+    for key, value in {**head, "tolerance": str(about["tolerance"])}.items():
+        yield f"{key}: {one_line(value)}"
     yield "columns:"
     rows = [(f"  {component}", item.unit, item.frame, item.meaning) for item in arrays for component in item.components]
     yield from columns(rows, width=1000)
@@ -66,7 +71,7 @@ def _head(arrays: list[Labelled], about: dict[str, Any]) -> Iterator[str]:
     yield from (f"  {line}" for line in about["conventions"].splitlines())
 
 
-def _csv(stream: BinaryIO, arrays: list[Labelled], about: dict[str, Any]) -> None:
+def _csv(stream: BinaryIO, arrays: list[Labelled], about: "FileRecord") -> None:
     lines = [f"# {line}".rstrip() for line in _head(arrays, about)]
     lines.append(",".join(component for item in arrays for component in item.components))
     stream.write(("\n".join(lines) + "\n").encode())
@@ -83,11 +88,11 @@ def _printed(item: Labelled, part: slice) -> list[list[str]]:
     return [[str(int(x)) if item.name == LOCK else repr(x) for x in column] for column in values.tolist()]
 
 
-FORMATS: dict[str, Callable[[BinaryIO, list[Labelled], dict[str, Any]], None]] = {".npz": _npz, ".csv": _csv}
+FORMATS: dict[str, Callable[[BinaryIO, list[Labelled], "FileRecord"], None]] = {".npz": _npz, ".csv": _csv}
 """Suffix -> writer."""
 
 
-def save(trajectory: Any, path: Path, tolerance: float) -> list[str]:
+def save(trajectory: "Trajectory", path: Path, tolerance: float) -> list[str]:
     """Write the quantities of a scene to a file and return their names.
 
     NPZ: arrays by name and ``metadata``, a JSON text; loads with ``allow_pickle=False``. CSV: comment lines, a line of

@@ -112,10 +112,10 @@ def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
     for number, item in enumerate(trajectory.invariants):
         change = np.abs(item.values - item.values[0]) / (item.scale or 1.0)
         changes.append(change)
-        shown = np.where(change > 0, change, np.nan)
+        visible_change = np.where(change > 0, change, np.nan)
         norm = item.name == "quaternion norm"  # says least, hence behind the others
         colour = FAINT if norm else COLOURS[number % len(COLOURS)]
-        axes.plot(t, shown, color=colour, linewidth=0.8, label=item.name, zorder=1.5 if norm else 2)
+        axes.plot(t, visible_change, color=colour, linewidth=0.8, label=item.name, zorder=1.5 if norm else 2)
     axes.axhline(tolerance, color=GREY, linewidth=1.0, linestyle=(0, (5, 3)))
     axes.annotate(f"tolerance {tolerance:g}", (0.0, tolerance), xycoords=("axes fraction", "data"), xytext=(4, 3),
                   textcoords="offset points", color=GREY, fontsize=8)  # fmt: skip
@@ -140,14 +140,14 @@ def _body_sphere(axes: Any, trajectory: Any) -> None:
     inertia = np.array(trajectory.scene.body.inertia, dtype=float)
     rotor = np.zeros(3)
     for torque in torques:
-        rotor += np.array(torque.values["angular_momentum"], dtype=float)
+        rotor += np.array(torque.vector("angular_momentum"), dtype=float)
     momentum = trajectory.angular_momentum_body
     size = float(np.linalg.norm(momentum[0]))
 
     def energy(directions: Floats) -> Floats:
         spin = size * directions - rotor
-        found: Floats = np.einsum("...i,...i->...", spin, spin @ np.linalg.inv(inertia)) / 2
-        return found
+        energies: Floats = np.einsum("...i,...i->...", spin, spin @ np.linalg.inv(inertia)) / 2
+        return energies
 
     axes.set_title("Angular momentum in the body")
     if draw_directions(axes, momentum, ("1", "2", "3"), energy):

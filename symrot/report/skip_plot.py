@@ -20,12 +20,12 @@ GENERAL, OWN, AUTO = COLOURS[1], COLOURS[0], COLOURS[6]
 LEAST = 0.6  # where no operation at all is drawn
 
 
-def figure(found: Mapping[str, Any]) -> Any:
+def figure(ladder: Mapping[str, Any]) -> Any:
     """Return a matplotlib Figure of what :func:`symrot.bench.skip.measure` found."""
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-    rows = found["rows"]
+    rows = ladder["rows"]
     page = Figure(figsize=(9.6, 1.6 + 0.38 * len(rows)))
     grid = page.add_gridspec(1, len(PANELS), left=0.245, right=0.985, top=0.83, bottom=0.14, wspace=0.08)
     for number, (key, unit, title) in enumerate(PANELS):
@@ -64,9 +64,9 @@ def figure(found: Mapping[str, Any]) -> Any:
     return page
 
 
-def save(found: Mapping[str, Any], path: Path) -> None:
+def save(ladder: Mapping[str, Any], path: Path) -> None:
     """Draw the ladder into a file, whose suffix decides the format."""
     import matplotlib
 
     with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
-        save_page(figure(found), path, DPI)
+        save_page(figure(ladder), path, DPI)

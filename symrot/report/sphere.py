@@ -30,9 +30,9 @@ def prefixed(size: float, unit: str) -> tuple[float, str]:
 def _unit(vectors: Floats) -> Floats:
     """Return the directions of the vectors, shape (n, 3), those that have one."""
     length = np.sqrt(np.sum(vectors * vectors, axis=1))
-    kept = length > 1e-9 * np.max(length, initial=0.0)
-    found: Floats = vectors[kept] / length[kept, None]
-    return found
+    has_direction = length > 1e-9 * np.max(length, initial=0.0)
+    directions: Floats = vectors[has_direction] / length[has_direction, None]
+    return directions
 
 
 def _eye(directions: Floats) -> Floats:
@@ -51,8 +51,8 @@ def _curve(axes: Any, points: Floats, view: Floats, **style: Any) -> None:
     """Draw a thin curve on the sphere, faint where it is behind."""
     x, y, z = view @ points.T
     for visible, opacity in ((z >= 0, 1.0), (z < 0, BACK)):
-        shown = np.where(visible, 1.0, np.nan)
-        axes.plot(x * shown, y * shown, alpha=opacity, **style)
+        mask = np.where(visible, 1.0, np.nan)
+        axes.plot(x * mask, y * mask, alpha=opacity, **style)
 
 
 def _globe(axes: Any, view: Floats, labels: tuple[str, ...]) -> None:
@@ -80,10 +80,12 @@ def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats]) -> None:
     depth = 1.0 - x * x - y * y
     z = np.sqrt(np.where(depth > 0, depth, np.nan))
     near = np.stack([x, y, z], axis=-1) @ view
-    found, beyond = value(near), value(-near)
-    levels = np.nanquantile([found, beyond], np.linspace(0.0, 1.0, CURVES + 2)[1:-1])  # equal areas between curves
+    near_values, beyond = value(near), value(-near)
+    levels = np.nanquantile(
+        [near_values, beyond], np.linspace(0.0, 1.0, CURVES + 2)[1:-1]
+    )  # equal areas between curves
     if levels[-1] - levels[0] > 1e-9 * abs(levels[-1]):
-        axes.contour(x, y, found, levels=levels, colors=FAINT, linewidths=0.7, zorder=2)
+        axes.contour(x, y, near_values, levels=levels, colors=FAINT, linewidths=0.7, zorder=2)
 
 
 def _path(axes: Any, points: Floats, front: NDArray[np.bool_] | None = None) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 from symrot import __version__
 from symrot.report.picture import save_page
 from symrot.report.plot import GREY, STYLE
-from symrot.report.work_precision_plot import LOOKS, OTHER, OUTERMOST, SPOKEN, frontier
+from symrot.report.work_precision_plot import LOOKS, METHOD_LABELS, OTHER, OUTERMOST, frontier
 
 __all__ = ["curves", "figure", "save"]
 
@@ -16,11 +16,11 @@ COLUMNS = 2
 PEERS = ("heyoka", "heyoka, best setting", "SciPy LSODA", "SciPy DOP853", "SciPy RK45", "SciPy Radau")
 
 
-def figure(found: Mapping[str, Any]) -> Any:
+def figure(suite: Mapping[str, Any]) -> Any:
     """Return a matplotlib Figure of a suite: a row for each motion, a dot for each decade, a bar at the median."""
     from matplotlib.figure import Figure
 
-    studies = list(found["studies"].values())
+    studies = list(suite["studies"].values())
     peers = [peer for peer in PEERS if any(item["peer"] == peer for one in studies for item in one["against"])]
     if "heyoka, best setting" in peers:
         peers.remove("heyoka")
@@ -64,12 +64,12 @@ def figure(found: Mapping[str, Any]) -> Any:
     return page
 
 
-def curves(found: Mapping[str, Any]) -> Any:
+def curves(suite: Mapping[str, Any]) -> Any:
     """Return a matplotlib Figure of a suite: time against error, a panel for each motion, axes shared."""
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-    studies = list(found["studies"].values())
+    studies = list(suite["studies"].values())
     rows = -(-len(studies) // COLUMNS)
     names = [name for name in LOOKS if any(run["method"] == name for one in studies for run in one["runs"])]
     height = 1.1 + 1.75 * rows  # inches
@@ -81,10 +81,10 @@ def curves(found: Mapping[str, Any]) -> Any:
         axes.set_visible(False)
     for axes, one in zip(grid.flat, studies, strict=False):
         for name in names:
-            kept, _ = frontier([run for run in one["runs"] if run["method"] == name])
+            best, _ = frontier([run for run in one["runs"] if run["method"] == name])
             look = LOOKS[name]
-            if kept:
-                axes.plot(*zip(*kept, strict=True), color=look.colour, marker=look.marker, markersize=2.6,
+            if best:
+                axes.plot(*zip(*best, strict=True), color=look.colour, marker=look.marker, markersize=2.6,
                           linewidth=0.7 * look.width, linestyle=look.dashes)  # fmt: skip
         axes.set_xscale("log")
         axes.set_yscale("log")
@@ -97,16 +97,16 @@ def curves(found: Mapping[str, Any]) -> Any:
     page.supylabel("processor time of one call, s", fontsize=9, x=0.004)
     handles = [
         Line2D([], [], color=LOOKS[name].colour, marker=LOOKS[name].marker, markersize=4, linewidth=LOOKS[name].width,
-               linestyle=LOOKS[name].dashes, label=SPOKEN.get(name, name)) for name in names
+               linestyle=LOOKS[name].dashes, label=METHOD_LABELS.get(name, name)) for name in names
     ]  # fmt: skip
     page.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.53, 0.998), ncols=4, fontsize=8)
     return page
 
 
-def save(found: Mapping[str, Any], directory: Path) -> None:
+def save(suite: Mapping[str, Any], directory: Path) -> None:
     """Draw a suite into a folder: ``suite.png`` and ``motions.png``."""
     import matplotlib
 
     with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
-        save_page(figure(found), directory / "suite.png", 130)
-        save_page(curves(found), directory / "motions.png", 130)
+        save_page(figure(suite), directory / "suite.png", 130)
+        save_page(curves(suite), directory / "motions.png", 130)

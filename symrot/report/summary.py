@@ -1,9 +1,22 @@
 """What a run was and how it went: facts as plain data, and the same facts on one screen."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from symrot import __version__
-from symrot.report.layout import apart, columns, duration, exact, fields, one_line, shown
+from symrot.report.layout import apart, columns, duration, exact, fields, number_text, one_line
+
+if TYPE_CHECKING:
+    from symrot.propagation.propagator import Propagator
+    from symrot.propagation.trajectory import Trajectory
+    from symrot.report.records import (
+        BodyRecord,
+        CostRecord,
+        FinalRecord,
+        LostRecord,
+        RunReport,
+        SwitchingRecord,
+        WrittenRecord,
+    )
 
 __all__ = ["facts", "summary"]
 
@@ -12,7 +25,7 @@ HOW = {"passed": "", "held": " (held from there on)", "released": " (released)"}
 ABOUT = {"center_of_mass": "its centre of mass", "fixed_point": "a fixed point"}
 
 
-def facts(propagator: Any, trajectory: Any, preparation: float) -> dict[str, Any]:
+def facts(propagator: "Propagator", trajectory: "Trajectory", preparation: float) -> "RunReport":
     """Return what there is to say of a run, as data for JSON.
 
     Parameters
@@ -23,7 +36,8 @@ def facts(propagator: Any, trajectory: Any, preparation: float) -> dict[str, Any
         Seconds to derive and compile the kernel, or to load it.
     """
     scene, plan, stats = trajectory.scene, propagator.plan, trajectory.stats
-    body, final = scene.body, {"t": float(trajectory.t[-1]), "omega": trajectory.omega[-1].tolist()}
+    body = scene.body
+    final: FinalRecord = {"t": float(trajectory.t[-1]), "omega": trajectory.omega[-1].tolist()}
     if trajectory.has_attitude:
         final["quaternion"] = trajectory.quaternion[-1].tolist()
     return {
@@ -57,7 +71,7 @@ def facts(propagator: Any, trajectory: Any, preparation: float) -> dict[str, Any
             "preparation_seconds": preparation,
         },
         "switching_times": list(stats.switching_times),
-        "switchings": [each._asdict() for each in stats.switchings],
+        "switchings": [{"t": each.t, "function": each.function, "how": each.how} for each in stats.switchings],
         "warnings": list(trajectory.warnings),
         "invariants": [
             {
@@ -69,7 +83,7 @@ def facts(propagator: Any, trajectory: Any, preparation: float) -> dict[str, Any
         "not_conserved": [
             {"name": item.name, "unit": item.unit, "reason": item.reason}
             for item in propagator.kernel.conserved
-            if not item.kept
+            if not item.holds
         ],
         "final": final,
         "written": {},
@@ -77,7 +91,7 @@ def facts(propagator: Any, trajectory: Any, preparation: float) -> dict[str, Any
 
 
 def _numbers(values: list[Any], digits: int = 6) -> str:
-    return ", ".join(shown(float(value), digits) for value in values)
+    return ", ".join(number_text(float(value), digits) for value in values)
 
 
 def _value(text: str) -> float:
@@ -86,7 +100,7 @@ def _value(text: str) -> float:
     return float(numerator) / float(denominator or 1)
 
 
-def _body(body: dict[str, Any]) -> str:
+def _body(body: "BodyRecord") -> str:
     moments = [_value(moment) for moment in body["principal_moments"]]
     turned = "" if body["axes_are_principal"] else " (the axes of the scene are not principal)"
     return (
@@ -99,7 +113,7 @@ def _states(names: list[str]) -> str:
     return ", ".join(names).replace("omega_1, omega_2, omega_3", "omega_1..3").replace("q0, q1, q2, q3", "q0..q3")
 
 
-def _steps(cost: dict[str, Any], exact: bool) -> str:
+def _steps(cost: "CostRecord", exact: bool) -> str:
     if exact:
         return f"no steps, {duration(cost['seconds'])}; ready in {duration(cost['preparation_seconds'])}"
     again = f" ({cost['rejected']} tried again)" if cost["rejected"] else ""
@@ -109,29 +123,29 @@ def _steps(cost: dict[str, Any], exact: bool) -> str:
     )
 
 
-def _settings(found: dict[str, Any]) -> list[tuple[str, str]]:
-    span, method = found["span"], found["method"]
+def _settings(report: "RunReport") -> list[tuple[str, str]]:
+    span, method = report["span"], report["method"]
     from symrot.propagation.method import METHODS  # here, since an error found earlier needs no NumPy
 
     meaning = METHODS[method["name"].partition(":")[0]]
-    torques = ", ".join(kind.replace("_", " ") for kind in found["torques"]) or "none"
+    torques = ", ".join(kind.replace("_", " ") for kind in report["torques"]) or "none"
     exact = method["name"] == "exact"
     start, stop = apart(_value(span["start"]), _value(span["stop"]))
     return [
-        ("body", _body(found["body"])),
+        ("body", _body(report["body"])),
         ("torque", torques),
-        ("start", f"omega = ({_numbers([_value(x) for x in found['initial']['omega']])}) rad/s in the body"),
+        ("start", f"omega = ({_numbers([_value(x) for x in report['initial']['omega']])}) rad/s in the body"),
         ("span", f"{start} to {stop} s, {span['samples']} samples"),
         ("method", f"{method['name']} ({meaning}); {method['reason']}"),
         ("tolerance", f"{method['tolerance']:g}"),
-        ("states", (not exact and _states(found["states"])) or "none to integrate"),
-        ("cost", _steps(found["cost"], exact)),
-        *_switches(found["switching_times"], found["switchings"], span["start"], span["stop"]),
-        *(("warning", text) for text in found["warnings"]),
+        ("states", (not exact and _states(report["states"])) or "none to integrate"),
+        ("cost", _steps(report["cost"], exact)),
+        *_switches(report["switching_times"], report["switchings"], span["start"], span["stop"]),
+        *(("warning", text) for text in report["warnings"]),
     ]  # fmt: skip
 
 
-def _switches(times: list[float], switchings: list[dict[str, Any]], start: str, stop: str) -> list[tuple[str, str]]:
+def _switches(times: list[float], switchings: "list[SwitchingRecord]", start: str, stop: str) -> list[tuple[str, str]]:
     """Return a row of each function that switches: when it is passed, holds the motion, lets it go."""
     by_function: dict[str, list[tuple[float, str]]] = {}
     for item in switchings:
@@ -140,43 +154,45 @@ def _switches(times: list[float], switchings: list[dict[str, Any]], start: str, 
         by_function[""] = [(t, "") for t in times]
     listed = dict(list(by_function.items())[:SWITCHES_SHOWN])
     seen = [t for own in listed.values() for t, _ in own[:SWITCHES_SHOWN]]
-    spoken = dict(zip(seen, apart(_value(start), _value(stop), *seen)[2:], strict=True))
+    texts = dict(zip(seen, apart(_value(start), _value(stop), *seen)[2:], strict=True))
     rows = []
     for function, own in listed.items():
-        said = ", ".join(f"{spoken[t]}{how}" for t, how in own[:SWITCHES_SHOWN])
+        listed_times = ", ".join(f"{texts[t]}{how}" for t, how in own[:SWITCHES_SHOWN])
         more = f", .. ({len(own)} times in all)" if len(own) > SWITCHES_SHOWN else ""
-        rows.append(f"{function}at t = {said}{more} s")
+        rows.append(f"{function}at t = {listed_times}{more} s")
     if len(by_function) > len(listed):
         rows.append(f".. ({len(by_function)} functions in all; --json lists them)")
     return [("switches" if number == 0 else "", row) for number, row in enumerate(rows)]
 
 
-def _skipped(found: dict[str, Any]) -> list[tuple[str, str]]:
-    rows = [f"{row['item']}: {row['why']}" for row in found["plan"] if row["skipped"]]
+def _skipped(report: "RunReport") -> list[tuple[str, str]]:
+    rows = [f"{row['item']}: {row['why']}" for row in report["plan"] if row["skipped"]]
     return [("skipped" if number == 0 else "", row) for number, row in enumerate(rows)]
 
 
-def _kept(found: dict[str, Any]) -> list[str]:
+def _conserved(report: "RunReport") -> list[str]:
     rows = [("  kept", "at the start", "relative drift", "why")]
-    for item in found["invariants"]:
+    for item in report["invariants"]:
         unit = "" if item["unit"] == "1" else f" {item['unit']}"
-        rows.append((f"  {item['name']}", f"{shown(item['initial'])}{unit}", f"{item['drift']:.1e}", item["reason"]))
+        rows.append(
+            (f"  {item['name']}", f"{number_text(item['initial'])}{unit}", f"{item['drift']:.1e}", item["reason"])
+        )
     lines = columns(rows, right=(2,))
-    if not found["invariants"]:
+    if not report["invariants"]:
         lines = ["  kept  no conserved quantity is made of the states that are integrated"]
-    return lines + [f"  {line}" for line in fields(_lost(found["not_conserved"]))]
+    return lines + [f"  {line}" for line in fields(_lost(report["not_conserved"]))]
 
 
-def _lost(candidates: list[dict[str, str]]) -> list[tuple[str, str]]:
+def _lost(candidates: "list[LostRecord]") -> list[tuple[str, str]]:
     """Return what is not conserved, those of one reason on one line."""
     names: dict[str, list[str]] = {}
     for item in candidates:
         names.setdefault(item["reason"], []).append(item["name"])
-    rows = [f"{', '.join(found)}: {reason}" for reason, found in names.items()]
+    rows = [f"{', '.join(quantities)}: {reason}" for reason, quantities in names.items()]
     return [("not kept" if number == 0 else "", row) for number, row in enumerate(rows)]
 
 
-def _final(final: dict[str, Any], start: float) -> list[str]:
+def _final(final: "FinalRecord", start: float) -> list[str]:
     rows = [
         ("end", f"t = {apart(start, final['t'])[1]} s"),
         ("  omega", f"({_numbers(final['omega'], 12)}) rad/s in the body"),
@@ -186,7 +202,7 @@ def _final(final: dict[str, Any], start: float) -> list[str]:
     return [f"  {line}" for line in fields(rows)]
 
 
-def _written(written: dict[str, Any]) -> list[str]:
+def _written(written: "dict[str, WrittenRecord]") -> list[str]:
     rows = [("written", "nothing; --out FILE.npz or FILE.csv keeps the motion, --plot FILE.png draws it")]
     if written:
         rows = [("", f"{item['file']}{_holding(item)}") for item in written.values()]
@@ -194,24 +210,24 @@ def _written(written: dict[str, Any]) -> list[str]:
     return [f"  {line}" for line in fields(rows)]
 
 
-def _holding(item: dict[str, Any]) -> str:
+def _holding(item: "WrittenRecord") -> str:
     return f": {', '.join(item['arrays'])} at {item['samples']} times" if "arrays" in item else ""
 
 
-def summary(found: dict[str, Any]) -> list[str]:
+def summary(report: "RunReport") -> list[str]:
     """Return the lines for people that say what :func:`facts` says; the first is the title."""
-    scene = found["scene"]
+    scene = report["scene"]
     source = [f"  {line}" for line in fields([("", one_line(scene["source"]))])] if scene["source"] else []
-    settings = [f"  {line}" for line in fields(_settings(found) + _skipped(found))]
+    settings = [f"  {line}" for line in fields(_settings(report) + _skipped(report))]
     return [
         f"{one_line(scene['title'])} [{one_line(scene['name'])}]",
         *(line.replace("    ", "  ", 1) for line in source),
         "",
         *settings,
         "",
-        *_kept(found),
+        *_conserved(report),
         "",
-        *_final(found["final"], _value(found["span"]["start"])),
+        *_final(report["final"], _value(report["span"]["start"])),
         "",
-        *_written(found["written"]),
+        *_written(report["written"]),
     ]

@@ -14,7 +14,7 @@ __all__ = ["check", "lines"]
 
 def check(
     source: str,
-    given: Sequence[str],
+    assumptions: Sequence[str],
     units: Sequence[str],
     repair: bool,
     progress: Callable[[str], None] = lambda text: None,
@@ -30,12 +30,12 @@ def check(
     from symrot.checker.interface import verdicts_of_file
 
     if not _is_file(source):
-        return [check_text(source, assume=given, units=_units(units), repair=repair)]
+        return [check_text(source, assume=assumptions, units=_units(units), repair=repair)]
     if not source.endswith(".toml") and not Path(source).is_file():
         raise InputError(f"expected a claim 'left == right' or the path of a file of claims, got {source[:60]!r}")
     if units:
         raise InputError("--unit: expected a claim as text beside it; a file states its own units")
-    if given:
+    if assumptions:
         raise InputError("--given: expected a claim as text beside it; a file states its own hypotheses")
     return list(verdicts_of_file(source, repair, progress))
 
@@ -54,21 +54,21 @@ def _is_file(source: str) -> bool:
     return "=" not in source or (source.endswith(".toml") and "==" not in source and Path(source).is_file())
 
 
-def lines(found: Sequence[Verdict], source: str) -> list[str]:
+def lines(verdicts: Sequence[Verdict], source: str) -> list[str]:
     """Return verdicts as lines: a single text in full; of a file what is not true in full, then the count."""
-    if len(found) == 1 and not _is_file(source):
-        return _full(found[0], found[0].verdict)
-    shown: list[str] = []
-    for verdict in found:
+    if len(verdicts) == 1 and not _is_file(source):
+        return _full(verdicts[0], verdicts[0].verdict)
+    text: list[str] = []
+    for verdict in verdicts:
         place = f" ({one_line(verdict.where)})" if verdict.where else ""
         name = f"{verdict.verdict:<11} {one_line(verdict.id)}{place}"
-        shown += [name] if verdict else _full(verdict, name)
-    counts = Counter(verdict.verdict for verdict in found)
+        text += [name] if verdict else _full(verdict, name)
+    counts = Counter(verdict.verdict for verdict in verdicts)
     total = ", ".join(
         f"{counts[name]} {name}" for name in ("true", "false", "conditional", "undecided", "refused") if counts[name]
     )
-    seconds = duration(sum(verdict.seconds for verdict in found))
-    return [*shown, "", f"{len(found)} claim{'s' if len(found) != 1 else ''}: {total}, in {seconds}"]
+    seconds = duration(sum(verdict.seconds for verdict in verdicts))
+    return [*text, "", f"{len(verdicts)} claim{'s' if len(verdicts) != 1 else ''}: {total}, in {seconds}"]
 
 
 def _full(verdict: Verdict, head: str) -> list[str]:

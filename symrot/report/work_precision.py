@@ -24,9 +24,9 @@ def _number(value: float) -> str:
     return f"{value:.2f}" if value < 10 else f"{value:.1f}" if value < 100 else f"{value:.0f}"
 
 
-def _decades(found: Mapping[str, Any]) -> list[str]:
+def _decades(study: Mapping[str, Any]) -> list[str]:
     """Return a column for each decade, a row for each method: its time over the least, which stands in the first."""
-    table = found["decades"]
+    table = study["decades"]
     names = list(dict.fromkeys(name for row in table for name in row["methods"]))
     rows = [["error <=", *(f"{row['error']:.0e}" for row in table)]]
     rows.append(["fastest, us", *(_short(row["seconds"] * 1e6) for row in table)])
@@ -62,9 +62,9 @@ def _floors(runs: Sequence[Mapping[str, Any]]) -> list[str]:
     return columns(rows, right=(1, 2, 3, 4))
 
 
-def _against(found: Mapping[str, Any]) -> list[str]:
+def _against(study: Mapping[str, Any]) -> list[str]:
     rows = [["times the time of", "symrot's steppers", "at the least", "symrot", "at the least"]]
-    for row in found["against"]:
+    for row in study["against"]:
         cells = [
             _number(row[key][what]) if key in row else "-" for key in ("stepped", "all") for what in ("median", "least")
         ]
@@ -72,9 +72,9 @@ def _against(found: Mapping[str, Any]) -> list[str]:
     return columns(rows, right=(1, 2, 3, 4)) if len(rows) > 1 else []
 
 
-def lines(found: Mapping[str, Any]) -> list[str]:
+def lines(study: Mapping[str, Any]) -> list[str]:
     """Return the lines about a study (:func:`symrot.bench.comparison.work_precision.study`) for people, title first."""
-    scene, reference, machine = found["scene"], found["reference"], found["machine"]
+    scene, reference, machine = study["scene"], study["reference"], study["machine"]
     others = [f"{other['name']} within {max(other['difference'], ROUNDING):.0e}" for other in reference["others"]]
     versions = [f"{name} {machine[name]}" for name in ("python", "numpy", "scipy", "heyoka") if machine[name]]
     title = f"{one_line(scene['title'])} [{one_line(scene['name'])}]: time against error"
@@ -87,13 +87,13 @@ def lines(found: Mapping[str, Any]) -> list[str]:
             ("times", "processor time of a call from Python, medians of turns; fastest run at least as good"),
         ]
     )  # fmt: skip
-    skipped = fields([(f"{item['method']}:", one_line(item["why"])) for item in found["skipped"]])
+    skipped = fields([(f"{item['method']}:", one_line(item["why"])) for item in study["skipped"]])
     parts: list[Iterable[str]] = [[title], [f"  {line}" for line in head]]
     title = "for each decade of the error: time of the fastest (1), and how many times as long the others take"
     parts += [[line.strip() for line in fields([("", title)])]]
-    parts[-1] = [*parts[-1], *(f"  {line}".rstrip() for line in _decades(found))]
-    for name, table in (("how many times longer, median over the decades", _against(found)),
-                        ("where each method ends", _floors(found["runs"])), ("left out", skipped)):  # fmt: skip
+    parts[-1] = [*parts[-1], *(f"  {line}".rstrip() for line in _decades(study))]
+    for name, table in (("how many times longer, median over the decades", _against(study)),
+                        ("where each method ends", _floors(study["runs"])), ("left out", skipped)):  # fmt: skip
         if table:
             parts.append([name, *(f"  {line}".rstrip() for line in table)])
     return [line for number, part in enumerate(parts) for line in ([] if number == 0 else [""]) + list(part)]
@@ -112,28 +112,28 @@ def read_study(path: Path) -> dict[str, Any]:
     """
     label = repr(str(path))
     try:
-        found = json.loads(read_input(path, LARGEST_FILE))
+        study = json.loads(read_input(path, LARGEST_FILE))
     except OSError as reason:
-        said = f"a study of `symrot bench`, of at most {LARGEST_FILE // 1_000_000} MB"
-        raise InputError(f"{label}: expected {said}, got {reason.strerror or reason}") from None
+        expectation = f"a study of `symrot bench`, of at most {LARGEST_FILE // 1_000_000} MB"
+        raise InputError(f"{label}: expected {expectation}, got {reason.strerror or reason}") from None
     except (ValueError, RecursionError):
         raise InputError(f"{label}: expected a study of `symrot bench` as JSON, got other text") from None
-    if not isinstance(found, dict) or found.get("format") != FORMAT:
+    if not isinstance(study, dict) or study.get("format") != FORMAT:
         raise InputError(f"{label}: expected a study of `symrot bench`, whose format is {FORMAT!r}")
     try:
-        whole = _positive(found) and bool(lines(found))
+        whole = _positive(study) and bool(lines(study))
     except (KeyError, TypeError, AttributeError, ValueError, IndexError, OverflowError):
         whole = False
     if not whole:
         raise InputError(f"{label}: expected a whole study of `symrot bench`, got one with parts missing or impossible")
-    return found
+    return study
 
 
-def _positive(found: Mapping[str, Any]) -> bool:
+def _positive(study: Mapping[str, Any]) -> bool:
     """Whether every time of a study is a number above zero, and every error one that is not below."""
-    times = [cell["seconds"] for row in found["decades"] for cell in (row, *row["methods"].values())]
-    errors = [run["error"] for run in found["runs"]] + [row["error"] for row in found["decades"]]
-    times += [run["seconds"] for run in found["runs"]]
+    times = [cell["seconds"] for row in study["decades"] for cell in (row, *row["methods"].values())]
+    errors = [run["error"] for run in study["runs"]] + [row["error"] for row in study["decades"]]
+    times += [run["seconds"] for run in study["runs"]]
     return all(0.0 < value < math.inf for value in times) and all(value >= 0.0 for value in errors)
 
 
@@ -176,22 +176,25 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
 
 
 def _least_errors(study: Mapping[str, Any]) -> dict[str, float]:
-    found: dict[str, float] = {}
+    errors: dict[str, float] = {}
     for run in study["runs"]:
-        found[run["method"]] = min(run["error"], found.get(run["method"], math.inf))
-    return found
+        errors[run["method"]] = min(run["error"], errors.get(run["method"], math.inf))
+    return errors
 
 
-def lines_of_comparison(found: Mapping[str, Any]) -> list[str]:
+def lines_of_comparison(comparison: Mapping[str, Any]) -> list[str]:
     """Return the lines for people that say what :func:`compared` found."""
-    errors = sorted({error for item in found["ratios"].values() for error in item["decades"]}, key=float, reverse=True)
+    errors = sorted(
+        {error for item in comparison["ratios"].values() for error in item["decades"]}, key=float, reverse=True
+    )
     rows = [["method", *errors, "mean", "least error", "before"]]
-    for name, item in found["ratios"].items():
+    for name, item in comparison["ratios"].items():
         cells = [_number(item["decades"][error]) if error in item["decades"] else "-" for error in errors]
         before, now = item["least errors"]
         rows.append([name, *cells, _number(item["mean"]), f"{now:.1e}", f"{before:.1e}"])
-    title = f"{one_line(found['scene']['title'])} [{one_line(found['scene']['name'])}]: time of the second study over"
-    same = found["machines"][0]["processor"] == found["machines"][1]["processor"]
+    scene = comparison["scene"]
+    title = f"{one_line(scene['title'])} [{one_line(scene['name'])}]: time of the second study over"
+    same = comparison["machines"][0]["processor"] == comparison["machines"][1]["processor"]
     note = [] if same else ["", "The studies are of two machines."]
     table = columns(rows, width=room(200), wrap=0, right=range(1, len(rows[0])))
     return [f"{title} that of the first", "", *table, *note]

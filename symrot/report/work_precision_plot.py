@@ -15,7 +15,7 @@ from symrot.report.layout import apart, one_line
 from symrot.report.picture import save_page
 from symrot.report.plot import GREY, STYLE
 
-__all__ = ["LOOKS", "OTHER", "OUTERMOST", "SPOKEN", "figure", "frontier", "save"]
+__all__ = ["LOOKS", "METHOD_LABELS", "OTHER", "OUTERMOST", "figure", "frontier", "save"]
 
 LEAST_ERROR = 1e-17  # what is drawn of an error of zero
 APART = 0.042  # of the height of the panel, between two names
@@ -49,20 +49,25 @@ LOOKS: dict[str, Look] = {
     "SciPy Radau": Look("#E69F00", "v", 1.6),
 }
 OTHER = Look("#606060", ".", 1.0)
-SPOKEN = {"exact": "exact", "taylor": "symrot Taylor", "dop853": "symrot DOP853", "symrot scipy": "symrot, no compiler"}
+METHOD_LABELS = {
+    "exact": "exact",
+    "taylor": "symrot Taylor",
+    "dop853": "symrot DOP853",
+    "symrot scipy": "symrot, no compiler",
+}
 
 
 def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
     """Return the runs that none beats in error and seconds, by error, and the others."""
     points = sorted((max(float(run["error"]), LEAST_ERROR), float(run["seconds"])) for run in runs)
     points = [point for point in points if point[0] < OUTERMOST]
-    kept: list[tuple[float, float]] = []
+    best: list[tuple[float, float]] = []
     rest: list[tuple[float, float]] = []
     least = float("inf")
     for point in points:  # from the least error on: each must be faster than all before it
-        (kept if point[1] < least else rest).append(point)
+        (best if point[1] < least else rest).append(point)
         least = min(least, point[1])
-    return kept, rest
+    return best, rest
 
 
 def _names(axes: Any, ends: list[tuple[float, str, str]]) -> None:
@@ -86,7 +91,7 @@ def _names(axes: Any, ends: list[tuple[float, str, str]]) -> None:
         )  # fmt: skip
 
 
-def figure(found: Mapping[str, Any]) -> Any:
+def figure(study: Mapping[str, Any]) -> Any:
     """Return a matplotlib Figure of a study."""
     from matplotlib.figure import Figure
 
@@ -95,12 +100,12 @@ def figure(found: Mapping[str, Any]) -> Any:
     axes.set_xscale("log")
     axes.set_yscale("log")
     ends, least, most = [], 1.0, 0.0
-    for name in dict.fromkeys(run["method"] for run in found["runs"]):
-        kept, rest = frontier([run for run in found["runs"] if run["method"] == name])
-        if not kept:
+    for name in dict.fromkeys(run["method"] for run in study["runs"]):
+        best, rest = frontier([run for run in study["runs"] if run["method"] == name])
+        if not best:
             continue
         look = LOOKS.get(name, OTHER)
-        errors, seconds = zip(*kept, strict=True)
+        errors, seconds = zip(*best, strict=True)
         axes.plot(
             errors, seconds, color=look.colour, marker=look.marker, linewidth=look.width, linestyle=look.dashes,
             markersize=4.2, markeredgewidth=1.0, zorder=3,
@@ -108,10 +113,10 @@ def figure(found: Mapping[str, Any]) -> Any:
         if rest:
             axes.plot(*zip(*rest, strict=True), color=look.colour, marker=look.marker, linestyle="", markersize=3,
                       alpha=0.25, zorder=2)  # fmt: skip
-        ends.append((seconds[0], SPOKEN.get(name, name), look.colour))
+        ends.append((seconds[0], METHOD_LABELS.get(name, name), look.colour))
         least, most = min(least, errors[0]), max(most, errors[-1])
     axes.set_xlim(min(most * 3, OUTERMOST), max(least / 3, LEAST_ERROR))
-    doubt = min((other["difference"] for other in found["reference"]["others"]), default=0.0)
+    doubt = min((other["difference"] for other in study["reference"]["others"]), default=0.0)
     right = axes.get_xlim()[1]
     if doubt > right:
         axes.axvspan(doubt, right, color="#f0f0f0", zorder=0)
@@ -122,19 +127,19 @@ def figure(found: Mapping[str, Any]) -> Any:
     axes.set_xlabel("error (the largest at four times): attitude in rad, angular velocity relative")
     axes.set_ylabel("processor time of one call, s")
     page.canvas.draw()
-    _leaders(axes, found)
+    _leaders(axes, study)
     _names(axes, ends)
-    _words(page, found)
+    _words(page, study)
     return page
 
 
-def _leaders(axes: Any, found: Mapping[str, Any]) -> None:
+def _leaders(axes: Any, study: Mapping[str, Any]) -> None:
     """Lead the eye from the last point of each curve to the right edge, where its name is."""
     right = axes.get_xlim()[1]
-    for name in dict.fromkeys(run["method"] for run in found["runs"]):
-        kept, _ = frontier([run for run in found["runs"] if run["method"] == name])
-        if kept:
-            error, seconds = kept[0]
+    for name in dict.fromkeys(run["method"] for run in study["runs"]):
+        best, _ = frontier([run for run in study["runs"] if run["method"] == name])
+        if best:
+            error, seconds = best[0]
             colour = LOOKS.get(name, OTHER).colour
             axes.plot((error, right), (seconds, seconds), color=colour, linewidth=0.6, alpha=0.5, zorder=1)
 
@@ -144,8 +149,8 @@ def _literal(text: str) -> str:
     return one_line(text).replace("\\", "/").replace("$", r"\$")
 
 
-def _words(page: Any, found: Mapping[str, Any]) -> None:
-    scene, machine, reference = found["scene"], found["machine"], found["reference"]
+def _words(page: Any, study: Mapping[str, Any]) -> None:
+    scene, machine, reference = study["scene"], study["machine"], study["reference"]
     page.text(0.02, 0.965, _literal(scene["title"])[:75], fontsize=13, fontweight="bold", va="top")
     versions = ", ".join(f"{name} {machine[name]}" for name in ("scipy", "heyoka") if machine[name])
     line = f"t = {' to '.join(apart(*scene['span']))} s, one core of {machine['processor']}; {versions}"
@@ -156,12 +161,12 @@ def _words(page: Any, found: Mapping[str, Any]) -> None:
     page.text(0.985, 0.018, f"symrot {__version__}", fontsize=7.5, color=GREY, ha="right")
 
 
-def save(found: Mapping[str, Any], path: Path) -> None:
+def save(study: Mapping[str, Any], path: Path) -> None:
     """Draw a study into a file.
 
     Parameters
     ----------
-    found : mapping
+    study : mapping
         What :func:`symrot.bench.comparison.work_precision.study` returned, or a file of it.
     path : Path
         Its suffix, ``.png``, ``.pdf`` or ``.svg``, decides the format.
@@ -169,4 +174,4 @@ def save(found: Mapping[str, Any], path: Path) -> None:
     import matplotlib
 
     with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
-        save_page(figure(found), path, DPI)
+        save_page(figure(study), path, DPI)

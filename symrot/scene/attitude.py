@@ -186,8 +186,8 @@ def _three_angles(degrees: bool) -> Reader:
 
 
 def _read_quaternion_form(value: Mapping[str, Any], where: str) -> Attitude:
-    found = read_table(value, where, {"quaternion": Entry(_read_quaternion, required=True)}, "an attitude")
-    attitude: Attitude = found["quaternion"]
+    values = read_table(value, where, {"quaternion": Entry(_read_quaternion, required=True)}, "an attitude")
+    attitude: Attitude = values["quaternion"]
     return attitude
 
 
@@ -196,26 +196,26 @@ def _degrees(value: Mapping[str, Any], where: str) -> bool:
 
 
 def _read_sequence_form(value: Mapping[str, Any], where: str) -> Attitude:
-    found = read_table(value, where, {
+    values = read_table(value, where, {
         "sequence": Entry(read_sequence, required=True),
         "angles": Entry(_three_angles(_degrees(value, where)), required=True),
         "degrees": Entry(flag),
     }, "an attitude by a sequence")  # fmt: skip
-    return _of_sequence(found["sequence"], found["angles"])
+    return _of_sequence(values["sequence"], values["angles"])
 
 
 def _read_axis_form(value: Mapping[str, Any], where: str) -> Attitude:
-    found = read_table(value, where, {
+    values = read_table(value, where, {
         "axis": Entry(vector("1", "nonzero"), required=True),
         "angle": Entry(_angle(_degrees(value, where)), required=True),
         "degrees": Entry(flag),
     }, "an attitude by axis and angle")  # fmt: skip
-    return _about(found["axis"], found["angle"])
+    return _about(values["axis"], values["angle"])
 
 
 def _read_dcm_form(value: Mapping[str, Any], where: str) -> Attitude:
-    found = read_table(value, where, {"dcm": Entry(_rows, required=True)}, "an attitude")
-    return _of_dcm(found["dcm"], value["dcm"], f"{where}.dcm")
+    values = read_table(value, where, {"dcm": Entry(_rows, required=True)}, "an attitude")
+    return _of_dcm(values["dcm"], value["dcm"], f"{where}.dcm")
 
 
 _FORMS: dict[str, Callable[[Mapping[str, Any], str], Attitude]] = {
@@ -230,8 +230,8 @@ _FORMS: dict[str, Callable[[Mapping[str, Any], str], Attitude]] = {
 
 def read_attitude(value: Any, where: str) -> Attitude:
     """Read an attitude in any of its forms; exactly one of them."""
-    found = table(value, where, f"an attitude: {FORMS}")
-    form = next((reader for key, reader in _FORMS.items() if key in found), None)
+    entries = table(value, where, f"an attitude: {FORMS}")
+    form = next((reader for key, reader in _FORMS.items() if key in entries), None)
     if form is None:
         expected(where, f"an attitude: {FORMS}", value)
-    return form(found, where)
+    return form(entries, where)

@@ -19,8 +19,8 @@ from symrot.scene.reader import Entry, Reader, choice, expected, flag, nearest, 
 __all__ = ["Body", "read_body"]
 
 ABOUT = ("center_of_mass", "fixed_point")
-WAYS = ("shape", "part", "principal", "inertia")
-WAYS_SPOKEN = "exactly one of shape, [[body.part]], principal, inertia"
+INERTIA_SOURCES = ("shape", "part", "principal", "inertia")
+EXPECTED_SOURCE = "exactly one of shape, [[body.part]], principal, inertia"
 LARGEST_MOMENT = Fraction(10) ** 120
 MOST_PARTS = 1000
 LONGEST_DENSITY = 400
@@ -41,6 +41,28 @@ class Body(NamedTuple):
 
     ``inertia`` (kg m^2) is about that point; ``center_of_mass`` (m) is relative to it, None when it is unknown;
     ``mass`` (kg) is None when it is unknown. ``principal`` holds the class of the body, its moments and axes.
+
+    Attributes
+    ----------
+    mass : Fraction or None
+        kg.
+    inertia : 3 x 3 Fraction
+        kg m^2, about the centre of mass or the fixed point.
+    center_of_mass : tuple of 3 Fraction, or None
+        m, relative to that point.
+    about : str
+        Which of the two points it is.
+    description : str
+        How the scene describes the body.
+    principal : Principal
+        Principal moments, kg m^2, and axes.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> scene = symrot.load_scene("tumbling_prism")
+    >>> scene.body.principal.moments
+    (Fraction(5, 1), Fraction(20, 1), Fraction(17, 1))
     """
 
     mass: Fraction | None
@@ -57,22 +79,22 @@ def read_body(value: Any, where: str) -> Body:
     Raises
     ------
     InputError
-        Naming file, key, value and expectation: none or several ways of giving the inertia, unknown shapes and keys,
+        Naming file, key, value and expectation: none or several sources of giving the inertia, unknown shapes and keys,
         dimensions out of range, an inertia that no body has, a body that cannot turn freely (a needle, a point).
     """
-    found = table(value, where, f"a table with {WAYS_SPOKEN}")
-    ways = [way for way in WAYS if way in found]
-    if len(ways) != 1:
-        if not ways:
-            expected(where, WAYS_SPOKEN, found, _nearest_way(found) or "none of them is given")
-        expected(where, WAYS_SPOKEN, found, f"{' and '.join(ways)} are given")
-    body = _WAYS[ways[0]](found, where)
-    _require_turnable(body, found.get(ways[0]), f"{where}.{ways[0]}")
+    entries = table(value, where, f"a table with {EXPECTED_SOURCE}")
+    sources = [way for way in INERTIA_SOURCES if way in entries]
+    if len(sources) != 1:
+        if not sources:
+            expected(where, EXPECTED_SOURCE, entries, _nearest_source(entries) or "none of them is given")
+        expected(where, EXPECTED_SOURCE, entries, f"{' and '.join(sources)} are given")
+    body = _READERS[sources[0]](entries, where)
+    _require_turnable(body, entries.get(sources[0]), f"{where}.{sources[0]}")
     return body
 
 
-def _nearest_way(found: Mapping[str, Any]) -> str:
-    return next((hint for hint in (nearest(key, WAYS) for key in found) if hint), "")
+def _nearest_source(entries: Mapping[str, Any]) -> str:
+    return next((hint for hint in (nearest(key, INERTIA_SOURCES) for key in entries) if hint), "")
 
 
 def _settled(inertia: Matrix) -> Matrix:
@@ -95,7 +117,7 @@ def _require_turnable(body: Body, value: object, where: str) -> None:
 # --- given moments ----------------------------------------------------------------------------------------------------
 
 _ABOUT = {"about": Entry(choice(*ABOUT), default="center_of_mass")}
-_GIVEN = {
+_MOMENT_ENTRIES = {
     **_ABOUT,
     "mass": Entry(number("a mass in kg", "positive")),
     "center_of_mass": Entry(vector("m")),
@@ -121,29 +143,31 @@ def _tensor(value: Any, where: str) -> Matrix:
     return (i["xx"], i["xy"], i["xz"]), (i["xy"], i["yy"], i["yz"]), (i["xz"], i["yz"], i["zz"])
 
 
-def _given(inertia: Matrix, found: Mapping[str, Any], where: str, spoken: str) -> Body:
+def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, source: str) -> Body:
     """Return a body whose moments, about the point it turns about, were typed."""
-    about, center = found["about"], found["center_of_mass"]
+    about, center = values["about"], values["center_of_mass"]
     if about == "center_of_mass":
         if center is not None and any(center):
             expected(f"{where}.center_of_mass", 'about = "fixed_point", which it is measured from', center)
         center = _ZERO
-    description = f"{found['name'] or 'body'} with {spoken}"
-    return Body(found["mass"], inertia, center, about, description, principal_axes(inertia, where))
+    description = f"{values['name'] or 'body'} with {source}"
+    return Body(values["mass"], inertia, center, about, description, principal_axes(inertia, where))
 
 
 def _read_principal(value: Mapping[str, Any], where: str) -> Body:
     _no_fixed_point(value, where)
-    found = read_table(value, where, {"principal": Entry(_three_moments, required=True), **_GIVEN}, "a body")
-    a, b, c = found["principal"]
+    values = read_table(value, where, {"principal": Entry(_three_moments, required=True), **_MOMENT_ENTRIES}, "a body")
+    a, b, c = values["principal"]
     zero = Fraction(0)
-    return _given(((a, zero, zero), (zero, b, zero), (zero, zero, c)), found, where, "given principal moments")
+    return _body_of_moments(
+        ((a, zero, zero), (zero, b, zero), (zero, zero, c)), values, where, "given principal moments"
+    )
 
 
 def _read_tensor(value: Mapping[str, Any], where: str) -> Body:
     _no_fixed_point(value, where)
-    found = read_table(value, where, {"inertia": Entry(_tensor, required=True), **_GIVEN}, "a body")
-    return _given(found["inertia"], found, where, "a given inertia tensor")
+    values = read_table(value, where, {"inertia": Entry(_tensor, required=True), **_MOMENT_ENTRIES}, "a body")
+    return _body_of_moments(values["inertia"], values, where, "a given inertia tensor")
 
 
 def _no_fixed_point(value: Mapping[str, Any], where: str) -> None:
@@ -198,29 +222,31 @@ def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str,
         expected(f"{where}.shape", f"one of the shapes {', '.join(SHAPES)}, the key is missing")
     shape = _shape_name(value["shape"], f"{where}.shape")
     dimensions = [dimension.name for dimension in shape.dimensions]
-    found = read_table(value, where, {
+    values = read_table(value, where, {
         "shape": Entry(_shape_name, required=True),
         **{name: Entry(_any_value, required=True) for name in dimensions},
         **_amount(shape),
         **others,
     }, f"a {shape.name}")  # fmt: skip
-    amounts = [key for key in ("mass", "density") if found.get(key) is not None]
+    amounts = [key for key in ("mass", "density") if values.get(key) is not None]
     if shape.kind != "points" and len(amounts) != 1:
-        spoken = f"exactly one of mass (kg) and density ({shape.density_unit}) of a {shape.name}"
-        given = {key: value[key] for key in amounts}
-        expected(f"{where}.mass", spoken if given else f"{spoken}, got neither", given or ...)
+        expectation = f"exactly one of mass (kg) and density ({shape.density_unit}) of a {shape.name}"
+        amounts_by_name = {key: value[key] for key in amounts}
+        expected(
+            f"{where}.mass", expectation if amounts_by_name else f"{expectation}, got neither", amounts_by_name or ...
+        )
     for name in dimensions:
-        _bounded(found[name], f"{where}.{name}")
+        _bounded(values[name], f"{where}.{name}")
     part = Part(
         shape.name,
-        check_dimensions(shape, {name: found[name] for name in dimensions}, where),
-        mass=found.get("mass"),
-        density=found.get("density"),
-        at=found.get("at") or _ZERO,
-        rotation=found["rotate"].dcm if found.get("rotate") else _UNTURNED,
-        subtract=bool(found.get("subtract")),
+        check_dimensions(shape, {name: values[name] for name in dimensions}, where),
+        mass=values.get("mass"),
+        density=values.get("density"),
+        at=values.get("at") or _ZERO,
+        rotation=values["rotate"].dcm if values.get("rotate") else _UNTURNED,
+        subtract=bool(values.get("subtract")),
     )
-    return part, found
+    return part, values
 
 
 _length = number("a number in m")
@@ -235,9 +261,9 @@ def _bounded(value: Any, where: str) -> None:
         _length(value, where)
 
 
-def _placed(properties: MassProperties, found: Mapping[str, Any], where: str, spoken: str) -> Body:
+def _placed(properties: MassProperties, values: Mapping[str, Any], where: str, source: str) -> Body:
     """Return a composed body about its centre of mass, or about a fixed point given in its axes."""
-    about, point = found["about"], found["fixed_point"]
+    about, point = values["about"], values["fixed_point"]
     if about == "center_of_mass" and point is not None:
         expected(f"{where}.fixed_point", 'about = "fixed_point" beside it, for the body to turn about it', point)
     if about == "fixed_point" and point is None:
@@ -251,13 +277,13 @@ def _placed(properties: MassProperties, found: Mapping[str, Any], where: str, sp
         center = (x, y, z)
         inertia = about_point(inertia, properties.mass, center)
     inertia = _settled(inertia)
-    description = found["name"] or spoken
+    description = values["name"] or source
     return Body(properties.mass, inertia, center, about, description, principal_axes(inertia, where))
 
 
 def _read_shape(value: Mapping[str, Any], where: str) -> Body:
-    part, found = _read_shape_table(value, where, _PLACED)
-    return _placed(mass_properties([part], where), found, where, part.shape.replace("_", " "))
+    part, values = _read_shape_table(value, where, _PLACED)
+    return _placed(mass_properties([part], where), values, where, part.shape.replace("_", " "))
 
 
 _PART = {
@@ -277,12 +303,12 @@ def _parts(value: Any, where: str) -> list[Part]:
 
 
 def _read_parts(value: Mapping[str, Any], where: str) -> Body:
-    found = read_table(value, where, {"part": Entry(_parts, required=True), **_PLACED}, "a body of parts")
-    parts: list[Part] = found["part"]
-    return _placed(mass_properties(parts, f"{where}.part"), found, where, f"body of {len(parts)} parts")
+    values = read_table(value, where, {"part": Entry(_parts, required=True), **_PLACED}, "a body of parts")
+    parts: list[Part] = values["part"]
+    return _placed(mass_properties(parts, f"{where}.part"), values, where, f"body of {len(parts)} parts")
 
 
-_WAYS: dict[str, Callable[[Mapping[str, Any], str], Body]] = {
+_READERS: dict[str, Callable[[Mapping[str, Any], str], Body]] = {
     "shape": _read_shape,
     "part": _read_parts,
     "principal": _read_principal,

@@ -70,8 +70,8 @@ def find_scene(source: str | Path) -> Path:
     except OSError as reason:
         raise InputError(f"{str(source)[:80]}: expected a scene file, got {reason.strerror}") from None
     label = str(source) if str(source).isprintable() else repr(str(source))
-    said = " ".join(filter(None, (nearest(path.stem, names), f"the shipped scenes are {', '.join(names)}")))
-    raise InputError(f"{label}: expected a scene or a scene file, there is none ({said})")
+    hints = " ".join(filter(None, (nearest(path.stem, names), f"the shipped scenes are {', '.join(names)}")))
+    raise InputError(f"{label}: expected a scene or a scene file, there is none ({hints})")
 
 
 def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
@@ -95,8 +95,8 @@ def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
     try:
         content = read_input(path, LARGEST_FILE)
     except OSError as reason:
-        said = f"a readable {what} file of at most {LARGEST_FILE // 1_000_000} MB"
-        raise InputError(f"{label}: expected {said}, got {reason.strerror or reason}") from None
+        expectation = f"a readable {what} file of at most {LARGEST_FILE // 1_000_000} MB"
+        raise InputError(f"{label}: expected {expectation}, got {reason.strerror or reason}") from None
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as reason:
@@ -124,10 +124,10 @@ def _parse(text: str, label: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text, parse_float=Decimal)
     except tomllib.TOMLDecodeError as reason:
-        said = str(reason).splitlines()[0][:200]
-        raise InputError(f"{label}: expected a TOML document, got a fault: {said[:1].lower()}{said[1:]}") from None
+        fault = str(reason).splitlines()[0][:200]
+        raise InputError(f"{label}: expected a TOML document, got a fault: {fault[:1].lower()}{fault[1:]}") from None
     except RecursionError:
         raise InputError(f"{label}: expected a TOML document, got one nested too deeply") from None
     except (ValueError, ArithmeticError) as reason:  # an integer of more than 4300 digits, an impossible date
-        said = str(reason).partition(":")[0][:200]
-        raise InputError(f"{label}: expected a TOML document, got a fault: {said[:1].lower()}{said[1:]}") from None
+        fault = str(reason).partition(":")[0][:200]
+        raise InputError(f"{label}: expected a TOML document, got a fault: {fault[:1].lower()}{fault[1:]}") from None

@@ -32,8 +32,8 @@ class Entry(NamedTuple):
 
 def under(where: str, key: str) -> str:
     """Return the place of a key in the table at ``where``: mass in ``"f.toml: body"`` is ``"f.toml: body.mass"``."""
-    shown = str(key)[:80] if str(key).isprintable() else repr(key)[:80]
-    return f"{where}{shown}" if where.endswith(": ") or not where else f"{where}.{shown}"
+    printable = str(key)[:80] if str(key).isprintable() else repr(key)[:80]
+    return f"{where}{printable}" if where.endswith(": ") or not where else f"{where}.{printable}"
 
 
 def expected(where: str, expectation: str, value: object = ..., reason: str = "") -> NoReturn:
@@ -47,8 +47,8 @@ def nearest(word: object, known: Iterable[str]) -> str:
     """Return ``"did you mean 'x'?"`` for the known word nearest to a mistyped one, or nothing."""
     from difflib import get_close_matches  # only on the way to an error
 
-    found = get_close_matches(str(word)[:80], list(known), 1, 0.5)
-    return f"did you mean '{found[0]}'?" if found else ""
+    matches = get_close_matches(str(word)[:80], list(known), 1, 0.5)
+    return f"did you mean '{matches[0]}'?" if matches else ""
 
 
 def table(value: object, where: str, expectation: str = "a table") -> Mapping[str, Any]:
@@ -60,35 +60,35 @@ def table(value: object, where: str, expectation: str = "a table") -> Mapping[st
 
 def read_table(value: object, where: str, entries: Mapping[str, Entry], what: str = "a table") -> dict[str, Any]:
     """Return the values of a table by key: every key known, every required one there, defaults filled in."""
-    found = table(value, where, f"{what} with the keys {', '.join(entries)}")
-    for key in found:
+    entries_by_key = table(value, where, f"{what} with the keys {', '.join(entries)}")
+    for key in entries_by_key:
         if key not in entries:
             reason = ", ".join(filter(None, ("unknown key", nearest(key, entries))))
-            expected(under(where, key), f"one of the keys {', '.join(entries)} of {what}", found[key], reason)
+            expected(under(where, key), f"one of the keys {', '.join(entries)} of {what}", entries_by_key[key], reason)
     for key, entry in entries.items():
-        if entry.required and key not in found:
+        if entry.required and key not in entries_by_key:
             expected(under(where, key), f"a value, the key is missing ({what} needs it)")
     return {
-        key: entry.read(found[key], under(where, key)) if key in found else entry.default
+        key: entry.read(entries_by_key[key], under(where, key)) if key in entries_by_key else entry.default
         for key, entry in entries.items()
     }
 
 
 def number(expectation: str = "a number", sign: str = "any") -> Reader:
     """Return a reader of one number; ``sign`` is any, positive or nonnegative; the expectation begins with "a "."""
-    spoken = {
+    expected_number = {
         "any": expectation,
         "positive": f"a positive {expectation.removeprefix('a ')}",
         "nonnegative": f"{expectation}, zero or more",
     }[sign]
 
     def reader(value: Any, where: str) -> Fraction:
-        found = read(value, where, spoken)
-        if found and not 1 / LARGEST <= abs(found) <= LARGEST:
+        value_read = read(value, where, expected_number)
+        if value_read and not 1 / LARGEST <= abs(value_read) <= LARGEST:
             expected(where, f"{expectation} of a magnitude between 1e-100 and 1e100", value)
-        if (sign == "positive" and found <= 0) or (sign == "nonnegative" and found < 0):
-            expected(where, spoken, value)
-        return found
+        if (sign == "positive" and value_read <= 0) or (sign == "nonnegative" and value_read < 0):
+            expected(where, expected_number, value)
+        return value_read
 
     return reader
 

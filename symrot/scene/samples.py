@@ -29,6 +29,23 @@ class Table(NamedTuple):
     """Samples of a torque: ``times`` (s, rising; twice the same at a switching time) and ``moments`` (N m).
 
     Between switching times a cubic spline goes through the samples; outside of them the torque is not known.
+
+    Attributes
+    ----------
+    times : tuple of float
+        s, rising; each switching time twice.
+    moments : tuple of 3 float each
+        N m.
+    frame : str
+        ``"body"`` or ``"space"``: the components of the moments.
+    switching_times : tuple of float
+        s, where the torque jumps.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.Table((0.0, 1.0), ((0.0, 0.0, 1.0),) * 2, "body", ()).kind
+    'table'
     """
 
     times: tuple[float, ...]
@@ -107,24 +124,24 @@ def read_samples(
         For an unknown key, a file elsewhere, a file that cannot be read, samples that are no numbers, too few, not in
         order, or do not cover the span.
     """
-    found = read_table(value, where, _ENTRIES, "a torque of kind table")
-    written = [key for key in ("t", "moment") if found[key] is not None]
-    if (found["file"] is None) == (not written) or len(written) == 1:
-        given = [key for key in ("t", "moment", "file") if found[key] is not None]
-        expected(where, f"t and moment, or file, got {' and '.join(given) or 'none of them'}")
+    values = read_table(value, where, _ENTRIES, "a torque of kind table")
+    written = [key for key in ("t", "moment") if values[key] is not None]
+    if (values["file"] is None) == (not written) or len(written) == 1:
+        present = [key for key in ("t", "moment", "file") if values[key] is not None]
+        expected(where, f"t and moment, or file, got {' and '.join(present) or 'none of them'}")
     if written:
-        times, moments, place, rows = found["t"], found["moment"], f"{where}.t", 0
+        times, moments, place, rows = values["t"], values["moment"], f"{where}.t", 0
         if len(times) != len(moments):
             expected(f"{where}.moment", f"one torque for each of the {len(times)} times, got {len(moments)}")
         if len(times) > MOST_SAMPLES:
             expected(place, f"at most {MOST_SAMPLES} samples", len(times))
     else:
-        place, rows = f"{where}.file: {found['file']}", 2
-        times, moments = _read_file(_allowed_file(found["file"], folder, table_folders, f"{where}.file"), place)
-    _check(times, found["switching_times"], place, rows)
+        place, rows = f"{where}.file: {values['file']}", 2
+        times, moments = _read_file(_allowed_file(values["file"], folder, table_folders, f"{where}.file"), place)
+    _check(times, values["switching_times"], place, rows)
     _check_slopes(times, moments, place)
     twice = {after for before, after in pairwise(times) if after == before}
-    for switch in found["switching_times"]:
+    for switch in values["switching_times"]:
         if switch not in twice:
             expected(f"{where}.switching_times", "times that the samples have twice, before and after the jump, got "
                      f"{switch!r} s")  # fmt: skip
@@ -132,7 +149,7 @@ def read_samples(
     if times[0] > first or times[-1] < last:
         expected(place, f"samples that cover the span of the scene, {first!r} to {last!r} s, got {times[0]!r} to "
                  f"{times[-1]!r} s")  # fmt: skip
-    return Table(times, moments, found["frame"], tuple(sorted(set(found["switching_times"]))))
+    return Table(times, moments, values["frame"], tuple(sorted(set(values["switching_times"]))))
 
 
 def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, rows: int) -> None:
@@ -185,17 +202,17 @@ def _allowed_file(file: str, folder: Path, table_folders: str | Path | Sequence[
 
 def _read_file(path: Path, place: str) -> tuple[tuple[float, ...], tuple[tuple[float, float, float], ...]]:
     """Return times and moments of a CSV file whose first line is ``t, M1, M2, M3``."""
-    said = f"a CSV file with the columns {', '.join(COLUMNS)}"
+    expectation = f"a CSV file with the columns {', '.join(COLUMNS)}"
     try:
         content = read_input(path, LARGEST_FILE)
     except OSError as reason:
-        expected(place, f"{said}, at most {LARGEST_FILE // 1_000_000} MB, got {reason.strerror or reason}")
+        expected(place, f"{expectation}, at most {LARGEST_FILE // 1_000_000} MB, got {reason.strerror or reason}")
     try:
         lines = content.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError as reason:
         expected(place, f"UTF-8 text, got another byte at position {reason.start}")
     if not any(line.strip() for line in lines):
-        expected(place, f"{said}, got an empty file")
+        expected(place, f"{expectation}, got an empty file")
     if tuple(cell.strip() for cell in lines[0].split(",")) != COLUMNS:
         expected(f"{place}, line 1", f"the columns {', '.join(COLUMNS)}, got another line")
     rows = [_row(line, f"{place}, line {index}") for index, line in enumerate(lines[1:], start=2) if line.strip()]
@@ -211,9 +228,9 @@ def _row(line: str, place: str) -> list[float]:
     if not line.isascii() or "_" in line:  # which float() would read
         refuse()
     try:
-        found = [float(cell) for cell in line.split(",")]
+        numbers = [float(cell) for cell in line.split(",")]
     except ValueError:
         refuse()
-    if len(found) != len(COLUMNS) or not all(map(isfinite, found)) or max(map(abs, found)) > 1e100:
+    if len(numbers) != len(COLUMNS) or not all(map(isfinite, numbers)) or max(map(abs, numbers)) > 1e100:
         refuse()
-    return found
+    return numbers

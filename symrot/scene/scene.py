@@ -46,14 +46,44 @@ QUANTITIES: dict[str, tuple[str, str]] = {
 
 
 class Initial(NamedTuple):
-    """The state at the start: ``omega_b`` (rad/s, body components) and a unit ``quaternion`` (to 2^-200)."""
+    """The initial state.
+
+    Attributes
+    ----------
+    omega_b : tuple of 3 Fraction
+        Angular velocity, body components, rad/s.
+    quaternion : tuple of 4 Fraction
+        Attitude, scalar first, body to space; unit to 2^-200.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> scene = symrot.load_scene("tumbling_prism")
+    >>> scene.initial.quaternion[0]
+    Fraction(1, 1)
+    """
 
     omega_b: Vector
     quaternion: tuple[Fraction, Fraction, Fraction, Fraction]
 
 
 class Span(NamedTuple):
-    """Sample times: ``samples`` of them, evenly from ``start`` to ``stop`` (s), both included."""
+    """Evenly spaced sample times.
+
+    Attributes
+    ----------
+    start, stop : Fraction
+        First and last time, s.
+    samples : int
+        Number of times, both ends included.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> scene = symrot.load_scene("tumbling_prism")
+    >>> scene.span.start
+    Fraction(0, 1)
+    """
 
     start: Fraction
     stop: Fraction
@@ -61,7 +91,24 @@ class Span(NamedTuple):
 
 
 class Output(NamedTuple):
-    """The quantities asked for; ``sequence`` is the Euler sequence of ``euler``, ``degrees`` the unit of its angles."""
+    """The quantities that a scene writes.
+
+    Attributes
+    ----------
+    quantities : tuple of str
+        Names among :data:`symrot.scene.scene.QUANTITIES`.
+    sequence : str or None
+        Euler sequence of the quantity ``"euler"``.
+    degrees : bool
+        Whether these angles are in degrees rather than rad.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> scene = symrot.load_scene("tumbling_prism")
+    >>> "omega" in scene.output.quantities
+    True
+    """
 
     quantities: tuple[str, ...]
     sequence: str | None
@@ -70,7 +117,36 @@ class Output(NamedTuple):
 
 @dataclass(frozen=True)
 class Scene:
-    """A rigid body, how it starts, what acts on it, and what is asked of its motion. All numbers are exact."""
+    """A rigid body, its initial state, the torques on it, and the output of its motion. All numbers are exact.
+
+    Attributes
+    ----------
+    name, title, source : str
+        Short name, title, and origin of the problem.
+    path : str or None
+        File of the scene.
+    body : Body
+        Inertia, kg m^2, in the axes in which it was given.
+    initial : Initial
+        Angular velocity, rad/s, body components, and attitude.
+    torques : tuple of Torque
+        The torques that are formulas.
+    span : Span
+        Sample times, s.
+    output : Output
+        The quantities to write.
+    tolerance : Fraction
+        Error of the trajectory to aim for: attitude in rad, angular velocity relative to its size.
+    table : Table or None
+        A torque by samples, in addition to the formulas.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> scene = symrot.load_scene("tumbling_prism")
+    >>> scene.name
+    'tumbling_prism'
+    """
 
     name: str
     path: str | None
@@ -124,10 +200,19 @@ def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str |
     table_folders : str, Path or sequence of them
         Folders, beside that of the scene, whose files a torque of kind table may name.
 
+    Returns
+    -------
+    Scene
+        All numbers exact, in SI units.
+
     Raises
     ------
     InputError
         One sentence with file, key, expectation and value.
+
+    Notes
+    -----
+    The format: ``docs/scene_format.md``.
 
     Examples
     --------
@@ -140,7 +225,19 @@ def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str |
 
 
 def shipped_scenes() -> list[tuple[str, str, str]]:
-    """Return (name, title, source) of every scene that comes with symrot, without reading their bodies."""
+    """Return the name, the title and the source of every scene that comes with symrot, without reading their bodies.
+
+    Returns
+    -------
+    list of (str, str, str)
+        (name, title, source); a name is accepted wherever a scene is expected.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> "t_handle" in [name for name, title, source in symrot.shipped_scenes()]
+    True
+    """
     contents = [(name, read_toml(SHIPPED / f"{name}.toml", name)) for name in shipped_names()]
     return [(name, content.get("title", ""), content.get("source", "")) for name, content in contents]
 
@@ -156,23 +253,23 @@ def _schema(value: Any, where: str) -> int:
 
 def _read_initial(value: Any, where: str) -> Initial:
     entries = {"omega": Entry(vector("rad/s")), "omega_space": Entry(vector("rad/s")), "attitude": Entry(read_attitude)}
-    found = read_table(value, where, entries, "the initial state")
-    given = [key for key in ("omega", "omega_space") if found[key] is not None]
-    if len(given) != 1:
-        spoken = "exactly one of omega (body axes) and omega_space, three numbers in rad/s"
-        both = {key: value[key] for key in given}
-        expected(f"{where}.omega", spoken if both else f"{spoken}, got neither", both or ...)
-    attitude = found["attitude"] or read_attitude({"quaternion": [1, 0, 0, 0]}, where)
-    omega_b = found["omega"] if given == ["omega"] else to_body(attitude.dcm, found["omega_space"])
+    values = read_table(value, where, entries, "the initial state")
+    present = [key for key in ("omega", "omega_space") if values[key] is not None]
+    if len(present) != 1:
+        expectation = "exactly one of omega (body axes) and omega_space, three numbers in rad/s"
+        both = {key: value[key] for key in present}
+        expected(f"{where}.omega", expectation if both else f"{expectation}, got neither", both or ...)
+    attitude = values["attitude"] or read_attitude({"quaternion": [1, 0, 0, 0]}, where)
+    omega_b = values["omega"] if present == ["omega"] else to_body(attitude.dcm, values["omega_space"])
     return Initial(omega_b, attitude.quaternion)
 
 
 def _samples(value: Any, where: str) -> int:
-    spoken = f"a whole number of samples from 2 to {MOST_SAMPLES}"
-    found = number(spoken)(value, where)
-    if found.denominator != 1 or not 2 <= found <= MOST_SAMPLES:
-        expected(where, spoken, value)
-    return int(found)
+    expectation = f"a whole number of samples from 2 to {MOST_SAMPLES}"
+    count = number(expectation)(value, where)
+    if count.denominator != 1 or not 2 <= count <= MOST_SAMPLES:
+        expected(where, expectation, value)
+    return int(count)
 
 
 _time = number("a time in s")
@@ -192,9 +289,9 @@ def _times(value: Any, where: str) -> tuple[Fraction, Fraction]:
 
 def _read_span(value: Any, where: str) -> Span:
     entries = {"t": Entry(_times, required=True), "samples": Entry(_samples, default=1001)}
-    found = read_table(value, where, entries, "a span")
-    start, stop = found["t"]
-    return Span(start, stop, found["samples"])
+    values = read_table(value, where, entries, "a span")
+    start, stop = values["t"]
+    return Span(start, stop, values["samples"])
 
 
 _quantity = choice(*QUANTITIES)
@@ -203,25 +300,25 @@ _quantity = choice(*QUANTITIES)
 def _quantities(value: Any, where: str) -> tuple[str, ...]:
     if not isinstance(value, list | tuple) or not value:
         expected(where, f"a list of quantities among {', '.join(QUANTITIES)}", value)
-    found = tuple(_quantity(item, f"{where}[{index}]") for index, item in enumerate(value))
-    for index, name in enumerate(found):
-        if name in found[:index]:
+    names = tuple(_quantity(item, f"{where}[{index}]") for index, item in enumerate(value))
+    for index, name in enumerate(names):
+        if name in names[:index]:
             expected(f"{where}[{index}]", "each quantity once", name)
-    return found
+    return names
 
 
 def _read_output(value: Any, where: str) -> Output:
-    found = read_table(value, where, {
+    values = read_table(value, where, {
         "quantities": Entry(_quantities, default=("omega", "quaternion")),
         "sequence": Entry(read_sequence),
         "degrees": Entry(flag, default=False),
     }, "the output")  # fmt: skip
-    if "euler" in found["quantities"] and found["sequence"] is None:
+    if "euler" in values["quantities"] and values["sequence"] is None:
         expected(f"{where}.sequence", 'an Euler sequence for the quantity euler, such as "ZXZ", the key is missing')
     for key in ("sequence", "degrees"):
-        if "euler" not in found["quantities"] and key in value:
+        if "euler" not in values["quantities"] and key in value:
             expected(f"{where}.{key}", "euler among the quantities, which alone uses it", value[key])
-    return Output(found["quantities"], found["sequence"], found["degrees"])
+    return Output(values["quantities"], values["sequence"], values["degrees"])
 
 
 def _read_tolerance(value: Any, where: str) -> Fraction:
@@ -235,12 +332,12 @@ def _read_tolerance(value: Any, where: str) -> Fraction:
 
 
 def _read_accuracy(value: Any, where: str) -> Fraction:
-    found = read_table(value, where, {"tolerance": Entry(_read_tolerance, required=True)}, "the accuracy")
-    tolerance: Fraction = found["tolerance"]
+    values = read_table(value, where, {"tolerance": Entry(_read_tolerance, required=True)}, "the accuracy")
+    tolerance: Fraction = values["tolerance"]
     return tolerance
 
 
-def _kept(value: Any, where: str) -> Any:
+def _unchanged(value: Any, where: str) -> Any:
     return value
 
 
@@ -250,7 +347,7 @@ TOP: dict[str, Entry] = {
     "source": Entry(text, default=""),
     "body": Entry(read_body, required=True),
     "initial": Entry(_read_initial, required=True),
-    "torque": Entry(_kept, default=()),
+    "torque": Entry(_unchanged, default=()),
     "span": Entry(_read_span, required=True),
     "output": Entry(_read_output, default=Output(("omega", "quaternion"), None, False)),
     "accuracy": Entry(_read_accuracy, default=Fraction(1, 10**12)),
@@ -284,21 +381,21 @@ def _read_scene(
 ) -> Scene:
     where = f"{label}: "
     table(content, where, "a table with schema, body, initial, span")
-    found = read_table(content, where, TOP, "a scene")
+    values = read_table(content, where, TOP, "a scene")
     folder = Path() if path is None else Path(path).parent
     torques, samples = _read_torques(
-        found["torque"], found["body"], found["span"], folder, f"{where}torque", table_folders
+        values["torque"], values["body"], values["span"], folder, f"{where}torque", table_folders
     )
     return Scene(
         name=name,
         path=path,
-        title=found["title"] or name.replace("_", " "),
-        source=found["source"],
-        body=found["body"],
-        initial=found["initial"],
+        title=values["title"] or name.replace("_", " "),
+        source=values["source"],
+        body=values["body"],
+        initial=values["initial"],
         torques=torques,
-        span=found["span"],
-        output=found["output"],
-        tolerance=found["accuracy"],
+        span=values["span"],
+        output=values["output"],
+        tolerance=values["accuracy"],
         table=samples,
     )

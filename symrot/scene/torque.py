@@ -15,24 +15,67 @@ from symrot.scene.attitude import Vector, read_attitude
 from symrot.scene.body import Body
 from symrot.scene.reader import Entry, Reader, choice, expected, number, read_table, table, under, vector
 
-__all__ = ["Torque", "read_torque"]
+__all__ = ["Torque", "Value", "read_torque"]
 
 DEEPEST_FORMULA = 150
 LONGEST_FORMULA = 2000
 MOST_PARAMETERS = 100
 
 
-class Torque(NamedTuple):
-    """One torque: its kind and the values of its fields, all there, by the names of the table of torques.
+Value = Fraction | tuple[Fraction, ...]
+"""A constant of a torque: a number, a vector, or the quaternion of an attitude."""
 
-    Vectors are tuples of three Fractions, an attitude a unit quaternion, ``linear`` of a damping three numbers. Gravity
-    holds ``weight``, ``center_of_mass`` and a unit ``direction``. An expression holds ``torque`` as three texts that
-    :func:`symrot.formula.tree.parse` reads, switches allowed, ``parameters`` by name (with pi, if a formula uses it)
-    and ``frame``.
+
+class Torque(NamedTuple):
+    """One torque: its kind and its constants.
+
+    Attributes
+    ----------
+    kind : str
+        Name in the table of torques.
+    values : mapping
+        The constants by name, SI units: the parameters of a torque given by formulas (with pi, if a formula uses it),
+        else all fields of the table. Vectors have three components, an attitude is a unit quaternion, and ``linear`` of
+        a damping is a vector. Gravity has ``weight``, ``center_of_mass`` and a unit ``direction``.
+    formulas : tuple of str
+        The components of a torque given by formulas, which :func:`symrot.formula.tree.parse` reads, switches allowed.
+    frame : str
+        ``"body"`` or ``"space"``: the axes of these components.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.load_scene("heavy_top_loops").torques[0].kind
+    'gravity'
     """
 
     kind: str
-    values: Mapping[str, Any]
+    values: Mapping[str, Value]
+    formulas: tuple[str, ...] = ()
+    frame: str = "body"
+
+    def number(self, name: str) -> Fraction:
+        """Return a constant that is a number."""
+        value = self.values[name]
+        assert isinstance(value, Fraction)
+        return value
+
+    def vector(self, name: str) -> tuple[Fraction, ...]:
+        """Return a constant that is a vector or an attitude."""
+        value = self.values[name]
+        assert isinstance(value, tuple)
+        return value
+
+    def constant(self, name: str, component: int | None) -> Fraction:
+        """Return a number by the name of its constant and, if that is a vector, its place in it."""
+        return self.number(name) if component is None else self.vector(name)[component]
+
+    def with_constant(self, name: str, component: int | None, value: Fraction) -> "Torque":
+        """Return the torque with another number in one place."""
+        if component is None:
+            return self._replace(values={**self.values, name: value})
+        vector = tuple(value if k == component else entry for k, entry in enumerate(self.vector(name)))
+        return self._replace(values={**self.values, name: vector})
 
 
 # --- fields -----------------------------------------------------------------------------------------------------------
@@ -44,8 +87,8 @@ def _scalar_or_vector(field: Field) -> Reader:
 
     def reader(value: Any, where: str) -> Vector:
         if isinstance(value, list | tuple):
-            found: Vector = three(value, where)
-            return found
+            components: Vector = three(value, where)
+            return components
         x = one(value, where)
         return x, x, x
 
@@ -103,15 +146,20 @@ _parameter = number("a number")
 
 
 def _parameters(value: Any, where: str) -> dict[str, Fraction]:
-    found = table(value, where, "a table of numbers by name, such as {k = 0.1}")
-    if len(found) > MOST_PARAMETERS:
-        expected(where, f"at most {MOST_PARAMETERS} parameters", len(found))
-    taken = {*EXPRESSION_NAMES, *expression.FUNCTIONS, *expression.SWITCHING, *expression.LOGIC, "not", "pi"}
-    for name in found:
-        if not isinstance(name, str) or not (name.isascii() and name.isidentifier()) or len(name) > 40 or name in taken:
+    entries = table(value, where, "a table of numbers by name, such as {k = 0.1}")
+    if len(entries) > MOST_PARAMETERS:
+        expected(where, f"at most {MOST_PARAMETERS} parameters", len(entries))
+    reserved = {*EXPRESSION_NAMES, *expression.FUNCTIONS, *expression.SWITCHING, *expression.LOGIC, "not", "pi"}
+    for name in entries:
+        if (
+            not isinstance(name, str)
+            or not (name.isascii() and name.isidentifier())
+            or len(name) > 40
+            or name in reserved
+        ):
             expected(under(where, name), "a parameter named by letters, digits and underscores, and not as what a "
-                     f"formula knows already ({', '.join(sorted(taken))})", name)  # fmt: skip
-    return {name: _parameter(item, f"{where}.{name}") for name, item in found.items()}
+                     f"formula knows already ({', '.join(sorted(reserved))})", name)  # fmt: skip
+    return {name: _parameter(item, f"{where}.{name}") for name, item in entries.items()}
 
 
 _FIELD_READERS: dict[str, Callable[[Field], Reader]] = {
@@ -234,17 +282,20 @@ def read_torque(value: Any, body: Body, where: str) -> Torque:
         For an unknown kind, key or name in a formula, a value out of range, or a torque that the body cannot feel.
     """
     kinds = (*TORQUE_KINDS, TABLE_KIND.kind)
-    found = table(value, where, f"a table with a kind, one of {', '.join(kinds)}")
-    if "kind" not in found:
+    entries = table(value, where, f"a table with a kind, one of {', '.join(kinds)}")
+    if "kind" not in entries:
         expected(f"{where}.kind", f"one of {', '.join(kinds)}, the key is missing")
-    name = choice(*kinds)(found["kind"], f"{where}.kind")
+    name = choice(*kinds)(entries["kind"], f"{where}.kind")
     kind = TORQUE_KINDS[name]
-    values = read_table(found, where, _entries(kind), f"a torque of kind {name}")
+    values = read_table(entries, where, _entries(kind), f"a torque of kind {name}")
     del values["kind"]
     if kind.about not in ("any", body.about):
         expected(f"{where}.kind", _ABOUT_ADVICE[kind.about], name)
     fit = _FITS.get(name)
     try:
-        return Torque(name, fit(values, body, where) if fit else values)
+        fields = fit(values, body, where) if fit else values
+        if name == "expression":
+            return Torque(name, fields["parameters"], tuple(fields["torque"]), fields["frame"])
+        return Torque(name, fields)
     except RecursionError:
-        raise InputError(f"{where}: expected a formula of fewer levels, got {show(found)}") from None
+        raise InputError(f"{where}: expected a formula of fewer levels, got {show(entries)}") from None

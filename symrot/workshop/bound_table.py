@@ -12,9 +12,9 @@ from math import inf
 
 import numpy as np
 
-from symrot.certificates.rounding.bounds import STORE, Task, reached, tasks
-from symrot.certificates.rounding.branch_and_bound import Search
-from symrot.certificates.rounding.library import operations_of, prepare, problem
+from symrot.certificates.rounding.bounds import STORE, BoundTask, bound_tasks, error_at_point
+from symrot.certificates.rounding.branch_and_bound import SearchResult
+from symrot.certificates.rounding.library import library_problem, operations_of, prepare
 from symrot.certificates.rounding.store import TABLE, method, printed_table, table
 from symrot.codegen.library_kernels import kernel_description, kernel_program
 from symrot.codegen.printing.c_source import DOUBLE, FLOAT, c_source
@@ -34,13 +34,15 @@ def _texts() -> dict[str, str]:
     }
 
 
-def library_tasks() -> dict[str, Task]:
+def library_tasks() -> dict[str, BoundTask]:
     """Return the bounding tasks of all kernels of the library, by the key of their bound in the table."""
-    by_key: dict[str, Task] = {}
+    by_key: dict[str, BoundTask] = {}
     for name, text in _texts().items():
         for operations in operations_of(name, text):
-            kernel_problem = problem(definition(name), operations)
-            by_key |= {task.key: task for task in tasks(operations, kernel_problem.box, kernel_problem.region).values()}
+            kernel_problem = library_problem(definition(name), operations)
+            by_key |= {
+                task.key: task for task in bound_tasks(operations, kernel_problem.box, kernel_problem.region).values()
+            }
     return by_key
 
 
@@ -57,18 +59,22 @@ def table_faults() -> list[str]:
     return faults
 
 
-def understated(required: Mapping[str, Task]) -> list[str]:
+def understated(required: Mapping[str, BoundTask]) -> list[str]:
     """Return the keys of bounds in the table that are contradicted by the point that they name as the worst."""
     return [key for key, task in required.items() if not _is_consistent(task, STORE.get(key))]
 
 
-def _is_consistent(task: Task, search: Search | None) -> bool:
+def _is_consistent(task: BoundTask, search: SearchResult | None) -> bool:
     """Return whether a bound is finite and not below the error that the method computes at its worst point."""
     if search is None or len(search.worst) != len(task.low):
         return False
     point = np.array(search.worst)
     inside = bool(((task.box[0] <= point) & (point <= task.box[1])).all())
-    return inside and reached(task, point) <= search.pointwise * (1 + SPARE) and search.pointwise <= search.bound < inf
+    return (
+        inside
+        and error_at_point(task, point) <= search.pointwise * (1 + SPARE)
+        and search.pointwise <= search.bound < inf
+    )
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -10,9 +11,9 @@ from typing import Any
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_kernel
 from symrot.certificates.rounding.bounds import bound_outputs, rounding_section
-from symrot.certificates.rounding.bounds_text import region_in_words
+from symrot.certificates.rounding.bounds_text import region_phrases
 from symrot.certificates.rounding.intervals import DIGITS
-from symrot.certificates.rounding.library import Problem, largest_box, problem
+from symrot.certificates.rounding.library import RoundingProblem, largest_box, library_problem
 from symrot.certificates.rounding.region import UNIT_NORM, Region
 from symrot.certificates.rounding.scenes import ANY, SceneInputs, scene_problem
 from symrot.errors import InputError
@@ -20,7 +21,7 @@ from symrot.kernels.library import definition, kernel_names
 from symrot.report.layout import apart, columns
 from symrot.scene.file import shipped_names
 from symrot.scene.reader import nearest
-from symrot.workshop.emit import emit, scene_inputs
+from symrot.workshop.emit import Emitted, emit, scene_inputs
 from symrot.workshop.input_ranges import input_box
 
 __all__ = ["facts", "lines", "require_known", "rounding_problem", "section", "target_facts", "target_lines"]
@@ -29,7 +30,9 @@ EMITTED = (".c", ".h", ".o", ".json")  # suffixes of emitted and compiled files,
 PRECISIONS = {"double": "", "float": "f"}
 
 
-def rounding_problem(kernel: str, ranges: Sequence[str], precision: str) -> tuple[Operations, Problem, dict[str, Any]]:
+def rounding_problem(
+    kernel: str, ranges: Sequence[str], precision: str
+) -> tuple[Operations, RoundingProblem, dict[str, Any]]:
     """Return the operations of a kernel, its rounding problem, and its box of inputs with the user's ranges.
 
     Parameters
@@ -59,7 +62,9 @@ def rounding_problem(kernel: str, ranges: Sequence[str], precision: str) -> tupl
     return operations, kernel_problem, {place: box[place] for place in operations.inputs}
 
 
-def _check_unit(group: Sequence[str], kernel_problem: Problem, box: Mapping[str, tuple[Fraction, Fraction]]) -> None:
+def _check_unit(
+    group: Sequence[str], kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fraction]]
+) -> None:
     """Raise InputError if the box contains no unit quaternion: every bound would hold vacuously."""
     ends = [sorted(box[place], key=abs) for place in group]
     least = sum(near * near for (near, far) in ends if near * far > 0)
@@ -69,9 +74,15 @@ def _check_unit(group: Sequence[str], kernel_problem: Problem, box: Mapping[str,
         raise InputError(f"--box: expected a box that contains a unit quaternion, got {ranges}")
 
 
-def _of_library(kernel: str, precision: str) -> tuple[Operations, Problem, None]:
-    operations = read_kernel(emit(kernel).source, f"{kernel}{PRECISIONS[precision]}", f"{kernel}.c")
-    return operations, problem(definition(kernel), operations), None
+def _operations(emitted: Emitted, suffix: str = "") -> Operations:
+    """Return the operations of an emitted kernel under its name without the prefix of C."""
+    operations = read_kernel(emitted.source, f"{emitted.function}{suffix}", f"{emitted.name}.c")
+    return replace(operations, name=f"{emitted.name}{suffix}")
+
+
+def _of_library(kernel: str, precision: str) -> tuple[Operations, RoundingProblem, None]:
+    operations = _operations(emit(kernel), PRECISIONS[precision])
+    return operations, library_problem(definition(kernel), operations), None
 
 
 def require_known(kernel: str) -> None:
@@ -84,12 +95,12 @@ def require_known(kernel: str) -> None:
     raise InputError(f"{message} ({hint})" if hint else message)
 
 
-def _of_scene(scene: str, precision: str) -> tuple[Operations, Problem, SceneInputs]:
+def _of_scene(scene: str, precision: str) -> tuple[Operations, RoundingProblem, SceneInputs]:
     require_known(scene)
     if precision != "double":
         raise InputError(f"--precision: expected double for a scene, whose kernel is in double only, got {precision}")
     emitted = emit(scene)
-    operations = read_kernel(emitted.source, emitted.name, f"{emitted.name}.c")
+    operations = _operations(emitted)
     inputs = scene_inputs(scene)
     return operations, scene_problem(inputs, operations), inputs
 
@@ -155,7 +166,7 @@ def _value(end: Any) -> float:
 def _region_lines(section: Mapping[str, Any]) -> list[str]:
     groups = (tuple(section["names"].get(place, place) for place in group) for group in section["unit_groups"])
     region = Region(tuple(groups), float.fromhex(section["clearance"]))
-    return [f"      {each}" for each in region_in_words(region)]
+    return [f"      {each}" for each in region_phrases(region)]
 
 
 def lines(section: Mapping[str, Any]) -> list[str]:
@@ -214,7 +225,7 @@ def target_facts(
     }  # fmt: skip
 
 
-def _free(kernel_problem: Problem, box: Mapping[str, tuple[Fraction, Fraction]]) -> list[str]:
+def _free(kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fraction]]) -> list[str]:
     units = {place for group in kernel_problem.region.unit for place in group}
     return [place for place, (low, high) in box.items() if low < high and (low, high) != ANY and place not in units]
 

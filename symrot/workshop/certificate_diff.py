@@ -6,7 +6,7 @@ A hash tells only that a file changed; the difference tells whether the kernel s
 from pathlib import Path
 
 from symrot.certificates.audit import LARGEST
-from symrot.certificates.certificate import Subject
+from symrot.certificates.certificate import KernelUnderTest
 from symrot.certificates.laws.equality import prove_equal
 from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.errors import CertificateError, InputError
@@ -56,7 +56,7 @@ def _first_line(text: str, emitted: str) -> str:
     return f"line {place + 1} is {present}, but symrot emits {original}"
 
 
-def _meaning(text: str, emitted: Subject) -> str:
+def _meaning(text: str, emitted: KernelUnderTest) -> str:
     """Return, in brackets, what an edited C text computes: its formulas with other operations, or why not its formulas.
 
     An empty text if the operations are the same.
@@ -67,7 +67,7 @@ def _meaning(text: str, emitted: Subject) -> str:
     same = True
     try:
         for suffix in emitted.types:
-            name = f"{emitted.name}{suffix}"
+            name = f"symrot_{emitted.name}{suffix}"
             now, was = read_kernel(text, name, file), read_kernel(emitted.files[file], name, file)
             prove_equal(now, symbols, formulas, emitted.named, emitted.parameters)
             same = same and now.digest() == was.digest() == read_batch(text, f"{name}_batch", file).digest()

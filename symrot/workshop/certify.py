@@ -11,7 +11,7 @@ from pathlib import Path
 import symrot
 from symrot.build import cache as build_cache
 from symrot.certificates.audit import LARGEST, audit, operations_of
-from symrot.certificates.certificate import Data, said_of, with_slots
+from symrot.certificates.certificate import Data, proven_statement, with_sections
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.scene.file import names_with_kernels
@@ -22,7 +22,17 @@ from symrot.workshop.emit import emit, kernel_names, scene_kernel_name, subject
 from symrot.workshop.kernel_files import SCENES, certificate_files, kernel_files, stored_bounds, write_files
 from symrot.workshop.workers import workers
 
-__all__ = ["all_lines", "audit_file", "audit_files", "certify", "certify_all", "flag_lines", "lines", "refuted"]
+__all__ = [
+    "all_lines",
+    "audit_file",
+    "audit_files",
+    "certify",
+    "certify_all",
+    "flag_lines",
+    "lines",
+    "proofs",
+    "refuted",
+]
 
 PROOFS = {  # from the derivation to the object code; the names label the lines of a certificate
     "laws": "proven of the formulas", "Coq": "a theorem about the formulas (`symrot prove`)",
@@ -48,7 +58,7 @@ def _proven_statement(data: Data) -> Data | None:
     key = f"statement about {name} with {json.dumps(bounds)} by {_programs()}"
     stored = build_cache.fetch(key)
     if stored is None:
-        stored = json.dumps(said_of(subject(name, bounds)))
+        stored = json.dumps(proven_statement(subject(name, bounds)))
         build_cache.store(key, stored)
     statement: Data = json.loads(stored)
     return statement
@@ -144,9 +154,9 @@ def flag_lines(flags: str) -> list[str]:
     CertificateError
         For flags that void the certificate.
     """
-    from symrot.certificates.flags import judge
+    from symrot.certificates.flags import classify_flags
 
-    effect = judge(flags)
+    effect = classify_flags(flags)
     if not effect.accepted:
         raise CertificateError(f"{flags}: {effect.sentence()}")
     return [f"{flags}: {effect.sentence()}"]
@@ -213,7 +223,7 @@ def certify(
     if objects:
         progress("comparing object code ..")
         slots["objects"] = object_code.objects_of(texts, f"{json.loads(text)['kernel']}.c", _programs())
-    text = with_slots(text, slots)
+    text = with_sections(text, slots)
     return json.loads(text), write_files(directory, texts | {file: text}) if directory else []
 
 
@@ -260,15 +270,15 @@ def _certified(name: str, directory: Path | None, objects: bool) -> tuple[Data, 
 
 def all_lines(certificates: Mapping[str, Data]) -> list[str]:
     """Return a line for each kernel with the proofs in its certificate, then a line for each proof with its count."""
-    proofs = {name: _proofs(data) for name, data in certificates.items()}
-    width = max(map(len, proofs))
+    by_kernel = {name: proofs(data) for name, data in certificates.items()}
+    width = max(map(len, by_kernel))
     text_lines = [
         f"{name:<{width}}  {'  '.join(proof if proof in present else '-' * len(proof) for proof in PROOFS)}"
-        for name, present in proofs.items()
+        for name, present in by_kernel.items()
     ]
     for proof, meaning in PROOFS.items():
-        count = sum(proof in present for present in proofs.values())
-        text_lines.append(f"{proof}, {meaning}: {count} of {len(proofs)}")
+        count = sum(proof in present for present in by_kernel.values())
+        text_lines.append(f"{proof}, {meaning}: {count} of {len(by_kernel)}")
     return [*text_lines, *object_code.table({name: data.get("objects") for name, data in certificates.items()})]
 
 
@@ -277,11 +287,11 @@ def refuted(certificates: Iterable[Data]) -> bool:
     return any(data.get("objects") and not object_code.holds(data["objects"]) for data in certificates)
 
 
-def _proofs(data: Data) -> set[str]:
-    """Return the names of the proofs that a certificate contains, as in ``PROOFS``."""
+def proofs(data: Data) -> tuple[str, ...]:
+    """Return the names of the proofs that a certificate contains, in the order of ``PROOFS``."""
     compared = object_code.holds(data.get("objects"))
     sections = (data["laws"], data["coq"], data["readback"], data.get("rounding"), compared)
-    return {proof for proof, section in zip(PROOFS, sections, strict=True) if section}
+    return tuple(proof for proof, section in zip(PROOFS, sections, strict=True) if section)
 
 
 def _emitted(path: str) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib import metadata
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 from symrot import __version__
 from symrot.build import cache as build_cache
@@ -80,13 +80,49 @@ def _cached(directory: Path) -> tuple[int, int]:
     return len(sizes), sum(sizes)
 
 
-def facts() -> dict[str, Any]:
+class CompilerRecord(TypedDict):
+    """A C compiler: its command, and the first line that it prints as its version."""
+
+    command: str
+    version: str
+
+
+class CacheRecord(TypedDict):
+    """The cache; ``persistent`` says whether it lasts longer than this process."""
+
+    directory: str
+    files: int
+    bytes: int
+    persistent: bool
+
+
+class PythonRecord(TypedDict):
+    """The interpreter."""
+
+    version: str
+    executable: str
+
+
+class DoctorReport(TypedDict):
+    """The state of an installation; versions of packages are None where one is missing."""
+
+    symrot: str
+    python: PythonRecord
+    platform: str
+    needed: dict[str, str | None]
+    extras: dict[str, dict[str, str | None]]
+    compiler: CompilerRecord | None
+    cache: CacheRecord
+    problems: list[str]
+
+
+def facts() -> DoctorReport:
     """Return the state of this installation as data for JSON; ``problems`` are the reasons why symrot works badly."""
     cache = build_cache.cache()
     count, size = _cached(cache.directory)
     versions = {name: _version(name) for name in NEEDED}
     problems = [f"{name} is not installed" for name, version in versions.items() if version is None]
-    compiler: dict[str, Any] | None = None
+    compiler: CompilerRecord | None = None
     try:
         tool = build_cache.compiler()
         compiler = {"command": " ".join(tool.command), "version": _first_line(tool.command)}
@@ -101,7 +137,7 @@ def facts() -> dict[str, Any]:
         "needed": versions,
         "extras": {extra: {name: _version(name) for name in names} for extra, names in EXTRAS.items()},
         "compiler": compiler,
-        "cache": {"directory": str(cache.directory), "files": count, "bytes": size, "kept": not cache.reason},
+        "cache": {"directory": str(cache.directory), "files": count, "bytes": size, "persistent": not cache.reason},
         "problems": problems,
     }
 
@@ -110,12 +146,12 @@ def _packages(versions: dict[str, str | None]) -> str:
     return ", ".join(f"{name} {version or 'missing'}" for name, version in versions.items())
 
 
-def _cache_text(cache: dict[str, Any]) -> str:
-    remark = "" if cache["kept"] else ", for this process only"
+def _cache_text(cache: CacheRecord) -> str:
+    remark = "" if cache["persistent"] else ", for this process only"
     return f"{cache['directory']}: {cache['files']} files, {cache['bytes'] / 1e6:.2g} MB{remark}"
 
 
-def _compiler_text(compiler: dict[str, str] | None) -> str:
+def _compiler_text(compiler: CompilerRecord | None) -> str:
     return (
         f"{compiler['command']}: {compiler['version']}"
         if compiler
@@ -123,7 +159,7 @@ def _compiler_text(compiler: dict[str, str] | None) -> str:
     )
 
 
-ROWS: tuple[tuple[str, Callable[[dict[str, Any]], str]], ...] = (  # label -> text of the facts
+ROWS: tuple[tuple[str, Callable[[DoctorReport], str]], ...] = (  # label -> text of the facts
     ("symrot", lambda report: str(report["symrot"])),
     ("python", lambda report: f"{report['python']['version']}, {report['python']['executable']}"),
     ("needed", lambda report: _packages(report["needed"])),
@@ -132,7 +168,7 @@ ROWS: tuple[tuple[str, Callable[[dict[str, Any]], str]], ...] = (  # label -> te
 )
 
 
-def lines(report: dict[str, Any]) -> list[str]:
+def lines(report: DoctorReport) -> list[str]:
     """Return the facts of :func:`facts` as lines of text."""
     rows = [(name, text(report)) for name, text in ROWS]
     for extra, versions in report["extras"].items():

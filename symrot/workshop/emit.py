@@ -11,7 +11,7 @@ from symrot.planning.plan import Plan, make_plan, switched
 from symrot.scene.scene import Scene, load_scene
 
 if TYPE_CHECKING:
-    from symrot.certificates.certificate import Subject
+    from symrot.certificates.certificate import KernelUnderTest
     from symrot.certificates.rounding.scenes import SceneInputs
 
 __all__ = [
@@ -36,25 +36,45 @@ class _Texts(NamedTuple):
 
 
 class Emitted(_Texts):
-    """An emitted kernel: the name of its function, the text, and in C the header (empty otherwise).
+    """An emitted kernel: its name, the text, and in C the header (empty otherwise).
+
+    In NumPy the function has the name of the kernel; in C it is ``function``, the name with the prefix ``symrot_``.
 
     ``certificate`` is the text of its certificate; it is proven at the first access. The certificate of a kernel of the
     library contains the bounds of its rounding errors on its own box; that of a scene's kernel contains the bounds that
     were passed to :func:`emit`.
+
+    Attributes
+    ----------
+    name : str
+        The function.
+    source, header : str
+        The text of the kernel and, in C, of its header.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> "double" in symrot.emit("euler_zxz_body_rates").source
+    True
     """
 
     kernel: Any = None
     bounds: Mapping[str, Any] | None = None
 
+    @property
+    def function(self) -> str:
+        """The name of the C function for one sample in double precision."""
+        return f"symrot_{self.name}"
+
     @cached_property
     def certificate(self) -> str:
         """The text of the certificate; raises CertificateError where a proof fails."""
-        from symrot.certificates.certificate import certificate_text, with_slots
+        from symrot.certificates.certificate import certificate_text, with_sections
         from symrot.certificates.rounding.bounds_text import library_section
 
         text = certificate_text(subject(self.kernel, self.bounds))
         section = library_section(self.name, self.source) if _is_kernel(self.kernel) else self.bounds
-        return with_slots(text, {"rounding": section}) if isinstance(section, dict) else text
+        return with_sections(text, {"rounding": section}) if isinstance(section, dict) else text
 
 
 def _scene(source: Scene | str | Path) -> Scene:
@@ -68,9 +88,28 @@ def plan(scene: Scene | str | Path) -> Plan:
     ----------
     scene : Scene, str or Path
         A scene, the name of a shipped scene, or the path of a scene file.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    InputError
+        For a scene that cannot be used.
+
+    Notes
+    -----
+    Source: each row names the derivation that justifies it.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.plan("tumbling_prism").scene.name
+    'tumbling_prism'
     """
     loaded = _scene(scene)
-    return make_plan(loaded, driven=loaded.table is not None, switched=switched(loaded))
+    return make_plan(loaded, external_torque=loaded.table is not None, switched=switched(loaded))
 
 
 def explain(scene: Scene | str | Path) -> str:
@@ -80,6 +119,21 @@ def explain(scene: Scene | str | Path) -> str:
     ----------
     scene : Scene, str or Path
         As for :func:`plan`.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    InputError
+        As for :func:`plan`.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> "derivation" in symrot.explain("tumbling_prism")
+    True
     """
     from symrot.report.explain import explanation
 
@@ -105,11 +159,26 @@ def emit(kernel: Scene | str | Path, target: str = "c", bounds: Mapping[str, Any
         Bounds of the rounding errors of a scene's kernel on a box of your choice, for the head comment of its C and for
         its certificate (:func:`symrot.workshop.bounds.section`); a kernel of the library has its own.
 
+    Returns
+    -------
+    Emitted
+        ``.name``, ``.source`` and ``.header``; ``.certificate`` is proven at the first access.
+
     Raises
     ------
     InputError
         For an unknown target, a name that is neither a kernel nor a scene, an unusable scene, or a scene without a
         state to integrate.
+
+    Notes
+    -----
+    Convention: the head comment of each kernel states frames, units and domain of its arguments.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.emit("euler_zxz_body_rates").name
+    'euler_zxz_body_rates'
     """
     from symrot.codegen.printing.c_source import DOUBLE, FLOAT, c_header, c_source
     from symrot.codegen.printing.numpy_source import numpy_source
@@ -136,12 +205,12 @@ def _is_kernel(kernel: Any) -> bool:
     return isinstance(kernel, str) and kernel in kernel_names()
 
 
-def subject(kernel: Scene | str | Path, bounds: Mapping[str, Any] | None = None) -> "Subject":
+def subject(kernel: Scene | str | Path, bounds: Mapping[str, Any] | None = None) -> "KernelUnderTest":
     """Return the subject of a certificate: a kernel of the library or of a scene, with its emitted texts.
 
     ``bounds`` are the rounding bounds that a scene's kernel is emitted with (:func:`emit`).
     """
-    from symrot.certificates.subjects import library_subject, scene_subject
+    from symrot.certificates.kernel_under_test import library_kernel_under_test, scene_kernel_under_test
     from symrot.codegen.printing.c_source import MATH_HEADER
     from symrot.codegen.printing.math_header import math_header
     from symrot.dynamics.equations import equations_of_motion
@@ -153,15 +222,26 @@ def subject(kernel: Scene | str | Path, bounds: Mapping[str, Any] | None = None)
     files |= {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in c.source else {}
     files[f"../numpy/{c.name}.py" if is_kernel else f"../../numpy/scenes/{c.name}.py"] = numpy.source
     if is_kernel:
-        return library_subject(definition(kernel), _library_kernel(kernel, "c")[1], files)
+        return library_kernel_under_test(definition(kernel), _library_kernel(kernel, "c")[1], files)
     scene_plan = _formulas(kernel)
     equations = equations_of_motion(scene_plan.structure)
     lowered, description = _scene_rates(scene_plan, equations, "c")
-    return scene_subject(equations, lowered.program, lowered.parameters, description, files)
+    return scene_kernel_under_test(equations, lowered.program, lowered.parameters, description, files)
 
 
 def kernel_names() -> tuple[str, ...]:
-    """Return the names of the kernels of the library, for :func:`emit`."""
+    """Return the names of the kernels of the library, for :func:`emit`.
+
+    Returns
+    -------
+    tuple of str
+
+    Examples
+    --------
+    >>> import symrot
+    >>> "euler_zxz_body_rates" in symrot.kernel_names()
+    True
+    """
     from symrot.kernels import library
 
     return library.kernel_names()
@@ -169,22 +249,24 @@ def kernel_names() -> tuple[str, ...]:
 
 def _library_kernel(name: Any, target: str, source: str = "") -> tuple[Any, Any]:
     """Return the program and the description of a library kernel, with rounding bounds if its C source is passed."""
-    from symrot.certificates.rounding.bounds_text import in_words
+    from symrot.certificates.rounding.bounds_text import bounds_sentence
     from symrot.codegen.library_kernels import kernel_description, kernel_program
     from symrot.kernels.library import definition
 
-    return kernel_program(name), kernel_description(definition(name), target, in_words(name, source) if source else "")
+    return kernel_program(name), kernel_description(
+        definition(name), target, bounds_sentence(name, source) if source else ""
+    )
 
 
 def _scene_kernel(
     scene: Scene | str | Path, target: str, bounds: Mapping[str, Any] | None = None
 ) -> tuple[Any, Any]:  # fmt: skip
-    from symrot.certificates.rounding.scenes import contract
+    from symrot.certificates.rounding.scenes import header_lines
     from symrot.codegen.scene_kernels import with_values
     from symrot.dynamics.equations import equations_of_motion
 
     scene_plan = _formulas(scene)
-    contract_lines = contract(scene_inputs(scene), bounds) if bounds and target == "c" else ()
+    contract_lines = header_lines(scene_inputs(scene), bounds) if bounds and target == "c" else ()
     lowered, description = _scene_rates(scene_plan, equations_of_motion(scene_plan.structure), target, contract_lines)
     return with_values(lowered.program, lowered.parameters, scene_plan.constants), description
 

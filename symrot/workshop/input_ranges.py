@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from sys import float_info
 
-from symrot.certificates.rounding.constants import enclosed
-from symrot.certificates.rounding.library import Problem
+from symrot.certificates.rounding.constants import parameter_range
+from symrot.certificates.rounding.library import RoundingProblem
 from symrot.certificates.rounding.scenes import SceneInputs
 from symrot.errors import InputError
 from symrot.formula import exact_numbers
@@ -19,7 +19,7 @@ LARGEST = Fraction(float_info.max)
 FORM = "expected NAME=LOW:HIGH, such as theta=-1.4:1.4"
 
 
-def input_box(kernel_problem: Problem, inputs: SceneInputs | None, ranges: Sequence[str]) -> dict[str, Ends]:
+def input_box(kernel_problem: RoundingProblem, inputs: SceneInputs | None, ranges: Sequence[str]) -> dict[str, Ends]:
     """Return the box of a kernel with the user's ranges in place of its own.
 
     Parameters
@@ -54,7 +54,7 @@ def input_box(kernel_problem: Problem, inputs: SceneInputs | None, ranges: Seque
             both = f"{by_place[place][0][:60]!r} and {by_place[min(used)][0][:60]!r}"
             raise InputError(f"--box: expected a range of {name} or of the constants in it, got {both}")
         if used and inputs and place in kernel_problem.symbols:
-            box[place] = enclosed(name, formula, inputs.constants, constants)
+            box[place] = parameter_range(name, formula, inputs.constants, constants)
             _check_finite(name, box[place], by_place[min(used)][0])
     return dict(box)
 
@@ -78,7 +78,7 @@ def _check_finite(name: str, ends: Ends, text: str) -> None:
         raise InputError(f"--box {text[:60]}: expected a range of {name} within the range of a double, up to 1.8e308")
 
 
-def _place(kernel_problem: Problem, inputs: SceneInputs | None, name: str, text: str) -> str:
+def _place(kernel_problem: RoundingProblem, inputs: SceneInputs | None, name: str, text: str) -> str:
     """Return the place of an input, or the name of a constant in a scene's parameters."""
     for place, symbol in kernel_problem.symbols.items():
         if name in (place, symbol):

@@ -10,7 +10,7 @@ from typing import Any
 
 from symrot.certificates import recheck
 from symrot.certificates.audit import LARGEST
-from symrot.certificates.certificate import with_slots
+from symrot.certificates.certificate import with_sections
 from symrot.certificates.readback.readback import read_kernel
 from symrot.certificates.rounding.bounds import check_bounds, check_section
 from symrot.certificates.selftest import selftest_files
@@ -61,7 +61,7 @@ def certificate_files(
     emitted = emit(kernel, "c", bounds)
     name = f"{emitted.name}.cert.json"
     own = json.loads(emitted.certificate).get("rounding")
-    return {name: with_slots(emitted.certificate, _slots(directory / name) | {"rounding": own})}
+    return {name: with_sections(emitted.certificate, _slots(directory / name) | {"rounding": own})}
 
 
 def stored_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, Any] | None:
@@ -72,11 +72,12 @@ def stored_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, An
     """
     if directory is None or kernel in kernel_names():
         return None
-    name, source, _ = emit(kernel)
+    emitted = emit(kernel)
+    name, source = emitted.name, emitted.source
     section = _slots(directory / f"{name}.cert.json").get("rounding")
     if not isinstance(section, dict):
         return None
-    operations = read_kernel(source, name, f"{name}.c")
+    operations = read_kernel(source, emitted.function, f"{name}.c")
     try:
         check_section(section, operations, None)
         check_bounds(section, operations, None)

@@ -10,7 +10,7 @@ from symrot.certificates.certificate import Data
 from symrot.certificates.flags import BITS
 from symrot.certificates.object_code.build import COMPILERS, compiler_version, objects_section
 from symrot.certificates.object_code.comparison import CONTRACTED, IDENTICAL, compare_object
-from symrot.certificates.object_code.disassembly import missing
+from symrot.certificates.object_code.disassembly import why_no_objdump
 from symrot.errors import CertificateError, InputError
 from symrot.workshop.kernel_files import write_files
 
@@ -24,8 +24,8 @@ def require_compiler() -> None:
     """Raise InputError if no compiler or no disassembler is installed."""
     if not any(map(compiler_version, COMPILERS)):
         raise InputError(f"--objects: expected {' or '.join(COMPILERS)} on the path to compile with, found neither")
-    if missing():
-        raise InputError(f"--objects: {missing()}")
+    if why_no_objdump():
+        raise InputError(f"--objects: {why_no_objdump()}")
 
 
 def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:

@@ -8,10 +8,10 @@ from mpmath import mp, workdps
 
 from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.claim.tree import walk
-from symrot.checker.repair.points import Meaningless, Point
+from symrot.checker.repair.points import Point, UndefinedValue
 from tests.campaigns.checker.identities import RULES, UNDER, campaign, claims, main
-from tests.campaigns.checker.judge import RationalPoint, Undefined, random_point, truth
-from tests.campaigns.checker.judge_wider import HYPOTHESES, INVERSES, truth_under, wider_point
+from tests.campaigns.checker.oracle import RationalPoint, Undefined, random_point, truth
+from tests.campaigns.checker.oracle_extended import HYPOTHESES, INVERSES, truth_under, wider_point
 
 WIDER = ("exp", *INVERSES)
 
@@ -115,7 +115,7 @@ def test_the_exact_values_agree_with_fifty_digits(seed):
             try:
                 value = exact.value(side)
                 shown = point.value(side)
-            except (Undefined, Meaningless):
+            except (Undefined, UndefinedValue):
                 continue
             rows = value if isinstance(value, list) else [[value]]
             others = shown if isinstance(shown, tuple) else ((shown,),)

@@ -6,14 +6,16 @@ from fractions import Fraction
 from random import Random
 
 import pytest
+from sympy import Rational, Symbol, sin
 
 from symrot.checker.claim.reader import read_expression
-from symrot.checker.verdict import Counterexample, Verdict
+from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
+from symrot.exact.evidence import Counterexample
 from tests.campaigns.checker import real_identities as module
 from tests.campaigns.checker import run as campaign_run
 from tests.campaigns.checker.identities import campaign, main
-from tests.campaigns.checker.judge_real import (
+from tests.campaigns.checker.oracle_real import (
     Edge,
     Large,
     NoValue,
@@ -113,7 +115,7 @@ def test_generic_points_are_no_whole_numbers_for_the_most_part():
 
 # -- wrong verdicts ---------------------------------------------------------------------------------------------------
 
-AT_HALF = Counterexample({"x": "1/2"}, "", "")
+AT_HALF = Counterexample(((Symbol("x", real=True), Rational(1, 2)),), None, "", "")
 
 WRONG = (
     ("sqrt(x**2) == x", Verdict("true"), "true, but not at"),
@@ -141,7 +143,7 @@ def test_the_judge_refuses_a_wrong_verdict(claim, verdict, words):
     ("sqrt(x**2) == abs(x)", Verdict("true")), ("log(log(x)**(1/5) - 2) == log(log(x)**(1/5) - 2)", Verdict("true")), ("sqrt(x**2) == x", Verdict("conditional", requires=("x >= 0",))),
     ("sqrt(x) == x", Verdict("false", counterexample=AT_HALF)), ("sqrt(x) == x", Verdict("undecided")),
     ("(-8)**(1/3) == 7", "expected a number that is not negative under a root"), ("x == 1/0", "expected fewer pieces"),
-    ("sin(x) == 1", Verdict("false", counterexample=Counterexample({"sin(x)": "1/2"}, "", ""))),
+    ("sin(x) == 1", Verdict("false", counterexample=Counterexample(((sin(Symbol("x", real=True)), Rational(1, 2)),), None, "", ""))),
 ])  # fmt: skip
 def test_the_judge_accepts_a_right_verdict(claim, verdict):
     assert fault(claim, verdict, Random(1)) == ""
@@ -214,7 +216,7 @@ def test_a_formula_of_large_numbers_has_none(formula):
 def test_a_number_that_only_seems_zero_has_no_root():
     """cosh(exp(-exp(x))) is larger than 1 by less than 60 digits show."""
     claim = "acos(cosh(asin(exp(-exp(x))))) == 3"
-    assert fault(claim, "the sides are no real numbers: -1 >= 0 does not hold", Random(1)) == ""
+    assert fault(claim, "the sides are not real numbers: -1 >= 0 does not hold", Random(1)) == ""
 
 
 # -- runs -------------------------------------------------------------------------------------------------------------

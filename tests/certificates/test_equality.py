@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from symrot.certificates.laws.equality import prove_equal
-from symrot.certificates.readback.intended_constants import meaning, rounds_to
+from symrot.certificates.readback.intended_constants import intended_value, rounds_to
 from symrot.certificates.readback.readback import read_kernel
 from symrot.errors import CertificateError
 from symrot.formula.exact_numbers import PI
@@ -21,14 +21,14 @@ SLICE = ("quaternion_dcm", "quaternion_of_dcm", "euler_zyx_body_rates", "euler_z
 
 
 def proven(name, text, suffix=""):
-    found = definition(name)
+    kernel = definition(name)
     places = {
         (a.name if a.is_scalar else f"{a.name}[{i}]"): component[0]
-        for a in found.inputs
+        for a in kernel.inputs
         for i, component in enumerate(a.components)
     }
-    formulas = {f"{a.name}[{i}]": formula for a, each in found.results for i, formula in enumerate(each)}
-    return prove_equal(read_kernel(text, f"{name}{suffix}", name), places, formulas, found.named)
+    formulas = {f"{a.name}[{i}]": formula for a, each in kernel.results for i, formula in enumerate(each)}
+    return prove_equal(read_kernel(text, f"symrot_{name}{suffix}", name), places, formulas, kernel.named)
 
 
 def text_of(name):
@@ -72,11 +72,11 @@ def test_a_corrupted_text_is_refused(name):
 
 
 def test_the_number_a_constant_stands_for():
-    assert meaning(Fraction(1 / 3), "binary64").fraction == Fraction(1, 3)
-    assert meaning(Fraction(0.5), "binary64").fraction == Fraction(1, 2)
-    pi = meaning(Fraction(3.141592653589793), "binary64")
+    assert intended_value(Fraction(1 / 3), "binary64").fraction == Fraction(1, 3)
+    assert intended_value(Fraction(0.5), "binary64").fraction == Fraction(1, 2)
+    pi = intended_value(Fraction(3.141592653589793), "binary64")
     assert pi.times_pi and pi.fraction == 1
-    two_pi = meaning(rounds_to(2 * PI, "binary32"), "binary32")
+    two_pi = intended_value(rounds_to(2 * PI, "binary32"), "binary32")
     assert two_pi.times_pi and two_pi.fraction == 2
     with pytest.raises(CertificateError, match="simple fraction"):
-        meaning(Fraction(0.123456789012345678), "binary64")
+        intended_value(Fraction(0.123456789012345678), "binary64")

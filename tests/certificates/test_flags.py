@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from symrot.certificates.flags import BITS, BOUNDS, NOTHING, flags_section, judge
+from symrot.certificates.flags import BITS, BOUNDS, NOTHING, classify_flags, flags_section
 from symrot.cli.main import main
 from symrot.errors import InputError
 
@@ -40,11 +40,11 @@ KERNELS = Path(__file__).parents[2] / "generated" / "c"
     ],
 )
 def test_flags_are_judged_in_their_order(flags, holds):
-    found = judge(flags)
-    assert found.holds == holds and found.accepted == (holds != NOTHING)
-    assert found == judge(flags.split())
+    effect = classify_flags(flags)
+    assert effect.holds == holds and effect.accepted == (holds != NOTHING)
+    assert effect == classify_flags(flags.split())
     if holds == NOTHING:
-        assert found.sentence().startswith("the certificate is void (-")
+        assert effect.sentence().startswith("the certificate is void (-")
 
 
 @pytest.mark.parametrize(
@@ -54,7 +54,7 @@ def test_flags_are_judged_in_their_order(flags, holds):
 )  # fmt: skip
 def test_a_flag_or_a_compiler_that_nobody_knows_is_refused_in_one_sentence(flag):
     with pytest.raises(InputError, match=r"^flags: expected"):
-        judge(flag)
+        classify_flags(flag)
 
 
 @pytest.mark.parametrize(
@@ -65,7 +65,7 @@ def test_a_flag_or_a_compiler_that_nobody_knows_is_refused_in_one_sentence(flag)
 )  # fmt: skip
 def test_compilers_are_known_by_their_names(flags, holds):
     """One for a processor with x87 keeps more digits than a type has, unless it is told to use SSE."""
-    assert judge(flags).holds == holds
+    assert classify_flags(flags).holds == holds
 
 
 def test_the_section_of_flags_gives_a_reason_for_each():
@@ -74,13 +74,13 @@ def test_the_section_of_flags_gives_a_reason_for_each():
     for name, rows in section.items():
         assert all(rows.values()), name
     for flag in section["void"]:
-        assert judge([flag, "-ffp-contract=off"]).holds == NOTHING
+        assert classify_flags([flag, "-ffp-contract=off"]).holds == NOTHING
     for flag in section["allowed"]:
-        assert judge([flag, "-ffp-contract=off"]).holds == BITS
+        assert classify_flags([flag, "-ffp-contract=off"]).holds == BITS
 
 
 @pytest.mark.parametrize(
-    ("flags", "code", "said"),
+    ("flags", "code", "sentence"),
     [
         ("gcc -O3 -mavx2 -ffp-contract=off", 0, "the bits of the C text and its error bounds hold"),
         ("gcc -O2 -march=native", 0, "the error bounds hold, not the bits"),
@@ -88,8 +88,8 @@ def test_the_section_of_flags_gives_a_reason_for_each():
         ("gcc -fmagic", 2, "got '-fmagic'"),
     ],
 )
-def test_the_audit_says_what_holds_under_flags(capsys, flags, code, said):
+def test_the_audit_says_what_holds_under_flags(capsys, flags, code, sentence):
     assert main(["audit", str(KERNELS / "torque_spring.cert.json"), "--flags", flags]) == code
-    found = capsys.readouterr()
-    assert said in (found.err if code else found.out)
-    assert found.err.count("\n") == (1 if code else 0)
+    output = capsys.readouterr()
+    assert sentence in (output.err if code else output.out)
+    assert output.err.count("\n") == (1 if code else 0)

@@ -11,7 +11,7 @@ import pytest
 
 import symrot
 from symrot.certificates import recheck
-from symrot.certificates.certificate import printed
+from symrot.certificates.certificate import certificate_json
 from symrot.cli import main as cli
 
 KERNELS = Path(symrot.__file__).parents[1] / "generated" / "c"
@@ -41,7 +41,7 @@ def renamed(old, new, folder):
         (folder / f"{new}{end}").write_text(text, encoding="utf-8")
         data["files"][f"{new}{end}"] = sha256(text.encode()).hexdigest()
     path = folder / f"{new}.cert.json"
-    path.write_text(printed(data), encoding="utf-8")
+    path.write_text(certificate_json(data), encoding="utf-8")
     return path
 
 
@@ -109,7 +109,7 @@ def test_a_strange_value_anywhere_in_a_certificate_gets_one_sentence(name, seed,
     path = tmp_path / source.name
     refused = 0
     for _ in range(count):
-        path.write_text(printed(changed_somewhere(data, chance)), encoding="utf-8")
+        path.write_text(certificate_json(changed_somewhere(data, chance)), encoding="utf-8")
         words = chance.choice([["audit"], ["audit"], ["audit", "--rerun-bounds"], ["certify", "--no-bounds"]])
         code = cli.main([*words, str(path)])
         said = capsys.readouterr()

@@ -5,13 +5,14 @@ refuse them. Some are no C at all, or C that would compute the same: kernels hav
 """
 
 import json
+import re
 from hashlib import sha256
 
 import pytest
 
 from symrot.certificates import exact_check, recheck
 from symrot.certificates.audit import audit
-from symrot.certificates.certificate import printed
+from symrot.certificates.certificate import certificate_json
 from symrot.codegen.printing.math_header import math_header
 from symrot.errors import CertificateError
 from symrot.workshop.emit import emit, subject
@@ -23,14 +24,14 @@ SUM, TURN = (
     "dangles[1] = omega_2*cos_psi - sin_psi*omega_3;",
     "const double turning = (omega_2*sin_psi + omega_3*cos_psi)/cos_theta;",
 )
-EACH, GUARD = SUM.replace("[1]", "[1*n + k]"), "SYMROT_ROTATION_VECTOR_OF_QUATERNION_H"
+EACH, GUARD = SUM.replace("[1]", "[n + k]"), "SYMROT_ROTATION_VECTOR_OF_QUATERNION_H"
 PSI, FAR = "const double psi = angles[2];", "beyond += symrot_far(psi) + symrot_far(theta);"
 HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
     "integer division": (R, SUM, SUM.replace("cos_psi -", "cos_psi + 1/2 -")),
     "integer": (R, SUM, SUM.replace("cos_psi -", "cos_psi*1 -")),
     "octal index": (Q, "dcm[8]", "dcm[010]"),
-    "hex": (S, "2.0*(x1", "0x2p0*(x1"),
-    "underscores": (S, "2.0*(x1", "2_0.0e-1*(x1"),
+    "hex": (S, "2.0*(v1_arc_ratio_1", "0x2p0*(v1_arc_ratio_1"),
+    "underscores": (S, "2.0*(v1_arc_ratio_1", "2_0.0e-1*(v1_arc_ratio_1"),
     "power of a pointer": (R, "omega_2*sin_psi", "omega_2**omega*sin_psi"),
     "line comment": (R, "turning*sin_theta;", "turning // *sin_theta\n;"),
     "comment that ends twice": (R, SUM, SUM.replace(" - ", " /*/ - /*/ + ")),
@@ -44,8 +45,8 @@ HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
     "vertical tab": (R, SUM, SUM.replace(" - ", " -\v ")),
     "other alphabet": (R, "psi = angles[2]", "p\u0455i = angles[2]"),
     "float in double": (R, TURN, TURN.replace("double", "float")),
-    "float literal": (S, "2.0*(x1", "2.0f*(x1"),
-    "long literal": (S, "2.0*(x1", "2.0L*(x1"),
+    "float literal": (S, "2.0*(v1_arc_ratio_1", "2.0f*(v1_arc_ratio_1"),
+    "long literal": (S, "2.0*(v1_arc_ratio_1", "2.0L*(v1_arc_ratio_1"),
     "float function": (R, "sin(psi)", "sinf(psi)"),
     "cast": (R, TURN, TURN.replace("= (", "= (float)(")),
     "cast of minus": (R, SUM, SUM.replace("= omega_2", "= (int)-omega_2")),
@@ -57,7 +58,7 @@ HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
     "comma": (R, SUM, SUM.replace("= omega_2", "= (omega_1, omega_2)")),
     "chain of choices": (S, "s == 0.0 ? 1.0/c : atan2(s, c)/s", "s == 0.0 ? 1.0/c : c == 0.0 ? 1.0 : atan2(s, c)/s"),
     "chain of comparisons": (S, "s == 0.0 ? 1.0/c", "0.0 < s == 0.0 ? 1.0/c"),
-    "choice at a threshold": (Q, "const double x0 = 1.0 + R_11;", "const double x0 = symrot_select_ge(R_22, 1000.0, R_11, 1.0 + R_11);"),
+    "choice at a threshold": (Q, "const double one_plus_R_11 = 1.0 + R_11;", "const double one_plus_R_11 = symrot_select_ge(R_22, 1000.0, R_11, 1.0 + R_11);"),
     "bump": (R, SUM, SUM.replace(";", " + fabs(psi - 7.0) + fabs(psi - 8.0) - 2.0*fabs(psi - 7.5);")),
     "square root of a square": (R, SUM, SUM.replace("= omega_2", "= sqrt((omega_2 + 9.0)*(omega_2 + 9.0)) - 9.0 + 0.0*omega_2")),
     "decrement": (R, SUM, SUM.replace(" - sin", " --sin")),
@@ -75,7 +76,7 @@ HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
     "input written": (R, SUM, SUM + " ((double *)omega)[0] = 0.0;"),
     "input not const": (R, "(const double angles[3]", "(double angles[3]"),
     "arguments swapped": (R, "const double angles[3], const double omega[3]", "const double omega[3], const double angles[3]"),
-    "function twice": (R, "\nvoid", "\nvoid euler_zyx_body_rates_batch(size_t n) { }\n\nvoid"),
+    "function twice": (R, "\nvoid", "\nvoid symrot_euler_zyx_body_rates_batch(size_t n) { }\n\nvoid"),
     "own sine": (R, "\nvoid", "\nstatic inline double symrot_sin(double x)\n{\n    return x;\n}\n\nvoid"),
     "global": (R, "\nvoid", "\nstatic const double pi = 3.0;\n\nvoid"),
     "local function": (R, SUM, "double cos(double); " + SUM),
@@ -145,7 +146,7 @@ def refused(kernels):
         written.append(files)
         (files.directory / f"{name}.c").write_text(text, encoding="utf-8")
         digests = files.data["files"] | {f"{name}.c": sha256(text.encode()).hexdigest()}
-        files.path.write_text(printed(files.data | {"files": digests} | changes), encoding="utf-8")
+        files.path.write_text(certificate_json(files.data | {"files": digests} | changes), encoding="utf-8")
         with pytest.raises(Exception) as caught:
             recheck.check(files.path)
         said = [str(caught.value)]
@@ -194,7 +195,7 @@ def test_angles_are_asked_for_before_anything_is_computed_again(kernels, refused
     end = text.index("        }\n", at)
     late = text[:at].replace(FAR, "") + text[at:end] + "    " + FAR + "\n" + text[end:]
     assert late.count(FAR) == 1
-    assert "beyond their range" in refused(R, late)
+    assert "got 'beyond'" in refused(R, late)
     start = text.index("{\n", text.index("k < end")) + 2
     assert "is not its formulas" in refused(R, text[:start] + text[text.index("        }\n", start) :])
 
@@ -222,7 +223,8 @@ FORGED = {  # what it is: kernel, part of its readback or law, what takes its pl
 def test_a_certificate_of_other_constants_or_series_is_refused(kernels, refused, what):
     name, part, changed = FORGED[what]
     readback = json.loads(json.dumps(kernels[name].data["readback"]))
-    readback[name][part][0] = changed(readback[name][part][0])
+    function = f"symrot_{name}"
+    readback[function][part][0] = changed(readback[function][part][0])
     assert refused(name, kernels[name].source, readback=readback)
 
 
@@ -232,7 +234,7 @@ def test_an_output_may_not_take_the_name_of_an_input(kernels, refused):
     for symbol in ("omega_1", "phi", "pi", spec["formulas"][1][1], *(name for name, _ in spec["named"][:1])):
         (place, _, text), *formulas = spec["formulas"]
         said = refused(R, kernels[R].source, spec=spec | {"formulas": [[place, symbol, text], *formulas]})
-        assert said == f"{symbol} is no new name"
+        assert said.startswith(f"{symbol} is no new name")
 
 
 @pytest.mark.parametrize(
@@ -248,10 +250,8 @@ def test_what_is_given_is_a_rotation_or_of_length_one(kernels, refused, given):
     laws = kernels[Q].data["laws"]
     changed = [law | {"given": given(law["given"])} if len(law["given"]) > 1 else law for law in laws]
     assert changed != laws
-    assert refused(Q, kernels[Q].source, laws=changed) in (
-        f"the law {laws[0]['law']!r} does not follow",
-        "q0 is no new name",
-    )
+    said = refused(Q, kernels[Q].source, laws=changed)
+    assert re.match(r"the law .* does not follow|.* is no new name|the law .*: expected names", said)
 
 
 def test_a_law_of_nothing_is_refused(kernels, refused):
@@ -322,7 +322,7 @@ def test_a_header_that_says_more_than_prototypes_is_refused(what, kernels):
     text = text[:start] + text[start:].replace(old, new, 1)
     (files.directory / f"{R}.h").write_text(text, encoding="utf-8")
     digests = files.data["files"] | {f"{R}.h": sha256(text.encode()).hexdigest()}
-    files.path.write_text(printed(files.data | {"files": digests}), encoding="utf-8")
+    files.path.write_text(certificate_json(files.data | {"files": digests}), encoding="utf-8")
     with pytest.raises(ValueError, match=f"{R}.h holds"):
         recheck.check(files.path)
     with pytest.raises(CertificateError):
@@ -335,8 +335,10 @@ def test_another_header_of_functions_is_refused(kernels):
     text = math_header().replace("sin", "cos")
     (files.directory / "symrot_math.h").write_text(text, encoding="utf-8")
     digests = files.data["files"] | {"symrot_math.h": sha256(text.encode()).hexdigest()}
-    files.path.write_text(printed(files.data | {"files": digests}), encoding="utf-8")
-    with pytest.raises(ValueError, match="laws or functions are others"):
+    files.path.write_text(certificate_json(files.data | {"files": digests}), encoding="utf-8")
+    with pytest.raises(ValueError, match=r"symrot_math\.h is another"):
         recheck.check(files.path)
     files.restore()
-    assert sha256(math_header().encode()).hexdigest() == recheck.MATH  # print it anew where symrot_math.h changes
+    assert (
+        sha256(math_header().encode()).hexdigest() == recheck.MATH_HEADER_SHA256
+    )  # print it anew where symrot_math.h changes

@@ -42,9 +42,9 @@ def verdicts(directory, text, compiler="gcc", flags=("-O2", *STRICT), against=No
 )
 def test_compiled_kernels_are_accepted(name, compiler):
     """Strict flags give identical operations for SSE2; with AVX2 and FMA the contracted ones are named as such."""
-    found = objects_section(KERNELS / f"{name}.c", compilers=[compiler])
-    assert len(found["objects"]) == len(FLAGS)
-    for item in found["objects"]:
+    section = objects_section(KERNELS / f"{name}.c", compilers=[compiler])
+    assert len(section["objects"]) == len(FLAGS)
+    for item in section["objects"]:
         assert len(item["functions"]) == 2
         if "-mfma" not in item["flags"]:
             assert {function["verdict"] for function in item["functions"]} == {IDENTICAL}, item
@@ -74,10 +74,10 @@ def test_what_is_not_identical_gives_other_bits(compiler, tmp_path):
 )
 @pytest.mark.parametrize("compiler", HERE)
 def test_other_harmless_ways_of_compiling_are_accepted_too(compiler, flags):
-    found = objects_section(
+    section = objects_section(
         KERNELS / "rotation_vector_of_quaternion.c", (), [compiler], [(*flags, "-ffp-contract=off")]
     )
-    assert found["accepted"], found["objects"]
+    assert section["accepted"], section["objects"]
 
 
 @needs_objdump
@@ -85,11 +85,11 @@ def test_other_harmless_ways_of_compiling_are_accepted_too(compiler, flags):
 @pytest.mark.parametrize("flags", ["-O2 -ffast-math", "-O3 -Ofast", "-O2 -funsafe-math-optimizations"])
 def test_fast_math_is_refused_with_the_output_that_differs(compiler, flags):
     try:
-        found = objects_section(KERNELS / "quaternion_of_dcm.c", (), [compiler], [flags.split()])
+        section = objects_section(KERNELS / "quaternion_of_dcm.c", (), [compiler], [flags.split()])
     except CompilerError as reason:  # a text that refuses the flag itself
         assert "-ffast-math" in str(reason)
         return
-    (item,) = found["objects"]
+    (item,) = section["objects"]
     assert not item["accepted"] and item["flags_hold"] == NOTHING
     for function in item["functions"]:
         assert function["verdict"] == DIFFERS
@@ -98,10 +98,10 @@ def test_fast_math_is_refused_with_the_output_that_differs(compiler, flags):
 
 @needs_objdump
 def test_fast_math_that_did_nothing_is_refused_by_its_flags_alone():
-    found = objects_section(
+    section = objects_section(
         KERNELS / "euler_zyx_dcm.c", (), ["gcc"], [("-O2", "-freciprocal-math", "-ffp-contract=off")]
     )
-    (item,) = found["objects"]
+    (item,) = section["objects"]
     assert {function["verdict"] for function in item["functions"]} == {IDENTICAL}
     assert not item["accepted"] and item["flags_hold"] == NOTHING
 
@@ -119,10 +119,10 @@ def test_a_changed_sign_in_the_text_is_seen_in_the_object(tmp_path):
     text = (KERNELS / "euler_zyx_dcm.c").read_text()
     edited = text.replace(" + ", " - ", 1)
     assert edited != text
-    found = verdicts(tmp_path, edited, against=text)
-    assert found[0].verdict == DIFFERS and found[0].output and not found[0].accepted
-    assert found[1].verdict == IDENTICAL  # the float form was left alone
-    assert "euler_zyx_dcm: differs, output dcm[" in found[0].sentence()
+    differing = verdicts(tmp_path, edited, against=text)
+    assert differing[0].verdict == DIFFERS and differing[0].output and not differing[0].accepted
+    assert differing[1].verdict == IDENTICAL  # the float form was left alone
+    assert "euler_zyx_dcm: differs, output dcm[" in differing[0].sentence()
 
 
 @needs_objdump
@@ -130,8 +130,8 @@ def test_a_changed_sign_in_the_text_is_seen_in_the_object(tmp_path):
 def test_corrupted_object_files_are_refused(compiler):
     """A slice of `python -m tests.campaigns.certificates.object_campaign`: what gives the same bits on many inputs is no corruption."""
     sources = [KERNELS / f"{name}.c" for name in ("euler_zyx_body_rates", "mrp_shadow")]
-    counts, said = corrupted(sources, compiler, ("-O2", *STRICT), 20, 11)
-    assert counts.total() == 20 and all(name.endswith(": refused") for name in counts), said
+    counts, report = corrupted(sources, compiler, ("-O2", *STRICT), 20, 11)
+    assert counts.total() == 20 and all(name.endswith(": refused") for name in counts), report
     assert len({name.partition(":")[0] for name in counts}) >= 4  # of different kinds
 
 
@@ -155,8 +155,8 @@ STRANGE = (
     (f"movsd xmm2,QWORD PTR fs:[rip+f]; {GOOD}; ret", NOT_UNDERSTOOD, "segment fs"),
     ("ret", NOT_UNDERSTOOD, "y[0] is not written"),
     (f"{GOOD}", NOT_UNDERSTOOD, "no instruction"),
-    (f"cvtsd2si eax,xmm0; {GOOD}; ret", NOT_UNDERSTOOD, "an instruction that is not known"),
-    (f"ldmxcsr DWORD PTR [rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "an instruction that is not known"),
+    (f"cvtsd2si eax,xmm0; {GOOD}; ret", NOT_UNDERSTOOD, "an unknown instruction"),
+    (f"ldmxcsr DWORD PTR [rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "an unknown instruction"),
     (f"call tgamma; {GOOD}; ret", NOT_UNDERSTOOD, "16 bytes"),
     (f"sub rsp,8; call tgamma; {GOOD}; add rsp,8; ret", NOT_UNDERSTOOD, "a call of tgamma"),
     (f"jmp rax; {GOOD}; ret", NOT_UNDERSTOOD, "a jump to an address that is computed"),
@@ -166,8 +166,8 @@ STRANGE = (
     (GOOD.replace("addsd xmm1,xmm0", "subsd xmm1,xmm0") + "; ret", DIFFERS, "the object code"),
     (UPPER.format(""), IDENTICAL, ""),  # registers that AVX-512 has
     (UPPER.format("; vzeroupper"), IDENTICAL, ""),
-    (UPPER.replace("xmm18,xmm18,", "xmm18{{k1}},xmm18,").format(""), NOT_UNDERSTOOD, "an instruction that is not known"),
-    (UPPER.replace("xmm18,xmm18,xmm17", "xmm18,xmm18,xmm17,{{ru-sae}}").format(""), NOT_UNDERSTOOD, "not known"),
+    (UPPER.replace("xmm18,xmm18,", "xmm18{{k1}},xmm18,").format(""), NOT_UNDERSTOOD, "an unknown instruction"),
+    (UPPER.replace("xmm18,xmm18,xmm17", "xmm18,xmm18,xmm17,{{ru-sae}}").format(""), NOT_UNDERSTOOD, "an unknown instruction"),
     (UPPER.replace("vaddsd", "vsubsd").format(""), DIFFERS, "the object code"),
     ("movsd xmm0,QWORD PTR [rdi]; movsd xmm1,QWORD PTR [rdi+8]; vfmadd213sd xmm1,xmm0,xmm0; movsd QWORD PTR [rsi],xmm1; ret",
      CONTRACTED, ""),
@@ -175,8 +175,8 @@ STRANGE = (
 
 
 @needs_objdump
-@pytest.mark.parametrize(("code", "verdict", "said"), STRANGE, ids=range(len(STRANGE)))
-def test_machine_code_by_hand(tmp_path, code, verdict, said):
+@pytest.mark.parametrize(("code", "verdict", "reason"), STRANGE, ids=range(len(STRANGE)))
+def test_machine_code_by_hand(tmp_path, code, verdict, reason):
     assembly, target = tmp_path / "f.s", tmp_path / "f.o"
     rows = [
         ".intel_syntax noprefix",
@@ -188,8 +188,8 @@ def test_machine_code_by_hand(tmp_path, code, verdict, said):
     ]
     assembly.write_text("\n".join([*rows, ""]))
     subprocess.run(["gcc", "-c", assembly, "-o", target], check=True)
-    (found,) = compare_object(TEXT, target)
-    assert (found.verdict, said in found.reason) == (verdict, True), found
+    (result,) = compare_object(TEXT, target)
+    assert (result.verdict, reason in result.reason) == (verdict, True), result
 
 
 @needs_objdump
@@ -201,8 +201,8 @@ def test_a_product_that_is_rounded_here_and_fused_there_is_refused(tmp_path):
             "movsd QWORD PTR [rsi],xmm2", "ret"]  # fmt: skip
     (tmp_path / "f.s").write_text("\n".join([".intel_syntax noprefix", ".globl f", "f:", *rows, ""]))
     subprocess.run(["gcc", "-c", tmp_path / "f.s", "-o", tmp_path / "f.o"], check=True)
-    (found,) = compare_object(text, tmp_path / "f.o")
-    assert found.verdict == DIFFERS and "rounded in one place and fused in another" in found.reason
+    (result,) = compare_object(text, tmp_path / "f.o")
+    assert result.verdict == DIFFERS and "rounded in one place and fused in another" in result.reason
 
 
 @needs_objdump
@@ -265,7 +265,7 @@ def test_code_of_another_part_of_the_file_does_not_stand_for_a_function(tmp_path
         compare_object(TEXT, tmp_path / "both.o")
 
 
-# --- link 5 of certificates -------------------------------------------------------------------------------------------
+# --- objects in certificates ------------------------------------------------------------------------------------------
 
 
 @needs_objdump
@@ -276,16 +276,16 @@ def test_certify_compares_object_code_and_keeps_what_it_found(tmp_path, capsys, 
     monkeypatch.setattr(object_code_build.objects_section, "__defaults__", ((), tuple(HERE), FLAGS[1:2]))
     folder = tmp_path / "k"
     assert main(["certify", "quaternion_product", "--objects", "-o", str(folder)]) == 0
-    said = capsys.readouterr().out
-    assert said.count("the C text, rounding for rounding: bits and bounds hold") == len(HERE)
+    output = capsys.readouterr().out
+    assert output.count("the C text, rounding for rounding: bits and bounds hold") == len(HERE)
     monkeypatch.setattr(compiled, "objects_section", None)  # not called again
     assert main(["certify", "quaternion_product", "--objects"]) == 0
-    assert capsys.readouterr().out in said
+    assert capsys.readouterr().out in output
     assert main(["certify", "quaternion_product", "-o", str(folder)]) == 0
     assert "compared in an earlier run, not now" in capsys.readouterr().out
     path = folder / "quaternion_product.cert.json"
     assert main(["audit", str(path)]) == 0
-    assert "what it says of object code was not looked at" in capsys.readouterr().out
+    assert "its verdicts on object code were not checked" in capsys.readouterr().out
 
 
 def test_a_difference_under_flags_that_keep_bits_fails():
@@ -298,17 +298,20 @@ def test_a_difference_under_flags_that_keep_bits_fails():
     same = {**objects[0], "accepted": True, "functions": [function | {"verdict": IDENTICAL}]}
     both = {"objects": [same, objects[1]], "missing": ["clang"]}
     assert compiled.holds(both) and not refuted([{"objects": both}, {}]) and refuted([{"objects": strict}])
-    said = compiled.lines(both)
-    assert "not the C text (f: differs, output y: the C text has a + b)" in said[1] and "clang is not on" in said[2]
+    output_lines = compiled.lines(both)
+    assert (
+        "not the C text (f: differs, output y: the C text has a + b)" in output_lines[1]
+        and "clang is not on" in output_lines[2]
+    )
     counts = compiled.table({"one": both, "two": both, "three": None})
     assert counts[:2] == ["  gcc for bits: 2 of 2", "  gcc for bounds: 0 of 2"] and counts[2].startswith("    one: not")
 
 
 @pytest.mark.parametrize("arguments", [["quaternion_dcm"], ["--all"]])
-@pytest.mark.parametrize(("there", "said"), [((), "gcc or clang on the path"), (("gcc",), "objdump")])
-def test_without_compiler_or_objdump_nothing_is_written(arguments, there, said, tmp_path, capsys, monkeypatch):
+@pytest.mark.parametrize(("there", "sentence"), [((), "gcc or clang on the path"), (("gcc",), "objdump")])
+def test_without_compiler_or_objdump_nothing_is_written(arguments, there, sentence, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(compiled, "compiler_version", lambda name: "1" if name in there else "")
     monkeypatch.setattr(shutil, "which", lambda name, *_: None)
     assert main(["certify", *arguments, "--objects", "-o", str(tmp_path / "k")]) == 2
-    found = capsys.readouterr()
-    assert said in found.err and found.err.count("\n") == 1 and not found.out and not list(tmp_path.iterdir())
+    output = capsys.readouterr()
+    assert sentence in output.err and output.err.count("\n") == 1 and not output.out and not list(tmp_path.iterdir())

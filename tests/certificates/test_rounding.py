@@ -14,10 +14,17 @@ import pytest
 from symrot.certificates.readback.readback import read_kernel
 from symrot.certificates.rounding import functions, intervals
 from symrot.certificates.rounding.adjoint import evaluate
-from symrot.certificates.rounding.bounds import STORE, bound_outputs, bound_task, check_section, rounding_section, tasks
-from symrot.certificates.rounding.bounds_text import in_words, library_section, rounded_up
-from symrot.certificates.rounding.library import largest_box, operations_of, prepare, problem, resized
-from symrot.certificates.rounding.output_graph import cone_of
+from symrot.certificates.rounding.bounds import (
+    STORE,
+    bound_outputs,
+    bound_task,
+    bound_tasks,
+    check_section,
+    rounding_section,
+)
+from symrot.certificates.rounding.bounds_text import bounds_sentence, library_section, rounded_up
+from symrot.certificates.rounding.library import largest_box, library_problem, operations_of, prepare, resized
+from symrot.certificates.rounding.output_graph import output_graph
 from symrot.certificates.rounding.region import Region
 from symrot.certificates.rounding.store import TABLE, method, printed_table, table
 from symrot.cli.main import main
@@ -73,9 +80,9 @@ def bound_of(body, low, high, real="double", count=3):
     ],
 )
 def test_the_error_of_one_operation(body, low, high, units):
-    found = bound_of(body, low, high)
-    assert found.converged
-    assert found.bound == pytest.approx(float(Fraction(units)) * 2.0**-53, rel=1e-9, abs=1e-300)
+    bound = bound_of(body, low, high)
+    assert bound.converged
+    assert bound.bound == pytest.approx(float(Fraction(units)) * 2.0**-53, rel=1e-9, abs=1e-300)
     single = bound_of(body.replace("sin", "sinf").replace("sqrt", "sqrtf").replace(".0", ".0f"), low, high, "float")
     assert single.bound == pytest.approx(float(Fraction(units)) * 2.0**-24, rel=1e-6, abs=1e-40)
 
@@ -99,14 +106,14 @@ def test_a_constant_errs_by_what_it_is_off_from_what_it_stands_for():
 def test_the_larger_of_two_is_known_to_be_large():
     """max(1 + x, 1 - x) is at least 1, so its root too, and half its inverse at most 1/2 and off by 1/4 unit."""
     larger = "(1.0 + x[0] >= 1.0 - x[0] ? 1.0 + x[0] : 1.0 - x[0])"
-    found = bound_of(f"0.5/sqrt({larger})", -1, 1)
-    assert found.converged
-    assert found.bound == pytest.approx((1 / 4 + 1 / 2 + 1 / 4) * 2.0**-53, rel=0.03)
+    bound = bound_of(f"0.5/sqrt({larger})", -1, 1)
+    assert bound.converged
+    assert bound.bound == pytest.approx((1 / 4 + 1 / 2 + 1 / 4) * 2.0**-53, rel=0.03)
 
 
 def test_underflow_is_part_of_the_bound():
-    found = bound_of("x[0]*x[1]", 0, Fraction(1, 10**170))
-    assert 0 < found.bound < 1e-318
+    bound = bound_of("x[0]*x[1]", 0, Fraction(1, 10**170))
+    assert 0 < bound.bound < 1e-318
 
 
 def test_fused_products_are_covered_where_nothing_else_takes_them():
@@ -140,13 +147,13 @@ def test_functions_are_enclosed(name):
     middle, width = rng.uniform(-9, 9, 120), 10.0 ** rng.uniform(-16, 0.5, 120)
     middle[:20] = np.arange(1, 21) * 0.5 * np.pi
     ends = np.stack([middle - width, middle + width])
-    found = getattr(functions, name)(ends)
+    enclosure = getattr(functions, name)(ends)
     with mpmath.workdps(60):
         for k in range(120):
             for part in (0.0, 0.3, 0.5, 1.0):
                 x = mpmath.mpf(ends[0, k] + part * (ends[1, k] - ends[0, k]))
-                assert found[0, k] <= EXACT[name](x) <= found[1, k]
-    assert (found[1] - found[0])[width < 1e-9].max() < 1e-8
+                assert enclosure[0, k] <= EXACT[name](x) <= enclosure[1, k]
+    assert (enclosure[1] - enclosure[0])[width < 1e-9].max() < 1e-8
 
 
 def test_arithmetic_is_enclosed_and_exact_ends_stay():
@@ -155,16 +162,16 @@ def test_arithmetic_is_enclosed_and_exact_ends_stay():
     a[:, :40], b[:, :40] = np.round(a[:, :40]), np.round(b[:, :40])
     for name, exact in (("add", lambda x, y: x + y), ("multiply", lambda x, y: x * y), ("divide", lambda x, y: x / y)):
         with np.errstate(all="ignore"):
-            found = getattr(intervals, name)(a, b)
-        for k in np.flatnonzero(np.isfinite(found).all(axis=0)):
+            enclosure = getattr(intervals, name)(a, b)
+        for k in np.flatnonzero(np.isfinite(enclosure).all(axis=0)):
             ends = [exact(Fraction(x), Fraction(y)) for x in a[:, k] for y in b[:, k] if name != "divide" or y]
-            assert Fraction(found[0, k]) <= min(ends) and max(ends) <= Fraction(found[1, k])
+            assert Fraction(enclosure[0, k]) <= min(ends) and max(ends) <= Fraction(enclosure[1, k])
             if (
                 name != "divide"
                 and all(Fraction(float(end)) == end for end in ends)
                 and max(abs(a[:, k]).max(), abs(b[:, k]).max()) < 2**20
             ):
-                assert k >= 40 or (found[:, k] == [float(min(ends)), float(max(ends))]).all()
+                assert k >= 40 or (enclosure[:, k] == [float(min(ends)), float(max(ends))]).all()
 
 
 # --- bounds against measured errors -----------------------------------------------------------------------------------
@@ -172,9 +179,9 @@ def test_arithmetic_is_enclosed_and_exact_ends_stay():
 
 def rows_of(name, suffix="", points=3000, budget=BUDGET):
     operations = operations_of(name, text_of(name))[1 if suffix else 0]
-    given = problem(definition(name), operations)
-    bounds = bound_outputs(operations, given.box, given.region, budget)
-    return compare(operations, bounds, measure(operations, given.box, bounds, given.region, points), name)
+    problem = library_problem(definition(name), operations)
+    bounds = bound_outputs(operations, problem.box, problem.region, budget)
+    return compare(operations, bounds, measure(operations, problem.box, bounds, problem.region, points), name)
 
 
 @pytest.mark.thinned(2)
@@ -196,36 +203,36 @@ def test_no_error_of_any_kernel_is_larger_than_its_bound(name):
 
 def test_a_kernel_that_rounds_worse_has_a_larger_bound():
     text = text_of("euler_zyx_body_rates")
-    at = text.index("void euler_zyx_body_rates(")
+    at = text.index("void symrot_euler_zyx_body_rates(")
     body = text[at : text.index("}", at)]
     product = next(line for line in body.splitlines() if "dangles[0]" in line)
     value = product.split("=", 1)[1].strip().rstrip(";")
     changed = text.replace(product, product.replace(value, f"({value} + 1024.0) - 1024.0"), 1)
-    found = []
+    bounds = []
     for source in (text, changed):
-        operations = read_kernel(source, "euler_zyx_body_rates")
-        given = problem(definition("euler_zyx_body_rates"), operations)
-        found.append(bound_outputs(operations, given.box, budget=BUDGET)[0].bound)
-    assert found[1] > 2 * found[0]
+        operations = read_kernel(source, "symrot_euler_zyx_body_rates")
+        problem = library_problem(definition("euler_zyx_body_rates"), operations)
+        bounds.append(bound_outputs(operations, problem.box, budget=BUDGET)[0].bound)
+    assert bounds[1] > 2 * bounds[0]
 
 
 def test_the_bound_of_a_part_is_never_larger():
     """Bounds on halves of a box are at most that of the box, and a point is at most its box."""
     operations = operations_of("euler_zyx_body_rates", text_of("euler_zyx_body_rates"))[0]
-    given = problem(definition("euler_zyx_body_rates"), operations)
-    cone = cone_of(operations, operations.outputs[0][1])
-    ends = np.array([[float(given.box[place][k]) for place in cone.places] for k in (0, 1)])
+    problem = library_problem(definition("euler_zyx_body_rates"), operations)
+    graph = output_graph(operations, operations.outputs[0][1])
+    ends = np.array([[float(problem.box[place][k]) for place in graph.places] for k in (0, 1)])
     rng = np.random.default_rng(2)
-    inner = np.sort(rng.uniform(ends[0][:, None], ends[1][:, None], (2, len(cone.places), 200)), axis=0)
+    inner = np.sort(rng.uniform(ends[0][:, None], ends[1][:, None], (2, len(graph.places), 200)), axis=0)
     outer = np.stack([(inner[0] + ends[0][:, None]) / 2, (inner[1] + ends[1][:, None]) / 2])
     none = np.zeros((0, 200), np.int8)
-    assert (evaluate(cone, inner, none).bound <= evaluate(cone, outer, none).bound * (1 + 1e-12)).all()
+    assert (evaluate(graph, inner, none).bound <= evaluate(graph, outer, none).bound * (1 + 1e-12)).all()
 
 
 def test_an_angle_is_compared_modulo_whole_turns_and_said_so():
     operations = operations_of("euler_zxz_of_quaternion", text_of("euler_zxz_of_quaternion"))[0]
-    given = problem(definition("euler_zxz_of_quaternion"), operations)
-    first, second, _ = bound_outputs(operations, given.box, given.region, BUDGET)
+    problem = library_problem(definition("euler_zxz_of_quaternion"), operations)
+    first, second, _ = bound_outputs(operations, problem.box, problem.region, BUDGET)
     assert first.turns and not second.turns
     assert all("whole turns" in choice for choice in first.choices)
 
@@ -236,18 +243,18 @@ def test_an_angle_is_compared_modulo_whole_turns_and_said_so():
 @pytest.fixture(scope="module")
 def section():
     kernels = operations_of("quaternion_dcm", text_of("quaternion_dcm"))
-    given = problem(definition("quaternion_dcm"), kernels[0])
-    return rounding_section(*kernels, given.box, given.region, BUDGET), kernels
+    problem = library_problem(definition("quaternion_dcm"), kernels[0])
+    return rounding_section(*kernels, problem.box, problem.region, BUDGET), kernels
 
 
 def test_a_section_is_plain_data_and_the_same_again(section):
-    found, kernels = section
+    data, kernels = section
     again = rounding_section(
-        *kernels, problem(definition("quaternion_dcm"), kernels[0]).box, Region(), BUDGET, fresh=True
+        *kernels, library_problem(definition("quaternion_dcm"), kernels[0]).box, Region(), BUDGET, fresh=True
     )
-    assert json.dumps(again) == json.dumps(json.loads(json.dumps(found)))
-    check_section(found, *kernels)
-    check_section(found, *kernels, rerun=True)
+    assert json.dumps(again) == json.dumps(json.loads(json.dumps(data)))
+    check_section(data, *kernels)
+    check_section(data, *kernels, rerun=True)
 
 
 def _halved(section):
@@ -300,16 +307,16 @@ def _other_operations(section):
      _other_operations, _unsafe_choice],
 )  # fmt: skip
 def test_a_tampered_section_is_refused_at_once(section, tamper):
-    found, kernels = section
-    changed = copy.deepcopy(found)
+    data, kernels = section
+    changed = copy.deepcopy(data)
     tamper(changed)
     with pytest.raises(CertificateError):
         check_section(changed, *kernels)
 
 
 def test_a_bound_that_is_only_a_little_smaller_is_refused_by_bounding_again(section):
-    found, kernels = section
-    changed = copy.deepcopy(found)
+    data, kernels = section
+    changed = copy.deepcopy(data)
     changed["precisions"][0]["outputs"][0]["evaluations"] += 1
     with pytest.raises(CertificateError, match="again"):
         check_section(changed, *kernels, rerun=True)
@@ -330,19 +337,19 @@ def test_the_table_is_of_this_method_and_holds_the_library():
     assert table()["method"] == method()
     for name in SLICE:
         for operations in operations_of(name, text_of(name)):
-            given = problem(definition(name), operations)
-            for task in tasks(operations, given.box, given.region).values():
+            problem = library_problem(definition(name), operations)
+            for task in bound_tasks(operations, problem.box, problem.region).values():
                 assert task.key in table()["bounds"]
-    found = {key: STORE.get(key) for key in table()["bounds"]}
-    assert printed_table(found.items()) == TABLE.read_text(encoding="utf-8")
-    assert all(each.pointwise <= each.bound < float("inf") for each in found.values())
+    bounds = {key: STORE.get(key) for key in table()["bounds"]}
+    assert printed_table(bounds.items()) == TABLE.read_text(encoding="utf-8")
+    assert all(each.pointwise <= each.bound < float("inf") for each in bounds.values())
 
 
 @pytest.mark.parametrize("name", ["quaternion_dcm", "inertia_cone"])
 def test_bounds_of_the_table_are_found_again(name):
     for operations in operations_of(name, text_of(name)):
-        given = problem(definition(name), operations)
-        for task in tasks(operations, given.box, given.region).values():
+        problem = library_problem(definition(name), operations)
+        for task in bound_tasks(operations, problem.box, problem.region).values():
             assert bound_task(task, fresh=True) == STORE.get(task.key)
 
 
@@ -352,14 +359,14 @@ def test_bounds_of_the_table_are_found_again(name):
 def test_a_forged_bound_of_the_table_is_found(change, monkeypatch):
     """By the point that it names: `python -m symrot.workshop.bound_table --check` looks at all of them."""
     double, _ = operations_of("quaternion_dcm", text_of("quaternion_dcm"))
-    given = problem(definition("quaternion_dcm"), double)
-    wanted = {task.key: task for task in tasks(double, given.box, given.region).values()}
-    assert understated(wanted) == []
-    key = next(iter(wanted))
+    problem = library_problem(definition("quaternion_dcm"), double)
+    tasks = {task.key: task for task in bound_tasks(double, problem.box, problem.region).values()}
+    assert understated(tasks) == []
+    key = next(iter(tasks))
     forged = replace(STORE.get(key), **change)
-    kept = json.loads(printed_table([(key, forged)]))["bounds"][key]
-    monkeypatch.setitem(table()["bounds"], key, kept)
-    assert understated(wanted) == [key]
+    stored = json.loads(printed_table([(key, forged)]))["bounds"][key]
+    monkeypatch.setitem(table()["bounds"], key, stored)
+    assert understated(tasks) == [key]
 
 
 def test_certificates_and_heads_say_the_bounds_of_the_text_under_them():
@@ -368,7 +375,7 @@ def test_certificates_and_heads_say_the_bounds_of_the_text_under_them():
         section = library_section(name, text)
         assert json.loads((GENERATED / f"{name}.cert.json").read_text(encoding="utf-8"))["rounding"] == section
         head = " ".join(line.strip(" *") for line in text[: text.index("*/")].splitlines())
-        assert f"Errors: {in_words(name, text)}." in head
+        assert f"Errors: {bounds_sentence(name, text)}." in head
 
 
 @pytest.mark.parametrize("value", ["0", "1/3", "1", "999", "9991/10", "1/1000", "123456789", "1/99999"])
@@ -391,7 +398,7 @@ def test_the_largest_box_has_the_error_and_a_larger_one_has_not():
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "sentence"),
     [
         (["euler_zyx_body_rates", "--box", "theta=-1.6:1.6"], "cos(angles[1])"),
         (["euler_equations_principal", "--box", "A=-1:1"], "inertia[0]"),
@@ -408,15 +415,15 @@ def test_the_largest_box_has_the_error_and_a_larger_one_has_not():
         (["quaternion_dcm", "--box", "q1=-1e200:1e200"], "no bound"),
     ],
 )
-def test_what_has_no_bound_is_refused_in_one_sentence(capsys, words, said):
+def test_what_has_no_bound_is_refused_in_one_sentence(capsys, words, sentence):
     assert main(["bound", *words]) == 2
     printed = capsys.readouterr()
-    assert not printed.out and said in printed.err and printed.err.count("\n") == 1
+    assert not printed.out and sentence in printed.err and printed.err.count("\n") == 1
 
 
 def test_the_command_prints_bounds(capsys):
     assert main(["bound", "quaternion_dcm", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert {item["units"] for item in found["precisions"][0]["outputs"]} == {"4.001"}
+    facts = json.loads(capsys.readouterr().out)
+    assert {item["units"] for item in facts["precisions"][0]["outputs"]} == {"4.001"}
     assert main(["bound", "quaternion_dcm", "--target", "1e-13"]) == 0
     assert "as wide" in capsys.readouterr().out

@@ -5,8 +5,8 @@ import pytest
 
 from symrot.certificates.readback.operations import RELATIONS
 from symrot.certificates.rounding import functions
-from symrot.certificates.rounding.choices import decide, narrow
-from symrot.certificates.rounding.output_graph import Cone
+from symrot.certificates.rounding.choices import decide_branches, narrow_to_branch
+from symrot.certificates.rounding.output_graph import OutputGraph
 from symrot.certificates.rounding.region import Region, narrowed, off_unit
 
 
@@ -16,17 +16,17 @@ def test_slopes_of_an_angle_are_enclosed_as_near_as_can_be():
     a, b = np.sort(rng.uniform(-2, 2, (2, 2, 300)), axis=1)
     a[:, :60], b[:, 60:120] = np.abs(a[:, :60]) + 0.1, np.abs(b[:, 60:120]) + 0.1
     with np.errstate(all="ignore"):
-        found = functions.arc_slope(np.sort(a, axis=0), np.sort(b, axis=0))
+        slopes = functions.arc_slope(np.sort(a, axis=0), np.sort(b, axis=0))
     part = np.linspace(0, 1, 41)
     x = a[0] + (a[1] - a[0]) * part[:, None, None]
     y = b[0] + (b[1] - b[0]) * part[None, :, None]
     values = x / (x * x + y * y)
     low, high = values.min(axis=(0, 1)), values.max(axis=(0, 1))
-    assert (found[0] <= low + 1e-15 * np.abs(low)).all()
-    assert (found[1] >= high - 1e-15 * np.abs(high)).all()
-    bounded = np.isfinite(found).all(axis=0)
+    assert (slopes[0] <= low + 1e-15 * np.abs(low)).all()
+    assert (slopes[1] >= high - 1e-15 * np.abs(high)).all()
+    bounded = np.isfinite(slopes).all(axis=0)
     assert bounded.sum() > 200
-    assert ((found[1] - found[0])[bounded] <= (high - low)[bounded] * 1.2 + 1e-12).mean() > 0.9
+    assert ((slopes[1] - slopes[0])[bounded] <= (high - low)[bounded] * 1.2 + 1e-12).mean() > 0.9
 
 
 def test_a_unit_quaternion_stays_in_what_is_left_of_its_box():
@@ -53,15 +53,15 @@ def test_what_a_branch_tells_holds_of_computed_numbers(relation):
     values = [a, b, total, difference]
     nodes = (("in", 0), ("in", 1), ("add", 0, 1), ("sub", 0, 1))
     for i, j in ((0, 1), (2, 3), (3, 2), (1, 2)):
-        cone = Cone("binary32", ("a", "b"), nodes, ((relation, i, j),))
+        graph = OutputGraph("binary32", ("a", "b"), nodes, ((relation, i, j),))
         boxes = [np.stack([x - rng.uniform(0, 0.5, 400), x + rng.uniform(0, 0.5, 400)]) for x in values]
         truth = RELATIONS[relation](values[i], values[j])
-        given = np.where(rng.random(400) < 0.5, truth, -1).astype(np.int8)
-        outside, open_ = decide(relation, boxes[i], boxes[j], given)
-        assert not outside.any() and (open_ | (given == truth)).all()
-        narrow(cone, 0, given, boxes)
+        decided = np.where(rng.random(400) < 0.5, truth, -1).astype(np.int8)
+        outside, open_ = decide_branches(relation, boxes[i], boxes[j], decided)
+        assert not outside.any() and (open_ | (decided == truth)).all()
+        narrow_to_branch(graph, 0, decided, boxes)
         for x, box in zip(values, boxes, strict=True):
             assert ((box[0] <= x) & (x <= box[1])).all()
         wrong = (1 - truth).astype(np.int8)
         apart = (boxes[i][0] > boxes[j][1]) | (boxes[i][1] < boxes[j][0])
-        assert decide(relation, boxes[i], boxes[j], wrong)[0][apart].all()
+        assert decide_branches(relation, boxes[i], boxes[j], wrong)[0][apart].all()

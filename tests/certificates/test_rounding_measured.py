@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from symrot.certificates.rounding.bounds import bound_outputs
-from symrot.certificates.rounding.library import operations_of, problem
+from symrot.certificates.rounding.library import library_problem, operations_of
 from symrot.certificates.rounding.region import UNIT_NORM, Region
 from symrot.kernels.library import definition
 from tests.campaigns.certificates import rounding_campaign
@@ -31,36 +31,38 @@ def text_of(name):
 def test_a_bound_that_is_too_small_is_caught(name, part, suffix):
     """By the points that the adversary finds: bounds are not twice as large as they have to be."""
     operations = operations_of(name, text_of(name))[1 if suffix else 0]
-    given = problem(definition(name), operations)
-    bounds = bound_outputs(operations, given.box, given.region)[:1]
-    found = measure(operations, given.box, bounds, given.region, 100_000)
-    assert all(row.holds and row.tight for row in compare(operations, bounds, found, name))
+    problem = library_problem(definition(name), operations)
+    bounds = bound_outputs(operations, problem.box, problem.region)[:1]
+    measured = measure(operations, problem.box, bounds, problem.region, 100_000)
+    assert all(row.holds and row.tight for row in compare(operations, bounds, measured, name))
     small = [replace(each, bound=each.bound * part) for each in bounds]
-    assert not any(row.holds for row in compare(operations, small, found, name))
+    assert not any(row.holds for row in compare(operations, small, measured, name))
 
 
 def test_the_campaign_refuses_a_bound_that_is_too_small(monkeypatch, capsys):
     name, bound = "quaternion_of_dcm", rounding_campaign.bound_outputs
     monkeypatch.setattr(
-        rounding_campaign, "bound_outputs", lambda *given: [replace(x, bound=x.bound / 2) for x in bound(*given)]
+        rounding_campaign,
+        "bound_outputs",
+        lambda *arguments: [replace(x, bound=x.bound / 2) for x in bound(*arguments)],
     )
-    found = rounding_campaign.rows(name, text_of(name), 10_000)
-    assert not any(row.holds for row in found)
-    monkeypatch.setattr(rounding_campaign, "prepare", lambda *given: 0)
-    monkeypatch.setattr(rounding_campaign, "table", lambda *given: [(name, found)])
+    rows = rounding_campaign.rows(name, text_of(name), 10_000)
+    assert not any(row.holds for row in rows)
+    monkeypatch.setattr(rounding_campaign, "prepare", lambda *arguments: 0)
+    monkeypatch.setattr(rounding_campaign, "table", lambda *arguments: [(name, rows)])
     assert rounding_campaign.main([name, "--generated", str(GENERATED.parent)]) == 1
     assert "BROKEN" in capsys.readouterr().out
 
 
 def test_what_is_measured_is_found_again_and_of_the_region():
     operations = operations_of("euler_zxz_of_quaternion", text_of("euler_zxz_of_quaternion"))[0]
-    given = problem(definition("euler_zxz_of_quaternion"), operations)
-    bounds = bound_outputs(operations, given.box, given.region)[:1]
-    first, second = (measure(operations, given.box, bounds, given.region, 2000) for _ in range(2))
+    problem = library_problem(definition("euler_zxz_of_quaternion"), operations)
+    bounds = bound_outputs(operations, problem.box, problem.region)[:1]
+    first, second = (measure(operations, problem.box, bounds, problem.region, 2000) for _ in range(2))
     assert first == second
     q = [x for _, x in first[0].at]
     assert abs(sum(x * x for x in q) - 1) < UNIT_NORM
-    assert min(np.hypot(q[0], q[3]), np.hypot(q[1], q[2])) > given.region.clearance
+    assert min(np.hypot(q[0], q[3]), np.hypot(q[1], q[2])) > problem.region.clearance
 
 
 def test_a_climb_leads_up_and_stays_in_the_region():

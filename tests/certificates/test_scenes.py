@@ -1,4 +1,4 @@
-"""Link 4 of a scene's own kernel: bounded on a box given for its states, audited, said in the head of its C."""
+"""Rounding bounds of a scene's own kernel: on a box that the user states, audited, quoted in its C header comment."""
 
 import json
 from fractions import Fraction
@@ -10,7 +10,7 @@ import pytest
 from symrot.certificates import recheck
 from symrot.certificates.readback.readback import read_kernel
 from symrot.certificates.rounding.bounds import check_section
-from symrot.certificates.rounding.constants import enclosed
+from symrot.certificates.rounding.constants import parameter_range
 from symrot.cli.main import main
 from symrot.errors import InputError
 from symrot.formula.tree import parse
@@ -78,7 +78,7 @@ def test_certify_audit_and_emit_keep_the_bounds(tmp_path, capsys, monkeypatch):
     assert main(["certify", "t_handle", *_options(BOXES["t_handle"]), "-o", "k"]) == 0
     assert "  rounding " in capsys.readouterr().out
     path = Path("k/t_handle_rates.cert.json")
-    kept, source = path.read_text(encoding="utf-8"), Path("k/t_handle_rates.c").read_text(encoding="utf-8")
+    certificate, source = path.read_text(encoding="utf-8"), Path("k/t_handle_rates.c").read_text(encoding="utf-8")
     head = " ".join(line.strip(" *") for line in source.splitlines())
     assert (
         "Box: omega_1, omega_2 in [0, 1]; omega_3 in [0, 2]; q0 in [0.5, 1]; q1, q2, q3 in [0, 0.5]; other par" in head
@@ -87,13 +87,13 @@ def test_certify_audit_and_emit_keep_the_bounds(tmp_path, capsys, monkeypatch):
     assert main(["audit", str(path), "--rerun-bounds"]) == 0
     assert "computed again" in capsys.readouterr().out
     assert main(["emit", "t_handle", "-o", "k"]) == 0  # writes nothing: all is as it was
-    assert (capsys.readouterr().out, path.read_text(encoding="utf-8")) == ("", kept)
+    assert (capsys.readouterr().out, path.read_text(encoding="utf-8")) == ("", certificate)
     assert main(["certify", "t_handle", "-o", "k"]) == 0
-    assert path.read_text(encoding="utf-8") == kept
+    assert path.read_text(encoding="utf-8") == certificate
     Path("k/t_handle_rates.c").write_text(source.replace("1/s in dq0", "5/s in dq0"), encoding="utf-8")
     assert main(["audit", str(path)]) == 1
     Path("k/t_handle_rates.c").write_text(source, encoding="utf-8")
-    data = json.loads(kept)
+    data = json.loads(certificate)
     data["rounding"]["box"]["y[0]"] = [(-9.0).hex(), (9.0).hex()]
     path.write_text(json.dumps(data), encoding="utf-8")
     assert main(["audit", str(path)]) == 1
@@ -106,18 +106,18 @@ def test_a_forged_bound_is_not_printed_again(tmp_path, capsys, monkeypatch, part
     assert main(["certify", "t_handle", *_options(BOXES["t_handle"]), "-o", "k"]) == 0
     path = Path("k/t_handle_rates.cert.json")
     data = json.loads(path.read_text(encoding="utf-8"))
-    found, less = data["rounding"]["precisions"][0]["outputs"], 1 - 2**-31
+    outputs, less = data["rounding"]["precisions"][0]["outputs"], 1 - 2**-31
     if part == "absolute":
-        worst = found[-1]  # of 2.6875 units, 2.688 as they are rounded up
+        worst = outputs[-1]  # of 2.6875 units, 2.688 as they are rounded up
         worst["absolute"], worst["pointwise"] = (
             (float.fromhex(worst[name]) * less).hex() for name in ("absolute", "pointwise")
         )
     elif part == "scale":
-        found[0]["scale"] = (float.fromhex(found[0]["scale"]) / 2).hex()
+        outputs[0]["scale"] = (float.fromhex(outputs[0]["scale"]) / 2).hex()
     else:
         data["rounding"]["budget"] = 10**9
     emitted = emit("t_handle")
-    check_section(data["rounding"], read_kernel(emitted.source, emitted.name, "t_handle_rates.c"), None)
+    check_section(data["rounding"], read_kernel(emitted.source, emitted.function, "t_handle_rates.c"), None)
     path.write_text(json.dumps(data), encoding="utf-8")
     assert stored_bounds("t_handle", Path("k")) is None
     assert main(["emit", "t_handle", "-o", "k"]) == 0
@@ -141,14 +141,14 @@ def test_bounds_of_a_scene_file_and_without_any(tmp_path, capsys, monkeypatch):
 
 
 def test_time_is_the_span_of_the_scene_and_parameters_are_points():
-    _, found, box = rounding_problem(
+    _, problem, box = rounding_problem(
         "gravity_gradient_satellite", [f"omega_{i}=-0.01:0.01" for i in (1, 2, 3)], "double"
     )
-    assert box["t"] == (0, 28400) and found.region.unit == (("y[3]", "y[4]", "y[5]", "y[6]"),)
+    assert box["t"] == (0, 28400) and problem.region.unit == (("y[3]", "y[4]", "y[5]", "y[6]"),)
     assert all(low == high for place, (low, high) in box.items() if place[0] == "p")
     _, _, free = rounding_problem("t_handle", CUBE, "double")
     emitted = emit("t_handle")
-    operations = read_kernel(emitted.source, emitted.name, "t_handle_rates.c")
+    operations = read_kernel(emitted.source, emitted.function, "t_handle_rates.c")
     assert list(free) == list(operations.inputs) and free["t"][1] > 10**308  # not used: any
 
 
@@ -187,16 +187,16 @@ def _states(scene):
 def test_a_range_of_a_constant_is_as_wide_as_the_parameters_it_makes():
     """A constant that is given as the point it has changes nothing; powers, roots and quotients are enclosed."""
     a, ends = parse("a"), (Fraction(-1), Fraction(2))
-    assert enclosed("p", a, {}, {"a": ends}) == ends
-    assert enclosed("p", parse("a**2"), {}, {"a": ends}) == (0, 4)
-    assert enclosed("p", parse("abs(a)**3"), {}, {"a": ends}) == (0, 8)
-    low, high = enclosed("p", parse("sqrt(a)/(1 + a)"), {}, {"a": (Fraction(1), Fraction(4))})
+    assert parameter_range("p", a, {}, {"a": ends}) == ends
+    assert parameter_range("p", parse("a**2"), {}, {"a": ends}) == (0, 4)
+    assert parameter_range("p", parse("abs(a)**3"), {}, {"a": ends}) == (0, 8)
+    low, high = parameter_range("p", parse("sqrt(a)/(1 + a)"), {}, {"a": (Fraction(1), Fraction(4))})
     assert Fraction(39, 100) < low < Fraction(2, 5) and Fraction(1, 2) < high < Fraction(51, 100)
-    low, high = enclosed("p", parse("b*sin(a)*pi"), {"b": Fraction(2)}, {"a": ends})
+    low, high = parameter_range("p", parse("b*sin(a)*pi"), {"b": Fraction(2)}, {"a": ends})
     assert (low, high) == (-high, high) and 6 < high < 7
     for formula in ("1/a", "sqrt(a)", "a**-2"):
         with pytest.raises(InputError, match=r"is a finite number, got a -1 \.\. 2"):
-            enclosed("p", parse(formula), {}, {"a": ends})
+            parameter_range("p", parse(formula), {}, {"a": ends})
     _, _, points = rounding_problem("t_handle", CUBE, "double")
     exact = scene_inputs("t_handle").constants["A"]
     _, _, same = rounding_problem(
@@ -214,7 +214,7 @@ def test_what_does_not_overflow_is_bounded_to_the_largest_numbers(capsys):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "sentence"),
     [
         (["bound", "t_handle", *_options((*CUBE, "mass=1:2"))], "or a constant in its parameters, one of t, omega_1"),
         (
@@ -246,19 +246,19 @@ def test_what_does_not_overflow_is_bounded_to_the_largest_numbers(capsys):
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )
-def test_a_bad_box_is_one_sentence(arguments, said, capsys, tmp_path, monkeypatch):
+def test_a_bad_box_is_one_sentence(arguments, sentence, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(arguments) == 2
-    found = capsys.readouterr()
-    assert said in found.err and found.err.count("\n") == 1 and found.out == "" and not list(tmp_path.iterdir())
+    output = capsys.readouterr()
+    assert sentence in output.err and output.err.count("\n") == 1 and output.out == "" and not list(tmp_path.iterdir())
 
 
 def test_the_largest_box_of_a_scene_has_the_target():
     from symrot.workshop.bounds import target_facts
 
-    found = target_facts("t_handle", BOXES["t_handle"], "double", 1e-13, ("omega_1",))
-    assert found["size"] > 1 and float.fromhex(found["largest_error"]) <= 1e-13
-    assert found["box"]["y[3]"] == [(0.5).hex(), (1.0).hex()]
+    result = target_facts("t_handle", BOXES["t_handle"], "double", 1e-13, ("omega_1",))
+    assert result["size"] > 1 and float.fromhex(result["largest_error"]) <= 1e-13
+    assert result["box"]["y[3]"] == [(0.5).hex(), (1.0).hex()]
     (part,) = facts("t_handle", BOXES["t_handle"], "double")["precisions"]
     assert max(float.fromhex(each["absolute"]) for each in part["outputs"]) < 1e-13
 
@@ -281,8 +281,8 @@ output = {{quantities = ["omega", "quaternion"]}}
     )
     assert main(["emit", str(scene), "--target", "c", "-o", str(tmp_path)]) == 0
     path = tmp_path / "pendulum_rates.cert.json"
-    given = [law["given"] for law in json.loads(path.read_text(encoding="utf-8"))["laws"]]
-    assert given == [["initial_q0", "initial_q1"] if q1 else []] * len(given)
+    hypotheses = [law["given"] for law in json.loads(path.read_text(encoding="utf-8"))["laws"]]
+    assert hypotheses == [["initial_q0", "initial_q1"] if q1 else []] * len(hypotheses)
     assert "laws" in recheck.check(path)
     assert main(["audit", str(path)]) == 0
     capsys.readouterr()

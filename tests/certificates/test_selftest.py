@@ -111,17 +111,17 @@ def test_a_function_that_errs_by_three_ulp_is_refused(tmp_path, name, real, numb
         f"{real} {name}({real} x)\n{{\n    volatile {real} y = ({real}){whole}(x);\n"
         f"    for (int i = 0; i < 3; ++i) {{ y = {step}(y, ({real})10); }}\n    return y;\n}}"
     )
-    found = ran(tmp_path, fake, flags=("-O2", "-ffp-contract=off", "-fno-builtin"))
-    assert found == (number, f"expected {name} right to 1 ulp: that of this machine errs by more")
+    output = ran(tmp_path, fake, flags=("-O2", "-ffp-contract=off", "-fno-builtin"))
+    assert output == (number, f"expected {name} right to 1 ulp: that of this machine errs by more")
 
 
 @needs_gcc
 @pytest.mark.parametrize(
-    ("flag", "said"), [("-ffast-math", "-ffast-math"), ("-Ofast", "-Ofast"), ("-mfpmath=387", "FLT_EVAL_METHOD 0")]
+    ("flag", "reason"), [("-ffast-math", "-ffast-math"), ("-Ofast", "-Ofast"), ("-mfpmath=387", "FLT_EVAL_METHOD 0")]
 )
-def test_flags_that_void_certificates_do_not_compile(tmp_path, flag, said):
+def test_flags_that_void_certificates_do_not_compile(tmp_path, flag, reason):
     number, complaint = ran(tmp_path, flags=("-O2", flag))
-    assert number == -1 and "symrot: expected" in complaint and said in complaint
+    assert number == -1 and "symrot: expected" in complaint and reason in complaint
 
 
 def test_the_stored_values_are_rounded_correctly():
@@ -155,12 +155,12 @@ def test_the_printed_files_are_those_of_the_library():
 
 @needs_compiler
 def test_this_machine_passes_and_the_errors_are_shown(capsys):
-    found = run_selftest()
-    assert found.passed, found.sentence
-    assert list(found.ulps) == list(NAMES) and all(0 < ulp < 1 for ulp in found.ulps.values())
+    result = run_selftest()
+    assert result.passed, result.sentence
+    assert list(result.ulps) == list(NAMES) and all(0 < ulp < 1 for ulp in result.ulps.values())
     assert cli.main(["selftest", "--json"]) == 0
-    shown = json.loads(capsys.readouterr().out)
-    assert shown["passed"] and shown["ulps"] == found.ulps
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["passed"] and facts["ulps"] == result.ulps
     assert cli.main(["selftest"]) == 0
     assert capsys.readouterr().out.startswith("good: the machine computes as the certificates assume\n")
 

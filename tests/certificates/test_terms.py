@@ -10,9 +10,9 @@ from fractions import Fraction
 import pytest
 
 from symrot.certificates.object_code import machine
-from symrot.certificates.object_code.disassembly import listing
-from symrot.certificates.object_code.state import Array, Context
-from symrot.certificates.object_code.terms import RELATION, Terms, value_of
+from symrot.certificates.object_code.disassembly import read_listing
+from symrot.certificates.object_code.state import ArrayArgument, CallContext
+from symrot.certificates.object_code.terms import RELATION, Terms, number_from_bits
 from tests.needs import needs_avx2, needs_objdump
 
 SPECIAL = (0.0, -0.0, 1.0, -1.0, 2.0, 0.5, math.inf, -math.inf, 5e-324, -5e-324, 2.2250738585072014e-308, 1.7e308, -1.7e308,
@@ -57,11 +57,11 @@ def test_terms_that_are_one_have_the_same_bits_on_every_input():
     terms, seen, met = Terms(), {}, 0
     for _ in range(6000):
         term, numbers = grown(rng, terms, values, rng.randrange(1, 4))
-        found = [bits_of(number) for number in numbers]
+        bits = [bits_of(number) for number in numbers]
         if term in seen:
             met += 1
-            assert seen[term] == found, terms.nodes[term]
-        seen[term] = found
+            assert seen[term] == bits, terms.nodes[term]
+        seen[term] = bits
     assert met > 1000  # many expressions met under one term: the laws were at work
 
 
@@ -170,7 +170,7 @@ def calculated(terms, root, width):
         if kind == "in":
             known[index] = NUMBERS[int(rest[0].split("[")[1][:-1])]
         elif kind == "bits":
-            known[index] = value_of(rest[0], width)
+            known[index] = number_from_bits(rest[0], width)
         elif kind == "mask":
             a, b = (known[operand] for operand in rest[1:])
             known[index] = ("<" if a < b else "=" if a == b else ">") in rest[0]
@@ -201,19 +201,21 @@ def test_every_instruction_does_what_the_processor_does(tmp_path, width):
     assembly.write_text("\n".join([*lines, '.section .note.GNU-stack,"",@progbits', ""]))
     subprocess.run(["gcc", "-c", assembly, "-o", target], check=True)
     subprocess.run(["gcc", "-shared", target, "-o", library], check=True)
-    loaded, shown, count = ctypes.CDLL(str(library)), listing(target), 96 // size
+    loaded, listing, count = ctypes.CDLL(str(library)), read_listing(target), 96 // size
     real = ctypes.c_double if width == 64 else ctypes.c_float
     for number, instruction in enumerate(chosen):
-        given, got = (real * count)(*NUMBERS[:count]), (ctypes.c_uint64 if width == 64 else ctypes.c_uint32)
+        arguments, got = (real * count)(*NUMBERS[:count]), (ctypes.c_uint64 if width == 64 else ctypes.c_uint32)
         out = (got * (32 // size))()
-        getattr(loaded, f"run{number}")(given, out)
+        getattr(loaded, f"run{number}")(arguments, out)
         terms = Terms()
-        arrays = {"x": Array("x", 96, False), "y": Array("y", 32, True)}
-        context = Context(terms, shown, width, arrays, 8)
-        (way,) = machine.ways(machine.arguments(context, ("x", "y"), (), shown.function(f"run{number}")))
+        arrays = {"x": ArrayArgument("x", 96, False), "y": ArrayArgument("y", 32, True)}
+        context = CallContext(terms, listing, width, arrays, 8)
+        (way,) = machine.execution_paths(
+            machine.state_at_call(context, ("x", "y"), (), listing.function(f"run{number}"))
+        )
         for place in range(32 // size):
             words = [way.memory["y", size * place + 4 * part] for part in range(size // 4)]
             term = words[0] if width == 32 else terms.join(*words)
-            native = value_of(out[place], width)
+            native = number_from_bits(out[place], width)
             expected = out[place] if native == native or out[place] + 1 == 1 << width else "nan"
             assert as_bits(calculated(terms, term, width), width) == expected, (instruction, place)

@@ -98,7 +98,7 @@ FAULTS = (
     ('claim = "diff(R, t) == R*W"', "", "exactly one of claim"),
     ('claim = "diff(R, t) == R*W"', 'claim = "diff(R, t) == R*W"\nvalue = "1"', "exactly one of claim"),
     ('["W", "skew(w1, w2, w3)"]', '["W", "skew(w1, w2)"]', "define W: .*3 components"),
-    ('["W", "skew(w1, w2, w3)"]', '["w1", "skew(w1, w2, w3)"]', "is taken"),
+    ('["W", "skew(w1, w2, w3)"]', '["w1", "skew(w1, w2, w3)"]', "has already"),
     ('["W", "skew(w1, w2, w3)"]', '["W"]', "list of pairs"),
     ('id = "unit"', 'id = "worked"', "'worked' twice"),
     ("q3**2 == 1", "q3**2 < 1", "hypothesis like"),

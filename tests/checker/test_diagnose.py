@@ -4,8 +4,8 @@ import pytest
 
 import symrot
 from symrot.checker.claim.reader import read_expression, read_relation
-from symrot.checker.repair.edits import TEXTS
-from symrot.checker.repair.points import Meaningless, Point, agree, points
+from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
+from symrot.checker.repair.points import Point, UndefinedValue, agree, points
 from symrot.errors import InputError
 
 CASES = (  # claim, verdict, code, a repair that must be among the first three
@@ -53,7 +53,7 @@ def test_every_repair_is_true_when_it_is_checked_again(claim):
     assert [r.cost for r in repairs] == sorted(r.cost for r in repairs)
     for repair in repairs:
         assert repair.proven
-        assert repair.code in TEXTS
+        assert repair.code in FAULT_DESCRIPTIONS
         assert symrot.check(repair.text).verdict == "true"
 
 
@@ -137,7 +137,7 @@ def test_points_obey_hypotheses_or_are_not_given():
 
 @pytest.mark.parametrize("formula", ["1/(x - x)", "sqrt(-x)", "eye(2)*eye(3)", "nothing", "x + eye(2)", "vee(eye(2))"])
 def test_a_point_knows_what_has_no_value(formula):
-    with pytest.raises(Meaningless):
+    with pytest.raises(UndefinedValue):
         Point({"x": 0.5}, {}, {}).value(read_expression(formula))
 
 

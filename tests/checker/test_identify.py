@@ -7,7 +7,7 @@ from sympy import Matrix, Rational, Symbol, cos, pi, sin, symbols
 
 import symrot
 from symrot.checker.recognition import known_formulas
-from symrot.checker.recognition.fingerprint import PRIME, Outside, fingerprint, values_at
+from symrot.checker.recognition.fingerprint import PRIME, NotInField, fingerprint, values_at
 from symrot.checker.recognition.identification import identify
 from symrot.cli.main import main
 from symrot.conventions import SEQUENCES
@@ -43,7 +43,7 @@ def test_fingerprints_do_not_depend_on_names():
 
 def test_what_has_no_value_is_outside():
     for entry in (sin(a**a), a ** Symbol("n"), sin(a / 5), a ** Rational(1, 3), Rational(3)):
-        with pytest.raises(Outside):
+        with pytest.raises(NotInField):
             fingerprint([entry])
 
 

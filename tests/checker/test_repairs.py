@@ -7,8 +7,8 @@ import pytest
 
 import symrot
 from symrot.checker.claim.reader import read_expression
-from symrot.checker.repair.canonical_form import settled
-from symrot.checker.repair.edits import TEXTS
+from symrot.checker.repair.canonical_form import canonical
+from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
 from symrot.checker.verdict import Repair
 from tests.campaigns.checker import repairs as module
 from tests.campaigns.checker.mutations import MUTATIONS, mutated, places
@@ -58,7 +58,7 @@ ELSEWHERE = {"none", "domain", "dimension"}
 def same_text(first, second):
     """Whether two claims are the same up to the order of terms and scalar factors."""
     sides = [
-        [settled(read_expression(side), lambda node: False) for side in claim.split(" == ")]
+        [canonical(read_expression(side), lambda node: False) for side in claim.split(" == ")]
         for claim in (first, second)
     ]
     return sides[0] == sides[1]
@@ -76,7 +76,7 @@ def test_a_printed_formula_gets_its_code_and_its_right_form(code):
 
 
 def test_every_code_of_the_table_has_its_formula():
-    assert set(PRINTED) == set(TEXTS) - ELSEWHERE
+    assert set(PRINTED) == set(FAULT_DESCRIPTIONS) - ELSEWHERE
 
 
 @pytest.mark.parametrize("claim", [claim for claim, right in PRINTED.values() if right is None])

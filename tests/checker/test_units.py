@@ -10,7 +10,15 @@ import symrot
 from symrot import catalogue, symbols
 from symrot.checker.claim.claims import read_claims
 from symrot.checker.units.check import dimensions_of_formulas
-from symrot.checker.units.units import CUSTOM, UnitSystem, customary, raised, read_unit, shown_unit, times
+from symrot.checker.units.units import (
+    CONVENTIONAL_UNITS,
+    UnitSystem,
+    conventional_unit,
+    raised,
+    read_unit,
+    times,
+    unit_text,
+)
 from symrot.cli.main import main
 from symrot.errors import InputError
 from symrot.textbook import DOCUMENTS, document
@@ -19,7 +27,7 @@ LETTERS = {"t": "s", "m": "kg", "g": "m/s^2"}
 
 
 def physical(claim):
-    """The unit of the first of these letters in a claim, which makes the others what they are by custom."""
+    """The unit of the first of these letters in a claim, which makes the others have their conventional units."""
     return {letter: LETTERS[letter] for letter in re.findall(r"\b[tmg]\b", claim)[:1]}
 
 
@@ -35,8 +43,8 @@ def dimension(claim, **units):
     ("m^(1/2)", "m^(1/2)"), ("kg*m**2", "kg m^2"), ("1", "1"), ("Pa", "kg/(m s^2)"), ("mm/ms", "m/s"), ("slug ft^2", "kg m^2"), ("deg/s", "1/s"),
 ])  # fmt: skip
 def test_units_are_read_and_shown(text, shown):
-    assert shown_unit(read_unit(text)) == shown
-    assert read_unit(shown_unit(read_unit(text))) == read_unit(text)
+    assert unit_text(read_unit(text)) == shown
+    assert read_unit(unit_text(read_unit(text))) == read_unit(text)
 
 
 @pytest.mark.parametrize("text", ["", "kg..m", "furlong", "/s", "kg^", "m^x", "2 m"])
@@ -54,10 +62,10 @@ def test_every_symbol_of_symrot_has_a_unit_that_is_read():
 def test_custom_agrees_with_the_symbols_of_symrot():
     """Where a book and symrot use one name, they mean one unit."""
     own = {symbol.name: unit for symbol, unit in symbols.UNIT.items()}
-    shared = [name for name in own if customary(name)]
+    shared = [name for name in own if conventional_unit(name)]
     assert len(shared) > 25
-    assert all(read_unit(own[name]) == read_unit(customary(name)) for name in shared)
-    assert all(read_unit(unit) is not None for _, unit in CUSTOM)
+    assert all(read_unit(own[name]) == read_unit(conventional_unit(name)) for name in shared)
+    assert all(read_unit(unit) is not None for _, unit in CONVENTIONAL_UNITS)
 
 
 def test_equations_between_units_are_solved_over_the_rationals():
@@ -65,9 +73,9 @@ def test_equations_between_units_are_solved_over_the_rationals():
     x, y, metre = {"x": Fraction(1)}, {"y": Fraction(1)}, read_unit("m")
     assert system.equate(times(x, y), raised(metre, Fraction(3)))
     assert system.equate(raised(x, Fraction(2)), y)
-    assert (shown_unit(system.reduced(x)), shown_unit(system.reduced(y))) == ("m", "m^2")
+    assert (unit_text(system.reduced(x)), unit_text(system.reduced(y))) == ("m", "m^2")
     assert not system.equate(x, y)
-    assert shown_unit(system.reduced(times(x, {"z": Fraction(1, 2)}))) == "m [z]^(1/2)"
+    assert unit_text(system.reduced(times(x, {"z": Fraction(1, 2)}))) == "m [z]^(1/2)"
 
 
 # -- claims -----------------------------------------------------------------------------------------------------------
@@ -88,7 +96,7 @@ def test_units_explain_a_false_formula():
     assert verdict.diagnosis.code == "dimension"
     assert verdict.dimension.text == (
         "on the right side term 1 of the sum I1*omega_1*theta + F is kg m^2/s, term 2 is kg m^2/s^2"
-        " (by custom m in kg, g in m/s^2, I1 in kg m^2, omega_1 in rad/s)"
+        " (assuming m in kg, g in m/s^2, I1 in kg m^2, omega_1 in rad/s)"
     )
     assert verdict.to_json()["dimension"]["status"] == "inconsistent"
     assert f"units: {verdict.dimension.text}" in str(verdict)
@@ -189,7 +197,7 @@ def test_no_true_claim_of_the_documents_has_units_that_do_not_fit():
 
     found = {
         claim.id: check_dimensions(
-            claim.relation[1:], claim.define, [pair[1:] for pair in claim.given], claim.units
+            claim.relation[1:], claim.define, [pair[1:] for pair in claim.hypotheses], claim.units
         ).status
         for name in DOCUMENTS
         for claim in read_claims(document(name).path)

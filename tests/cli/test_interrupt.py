@@ -110,3 +110,46 @@ def test_a_hanging_compiler_is_killed(to_group, tmp_path):
             for _ in range(100):
                 os.killpg(pid, 0)
                 time.sleep(0.05)
+
+
+LOST = """
+import os, signal, threading, time, weakref
+from symrot import __main__
+from symrot.cli import main as cli
+
+class Thing:
+    pass
+
+def command():
+    thing = Thing()
+    reference = weakref.ref(thing, lambda dead: (os.kill(os.getpid(), signal.SIGINT), time.sleep(0)))
+    del thing  # Python discards the KeyboardInterrupt of the callback
+    lock = threading.Lock()
+    for _ in range(2):
+        lock.acquire(timeout=30)  # only a signal ends the second one
+    return 0
+
+cli.main = command
+raise SystemExit(__main__.main())
+"""
+
+
+def test_an_interrupt_that_python_discards_is_raised_again():
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    run = subprocess.run([sys.executable, "-c", LOST], capture_output=True, text=True, env=environment, timeout=60)
+    assert (run.returncode, run.stdout, run.stderr) == (130, "", "")
+
+
+def test_other_discarded_exceptions_are_reported_as_before():
+    program = (
+        "from symrot.cli.interrupt import repeat_lost_interrupts\n"
+        "repeat_lost_interrupts()\n"
+        "class Thing:\n"
+        "    def __del__(self):\n"
+        "        raise ArithmeticError('lost')\n"
+        "thing = Thing()\n"
+        "del thing\n"
+    )
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=environment, timeout=60)
+    assert run.returncode == 0 and "ArithmeticError: lost" in run.stderr

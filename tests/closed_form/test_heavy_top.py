@@ -31,7 +31,7 @@ def tilted(angle):
     return (1 - k * k) / (1 + k * k), 2 * k / (1 + k * k), F(0), F(0)
 
 
-def dcm_of(q):
+def quaternion_to_dcm(q):
     a, b, c, d = q
     n = a * a + b * b + c * c + d * d
     return [
@@ -54,7 +54,7 @@ def errors(omega, q0, times=TIMES, c=F(1, 2), pull=F(1)):
         size = max(mp.sqrt(sum(exactly(x) ** 2 for x in omega)), mp.sqrt(exactly(F(pull))))
         worst = [0.0, 0.0]
         for rate, attitude, (w, dcm) in zip(rates.tolist(), attitudes.tolist(), expected, strict=True):
-            found = dcm_of([mp.mpf(x) for x in attitude])
+            found = quaternion_to_dcm([mp.mpf(x) for x in attitude])
             apart = max(abs(found[i][j] - exactly(dcm[i][j])) for i in range(3) for j in range(3))
             worst[0] = max(worst[0], float(max(abs(x - exactly(y)) for x, y in zip(rate, w, strict=True)) / size))
             worst[1] = max(worst[1], float(apart) / 2)  # an error e of q turns up as 2 e in the matrix
@@ -103,7 +103,7 @@ def test_the_reference_agrees_with_taylor_series(omega):
     )
     w, q = reference.motion(1, F(1, 2), 1, omega, q0)(F(5, 2))
     with mp.workdps(50):
-        dcm = dcm_of(q)
+        dcm = quaternion_to_dcm(q)
         assert max(abs(x - exactly(y)) for x, y in zip(w, expected[0][0], strict=True)) < 1e-38
         assert max(abs(dcm[i][j] - exactly(expected[0][1][i][j])) for i in range(3) for j in range(3)) < 1e-38
 

@@ -180,7 +180,7 @@ def test_a_program_that_uses_what_is_not_there_is_refused():
 def test_saved_kernels_come_back_equal(scene_rates):
     plan, _, _ = scene_rates
     kernel = derive_scene_kernel(plan.structure)
-    again = SceneKernel(json.loads(json.dumps(kernel.data)))
+    again = SceneKernel(json.loads(json.dumps(kernel.record)))
     assert again.rates == kernel.rates and again.quantities == kernel.quantities
     assert again.rate_parameters == kernel.rate_parameters and again.conserved == kernel.conserved
 
@@ -234,7 +234,7 @@ def test_c_cpp_numpy_and_program_agree_to_the_last_bit(tmp_path, name, language)
     y, t = draw.normal(size=(size, n)), draw.normal(size=n)
     p = array(bind(lowered.parameters, plan.constants))
     by_numpy = load_numpy_kernel(lowered.program)
-    one, batch = getattr(library, emitted.name), getattr(library, f"{emitted.name}_batch")
+    one, batch = getattr(library, emitted.function), getattr(library, f"{emitted.function}_batch")
     many = np.empty((size, n))
     arguments = [pointer(t), pointer(array(y)), *([pointer(p)] if len(p) else []), pointer(many)]
     batch(ctypes.c_size_t(n), *arguments)

@@ -20,7 +20,7 @@ from symrot.dynamics.torques import LAWS, Motion, field_value, formula, torque_l
 from symrot.errors import InputError
 from symrot.exact import is_zero, normal_form
 from symrot.formula.tree import parse
-from symrot.kinematics.quaternion import dcm_of, quaternion_rates, unit_relation
+from symrot.kinematics.quaternion import quaternion_rates, quaternion_to_dcm, unit_relation
 
 OMEGA = Matrix(symbols.omega_b)
 Q = symbols.quaternion
@@ -41,7 +41,7 @@ def test_euler_equations_are_the_rate_of_angular_momentum_in_space(inertia):
     """d(R I omega)/dt == R tau, with omega' from the equations."""
     tau = Matrix(symbols.torque_b)
     acceleration = angular_acceleration(inertia, OMEGA, tau)
-    dcm_sb = Matrix(dcm_of(Q))
+    dcm_sb = Matrix(quaternion_to_dcm(Q))
     momentum_rate = along(dcm_sb) * inertia * OMEGA + dcm_sb * inertia * acceleration
     assert is_zero(momentum_rate - dcm_sb * tau, UNIT)
 
@@ -50,7 +50,7 @@ def test_a_rotor_carries_its_angular_momentum_along():
     h = Matrix(make("h1:4", real=True))
     inertia = diag(*symbols.principal)
     acceleration = angular_acceleration(inertia, OMEGA, zeros(3, 1), h)
-    dcm_sb = Matrix(dcm_of(Q))
+    dcm_sb = Matrix(quaternion_to_dcm(Q))
     assert is_zero(along(dcm_sb) * (inertia * OMEGA + h) + dcm_sb * inertia * acceleration, UNIT)
 
 
@@ -103,7 +103,7 @@ def test_gravity_gradient_vanishes_for_a_sphere_and_about_a_symmetry_axis():
 def test_an_expression_in_space_is_turned_into_the_body():
     structure = FormulaTorque("", ("k*t", "0", "0"), ("k",), "space")
     k = symbols.constant("k")
-    expected = Matrix(dcm_of(Q)).T * Matrix([k * symbols.t, 0, 0])
+    expected = Matrix(quaternion_to_dcm(Q)).T * Matrix([k * symbols.t, 0, 0])
     assert torque_law(structure, MOTION).torque == expected
     assert formula(parse("2*cos(pi*t)**2 - 1/3"), {"t": symbols.t}).subs(symbols.t, 0) == Rational(5, 3)
 
@@ -150,7 +150,7 @@ def structure_of(inertia, *torques, **others):
 )  # fmt: skip
 def test_what_is_kept_is_found_and_what_is_not_is_not(structure, kept):
     found = find_invariants(equations_of_motion(structure), structure)
-    assert {item.name for item in found if item.kept} == kept
+    assert {item.name for item in found if item.holds} == kept
     assert all(item.reason for item in found)
 
 

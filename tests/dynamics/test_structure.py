@@ -49,7 +49,7 @@ def test_every_part_of_a_structure_is_in_its_text():
 
 def structures_of(name):
     scene = load_scene(name)
-    return [row.structure for row in make_plan(scene, driven=True, switched=switched(scene)).rows] + (
+    return [row.structure for row in make_plan(scene, external_torque=True, switched=switched(scene)).rows] + (
         [] if scene.table else [row.structure for row in make_plan(scene, switched=switched(scene)).rows]
     )
 

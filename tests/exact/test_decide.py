@@ -40,7 +40,7 @@ from sympy import (
 )
 
 from symrot.errors import InputError
-from symrot.exact import Verdict, is_zero, normal_form
+from symrot.exact import Decision, is_zero, normal_form
 from symrot.exact.decide import decide
 from symrot.exact.ring.ratio import TooLarge
 from symrot.symbols import (
@@ -87,7 +87,7 @@ def turn_z(angle):
     return Matrix([[cos(angle), -sin(angle), 0], [sin(angle), cos(angle), 0], [0, 0, 1]])
 
 
-def dcm_of(q):
+def quaternion_to_dcm(q):
     vector = skew(q[1:])
     return eye(3) + 2 * q[0] * vector + 2 * vector**2
 
@@ -120,14 +120,14 @@ TRUE = {
     "cotangent": (cot(x) - tan(x), 2 * cot(2 * x), ()),
     "rates of ZXZ": (DCM_RATE, DCM * skew(BODY_RATES), ()),
     "orthogonal": (DCM * DCM.T, eye(3), ()),
-    "unit quaternion": (dcm_of(quaternion) * dcm_of(quaternion).T, eye(3), (UNIT_QUATERNION,)),
+    "unit quaternion": (quaternion_to_dcm(quaternion) * quaternion_to_dcm(quaternion).T, eye(3), (UNIT_QUATERNION,)),
     "unit axis": (
         rodrigues_rotation((n1, n2, n3), x) * rodrigues_rotation((n1, n2, n3), y),
         rodrigues_rotation((n1, n2, n3), x + y),
         (UNIT_AXIS,),
     ),
     "half angle to quaternion": (
-        dcm_of((cos(x / 2), n1 * sin(x / 2), n2 * sin(x / 2), n3 * sin(x / 2))),
+        quaternion_to_dcm((cos(x / 2), n1 * sin(x / 2), n2 * sin(x / 2), n3 * sin(x / 2))),
         rodrigues_rotation((n1, n2, n3), x),
         (UNIT_AXIS,),
     ),
@@ -183,7 +183,7 @@ def test_every_entry_of_a_matrix_identity_counts(row, column):
     [
         (cos(2 * x), 1 + 2 * sin(x) ** 2, ()),
         (q0**2 + q1**2, 1, (UNIT_QUATERNION,)),
-        (dcm_of(quaternion), dcm_of(quaternion).T, (UNIT_QUATERNION,)),
+        (quaternion_to_dcm(quaternion), quaternion_to_dcm(quaternion).T, (UNIT_QUATERNION,)),
         (A * x, C * x, (Eq(A, B),)),
         (1 / sin(x), sin(x), ()),
         (omega_1 * sin(omega_1 * t), sin(omega_1 * t), ()),
@@ -192,33 +192,38 @@ def test_every_entry_of_a_matrix_identity_counts(row, column):
 def test_a_rational_counterexample_is_checked_by_substitution(left, right, relations):
     """Both sides take the values reported, and the hypotheses hold there."""
     verdict = decide(left, right, relations)
-    shown = verdict.counterexample
-    assert verdict.verdict == "false" and shown.lhs.is_Rational and shown.rhs.is_Rational and shown.lhs != shown.rhs
-    place = (shown.entry[0] - 1, shown.entry[1] - 1) if shown.entry else None
-    for side, value in ((left, shown.lhs), (right, shown.rhs)):
+    witness = verdict.counterexample
+    assert (
+        verdict.verdict == "false"
+        and witness.left.is_Rational
+        and witness.right.is_Rational
+        and witness.left != witness.right
+    )
+    place = (witness.entry[0] - 1, witness.entry[1] - 1) if witness.entry else None
+    for side, value in ((left, witness.left), (right, witness.right)):
         entry = Matrix(side)[place] if place else side
-        assert Expr.subs(entry + z - z, dict(shown.values)) == value if isinstance(entry, Expr) else entry == value
+        assert Expr.subs(entry + z - z, dict(witness.point)) == value if isinstance(entry, Expr) else entry == value
     for relation in relations:
         zero = relation.lhs - relation.rhs if isinstance(relation, Eq) else relation
-        assert zero.subs(dict(shown.values)) == 0
+        assert zero.subs(dict(witness.point)) == 0
 
 
 def test_a_counterexample_obeys_the_assumptions():
     """A moment of inertia is positive, also where formulas differ."""
     verdict = decide(A**2, A * B)
-    values = dict(verdict.counterexample.values)
+    values = dict(verdict.counterexample.point)
     assert values[A] > 0 and values[B] > 0
 
 
 def test_false_with_roots_is_shown_inside_the_domain():
-    assert decide(sqrt(x**2), x).counterexample.values == ((x, -1),)
+    assert decide(sqrt(x**2), x).counterexample.point == ((x, -1),)
     assert decide(sqrt(A + B), sqrt(A) + sqrt(B)).verdict == "false"
     assert decide(sqrt(x - 1) * sqrt(x + 1), sqrt(x**2 - 1)).verdict != "false"  # true wherever it is real
 
 
 def test_false_with_a_root_and_a_hypothesis_is_shown_where_the_hypothesis_holds():
     verdict = decide(sqrt(2) * q0 * sin(x), q1, [UNIT_QUATERNION])
-    values = dict(verdict.counterexample.values)
+    values = dict(verdict.counterexample.point)
     assert verdict.verdict == "false" and UNIT_QUATERNION.subs(values) == 0
 
 
@@ -242,7 +247,7 @@ def test_what_is_out_of_scope_is_undecided_never_false(left, right):
 
 def test_conditions_are_the_denominators_that_may_vanish():
     verdict = decide(x * A / (A * sin(theta)), x / sin(theta))
-    assert verdict == Verdict("true", 0, (Ne(sin(theta), 0),))
+    assert verdict == Decision("true", (Ne(sin(theta), 0),), residual=0)
     assert decide(tan(theta / 2), sin(theta) / (1 + cos(theta))).conditions == (Ne(cos(theta / 2), 0),)
 
 

@@ -309,7 +309,7 @@ def test_no_random_claim_gets_a_wrong_verdict(seed):
         if verdict.verdict == "true":
             assert not differs_somewhere(left, right, source), (left, right)
         if verdict.verdict == "false":
-            point = dict(verdict.counterexample.values)
+            point = dict(verdict.counterexample.point)
             sides = [value(side.xreplace(point), {}) for side in (left, right)]
             assert abs(sides[0] - sides[1]) > TINY, (left, right, point)
     assert undecided <= 3

@@ -19,8 +19,8 @@ int main(void)
     const float qf[4] = {(float)half, 0.0f, 0.0f, (float)half};
     double dcm[9];
     float dcmf[9];
-    quaternion_dcm(q, dcm);
-    quaternion_dcmf(qf, dcmf);
+    symrot_quaternion_dcm(q, dcm);
+    symrot_quaternion_dcmf(qf, dcmf);
     if (differs(dcm[3], 1.0) || differs(dcm[0], 0.0) || !(fabsf(dcmf[3] - 1.0f) <= 2e-7f))
         return puts("quaternion_dcm: expected a quarter turn"), 1;
 
@@ -31,12 +31,12 @@ int main(void)
         for (size_t i = 0; i < 3; ++i)
             omega[i*SAMPLES + k] = 1.0 + (double)i;
     }
-    euler_zyx_body_rates_batch(SAMPLES, angles, omega, rates);
+    symrot_euler_zyx_body_rates_batch(SAMPLES, angles, omega, rates);
     for (size_t k = 0; k < SAMPLES; ++k) {
         const double one[3] = {angles[k], angles[SAMPLES + k], angles[2*SAMPLES + k]};
         const double turning[3] = {omega[k], omega[SAMPLES + k], omega[2*SAMPLES + k]};
         double expected[3];
-        euler_zyx_body_rates(one, turning, expected);
+        symrot_euler_zyx_body_rates(one, turning, expected);
         for (size_t i = 0; i < 3; ++i)
             if (differs(rates[i*SAMPLES + k], expected[i]))
                 return printf("euler_zyx_body_rates: sample %u differs\n", (unsigned)k), 1;
@@ -44,7 +44,7 @@ int main(void)
 
     const double inertia[3] = {1.0, 1.0, 0.5}, center[3] = {0.0, 0.0, 0.2}, still[3] = {0.0, 0.0, 0.0};
     double domega[3], dq[4];
-    heavy_top(inertia, 9.81, center, still, q, domega, dq);
+    symrot_heavy_top(inertia, 9.81, center, still, q, domega, dq);
     if (differs(domega[0], 0.0) || differs(domega[1], 0.0) || differs(dq[0], 0.0))
         return puts("heavy_top: expected no torque on an upright top"), 1;
     puts("kernels agree");

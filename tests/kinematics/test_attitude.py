@@ -201,40 +201,47 @@ def test_the_jacobian_is_an_immutable_matrix_that_survives_copies():
 def test_hamilton():
     """i j = k, j k = i, k i = j, i i = j j = k k = i j k = -1."""
     one, i, j, k = (ImmutableMatrix(eye(4).col(n)) for n in range(4))
-    assert quaternion.qmul(i, j) == k and quaternion.qmul(j, k) == i and quaternion.qmul(k, i) == j
-    assert all(quaternion.qmul(unit, unit) == -one for unit in (i, j, k))
-    assert quaternion.qmul(i, j, k) == -one
-    assert quaternion.qmul() == one
+    assert (
+        quaternion.quaternion_product(i, j) == k
+        and quaternion.quaternion_product(j, k) == i
+        and quaternion.quaternion_product(k, i) == j
+    )
+    assert all(quaternion.quaternion_product(unit, unit) == -one for unit in (i, j, k))
+    assert quaternion.quaternion_product(i, j, k) == -one
+    assert quaternion.quaternion_product() == one
 
 
 def test_norm_is_multiplicative_and_product_associative():
     a, b, c = (symbols(f"{name}0:4", real=True) for name in "abc")
-    product = quaternion.qmul(a, b)
+    product = quaternion.quaternion_product(a, b)
     assert normal_form(quaternion.norm_squared(product) - quaternion.norm_squared(a) * quaternion.norm_squared(b)) == 0
-    assert normal_form(quaternion.qmul(product, c) - quaternion.qmul(a, quaternion.qmul(b, c))) == zeros(4, 1)
+    assert normal_form(
+        quaternion.quaternion_product(product, c)
+        - quaternion.quaternion_product(a, quaternion.quaternion_product(b, c))
+    ) == zeros(4, 1)
     assert quaternion.right_matrix(b) * Matrix(a) == product
-    reversed_product = quaternion.qmul(quaternion.conjugate(b), quaternion.conjugate(a))
+    reversed_product = quaternion.quaternion_product(quaternion.conjugate(b), quaternion.conjugate(a))
     assert normal_form(quaternion.conjugate(product) - reversed_product) == zeros(4, 1)
 
 
 def test_dcm_of_a_quaternion():
     q, unit = sym.quaternion, [quaternion.unit_relation()]
-    homogeneous = quaternion.dcm_of(form="homogeneous")
+    homogeneous = quaternion.quaternion_to_dcm(form="homogeneous")
     square = quaternion.norm_squared(q)
     assert normal_form(homogeneous.T * homogeneous - square**2 * eye(3)) == zeros(3)
-    assert normal_form(quaternion.dcm_of() - homogeneous, unit) == zeros(3)
-    assert normal_form(quaternion.dcm_of() - homogeneous) != zeros(3)  # needs the unit norm
-    normalised = quaternion.dcm_of(form="normalised")
+    assert normal_form(quaternion.quaternion_to_dcm() - homogeneous, unit) == zeros(3)
+    assert normal_form(quaternion.quaternion_to_dcm() - homogeneous) != zeros(3)  # needs the unit norm
+    normalised = quaternion.quaternion_to_dcm(form="normalised")
     assert normal_form(normalised.T * normalised - eye(3)) == zeros(3)
     p = symbols("p0:4", real=True)
-    composed = quaternion.dcm_of(quaternion.qmul(p, q), "homogeneous")
-    assert normal_form(composed - quaternion.dcm_of(p, "homogeneous") * homogeneous) == zeros(3)
+    composed = quaternion.quaternion_to_dcm(quaternion.quaternion_product(p, q), "homogeneous")
+    assert normal_form(composed - quaternion.quaternion_to_dcm(p, "homogeneous") * homogeneous) == zeros(3)
 
 
 def test_dcm_of_a_quaternion_against_goldstein():
     """Classical Mechanics, 3rd ed., (4.47), is the transpose, for A = dcm_bs, in e0..e3: its entry (1, 2)."""
     q0, q1, q2, q3 = sym.quaternion
-    assert normal_form(quaternion.dcm_of(form="homogeneous").T[0, 1] - 2 * (q1 * q2 + q0 * q3)) == 0
+    assert normal_form(quaternion.quaternion_to_dcm(form="homogeneous").T[0, 1] - 2 * (q1 * q2 + q0 * q3)) == 0
 
 
 def test_quaternion_rates_follow_from_the_dcm():
@@ -242,7 +249,7 @@ def test_quaternion_rates_follow_from_the_dcm():
     unit = [quaternion.unit_relation()]
     for frame, omega in (("body", sym.omega_b), ("space", sym.omega_s)):
         rate = quaternion.quaternion_rates(frame) * Matrix(omega)
-        dcm_sb = quaternion.dcm_of(form="homogeneous")
+        dcm_sb = quaternion.quaternion_to_dcm(form="homogeneous")
         change = sum((dcm_sb.diff(q) * dq for q, dq in zip(sym.quaternion, rate, strict=True)), zeros(3))
         spin = rotations.skew(omega)
         expected = dcm_sb * spin if frame == "body" else spin * dcm_sb
@@ -265,7 +272,7 @@ def test_quaternion_of_dcm_on_every_branch():
     """All pivots of 4 q q^T: q_i q of the dcm of q, for unit q."""
     q, unit = Matrix(sym.quaternion), [quaternion.unit_relation()]
     for pivot in range(4):
-        branch = quaternion.quaternion_of_dcm(quaternion.dcm_of(), pivot)
+        branch = quaternion.quaternion_of_dcm(quaternion.quaternion_to_dcm(), pivot)
         scaled = branch * branch[pivot]  # the square root drops out
         assert normal_form(scaled - q[pivot] * q, unit) == zeros(4, 1)
 
@@ -277,7 +284,7 @@ def test_quaternion_of_dcm_on_every_branch():
 def test_quaternion_of_euler_has_the_dcm_of_the_sequence(sequence):
     q = euler.quaternion_of_euler(sequence)
     assert normal_form(quaternion.norm_squared(q) - 1) == 0
-    assert normal_form(quaternion.dcm_of(q) - dcm(sequence)) == zeros(3)
+    assert normal_form(quaternion.quaternion_to_dcm(q) - dcm(sequence)) == zeros(3)
 
 
 @pytest.mark.thinned(4)
@@ -309,8 +316,8 @@ def test_angles_come_back_from_quaternion_and_dcm(sequence):
         (lambda: dcm("ZXZ", (phi, theta)), "3 values, got 2"),
         (lambda: rate_jacobian("ZXZ", "world"), "world"),
         (lambda: quaternion.quaternion_rates("inertial"), "inertial"),
-        (lambda: quaternion.dcm_of(form="euclidean"), "euclidean"),
-        (lambda: quaternion.qmul((1, 0, 0)), "got 3"),
+        (lambda: quaternion.quaternion_to_dcm(form="euclidean"), "euclidean"),
+        (lambda: quaternion.quaternion_product((1, 0, 0)), "got 3"),
         (lambda: quaternion.quaternion_of_dcm(eye(4)), "(4, 4)"),
         (lambda: quaternion.quaternion_of_dcm(eye(3), 4), "got 4"),
         (lambda: rotations.elementary_rotation(3, phi), "got 3"),

@@ -38,7 +38,7 @@ def test_dcm_is_a_rotation_and_that_of_the_quaternion(name):
     assert normal_form(chart.dcm.T * chart.dcm - eye(3), chart.relations) == zeros(3)
     assert normal_form(chart.dcm.det() - 1, chart.relations) == 0
     assert normal_form(quaternion.norm_squared(chart.quaternion) - 1, chart.relations) == 0
-    assert normal_form(quaternion.dcm_of(chart.quaternion) - chart.dcm, chart.relations) == zeros(3)
+    assert normal_form(quaternion.quaternion_to_dcm(chart.quaternion) - chart.dcm, chart.relations) == zeros(3)
 
 
 @pytest.mark.parametrize("frame", FRAMES)

@@ -47,7 +47,7 @@ def test_a_false_step_cannot_be_built(page, left, right, relations):
 
 
 def test_a_false_step_says_where_it_fails(page):
-    with pytest.raises(ProofError, match=r"entry \(2, 1\).*at x = pi/2, entry \(2, 1\): 0 against 1"):
+    with pytest.raises(ProofError, match=r"entry \(2, 1\).*entry \(2, 1\): 0 against 1 at x = pi/2"):
         page.step("Wrong.", Matrix([omega_1, 0]), Matrix([omega_1, sin(x)]), because="it is not so")
 
 

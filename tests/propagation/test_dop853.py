@@ -47,7 +47,7 @@ def small(text, states, parameters=1, scale=1.0):
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
 def test_the_error_of_the_trajectory_stays_near_the_tolerance(name, tolerance):
     """Calibrated to 5 times the tolerance; 8 leaves room for another processor's rounding of its steps."""
-    states, _ = dop853.integrate(body(), parameters(name), MOTIONS[name][2], 0.0, TIMES, tolerance)
+    states, _ = dop853.integration(body(), parameters(name), MOTIONS[name][2], 0.0, tolerance).sample(TIMES)
     assert error(states, taylor(name)) < 8 * tolerance
 
 
@@ -56,7 +56,7 @@ def test_a_symmetric_body_follows_its_closed_form(tolerance):
     """omega turns about the axis at (C - A)/A w3; the attitude is a turn about L, then one about the axis."""
     a, c, w1, w3 = 0.6375, 0.075, 1.0, 1.0
     t = np.linspace(0.0, 20.0, 101)
-    states, _ = dop853.integrate(body(), (a, a, c, 0, 0, 0), state((w1, 0, w3)), 0.0, t, tolerance)
+    states, _ = dop853.integration(body(), (a, a, c, 0, 0, 0), state((w1, 0, w3)), 0.0, tolerance).sample(t)
     rate = (c - a) / a * w3
     size = math.hypot(a * w1, c * w3)
     about_l = np.array([np.cos(size / a * t / 2), *(np.sin(size / a * t / 2) * x / size for x in (a * w1, 0, c * w3))])
@@ -72,8 +72,8 @@ def test_a_fast_spin_does_not_hide_the_error_of_the_attitude(speed):
     """S17: judged in one norm with omega, the attitude would be off by speed times the tolerance."""
     moments, start = (1.0, 1.5, 2.0, 0, 0, 0), state((1e-3, 1e-3, speed))
     times = np.linspace(0.0, 1000.0 / speed, 21)
-    states, _ = dop853.integrate(body(), moments, start, 0.0, times, 1e-9)
-    exact, _ = dop853.integrate(body(), moments, start, 0.0, times, 1e-13)
+    states, _ = dop853.integration(body(), moments, start, 0.0, 1e-9).sample(times)
+    exact, _ = dop853.integration(body(), moments, start, 0.0, 1e-13).sample(times)
     assert error(states, exact) < 5e-9
     assert abs(np.linalg.norm(states[:, 3:], axis=1) - 1).max() < 1e-8
 
@@ -83,7 +83,7 @@ def test_the_unit_of_time_does_not_matter():
     costs, attitudes = set(), []
     for speed in (1e-5, 1.0, 1e5):
         start = state((0.3 * speed, 1.0 * speed, 0.5 * speed))
-        states, stats = dop853.integrate(body(), (1, 2, 3, 0, 0, 0), start, 0.0, [20.0 / speed], 1e-9)
+        states, stats = dop853.integration(body(), (1, 2, 3, 0, 0, 0), start, 0.0, 1e-9).sample([20.0 / speed])
         costs.add(stats.accepted)
         attitudes.append(states[0, 3:])
     assert max(costs) - min(costs) <= 1
@@ -93,7 +93,7 @@ def test_the_unit_of_time_does_not_matter():
 def test_a_pendulum_swings_through_rest():
     """omega vanishes at every turn; judged against its own size alone, the steps would shrink to nothing there."""
     moments, arm = (1.0, 1.0, 0.1), (0, 0, -5.0)
-    states, stats = dop853.integrate(body(), (*moments, *arm), state((0, 0, 0), 1.0), 0.0, [40.0], 1e-9)
+    states, stats = dop853.integration(body(), (*moments, *arm), state((0, 0, 0), 1.0), 0.0, 1e-9).sample([40.0])
     w, q = states[0, :3], states[0, 3:]
     energy = 0.5 * w[0] ** 2 - 5.0 * (1 - 2 * (q[1] ** 2 + q[2] ** 2) / (q @ q))
     assert abs(energy + 5.0 * math.cos(1.0)) < 1e-7
@@ -101,7 +101,7 @@ def test_a_pendulum_swings_through_rest():
 
 
 def test_a_body_at_rest_stays_at_rest_in_a_few_steps():
-    states, stats = dop853.integrate(body(), (1, 2, 3, 0, 0, 0), state((0, 0, 0)), 0.0, [1.0, 1e6], 1e-12)
+    states, stats = dop853.integration(body(), (1, 2, 3, 0, 0, 0), state((0, 0, 0)), 0.0, 1e-12).sample([1.0, 1e6])
     assert np.array_equal(states, [state((0, 0, 0))] * 2)
     assert stats.accepted < 20
 
@@ -111,9 +111,11 @@ def test_the_order_of_the_step_is_8(stop):
     """S25: halving a fixed step divides the error by 2^8."""
     name = "asymmetric top"
     start, errors = MOTIONS[name][2], []
-    exact, _ = dop853.integrate(body(), parameters(name), start, 0.0, [stop], 1e-13)
+    exact, _ = dop853.integration(body(), parameters(name), start, 0.0, 1e-13).sample([stop])
     for count in (10, 20, 40):
-        found, stats = dop853.integrate(body(), parameters(name), start, 0.0, [stop], 0.99, max_step=abs(stop) / count)
+        found, stats = dop853.integration(
+            body(), parameters(name), start, 0.0, 0.99, max_step=abs(stop) / count
+        ).sample([stop])
         assert stats.rejected == 0
         assert count <= stats.accepted <= count + 2
         errors.append(abs(found - exact).max())
@@ -126,16 +128,16 @@ def test_the_dense_output_is_as_good_as_the_steps():
     name = "asymmetric top"
     start = MOTIONS[name][2]
     for tolerance in (1e-5, 1e-9):
-        solution = dop853.record(body(), parameters(name), start, 0.0, (0.0, 20.0), tolerance)
+        solution = dop853.integration(body(), parameters(name), start, 0.0, tolerance).record((0.0, 20.0))
         times = np.linspace(0.0, 20.0, 5001)
-        exact, _ = dop853.integrate(body(), parameters(name), start, 0.0, times, 1e-13)
+        exact, _ = dop853.integration(body(), parameters(name), start, 0.0, 1e-13).sample(times)
         assert error(solution(times), exact) < 5 * tolerance
     middles = []
     for count in (5, 10, 20):
         h = 2.0 / count
         times = np.linspace(0.0, 2.0, 16 * count + 1)
-        exact, _ = dop853.integrate(body(), parameters(name), start, 0.0, times, 1e-13)
-        found, _ = dop853.integrate(body(), parameters(name), start, 0.0, times, 0.99, max_step=h)
+        exact, _ = dop853.integration(body(), parameters(name), start, 0.0, 1e-13).sample(times)
+        found, _ = dop853.integration(body(), parameters(name), start, 0.0, 0.99, max_step=h).sample(times)
         middles.append(abs(found - exact).max())
     for coarse, fine in pairwise(middles):
         assert math.log2(coarse / fine) > 7.0
@@ -144,7 +146,7 @@ def test_the_dense_output_is_as_good_as_the_steps():
 def test_rounding_does_not_pile_up():
     """S28: a million additions of an increment that is no binary fraction end where one would; -ffast-math would not."""
     path = small("dy[0] = p[0];", 1)
-    states, stats = dop853.integrate(path, [0.1], [0.0], 0.0, [1000.0], 1e-6, max_step=1e-3)
+    states, stats = dop853.integration(path, [0.1], [0.0], 0.0, 1e-6, max_step=1e-3).sample([1000.0])
     assert stats.accepted >= 1_000_000
     assert abs(states[0, 0] - 100.0) < 3e-14
     assert not any("fast-math" in flag or "unsafe" in flag for flag in library.FLAGS)
@@ -160,7 +162,7 @@ OSCILLATOR = "dy[0] = y[1]; dy[1] = -y[0];"
 def test_samples_lie_anywhere_in_any_order(t0):
     path = small(OSCILLATOR, 2)
     times = np.array([3.0, -2.0, t0, 3.0, 0.1, 11.0, t0, -9.5, 1e-9])
-    states, _ = dop853.integrate(path, [0.0], wave(np.array([t0]))[0], t0, times, 1e-11)
+    states, _ = dop853.integration(path, [0.0], wave(np.array([t0]))[0], t0, 1e-11).sample(times)
     assert states.shape == (9, 2)
     assert states.flags["C_CONTIGUOUS"]
     assert abs(states - wave(times)).max() < 1e-10
@@ -171,8 +173,8 @@ def test_samples_lie_anywhere_in_any_order(t0):
 
 def test_the_steps_do_not_depend_on_the_samples():
     path = small(OSCILLATOR, 2)
-    few, one = dop853.integrate(path, [0.0], [1.0, 0.0], 0.0, [50.0], 1e-9)
-    many, other = dop853.integrate(path, [0.0], [1.0, 0.0], 0.0, np.linspace(0.0, 50.0, 3001), 1e-9)
+    few, one = dop853.integration(path, [0.0], [1.0, 0.0], 0.0, 1e-9).sample([50.0])
+    many, other = dop853.integration(path, [0.0], [1.0, 0.0], 0.0, 1e-9).sample(np.linspace(0.0, 50.0, 3001))
     assert (one.accepted, one.rejected) == (other.accepted, other.rejected)
     assert np.array_equal(few[-1], many[-1])
     assert other.evaluations == one.evaluations + 3 * one.accepted
@@ -180,45 +182,48 @@ def test_the_steps_do_not_depend_on_the_samples():
 
 def test_no_samples_and_a_span_of_no_length():
     path = small(OSCILLATOR, 2)
-    states, stats = dop853.integrate(path, [0.0], [1.0, 0.0], 0.0, [], 1e-9)
+    states, stats = dop853.integration(path, [0.0], [1.0, 0.0], 0.0, 1e-9).sample([])
     assert states.shape == (0, 2)
     assert stats.evaluations == 0
-    states, stats = dop853.integrate(path, [0.0], [1.0, 0.0], 4.0, [4.0, 4.0], 1e-9)
+    states, stats = dop853.integration(path, [0.0], [1.0, 0.0], 4.0, 1e-9).sample([4.0, 4.0])
     assert np.array_equal(states, [[1.0, 0.0]] * 2)
     assert stats.accepted == 0
-    states, _ = dop853.integrate(path, [0.0], [1.0, 0.0], 1.0, [math.nextafter(1.0, 2.0)], 1e-9)
+    states, _ = dop853.integration(path, [0.0], [1.0, 0.0], 1.0, 1e-9).sample([math.nextafter(1.0, 2.0)])
     assert np.allclose(states, [[1.0, 0.0]], atol=1e-15)
 
 
 def test_backward_returns_to_the_start():
     name = "asymmetric"
-    there, _ = dop853.integrate(body(), parameters(name), MOTIONS[name][2], 0.0, [20.0], 1e-11)
-    back, _ = dop853.integrate(body(), parameters(name), there[0], 20.0, [0.0], 1e-11)
+    there, _ = dop853.integration(body(), parameters(name), MOTIONS[name][2], 0.0, 1e-11).sample([20.0])
+    back, _ = dop853.integration(body(), parameters(name), there[0], 20.0, 1e-11).sample([0.0])
     assert abs(back[0] - MOTIONS[name][2]).max() < 1e-10
 
 
 def test_pauses_change_nothing(monkeypatch):
     """A call to C returns after so many steps; the motion goes on from there bit for bit."""
-    arguments = (body(), parameters("asymmetric"), MOTIONS["asymmetric"][2], 0.0, np.linspace(0.0, 30.0, 77), 1e-9)
-    whole, stats = dop853.integrate(*arguments)
+    arguments, times = (
+        (body(), parameters("asymmetric"), MOTIONS["asymmetric"][2], 0.0, 1e-9),
+        np.linspace(0.0, 30.0, 77),
+    )
+    whole, stats = dop853.integration(*arguments).sample(times)
     monkeypatch.setattr(dop853._Stepper, "steps_per_call", 3)
-    parts, others = dop853.integrate(*arguments)
+    parts, others = dop853.integration(*arguments).sample(times)
     assert np.array_equal(whole, parts)
     assert stats[:3] == others[:3]
 
 
 def test_a_recording_is_the_motion_itself(monkeypatch):
     name, times = "asymmetric top", np.linspace(-5.0, 12.0, 301)
-    arguments = (body(), parameters(name), MOTIONS[name][2], 0.0)
-    solution = dop853.record(*arguments, (-5.0, 12.0), 1e-9)
-    sampled, _ = dop853.integrate(*arguments, times, 1e-9)
+    arguments = (body(), parameters(name), MOTIONS[name][2], 0.0, 1e-9)
+    solution = dop853.integration(*arguments).record((-5.0, 12.0))
+    sampled, _ = dop853.integration(*arguments).sample(times)
     assert abs(solution(times) - sampled).max() < 1e-14
     assert np.array_equal(solution(0.0), MOTIONS[name][2])
     assert solution(3.0).shape == (7,)
     assert solution(times[::-1].reshape(7, 43)).shape == (7, 43, 7)
     assert np.array_equal(solution(times[::-1])[::-1], solution(times))
     monkeypatch.setattr(dop853._Stepper, "rows_per_call", 2)
-    assert np.array_equal(dop853.record(*arguments, (-5.0, 12.0), 1e-9)(times), solution(times))
+    assert np.array_equal(dop853.integration(*arguments).record((-5.0, 12.0))(times), solution(times))
     with pytest.raises(InputError, match=r"known from -5.0 to 12.0 s, asked for 12.5 s"):
         solution([1.0, 12.5])
 
@@ -233,12 +238,12 @@ def test_a_switching_time_costs_no_order(stop):
     times = [0.0, 0.5 * side, 1.0 * side, stop]
     rate = [side]
     y = 1.0
-    states, _ = dop853.integrate(path, rate, [y], 0.0, times, 1e-12, breaks=[1.0 * side, 77.0])
+    states, _ = dop853.integration(path, rate, [y], 0.0, 1e-12, breaks=[1.0 * side, 77.0]).sample(times)
     assert states[:, 0] == pytest.approx([1.0, before, math.exp(-side), exact], rel=2e-12)
-    solution = dop853.record(path, rate, [y], 0.0, (0.0, stop), 1e-12, breaks=[1.0 * side])
+    solution = dop853.integration(path, rate, [y], 0.0, 1e-12, breaks=[1.0 * side]).record((0.0, stop))
     assert solution(stop)[0] == pytest.approx(exact, rel=2e-12)
-    _, blind = dop853.integrate(path, rate, [y], 0.0, times, 1e-10)
-    _, restarted = dop853.integrate(path, rate, [y], 0.0, times, 1e-10, breaks=[1.0 * side])
+    _, blind = dop853.integration(path, rate, [y], 0.0, 1e-10).sample(times)
+    _, restarted = dop853.integration(path, rate, [y], 0.0, 1e-10, breaks=[1.0 * side]).sample(times)
     assert 2 * restarted.evaluations < blind.evaluations
 
 
@@ -257,13 +262,13 @@ def test_a_switching_time_costs_no_order(stop):
 )
 def test_a_motion_that_ends_says_where_and_why(text, start, stop, reason):
     with pytest.raises(PropagationError, match=reason) as caught:
-        dop853.integrate(small(text, 1), [0.0], [start], 0.0, [stop], 1e-9, max_steps=100_000)
+        dop853.integration(small(text, 1), [0.0], [start], 0.0, 1e-9, max_steps=100_000).sample([stop])
     assert str(caught.value).count("\n") == 0
 
 
 def test_too_many_steps_are_refused():
     with pytest.raises(PropagationError, match=r"beyond t = .* on the way to 1000.0 s: 50 steps were not enough"):
-        dop853.integrate(small(OSCILLATOR, 2), [0.0], [1.0, 0.0], 0.0, [1000.0], 1e-9, max_steps=50)
+        dop853.integration(small(OSCILLATOR, 2), [0.0], [1.0, 0.0], 0.0, 1e-9, max_steps=50).sample([1000.0])
 
 
 @pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="no interval timer")
@@ -277,13 +282,17 @@ def test_an_interrupt_is_heard():
     signal.setitimer(signal.ITIMER_REAL, 0.2)
     try:
         with pytest.raises(KeyboardInterrupt):
-            dop853.integrate(small(OSCILLATOR, 2), [0.0], [1.0, 0.0], 0.0, [1e12], 1e-9, max_steps=10**15)
+            dop853.integration(small(OSCILLATOR, 2), [0.0], [1.0, 0.0], 0.0, 1e-9, max_steps=10**15).sample([1e12])
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, previous)
 
 
 GOOD = {"p": [0.0], "y0": [1.0, 0.0], "t0": 0.0, "times": [1.0], "tolerance": 1e-6}
+
+
+def sampled(library, times, **arguments):
+    return dop853.integration(library, **arguments).sample(times)
 
 
 @pytest.mark.parametrize(
@@ -307,9 +316,9 @@ GOOD = {"p": [0.0], "y0": [1.0, 0.0], "t0": 0.0, "times": [1.0], "tolerance": 1e
 )
 def test_input_that_cannot_be_used_is_named(change, sentence):
     arguments = {"library": small(OSCILLATOR, 2), **GOOD}
-    dop853.integrate(**arguments)
+    sampled(**arguments)
     with pytest.raises(InputError, match=sentence):
-        dop853.integrate(**{**arguments, **change})
+        sampled(**{**arguments, **change})
 
 
 @pytest.mark.parametrize(
@@ -324,7 +333,7 @@ def test_a_file_that_is_no_stepper_is_refused(tmp_path):
     (tmp_path / "text.so").write_text("hello")
     for path in (tmp_path / "text.so", tmp_path / "none.so", library.build("int nothing;", "nothing")):
         with pytest.raises(CompilerError, match="cannot be loaded"):
-            dop853.integrate(path, **GOOD)
+            sampled(library=path, **GOOD)
 
 
 @pytest.mark.thinned(3)
@@ -334,7 +343,7 @@ def test_any_number_of_states_can_be_stepped(states):
     kernel = f"""static inline void decay(double t, const double *y, const double *p, double *dy)
     {{ (void)t; for (int i = 0; i < {states}; ++i) dy[i] = -p[0]*(i + 1)*y[i]; }}\n"""
     path = built(kernel, "decay", states, 1, tuple(range(states + 1)), (0.0,) * states)
-    found, _ = dop853.integrate(path, [0.1], [1.0] * states, 0.0, [1.0, 4.0], 1e-10)
+    found, _ = dop853.integration(path, [0.1], [1.0] * states, 0.0, 1e-10).sample([1.0, 4.0])
     exact = np.exp(-0.1 * np.outer([1.0, 4.0], np.arange(1, states + 1)))
     assert abs(found / exact - 1).max() < 1e-9
 

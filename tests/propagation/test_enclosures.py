@@ -24,7 +24,7 @@ from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks, scene_kernel
 from symrot.propagation.enclosures.step_limit import FUNCTIONS, Deviations, Disc, deviations_of, longest_followed
 from symrot.propagation.enclosures.step_limit import _product as product
-from symrot.propagation.steppers import cut_off, dop853, stepping, taylor
+from symrot.propagation.steppers import dop853, integration_stopped, stepping, taylor
 from symrot.scene.scene import Scene
 from tests.needs import needs_compiler
 
@@ -291,7 +291,9 @@ def test_without_the_enclosure_the_pulse_is_missed(stepper):
             bounds = enclosure_source(kernel.rates, dop853.DENSE_ORDER, edges[0]) if enclosed else dop853.NO_ENCLOSURE
             text = dop853.translation_unit(kernel.source, "symrot_rates", len(plan.states), len(p), *edges, bounds)
             flags = library.FLAGS
-        states, _ = stepper.integrate(library.build(text, "held", flags), p, plan.initial_state, 0.0, [10.0], 1e-10)
+        states, _ = stepper.integration(library.build(text, "held", flags), p, plan.initial_state, 0.0, 1e-10).sample(
+            [10.0]
+        )
         omega = states[0, plan.states.index("omega_3")]
         assert (abs(omega - 1e-3 * math.sqrt(math.pi) / 3) < 1e-12) == enclosed
 
@@ -325,7 +327,7 @@ def test_smooth_torques_of_time_cost_no_more_steps(torque):
     steps = []
     for enclosed in (False, True):
         path = library.build(taylor.translation_unit(kernel.rates, *edges, enclosed=enclosed), "held", taylor.FLAGS)
-        steps.append(taylor.integrate(path, p, plan.initial_state, 0.0, [20.0], 1e-12)[1].accepted)
+        steps.append(taylor.integration(path, p, plan.initial_state, 0.0, 1e-12).sample([20.0])[1].accepted)
     assert steps[1] <= 1.2 * steps[0] + 1
 
 
@@ -342,7 +344,7 @@ def test_a_function_without_series_is_not_enclosed():
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
 def test_a_hopeless_motion_is_given_up_with_its_samples(method, monkeypatch):
     monkeypatch.setattr(stepping, "PATIENCE", 2000)
-    monkeypatch.setattr(cut_off, "HOPELESS", 1e-3)
+    monkeypatch.setattr(integration_stopped, "HOPELESS", 1e-3)
     times = np.linspace(0, 20, 81)
     with pytest.raises(PropagationError, match=r"beyond t = \d.* more than the limit of 100000000") as caught:
         symrot.propagator(scene("exp(t**3)", (0, 0, 1)), method)(times)

@@ -136,7 +136,7 @@ def test_motions_about_one_axis_and_spheres_have_angles_too():
 def test_bad_input_is_refused(options, words):
     with pytest.raises(InputError, match=words):
         symrot.propagator(scene("1/2"), **options)
-    with pytest.raises(InputError, match="events are not sought"):
+    with pytest.raises(InputError, match="events are not located"):
         symrot.propagator(scene("1/2"), state="ZXZ")([1.0], events="omega_1")
     named = {"kind": "expression", "torque": ["phi*omega_1", "0", "0"], "parameters": {"phi": 1}}
     with pytest.raises(InputError, match="the name of an angle"):

@@ -21,7 +21,7 @@ def value(row, t, count):
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
 @pytest.mark.parametrize("end", [9.0, -9.0])
 def test_rows_are_the_dense_output(method, end):
-    task = symrot.propagator(scene(), method=method, tolerance=1e-10)._motion.stepping.again()
+    task = symrot.propagator(scene(), method=method, tolerance=1e-10)._motion.stepping.restarted()
     records, steps = [], 0
     for piece in stepped(task, end, [], records):
         assert len(piece.edges) == len(piece.rows) + 1

@@ -18,7 +18,7 @@ from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks, scene_kernel
 from symrot.propagation.invariants import invariant_parameters, invariant_source
 from symrot.propagation.steppers import taylor
-from symrot.propagation.steppers.stepping import Task
+from symrot.propagation.steppers.stepping import Integration
 from symrot.scene.scene import Scene
 from tests.codegen.test_recurrences import program
 
@@ -43,13 +43,13 @@ class Body:
         self.start, self.plan = [float(value) for value in plan.initial_state], plan
 
     def at(self, t, tolerance=1e-15, **more):
-        return taylor.integrate(self.path, self.p, self.start, 0.0, [t], tolerance, **more)[0][0]
+        return taylor.integration(self.path, self.p, self.start, 0.0, tolerance, **more).sample([t])[0][0]
 
     def drift(self, state):
         """The largest change of an invariant that is kept, exactly."""
         values = {name: Fraction(v) for (name, _), v in zip(self.kernel.quantity_parameters, bind(
             self.kernel.quantity_parameters, self.plan.constants), strict=True)}  # fmt: skip
-        outputs = [item.output for item in self.kernel.conserved if item.kept]
+        outputs = [item.output for item in self.kernel.conserved if item.holds]
         both = []
         for y in (state, self.start):
             known = values | {name: Fraction(float(v)) for name, v in zip(self.plan.states, y, strict=True)}
@@ -157,7 +157,7 @@ def test_projected_motions_are_ten_times_as_good(tolerance):
 
 def test_motions_of_which_nothing_is_right_are_refused_ever_more_seldom():
     body = Body(["3/10", 1, "1/2"])
-    task = Task(taylor._stepper, body.path, body.p, body.start, 0.0, 0.5)
+    task = Integration(taylor._stepper, body.path, body.p, body.start, 0.0, 0.5)
     task.fields["every"], task.allowed, task.pace = 2, 30.0, 1e-300
     run = next(task.runs(300.0))
     task.advance(run, None, 0, None, None, 0)

@@ -17,7 +17,7 @@ from symrot.kinematics import conversions
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation import method as choosing
 from symrot.propagation.method import Choice
-from symrot.propagation.motion import Motion
+from symrot.propagation.motion import stepped_motion
 from symrot.propagation.propagate import propagate, propagator
 from symrot.scene.file import names_with_kernels
 from symrot.scene.scene import Scene, load_scene
@@ -121,7 +121,7 @@ def test_every_simplification_leaves_the_motion_alone(name):
 def propagator_of(plan, structure, tolerance):
     """Return a propagator for a plan with another of its structures."""
     made = propagator(plan.scene, method="dop853", tolerance=tolerance)
-    made._motion = Motion(Plan(plan.scene, structure, plan.rows), Choice("dop853", "for the test"), tolerance)
+    made._motion = stepped_motion(Plan(plan.scene, structure, plan.rows), Choice("dop853", "for the test"), tolerance)
     return made
 
 
@@ -456,8 +456,10 @@ def test_the_closed_form_of_a_motion_is_looked_up_once(monkeypatch):
 
 
 def test_the_smoothness_of_a_torque_is_looked_up_once(monkeypatch):
-    asked, roughness = [], choosing.roughness
-    monkeypatch.setattr(choosing, "roughness", lambda plan: asked.append(plan.scene.name) or roughness(plan))
+    asked, non_smooth_torque = [], choosing.non_smooth_torque
+    monkeypatch.setattr(
+        choosing, "non_smooth_torque", lambda plan: asked.append(plan.scene.name) or non_smooth_torque(plan)
+    )
     body, torque = {"principal": [1, 2, 3]}, {"kind": "damping", "quadratic": "1/10"}
     content = {"schema": 1, "title": "drag", "body": body, "torque": [torque], "initial": {"omega": [1, 1, 1]}}
     rough = propagator(Scene.from_dict({**content, "span": {"t": [0, 1]}}, "drag"))

@@ -26,7 +26,7 @@ from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks, scene_kernel
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import dop853, taylor
-from symrot.propagation.steppers.stepping import Task
+from symrot.propagation.steppers.stepping import Integration
 from symrot.scene.scene import Scene, load_scene
 from tests.codegen.test_recurrences import FUNCTION_SYSTEMS, START, SYSTEMS, program
 from tests.reference.tops import MOTIONS, TIMES, error, parameters, state
@@ -113,7 +113,7 @@ def compare(rates, flags=(), order=20):
 def test_any_even_order(order):
     compare(SYSTEMS["free body"], order=order)
     path = small({"x": "-y", "y": "x"}, order=order)
-    states, _ = taylor.integrate(path, [0.0], [1.0, 0.0], 0.0, [3.0], 1e-8)
+    states, _ = taylor.integration(path, [0.0], [1.0, 0.0], 0.0, 1e-8).sample([3.0])
     assert abs(states[0] - (math.cos(3), math.sin(3))).max() < 1e-6
 
 
@@ -143,7 +143,7 @@ def scene_library(name):
 
 def test_names_of_parameters_do_not_meet_names_in_c():
     """Parameters a, b, c and m1, states w1: the emitted text uses c, x, n and m itself."""
-    states, _ = taylor.integrate(body(), parameters("asymmetric"), MOTIONS["asymmetric"][2], 0.0, [1.0], 1e-12)
+    states, _ = taylor.integration(body(), parameters("asymmetric"), MOTIONS["asymmetric"][2], 0.0, 1e-12).sample([1.0])
     assert np.isfinite(states).all()
 
 
@@ -164,7 +164,7 @@ def test_code_does_not_grow_with_the_order():
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
 def test_the_error_of_the_trajectory_stays_near_the_tolerance(name, tolerance):
     """Calibrated to 6 times the tolerance; 10 leaves room for another processor's rounding of its steps."""
-    states, _ = taylor.integrate(body(), parameters(name), MOTIONS[name][2], 0.0, TIMES, tolerance)
+    states, _ = taylor.integration(body(), parameters(name), MOTIONS[name][2], 0.0, tolerance).sample(TIMES)
     assert error(states, reference(name)) < 10 * tolerance
 
 
@@ -175,7 +175,7 @@ def test_orders_for_tolerances_keep_the_promise():
         source = taylor.translation_unit(rigid_body_program(), order=taylor.order_for(tolerance))
         for name in MOTIONS:
             path = library.build(source, "body")
-            states, _ = taylor.integrate(path, parameters(name), MOTIONS[name][2], 0.0, TIMES, tolerance)
+            states, _ = taylor.integration(path, parameters(name), MOTIONS[name][2], 0.0, tolerance).sample(TIMES)
             assert error(states, reference(name)) < 10 * tolerance
 
 
@@ -184,11 +184,13 @@ def test_long_motions_keep_the_promise(name):
     """184 revolutions of a free body, 200 s of heavy tops; the last bits are lost to rounding alone."""
     problem, exact = bench._Problem(name, 1.0), bench.reference(name)
     for tolerance in (1e-4, 1e-7, 1e-10, 1e-12):
-        states, _ = taylor.integrate(
-            problem.taylor_library(), problem.taylor_p, problem.y0, 0.0, [problem.stop], tolerance
+        states, _ = taylor.integration(problem.taylor_library(), problem.taylor_p, problem.y0, 0.0, tolerance).sample(
+            [problem.stop]
         )
         assert problem.error(states[0], exact) < 5 * tolerance
-    states, _ = taylor.integrate(problem.taylor_library(), problem.taylor_p, problem.y0, 0.0, [problem.stop], 1e-15)
+    states, _ = taylor.integration(problem.taylor_library(), problem.taylor_p, problem.y0, 0.0, 1e-15).sample(
+        [problem.stop]
+    )
     assert problem.error(states[0], exact) < 2e-12
 
 
@@ -196,7 +198,9 @@ def test_the_kept_references_are_those_computed(tmp_path, monkeypatch):
     """A short span both ways: 40-digit series against the stepper near round-off, and a wrong state is far off."""
     exact = bench.reference("heavy symmetric", 0.01)
     problem = bench._Problem("heavy symmetric", 0.01)
-    states, _ = taylor.integrate(problem.taylor_library(), problem.taylor_p, problem.y0, 0.0, [problem.stop], 1e-15)
+    states, _ = taylor.integration(problem.taylor_library(), problem.taylor_p, problem.y0, 0.0, 1e-15).sample(
+        [problem.stop]
+    )
     assert problem.error(states[0], exact) < 3e-15
     assert problem.error(states[0] + 1e-9, exact) > 1e-10
 
@@ -210,7 +214,9 @@ def test_shipped_scenes_keep_the_promise(name, tolerance):
     plan = make_plan(load_scene(name))
     p = bind(scene_kernel(plan).rate_parameters, plan.constants)
     t = [float(Fraction(row["t"])) for row in REFERENCE[name]]
-    states, _ = taylor.integrate(scene_library(name), p, plan.initial_state, float(plan.scene.span.start), t, tolerance)
+    states, _ = taylor.integration(
+        scene_library(name), p, plan.initial_state, float(plan.scene.span.start), tolerance
+    ).sample(t)
     for found, row in zip(states, REFERENCE[name], strict=True):
         rates = {n: v for n, v in zip(plan.states, found, strict=True) if n.startswith("omega")}
         exact = {f"omega_{i + 1}": float(v) for i, v in enumerate(row["omega"])}
@@ -221,7 +227,7 @@ def test_shipped_scenes_keep_the_promise(name, tolerance):
 def test_a_symmetric_body_follows_its_closed_form():
     a, c, w1, w3 = 2.0, 3.0, 0.4, 1.1
     t = np.linspace(-30, 50, 17)
-    states, _ = taylor.integrate(body(), (a, a, c, 0, 0, 0), state((w1, 0, w3)), 0.0, t, 1e-13)
+    states, _ = taylor.integration(body(), (a, a, c, 0, 0, 0), state((w1, 0, w3)), 0.0, 1e-13).sample(t)
     rate = (c - a) / a * w3
     assert abs(states[:, 0] - w1 * np.cos(rate * t)).max() < 1e-13
     assert abs(states[:, 1] - w1 * np.sin(rate * t)).max() < 1e-13
@@ -231,15 +237,15 @@ def test_a_symmetric_body_follows_its_closed_form():
 def test_rates_do_not_hide_the_attitude(speed):
     """S17: judged in one norm with omega, the attitude would be off by speed times the tolerance."""
     start, p = state((1e-3, 1e-3, speed)), (1.0, 1.5, 2.0, 0.0, 0.0, 0.0)
-    loose, _ = taylor.integrate(body(), p, start, 0.0, [1000 / speed], 1e-9)
-    tight, _ = taylor.integrate(body(), p, start, 0.0, [1000 / speed], 1e-14)
+    loose, _ = taylor.integration(body(), p, start, 0.0, 1e-9).sample([1000 / speed])
+    tight, _ = taylor.integration(body(), p, start, 0.0, 1e-14).sample([1000 / speed])
     assert abs(loose - tight)[0, 3:].max() < 1e-8
 
 
 def test_energy_is_kept_over_many_revolutions():
     """10 000 s of a free body, about 1800 revolutions, at the tightest tolerance."""
     moments, start = np.array([1.0, 2.0, 4.0]), state((0.3, 1.0, 0.5))
-    states, _ = taylor.integrate(body(), (*moments, 0, 0, 0), start, 0.0, [1e4], 1e-15)
+    states, _ = taylor.integration(body(), (*moments, 0, 0, 0), start, 0.0, 1e-15).sample([1e4])
     energy, before = (moments * states[0, :3] ** 2).sum(), (moments * start[:3] ** 2).sum()
     assert abs(energy / before - 1) < 1e-13
     assert abs(np.linalg.norm(states[0, 3:]) - 1) < 1e-13
@@ -248,8 +254,8 @@ def test_energy_is_kept_over_many_revolutions():
 def test_there_and_back_again():
     """S32: a heavy top for 100 s and back returns to where it began, but for what rounding took."""
     p, start = parameters("asymmetric top"), MOTIONS["asymmetric top"][2]
-    there, _ = taylor.integrate(body(), p, start, 0.0, [100.0], 1e-15)
-    back, _ = taylor.integrate(body(), p, there[0], 100.0, [0.0], 1e-15)
+    there, _ = taylor.integration(body(), p, start, 0.0, 1e-15).sample([100.0])
+    back, _ = taylor.integration(body(), p, there[0], 100.0, 1e-15).sample([0.0])
     assert abs(back[0] - start).max() < 1e-11
 
 
@@ -260,16 +266,16 @@ def test_there_and_back_again():
 def test_no_bit_depends_on_the_unit_of_time(power):
     """S15: omega times 2^k and t over 2^k gives omega times 2^k and the same attitude, bit by bit."""
     p, start, t = parameters("asymmetric"), MOTIONS["asymmetric"][2], np.array([3.0, 7.0])
-    plain, _ = taylor.integrate(body(), p, start, 0.0, t, 1e-12)
+    plain, _ = taylor.integration(body(), p, start, 0.0, 1e-12).sample(t)
     factor = np.array([2.0**power] * 3 + [1.0] * 4)
-    scaled, _ = taylor.integrate(body(), p, start * factor, 0.0, t / 2.0**power, 1e-12)
+    scaled, _ = taylor.integration(body(), p, start * factor, 0.0, 1e-12).sample(t / 2.0**power)
     assert (scaled == plain * factor).all()
 
 
 def test_a_body_at_rest_stays_and_one_that_is_started_starts():
-    at_rest, stats = taylor.integrate(body(), (1, 2, 3, 0, 0, 0), state((0, 0, 0)), 0.0, [5.0], 1e-9)
+    at_rest, stats = taylor.integration(body(), (1, 2, 3, 0, 0, 0), state((0, 0, 0)), 0.0, 1e-9).sample([5.0])
     assert (at_rest[0] == state((0, 0, 0))).all() and stats.accepted <= 3
-    hanging, _ = taylor.integrate(body(), (1, 1, 1, 1, 0, 0), state((0, 0, 0)), 0.0, [1.0], 1e-12)
+    hanging, _ = taylor.integration(body(), (1, 1, 1, 1, 0, 0), state((0, 0, 0)), 0.0, 1e-12).sample([1.0])
     oracle = dop853_states(hanging_program(), [1.0])
     assert abs(hanging - oracle).max() < 1e-10
 
@@ -282,12 +288,12 @@ def dop853_states(motion, times):
     from tests.propagation.test_dop853 import body as dop853_body
 
     p, start = motion
-    return dop853.integrate(dop853_body(), p, start, 0.0, times, 1e-13)[0]
+    return dop853.integration(dop853_body(), p, start, 0.0, 1e-13).sample(times)[0]
 
 
 def test_a_polynomial_motion_takes_few_steps():
     path = small({"x": "3*t**2", "y": "x"}, scale=0.0)
-    states, stats = taylor.integrate(path, [0.0], [0.0, 1.0], 0.0, [1000.0], 1e-12)
+    states, stats = taylor.integration(path, [0.0], [0.0, 1.0], 0.0, 1e-12).sample([1000.0])
     assert states[0] == pytest.approx([1e9, 1 + 1e12 / 4], rel=1e-14) and stats.accepted < 10
 
 
@@ -295,7 +301,7 @@ def test_a_polynomial_motion_takes_few_steps():
 
 
 def spin(times, tolerance=1e-13, **more):
-    return taylor.integrate(small({"x": "-k*y", "y": "k*x"}), [1.0], [1.0, 0.0], 0.0, times, tolerance, **more)
+    return taylor.integration(small({"x": "-k*y", "y": "k*x"}), [1.0], [1.0, 0.0], 0.0, tolerance, **more).sample(times)
 
 
 def test_samples_in_any_order_repeated_and_on_both_sides():
@@ -311,17 +317,17 @@ def test_dense_output_is_as_good_as_the_steps():
     """S39: many samples are no worse than the end point."""
     t = np.linspace(0, 20, 20001)
     name = "asymmetric top"
-    states, _ = taylor.integrate(body(), parameters(name), MOTIONS[name][2], 0.0, t, 1e-11)
+    states, _ = taylor.integration(body(), parameters(name), MOTIONS[name][2], 0.0, 1e-11).sample(t)
     assert error(states[:: 20000 // 8], reference(name)) < 1e-10
-    fine, _ = taylor.integrate(body(), parameters(name), MOTIONS[name][2], 0.0, t, 1e-14)
+    fine, _ = taylor.integration(body(), parameters(name), MOTIONS[name][2], 0.0, 1e-14).sample(t)
     assert abs(states - fine).max() < 1e-10
 
 
 def test_a_recording_agrees_with_samples():
     p, start = parameters("asymmetric"), MOTIONS["asymmetric"][2]
-    solution = taylor.record(body(), p, start, 0.0, (-5.0, 20.0), 1e-12)
+    solution = taylor.integration(body(), p, start, 0.0, 1e-12).record((-5.0, 20.0))
     t = np.linspace(-5, 20, 1001)
-    states, _ = taylor.integrate(body(), p, start, 0.0, t, 1e-12)
+    states, _ = taylor.integration(body(), p, start, 0.0, 1e-12).sample(t)
     assert abs(solution(t) - states).max() < 1e-13
     assert (solution(0.0) == start).all() and solution.span == (-5.0, 20.0)
     with pytest.raises(InputError, match=r"known from -5\.0 to 20\.0 s, asked for 21\.0 s"):
@@ -358,7 +364,7 @@ def test_the_longest_step_is_kept():
 )  # fmt: skip
 def test_a_motion_that_ends_is_reported(rates, start, words):
     with pytest.raises(PropagationError, match=words):
-        taylor.integrate(small(rates), [0.0], start, 0.0, [3.0], 1e-9)
+        taylor.integration(small(rates), [0.0], start, 0.0, 1e-9).sample([3.0])
 
 
 def test_too_many_steps_are_refused():
@@ -384,7 +390,9 @@ def test_too_many_steps_are_refused():
 def test_bad_input_is_refused_in_one_sentence(change, words):
     good = {"p": [1.0], "y0": [1.0, 0.0], "t0": 0.0, "times": [1.0], "tolerance": 1e-6}
     with pytest.raises(InputError, match=words):
-        taylor.integrate(small({"x": "-k*y", "y": "k*x"}), **(good | change))
+        arguments = good | change
+        times = arguments.pop("times")
+        taylor.integration(small({"x": "-k*y", "y": "k*x"}), **arguments).sample(times)
 
 
 def test_what_is_not_smooth_is_refused():
@@ -412,12 +420,12 @@ def test_flags_that_kill_the_carry_are_noticed():
         small({"x": "-x"}, flags=("-ffast-math",))
     path = small({"x": "-x"}, flags=("-fassociative-math", "-fno-signed-zeros", "-fno-trapping-math"))
     with pytest.raises(CompilerError, match="loses the carry"):
-        taylor.integrate(path, [0.0], [1.0], 0.0, [1.0], 1e-6)
+        taylor.integration(path, [0.0], [1.0], 0.0, 1e-6).sample([1.0])
 
 
 def test_the_carry_is_alive():
     """S28: after many steps it holds what rounding took."""
-    task = Task(taylor._stepper, body(), parameters("asymmetric"), MOTIONS["asymmetric"][2], 0.0, 1e-12)
+    task = Integration(taylor._stepper, body(), parameters("asymmetric"), MOTIONS["asymmetric"][2], 0.0, 1e-12)
     run = next(task.runs(500.0))
     task.advance(run, None, 0, None, None, 0)
     sizes = [abs(carry) for carry in run.carry]
@@ -426,7 +434,7 @@ def test_the_carry_is_alive():
 
 def test_a_library_of_another_stepper_is_refused(tmp_path):
     with pytest.raises(CompilerError, match="cannot be loaded"):
-        taylor.integrate(tmp_path / "none.so", [], [], 0.0, [1.0], 1e-6)
+        taylor.integration(tmp_path / "none.so", [], [], 0.0, 1e-6).sample([1.0])
 
 
 @pytest.mark.skipif(shutil.which("g++") is None, reason="needs g++")

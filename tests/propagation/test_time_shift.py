@@ -3,6 +3,7 @@
 import math
 import subprocess
 import sys
+from dataclasses import replace
 from fractions import Fraction
 
 import mpmath
@@ -17,10 +18,11 @@ from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import evaluate, parse
 from symrot.planning.scene_kernel import EXACT_FUNCTIONS, bind
 from symrot.propagation import time_shift as epoch
+from symrot.propagation.motion import SteppedMotion, SteppedSetup, on_clock
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import dop853
 from symrot.propagation.steppers.stepping import MAX_STEPS
-from symrot.propagation.time_shift import far
+from symrot.propagation.time_shift import starts_far
 from symrot.scene.scene import Scene
 
 STARTS = (0, 10**6, 10**9, 10**12, -(10**9))
@@ -123,7 +125,9 @@ def test_a_start_far_away_costs_no_digit(case, t0):
 def test_the_clock_of_the_scene_would_cost_them():
     """The check above sees the fault that it is there for."""
     found = propagator(scene(AXIS, CASES["axis"][1], 10**9), "dop853")
-    found._motion.movable = False
+    motion = found._motion
+    shared = SteppedSetup(replace(motion.setup, allows_time_shift=False), motion.library)
+    found._motion = SteppedMotion(shared, motion.plan)
     with mpmath.workdps(40):
         expected = axis_reference(10**9)
     trajectory = found(10**9 + np.array(TAU))
@@ -168,8 +172,8 @@ def test_one_time_for_all_steps_would_lose_phases(monkeypatch):
 def test_parameters_follow_the_epoch_exactly():
     """What was found once and what is found anew make what all found anew makes."""
     found = propagator(scene(GENERAL, GENERAL_TORQUE, 10**6), "dop853")._motion
-    plan, kernel = epoch.moved(found.plan, found.kernel)
-    following = epoch.Following(kernel.rate_parameters, plan.constants, 0.1)
+    plan, kernel = epoch.time_shifted(found.plan, found.kernel)
+    following = epoch.ShiftedParameters(kernel.rate_parameters, plan.constants, 0.1)
     for since in (0.0, 1 / 3, -(10**9)):
         values = {**plan.constants, "epoch": Fraction(0.1) + Fraction(since)}
         assert following.parameters(since) == bind(kernel.rate_parameters, values)
@@ -260,15 +264,23 @@ def test_whole_turns_are_taken_away_exactly():
 @pytest.mark.parametrize("start", [1e9 + 0.3, -7.1, 1e15, 3e-300])
 def test_the_clock_is_moved_where_no_time_is_rounded(start):
     times = start * np.random.default_rng(4).uniform(0.5, 2.0, 200)
-    assert far(start, times.min(), times.max())
+    assert starts_far(start, times.min(), times.max())
     assert all(Fraction(t) - Fraction(start) == Fraction(t - start) for t in times.tolist())
-    assert not far(start, min(-start, start), abs(start)) and not far(0.0, 0.0, 1.0)
+    assert not starts_far(start, min(-start, start), abs(start)) and not starts_far(0.0, 0.0, 1.0)
 
 
 def test_without_time_in_the_torque_nothing_is_compiled_anew():
     found = propagator(scene(GENERAL, ["omega_1/9", "0", "q1/7"], 10**9), "taylor")._motion
-    far_away = found.on_clock(np.array([1e9, 1e9 + 2]))
+    far_away = on_clock(found, np.array([1e9, 1e9 + 2]))
     assert far_away is not found and far_away.library == found.library
+
+
+@pytest.mark.parametrize("method", ["scipy", "taylor"])
+def test_a_motion_with_events_that_breaks_off_names_the_time_of_the_scene(method):
+    """The root has no value after 5 s on the motion's own clock, which nobody sees."""
+    broken = propagator(scene(GENERAL, ["sqrt(1000000005 - t)", "0", "0"], 10**9), method)
+    with pytest.raises(PropagationError, match=r"beyond t = 100000000[45]\.\d+ s"):
+        broken(10**9 + np.array([0.0, 9.0]), events=["omega_1 == 1e9"])
 
 
 def test_a_motion_that_was_derived_before_needs_no_sympy_far_away():
@@ -287,7 +299,7 @@ def test_a_motion_that_was_derived_before_needs_no_sympy_far_away():
 def test_a_clock_that_is_too_coarse_is_said_to_be():
     """A torque that is asked for at the times of the scene cannot have another clock."""
     driven = propagator(scene(GENERAL, ["0", "0", "omega_1/9"], 10**15), torque=lambda t, w, q: (0.0, 0.1, 0.0))
-    with pytest.raises(PropagationError, match=r"numbers lie 0\.125 s apart"):
+    with pytest.raises(PropagationError, match=r"doubles lie 0\.125 s apart"):
         driven(10**15 + np.array([0.0, 5.0]))
 
 

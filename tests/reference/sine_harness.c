@@ -18,7 +18,7 @@ static double error_of(double x)
 }
 
 /* the five doubles nearest to each of the first multiples of pi/2 */
-double worst_at_multiples(unsigned long long multiples)
+double symrot_worst_at_multiples(unsigned long long multiples)
 {
     double worst = 0.0;
     for (unsigned long long n = 1; n <= multiples; ++n) {
@@ -35,7 +35,7 @@ double worst_at_multiples(unsigned long long multiples)
 }
 
 /* samples in [-reach, reach], seeded: every other one near a multiple of pi/2 */
-double worst_double(unsigned long long samples, double reach, unsigned long long seed)
+double symrot_worst_double(unsigned long long samples, double reach, unsigned long long seed)
 {
     double worst = 0.0;
     for (unsigned long long k = 0; k < samples; ++k) {
@@ -56,7 +56,7 @@ double worst_double(unsigned long long samples, double reach, unsigned long long
 }
 
 /* every float whose bits, without the sign, are in [from, to) */
-double worst_float(uint32_t from, uint32_t to)
+double symrot_worst_float(uint32_t from, uint32_t to)
 {
     double worst = 0.0;
     for (uint32_t bits = from; bits < to; ++bits) {

@@ -117,7 +117,7 @@ def s41(long):
         stepped = Stepped(scene, flags=flags)
         hairer = library.build(hairer_source, "motion", flags)
         own, steps = stepped.at(20.0, 1e-13)
-        other, tries = dop853.integrate(hairer, p, stepped.start, 0.0, [5.0], 1e-10)
+        other, tries = dop853.integration(hairer, p, stepped.start, 0.0, 1e-10).sample([5.0])
         ends[name] = (own[0], steps.accepted, other[0], tries.accepted)
         runs.append(lambda stepped=stepped: stepped.at(200.0, 1e-12))
     first, *others = ends

@@ -48,7 +48,7 @@ class Stepped:
         self.start = [float(value) for value in plan.initial_state]
 
     def task(self, tolerance=1e-15, every=0, **more):
-        found = taylor.task(self.path, self.p, self.start, 0.0, tolerance, **more)
+        found = taylor.integration(self.path, self.p, self.start, 0.0, tolerance, **more)
         found.fields["every"] = every
         return found
 
@@ -65,7 +65,7 @@ class Stepped:
         """Return the changes of the kept quantities, in exact arithmetic, relative to the largest of them."""
         values = bind(self.kernel.quantity_parameters, self.plan.constants)
         known = {name: F(v) for (name, _), v in zip(self.kernel.quantity_parameters, values, strict=True)}
-        outputs = [item.output for item in self.kernel.conserved if item.kept]
+        outputs = [item.output for item in self.kernel.conserved if item.holds]
         both = [
             self.kernel.quantities.evaluate(
                 known | {n: F(float(v)) for n, v in zip(self.plan.states, y, strict=True)}, {}, F, outputs
@@ -99,7 +99,7 @@ def s24(long):
     path, plain = problem.taylor_library(), problem.taylor_library(project=False)
 
     def ratio(library_, p, tail, least):
-        task = taylor.task(library_, p, problem.y0, 0.0, 1e-12)
+        task = taylor.integration(library_, p, problem.y0, 0.0, 1e-12)
         task.allowed, task.pace = tail, 1e-300
         return problem.error(task.sample([200.0])[0][0], exact) / least
 
@@ -120,7 +120,7 @@ def s24(long):
     ]
     errors = {}
     for tolerance in [10.0**-k for k in range(4, 16)]:
-        states, _ = taylor.integrate(path, problem.taylor_p, problem.y0, 0.0, [200.0], tolerance)
+        states, _ = taylor.integration(path, problem.taylor_p, problem.y0, 0.0, tolerance).sample([200.0])
         errors[tolerance] = problem.error(states[0], exact)
     worst = max(error / tolerance for tolerance, error in errors.items() if tolerance >= 1e-13)
     return [*found, Figure("taylor", "error over tolerance, 1e-4 to 1e-13", 10, worst),

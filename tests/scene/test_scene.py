@@ -206,9 +206,18 @@ def test_a_spring_rests_at_a_unit_quaternion():
 
 def test_an_expression_keeps_its_text_and_takes_pi_as_a_parameter():
     formulas = ["-k*omega_1", "sin(2*pi*t)", 0.5]
-    values = torque({"kind": "expression", "torque": formulas, "parameters": {"k": "1/3"}})
-    assert values["torque"] == ("-k*omega_1", "sin(2*pi*t)", "1/2") and values["frame"] == "body"
-    assert values["parameters"]["k"] == Fraction(1, 3) and float(values["parameters"]["pi"]) == pi
+    (made,) = scene(None, [{"kind": "expression", "torque": formulas, "parameters": {"k": "1/3"}}]).torques
+    assert made.formulas == ("-k*omega_1", "sin(2*pi*t)", "1/2") and made.frame == "body"
+    assert made.number("k") == Fraction(1, 3) and float(made.number("pi")) == pi
+
+
+def test_a_number_of_a_torque_can_be_replaced():
+    (made,) = scene(None, [{"kind": "damping", "linear": [1, 2, 3], "quadratic": 4}]).torques
+    changed = made.with_constant("linear", 1, Fraction(7)).with_constant("quadratic", None, Fraction(9))
+    assert changed.vector("linear") == (1, 7, 3) and changed.number("quadratic") == 9 == changed.constant(
+        "quadratic", None
+    )
+    assert made.constant("linear", 1) == 2  # the first one is as it was
 
 
 def test_torques_may_be_several():

@@ -7,7 +7,7 @@
 
 #define FOR for (int i = 0; i < N; ++i)
 
-void rk4(double t, double stop, long steps, int normalised, double *y, const double *p)
+void symrot_rk4(double t, double stop, long steps, int normalised, double *y, const double *p)
 {
     const double h = (stop - t)/steps;
     double k1[N], k2[N], k3[N], k4[N], z[N];

@@ -7,7 +7,7 @@
 #define ROWS 8
 #define FOR for (int i = 0; i < N; ++i)
 
-void extrapolation(double t, double stop, long steps, double *state, const double *p)
+void symrot_extrapolation(double t, double stop, long steps, double *state, const double *p)
 {
     const double h = (stop - t)/steps;
     double table[ROWS][N], first[N], rate[N], before[N], y[N];

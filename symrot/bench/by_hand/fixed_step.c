@@ -5,7 +5,7 @@
  */
 #define FOR for (int i = 0; i < N; ++i)
 
-void rk4(double t, double stop, long steps, double *state, const double *p)
+void symrot_rk4(double t, double stop, long steps, double *state, const double *p)
 {
     const double h = (stop - t)/steps;
     double y[N], k1[N], k2[N], k3[N], k4[N], z[N];
@@ -29,7 +29,7 @@ void rk4(double t, double stop, long steps, double *state, const double *p)
         FOR z[i] = y[i] + h*(DOP853_OLD_##s(K) + DOP853_NEW_##s*k[before][i]); \
         symrot_rates(now + DOP853_NODE_##s*h, z, p, k[s]);
 
-void dop853(double t, double stop, long steps, double *state, const double *p)
+void symrot_dop853(double t, double stop, long steps, double *state, const double *p)
 {
     const double h = (stop - t)/steps;
     double y[N], z[N], k[13][N];

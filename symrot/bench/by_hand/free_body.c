@@ -1,5 +1,5 @@
 /* Free body in principal axes by hand: omega (rad/s, body axes), quaternion; p = (B - C)/A, (C - A)/B, (A - B)/C. */
-static inline void free_body(double t, const double y[7], const double p[3], double dy[7])
+static inline void symrot_free_body(double t, const double y[7], const double p[3], double dy[7])
 {
     const double w1 = y[0], w2 = y[1], w3 = y[2], q0 = y[3], q1 = y[4], q2 = y[5], q3 = y[6];
     const double h1 = 0.5*w1, h2 = 0.5*w2, h3 = 0.5*w3;

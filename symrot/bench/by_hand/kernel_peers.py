@@ -19,7 +19,7 @@ from symrot import symbols
 from symrot.certificates.readback.readback import read_kernel
 from symrot.codegen.library_kernels import kernel_program
 from symrot.codegen.lowering.formulas import to_node
-from symrot.codegen.printing.c_source import c_function
+from symrot.codegen.printing.c_source import c_function, c_name
 from symrot.conventions import INTRINSIC_SEQUENCES
 from symrot.dynamics.equations import angular_acceleration, inverse
 from symrot.errors import InputError
@@ -27,7 +27,7 @@ from symrot.formula.program import Program, Signature
 from symrot.formula.tree import Node, children
 from symrot.kernels.dynamics import TENSOR
 from symrot.kinematics.euler import rate_jacobian
-from symrot.kinematics.quaternion import dcm_of, quaternion_rates
+from symrot.kinematics.quaternion import quaternion_rates, quaternion_to_dcm
 
 __all__ = [
     "PEERS_IN_C",
@@ -59,13 +59,13 @@ def _rigid_body() -> list[sympy.Expr]:
 
 
 def _heavy_top() -> list[sympy.Expr]:
-    weight = symbols.W * Matrix(symbols.center_of_mass).cross(-dcm_of().T.col(2))
+    weight = symbols.W * Matrix(symbols.center_of_mass).cross(-quaternion_to_dcm().T.col(2))
     alpha = angular_acceleration(sympy.diag(*symbols.principal), Matrix(symbols.omega_b), weight)
     return [*alpha, *_quaternion_rates()]
 
 
 TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
-    "quaternion_dcm": lambda: list(dcm_of()),
+    "quaternion_dcm": lambda: list(quaternion_to_dcm()),
     **{f"euler_{sequence.lower()}_body_rates": partial(_euler_rates, sequence) for sequence in INTRINSIC_SEQUENCES},
     "rigid_body_tensor": _rigid_body,
     "heavy_top": _heavy_top,
@@ -143,7 +143,7 @@ _REAL = {name: sympy.Symbol(name, real=True) for name in ("W", "S", "C", "I", "E
 def by_hand(name: str) -> str | None:
     """Return the handwritten C of a kernel, or None if there is no such file."""
     text = BY_HAND.read_text(encoding="utf-8")
-    return text if f" {name}(" in text else None
+    return text if f" {c_name(name)}(" in text else None
 
 
 PEERS_IN_C: dict[str, Callable[[str], str | None]] = {"by hand": by_hand, "SymPy cse": _sympy, "SymForce": _symforce}
@@ -153,7 +153,7 @@ def counted(text: str, name: str) -> Counter[str]:
     """Return the operations of a C function as :mod:`symrot.certificates.readback` reads it; equal ones count once."""
     text = re.sub(r"^#include.*\n", "", text, flags=re.MULTILINE)
     counts: Counter[str] = Counter()
-    for node in read_kernel(text, name).nodes:
+    for node in read_kernel(text, c_name(name)).nodes:
         if node[0] in _COUNTED:
             counts[_COUNTED[node[0]]] += 1
         elif node[0] == "call":

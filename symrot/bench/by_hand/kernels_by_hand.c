@@ -1,7 +1,7 @@
 /* Kernels as one writes them by hand, with care; symrot.bench.kernels compiles them with the flags of its own. */
 #include <math.h>
 
-static inline void quaternion_dcm(const double q[4], double dcm[9])
+static inline void symrot_quaternion_dcm(const double q[4], double dcm[9])
 {
     const double x = 2.0*q[1];
     const double y = 2.0*q[2];
@@ -26,7 +26,7 @@ static inline void quaternion_dcm(const double q[4], double dcm[9])
     dcm[8] = 1.0 - (xx + yy);
 }
 
-static inline void euler_zxz_body_rates(const double angles[3], const double omega[3], double dangles[3])
+static inline void symrot_euler_zxz_body_rates(const double angles[3], const double omega[3], double dangles[3])
 {
     const double s = sin(angles[2]);
     const double c = cos(angles[2]);
@@ -36,7 +36,7 @@ static inline void euler_zxz_body_rates(const double angles[3], const double ome
     dangles[2] = omega[2] - turning*cos(angles[1]);
 }
 
-static inline void euler_zyx_body_rates(const double angles[3], const double omega[3], double dangles[3])
+static inline void symrot_euler_zyx_body_rates(const double angles[3], const double omega[3], double dangles[3])
 {
     const double s = sin(angles[2]);
     const double c = cos(angles[2]);
@@ -46,7 +46,7 @@ static inline void euler_zyx_body_rates(const double angles[3], const double ome
     dangles[2] = omega[0] + turning*sin(angles[1]);
 }
 
-static inline void rigid_body_tensor(
+static inline void symrot_rigid_body_tensor(
     const double inertia[6], const double omega[3], const double q[4], const double torque[3], double domega[3],
     double dq[4])
 {
@@ -81,7 +81,7 @@ static inline void rigid_body_tensor(
     dq[3] = z*q[0] + y*q[1] - x*q[2];
 }
 
-static inline void heavy_top(
+static inline void symrot_heavy_top(
     const double inertia[3], double weight, const double center_of_mass[3], const double omega[3], const double q[4],
     double domega[3], double dq[4])
 {

@@ -19,7 +19,7 @@ from symrot.build import cache
 from symrot.closed_form.registry import exact_form
 from symrot.errors import InputError
 from symrot.propagation.propagate import propagator
-from symrot.propagation.steppers.smoothness import roughness
+from symrot.propagation.steppers.smoothness import non_smooth_torque
 
 __all__ = ["CONTESTANTS", "Contestant", "Run", "chosen", "tolerances_from"]
 
@@ -104,7 +104,7 @@ def _no_compiler(problem: Problem) -> str:
 
 
 def _no_series(problem: Problem) -> str:
-    return roughness(problem.plan) or cache.missing()
+    return non_smooth_torque(problem.plan) or cache.missing()
 
 
 # ------------------------------------------------------------------------------------------------ peers
@@ -137,7 +137,7 @@ def _scipy(method: str) -> Callable[[Problem, float], Run]:
 
 
 def _no_heyoka(problem: Problem) -> str:
-    return roughness(problem.plan) if find_spec("heyoka") else "not installed: pip install 'symrot[bench]'"
+    return non_smooth_torque(problem.plan) if find_spec("heyoka") else "not installed: pip install 'symrot[bench]'"
 
 
 def _heyoka(**settings: bool) -> Callable[[Problem, float], Run]:

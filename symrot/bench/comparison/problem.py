@@ -13,7 +13,7 @@ from symrot.planning.plan import Plan, make_plan
 from symrot.planning.scene_kernel import SceneKernel, bind
 from symrot.propagation.compiled_models import scene_kernel
 from symrot.propagation.method import Choice
-from symrot.propagation.motion import Motion
+from symrot.propagation.motion import Motion, make_motion
 from symrot.scene.scene import Scene
 
 __all__ = ["PARTS", "Problem", "State"]
@@ -72,7 +72,7 @@ class Problem:
 
     @cached_property
     def _motion(self) -> Motion:
-        return Motion(self.plan, Choice("scipy", ""), 1e-12)
+        return make_motion(self.plan, Choice("scipy", ""), 1e-12)
 
     def state(self, y: Sequence[Any] | Floats, t: float) -> State:
         """Return the state of the body at time t from the integrated states ``y``."""

@@ -49,10 +49,10 @@ from symrot.planning.scene_kernel import EXACT_FUNCTIONS, Parameters
 from symrot.propagation.compiled_models import error_blocks, formula_deviations
 from symrot.propagation.enclosures.step_limit import Deviations, longest_followed
 from symrot.propagation.method import Choice
-from symrot.propagation.motion import Motion
+from symrot.propagation.motion import stepped_motion
 from symrot.propagation.propagate import propagator
-from symrot.propagation.steppers.cut_off import CutOff
-from symrot.propagation.steppers.smoothness import roughness
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
+from symrot.propagation.steppers.smoothness import non_smooth_torque
 from symrot.propagation.steppers.tableau import HEADER
 
 __all__ = ["DIGITS", "Reference", "reference"]
@@ -166,13 +166,13 @@ def _taylor(problem: Problem, say: Progress, seconds: float) -> list[State]:
     """Return the states by Taylor series in 40 digits, or from the cache."""
     import mpmath
 
-    rough = roughness(problem.plan)
+    rough = non_smooth_torque(problem.plan)
     if rough:
         raise _Unavailable(rough)
     kernel, plan = problem.kernel, problem.plan
     exact_numbers = _exact_parameters(kernel.rate_parameters, plan), _exact_start(plan)
     where = f"{problem.start} {problem.ends}"
-    key = f"held reference {DIGITS} {ORDER} {TAIL}\n{json.dumps(kernel.data['rates'])}\n{exact_numbers}\n{where}"
+    key = f"held reference {DIGITS} {ORDER} {TAIL}\n{json.dumps(kernel.record['rates'])}\n{exact_numbers}\n{where}"
     stored = cache.fetch(key)
     with mpmath.workdps(DIGITS):
         if stored is None:
@@ -300,17 +300,17 @@ def _grid(problem: Problem) -> list[float]:
     both agree on a wrong result. Steps between two times of the grid are shortened like all others, so that the grid
     decides only where steps are short.
     """
-    motion = Motion(problem.plan, Choice("dop853", ""), GRID_TOLERANCE)
+    motion = stepped_motion(problem.plan, Choice("dop853", ""), GRID_TOLERANCE)
     if formula_deviations(problem.plan, problem.kernel) is None:
         return []
-    task, grid = motion.stepping.again(), []
+    task, grid = motion.stepping.restarted(), []
     try:
         for run in task.runs(problem.stop):
             while run.t != run.stop:
                 rows = np.empty((task.stepper.rows_per_call, task.stepper.row))
                 task.advance(run, None, 0, None, rows.ctypes.data, len(rows))
                 grid += rows[: run.recorded, 0].tolist()
-    except CutOff as reason:
+    except IntegrationStopped as reason:
         raise _Unavailable(f"{reason}") from None
     return grid
 
@@ -328,7 +328,7 @@ def _fixed_steps(
         f"#define N {len(general.y0)}",
         *(file.read_text(encoding="utf-8") for file in files),
     ]
-    function = getattr(ctypes.CDLL(str(cache.build(longer("\n".join(parts)), "long_double"))), name)
+    function = getattr(ctypes.CDLL(str(cache.build(longer("\n".join(parts)), "long_double"))), f"symrot_{name}")
     real = ctypes.c_longdouble
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
     p = _long(_exact_parameters(general.kernel.rate_parameters, general.plan).values())

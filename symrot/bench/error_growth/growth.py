@@ -18,9 +18,9 @@ from symrot.bench.comparison.exact_path import ExactPath
 from symrot.build import cache
 from symrot.closed_form.registry import exact_form
 from symrot.planning.plan import make_plan
-from symrot.propagation.motion import Motion
+from symrot.propagation.motion import Motion, SteppedMotion
 from symrot.propagation.propagate import propagator
-from symrot.propagation.steppers.smoothness import roughness
+from symrot.propagation.steppers.smoothness import non_smooth_torque
 from symrot.propagation.steppers.stepping import Stats
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene.scene import Scene
@@ -68,7 +68,7 @@ class Track:
     @staticmethod
     def rough(scene: Scene) -> str:
         """Return why a motion has no Taylor series, or an empty text."""
-        return roughness(propagator(scene, "scipy").plan)
+        return non_smooth_torque(propagator(scene, "scipy").plan)
 
     def trajectory(self, states: Floats, motion: Motion | None = None) -> Trajectory:
         """Return the states of a method as a trajectory."""
@@ -105,9 +105,9 @@ def _exact(track: Track, times: Floats) -> Trajectory | None:
 
 def _taylor(project: bool) -> Callable[[Track, Floats], Trajectory | None]:
     def run(track: Track, times: Floats) -> Trajectory | None:
-        if track.motion.choice.method != "taylor":
+        if not isinstance(track.motion, SteppedMotion) or track.motion.choice.method != "taylor":
             return None
-        task = track.motion.stepping.again()
+        task = track.motion.stepping.restarted()
         if not project:
             task.fields = {**task.fields, "every": 0}
         return track.trajectory(task.sample(times)[0])
@@ -138,7 +138,7 @@ def _rk4(normalised: bool) -> Callable[[Track, Floats], Trajectory | None]:
             return None
         text = text_by_hand("by_hand.c")
         source = f"{motion.kernel.source}\n#define N {len(motion.plan.states)}\n{text}"
-        function = ctypes.CDLL(str(cache.build(source, "by_hand"))).rk4
+        function = ctypes.CDLL(str(cache.build(source, "by_hand"))).symrot_rk4
         real, pointer = ctypes.c_double, ctypes.c_void_p
         function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_int, pointer, pointer), None
         y, p = np.array(motion.plan.initial_state), np.array(motion.rate_parameters or [0.0])

@@ -4,7 +4,13 @@ from sympy import Matrix, eye
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, attitude_rates, pairs, rate, squared
-from symrot.kinematics.quaternion import dcm_of, norm_squared, qmul, quaternion_rates, unit_relation
+from symrot.kinematics.quaternion import (
+    norm_squared,
+    quaternion_product,
+    quaternion_rates,
+    quaternion_to_dcm,
+    unit_relation,
+)
 from symrot.kinematics.rotations import skew
 from symrot.proof.derivation import Derivation
 
@@ -25,7 +31,7 @@ def derive() -> Derivation:
         ),
     )
     unit = [unit_relation()]
-    dcm_sb = dcm_of()
+    dcm_sb = quaternion_to_dcm()
     d.define(
         r"The direction cosine matrix is the matrix of $v_b \mapsto q\,v_b\,\bar q$, with $q \bar q = 1$:", "R", dcm_sb
     )
@@ -89,7 +95,7 @@ def derive() -> Derivation:
     d.step(
         "Both are one equation: the rate in space of the turned angular velocity is the rate in the body.",
         quaternion_rates("space") * dcm_sb * OMEGA,
-        qmul(Q, [0, *OMEGA]) / 2,
+        quaternion_product(Q, [0, *OMEGA]) / 2,
         because=r"$\omega_s = R\,\omega_b$",
         relations=unit,
         named=r"\tfrac12 (0, R\,\omega_b)\,q",
@@ -97,7 +103,7 @@ def derive() -> Derivation:
     )
     d.step(
         r"The opposite quaternion is the same attitude.",
-        dcm_of(tuple(-Q)) - dcm_sb,
+        quaternion_to_dcm(tuple(-Q)) - dcm_sb,
         0,
         because="the matrix is quadratic",
         named="R(-q) - R(q)",

@@ -4,7 +4,7 @@ from sympy import Matrix
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, attitude_rates, pairs, rate, squared
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.proof.derivation import Derivation
 
 DOMEGA = Matrix(symbols.omega_rates)
@@ -27,7 +27,7 @@ def derive() -> Derivation:
             "body?"
         ),
     )
-    dcm_sb = Matrix(dcm_of())
+    dcm_sb = Matrix(quaternion_to_dcm())
     body = attitude_rates() | pairs(symbols.omega_b, DOMEGA) | pairs(symbols.position, V) | pairs(symbols.velocity, A)
     place = PLACE + dcm_sb * D
     _fixed(d, dcm_sb, place, body)

@@ -6,7 +6,7 @@ from sympy import Expr, Matrix, Symbol, eye
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import pairs, rate, squared
-from symrot.kinematics.quaternion import dcm_of
+from symrot.kinematics.quaternion import quaternion_to_dcm
 from symrot.kinematics.rodrigues import CLASSICAL, MODIFIED, Projection, shadow
 from symrot.kinematics.rotations import skew
 from symrot.proof.derivation import Derivation
@@ -101,7 +101,7 @@ def _projection(d: Derivation, which: Projection, form: Form) -> None:
     d.section(form.title)
     d.step(
         "The direction cosine matrix is rational.",
-        dcm_of(which.quaternion()),
+        quaternion_to_dcm(which.quaternion()),
         form.dcm[0],
         because="the norm of the quaternion drops out",
         named="R",

@@ -4,7 +4,7 @@ from sympy import Matrix, eye
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import pairs, rate
-from symrot.kinematics.quaternion import dcm_of
+from symrot.kinematics.quaternion import quaternion_to_dcm
 from symrot.kinematics.rotation_vector import dcm, jacobian, length, quaternion_of_rotation_vector
 from symrot.kinematics.rotations import skew
 from symrot.proof.derivation import Derivation
@@ -42,7 +42,7 @@ def derive() -> Derivation:
     d.step("The axis stays where it is.", dcm_sb * V, V, because=r"$v \times v = 0$", named="R v", display="v")
     d.step(
         "It is the rotation of the quaternion with half the angle.",
-        dcm_of(quaternion_of_rotation_vector(V)),
+        quaternion_to_dcm(quaternion_of_rotation_vector(V)),
         dcm_sb,
         because="double angles",
         named=r"R\left(\cos\tfrac a2,\ \tfrac{v}{a}\sin\tfrac a2\right)",

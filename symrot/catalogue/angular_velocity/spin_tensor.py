@@ -4,7 +4,7 @@ from sympy import Matrix, eye
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, attitude_rates, pairs, rate, squared
-from symrot.kinematics.quaternion import dcm_of, quaternion_rates, unit_relation
+from symrot.kinematics.quaternion import quaternion_rates, quaternion_to_dcm, unit_relation
 from symrot.kinematics.rotations import skew, vee
 from symrot.proof.derivation import Derivation
 
@@ -74,8 +74,8 @@ def _skewness(d: Derivation) -> None:
 
 def _frames(d: Derivation) -> None:
     d.section("In space and in the body")
-    unit, dcm_sb = [unit_relation()], Matrix(dcm_of())
-    d.notation({"R": dcm_sb, r"\omega_b": OMEGA, "R_1": dcm_sb, "R_2": dcm_of(P)}, attitude_rates())
+    unit, dcm_sb = [unit_relation()], Matrix(quaternion_to_dcm())
+    d.notation({"R": dcm_sb, r"\omega_b": OMEGA, "R_1": dcm_sb, "R_2": quaternion_to_dcm(P)}, attitude_rates())
     d.step(
         r"The skew matrix of a turned vector is the turned skew matrix; so with $\omega_s = R\,\omega_b$ the two forms "
         r"$\dot R = [\omega_s]_\times R = R\,[\omega_b]_\times$ are one.",
@@ -98,7 +98,7 @@ def _frames(d: Derivation) -> None:
     )
     inner = pairs(P, quaternion_rates("space", P) * Matrix(symbols.vertical))
     outer = pairs(Q, quaternion_rates("space") * OMEGA_S)
-    product = dcm_sb * dcm_of(P)
+    product = dcm_sb * quaternion_to_dcm(P)
     d.notation({r"\gamma": Matrix(symbols.vertical)}, inner | outer)
     d.step(
         r"Angular velocities add: if $R_1$ turns with $\omega$ and $R_2$, seen from there, with $\gamma$, the product "
@@ -114,7 +114,7 @@ def _frames(d: Derivation) -> None:
 
 def _points(d: Derivation) -> None:
     d.section("What it does to points and vectors")
-    unit, dcm_sb = [unit_relation()], Matrix(dcm_of())
+    unit, dcm_sb = [unit_relation()], Matrix(quaternion_to_dcm())
     point, moving = Matrix(symbols.offset), Matrix(symbols.relative_velocity)
     motion = attitude_rates() | pairs(symbols.omega_b, symbols.omega_rates)
     d.notation({"d": point, r"\omega_s": dcm_sb * OMEGA}, motion)

@@ -4,7 +4,7 @@ from sympy import Matrix, cos, eye, pi, sin
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import squared
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.kinematics.rotation_vector import dcm_of_axis_angle
 from symrot.kinematics.rotations import skew, vee
 from symrot.proof.derivation import Derivation
@@ -89,10 +89,10 @@ def _forward(d: Derivation) -> None:
 def _back(d: Derivation) -> None:
     d.section("From the matrix to axis and angle")
     matrix = dcm_of_axis_angle()
-    d.notation({"R": Matrix(dcm_of())})
+    d.notation({"R": Matrix(quaternion_to_dcm())})
     d.step(
         "Every rotation has an axis (Euler): the matrix, here of a unit quaternion, has the eigenvalue 1.",
-        (Matrix(dcm_of()) - eye(3)).det(),
+        (Matrix(quaternion_to_dcm()) - eye(3)).det(),
         0,
         because=r"$\det (R - 1) = \det R^{\mathsf T} \det (R - 1) = \det (1 - R) = -\det (R - 1)$, in three dimensions",
         relations=[unit_relation()],

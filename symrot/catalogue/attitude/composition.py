@@ -4,7 +4,7 @@ from sympy import Matrix, cos, eye, pi, sin, sqrt
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import squared
-from symrot.kinematics.quaternion import dcm_of, qmul, unit_relation
+from symrot.kinematics.quaternion import quaternion_product, quaternion_to_dcm, unit_relation
 from symrot.kinematics.rotation_vector import dcm_of_axis_angle, quaternion_of_axis_angle
 from symrot.kinematics.rotations import elementary_rotation, skew
 from symrot.proof.derivation import Derivation
@@ -39,14 +39,14 @@ def _product(d: Derivation) -> None:
     d.notation(
         {
             "p": Matrix(P), "q": Matrix(Q), "n": N, "k": K,
-            "R": lambda *of: dcm_of(of[0]) if len(of) == 1 else dcm_of_axis_angle(*of),
+            "R": lambda *of: quaternion_to_dcm(of[0]) if len(of) == 1 else dcm_of_axis_angle(*of),
             "R_z": lambda angle: elementary_rotation("Z", angle), "R_x": lambda angle: elementary_rotation("X", angle),
         }
     )  # fmt: skip
     units = [unit_relation(P), unit_relation(Q)]
     d.step(
         "The product of two unit quaternions has unit norm.",
-        squared(Matrix(qmul(P, Q))),
+        squared(Matrix(quaternion_product(P, Q))),
         1,
         because="$|p q| = |p|\\,|q|$, Euler's identity of four squares",
         relations=units,
@@ -54,14 +54,14 @@ def _product(d: Derivation) -> None:
     )
     d.step(
         "Its matrix is the product of the matrices.",
-        dcm_of(qmul(P, Q)),
-        dcm_of(P) * dcm_of(Q),
+        quaternion_to_dcm(quaternion_product(P, Q)),
+        quaternion_to_dcm(P) * quaternion_to_dcm(Q),
         because=r"$p\,(q\,v\,\bar q)\,\bar p = (p q)\,v\,\overline{(p q)}$",
         relations=units,
         named="R(p\\,q)",
         display="R(p)\\,R(q)",
     )
-    product = qmul(quaternion_of_axis_angle(N, ALPHA), quaternion_of_axis_angle(K, BETA))
+    product = quaternion_product(quaternion_of_axis_angle(N, ALPHA), quaternion_of_axis_angle(K, BETA))
     cosine = cos(ALPHA / 2) * cos(BETA / 2) - sin(ALPHA / 2) * sin(BETA / 2) * N.dot(K)
     d.passage(
         r"Let the first turn be by $\theta$ about $k$, the second by $\alpha$ about $n$: $R(n, \alpha)\,R(k, \theta)$."
@@ -92,8 +92,8 @@ def _product(d: Derivation) -> None:
 
 def _order(d: Derivation) -> None:
     d.section("The order matters")
-    one = qmul(quaternion_of_axis_angle(N, ALPHA), quaternion_of_axis_angle(K, BETA))
-    other = qmul(quaternion_of_axis_angle(K, BETA), quaternion_of_axis_angle(N, ALPHA))
+    one = quaternion_product(quaternion_of_axis_angle(N, ALPHA), quaternion_of_axis_angle(K, BETA))
+    other = quaternion_product(quaternion_of_axis_angle(K, BETA), quaternion_of_axis_angle(N, ALPHA))
     d.step(
         "The other order has the same angle, and another axis unless the axes are parallel.",
         one - other,
@@ -155,7 +155,7 @@ def _small(d: Derivation) -> None:
 
 def _frames(d: Derivation) -> None:
     d.section("Axes of space, axes of the body")
-    dcm_sb = Matrix(dcm_of())
+    dcm_sb = Matrix(quaternion_to_dcm())
     carried = dcm_sb * K
     d.passage(r"Let the body have the attitude $R$, and turn by $\theta$ about an axis that is $k$ in the body, "
             r"so $R k$ in space.")  # fmt: skip

@@ -6,7 +6,7 @@ from symrot import symbols
 from symrot.catalogue.tools.motion import squared
 from symrot.conventions import INTRINSIC_SEQUENCES
 from symrot.kinematics.euler import dcm, quaternion_of_euler
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.proof.derivation import Derivation
 
 PHI, THETA, PSI = symbols.angles
@@ -99,7 +99,7 @@ def _all(d: Derivation) -> None:
         d.define(f"{sequence}:", "q", q)
         d.step(
             "It is the rotation of the three angles.",
-            dcm_of(q),
+            quaternion_to_dcm(q),
             dcm(sequence),
             because="the quaternion of a product is the product of the quaternions",
             named="R(q)",
@@ -115,7 +115,7 @@ def _all(d: Derivation) -> None:
     )
     d.step(
         "The matrix in the parameters has no sines: it is quadratic.",
-        dcm_of().trace(),
+        quaternion_to_dcm().trace(),
         4 * symbols.q0**2 - 1,
         because="$q_1^2 + q_2^2 + q_3^2 = 1 - q_0^2$",
         relations=[unit_relation()],

@@ -6,7 +6,7 @@ from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR, attitude_rates, pairs, rate, squared
 from symrot.dynamics.equations import angular_acceleration
 from symrot.inertia.tensor import inertia_of_point
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.kinematics.rotations import elementary_rotation
 from symrot.proof.derivation import Derivation
 
@@ -72,7 +72,7 @@ def derive() -> Derivation:
 
     d.section("The invariant")
     space_radius = elementary_rotation(2, n * symbols.t) * Matrix([1, 0, 0])
-    dcm_sb = Matrix(dcm_of())
+    dcm_sb = Matrix(quaternion_to_dcm())
     seen, normal_s = dcm_sb.T * space_radius, Matrix([0, 0, 1])
     d.notation({"r": seen, "k": dcm_sb.T * normal_s}, attitude_rates() | {symbols.t: S.One})
     d.step(

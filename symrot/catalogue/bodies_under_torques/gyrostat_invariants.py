@@ -5,7 +5,7 @@ from sympy import Matrix
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR, attitude_rates, pairs, rate, squared
 from symrot.dynamics.equations import angular_acceleration
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.proof.derivation import Derivation
 
 ROTOR, TORQUE = Matrix(symbols.rotor), Matrix(symbols.torque_b)
@@ -25,7 +25,7 @@ def derive() -> Derivation:
     )
     d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
     momentum_b = TENSOR * OMEGA + ROTOR
-    dcm_sb = Matrix(dcm_of())
+    dcm_sb = Matrix(quaternion_to_dcm())
     domega = Matrix(symbols.omega_rates)
     d.passage("The total angular momentum:", (r"L_b", r"I\,\omega_b + h"))
     d.step(

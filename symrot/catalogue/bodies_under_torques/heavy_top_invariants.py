@@ -5,7 +5,7 @@ from sympy import Matrix, diag
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR, attitude_rates, pairs, rate, squared
 from symrot.dynamics.equations import angular_acceleration
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.proof.derivation import Derivation
 
 DOWN = Matrix(symbols.vertical)
@@ -30,8 +30,8 @@ def derive() -> Derivation:
     fixed = Matrix(symbols.normal)
     d.step(
         "The direction of gravity turns backwards in the body (Poisson's equation).",
-        rate(Matrix(dcm_of()).T * fixed, attitude_rates()),
-        (Matrix(dcm_of()).T * fixed).cross(OMEGA),
+        rate(Matrix(quaternion_to_dcm()).T * fixed, attitude_rates()),
+        (Matrix(quaternion_to_dcm()).T * fixed).cross(OMEGA),
         because=r"it is fixed in space, and $\dot R = R\,[\omega_b]_\times$",
         relations=[unit_relation()],
         named=r"\dot\gamma",

@@ -5,7 +5,7 @@ from sympy import Matrix, diag, sqrt
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR, squared
 from symrot.dynamics.equations import angular_acceleration
-from symrot.kinematics.quaternion import dcm_of
+from symrot.kinematics.quaternion import quaternion_to_dcm
 from symrot.proof.derivation import Derivation
 
 Q = symbols.quaternion
@@ -41,7 +41,7 @@ def derive() -> Derivation:
         )
     d.section("When it is needed")
     force = Matrix(symbols.torque_b)
-    torque = dcm_of().T * force
+    torque = quaternion_to_dcm().T * force
     d.passage(
         "A torque that is constant in space, or comes from a direction of space, has the attitude in its components:",
         (r"\tau_b", r"R(q)^{\mathsf T} \tau_s"),

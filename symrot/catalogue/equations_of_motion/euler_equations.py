@@ -5,7 +5,7 @@ from sympy import Matrix, diag
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR, attitude_rates, pairs, rate
 from symrot.dynamics.equations import angular_acceleration
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.proof.derivation import Derivation
 
 DOMEGA = Matrix(symbols.omega_rates)
@@ -24,7 +24,7 @@ def derive() -> Derivation:
     )
     d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
     unit = [unit_relation()]
-    dcm_sb = Matrix(dcm_of())
+    dcm_sb = Matrix(quaternion_to_dcm())
     d.passage(
         "About the centre of mass, or a fixed point of the body, with the tensor about that point:",
         ("I", TENSOR),

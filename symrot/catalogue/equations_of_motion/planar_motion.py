@@ -5,7 +5,7 @@ from sympy import Matrix, cos, diag, sin
 from symrot import symbols
 from symrot.catalogue.tools.motion import rate
 from symrot.dynamics.equations import angular_acceleration
-from symrot.kinematics.quaternion import dcm_of, qmul, unit_relation
+from symrot.kinematics.quaternion import quaternion_product, quaternion_to_dcm, unit_relation
 from symrot.kinematics.rotations import elementary_rotation
 from symrot.proof.derivation import Derivation
 
@@ -39,16 +39,16 @@ def derive() -> Derivation:
     theta, dtheta, axis = symbols.theta, symbols.dtheta, Matrix([0, 0, 1])
     turn = Matrix([cos(theta / 2), *(sin(theta / 2) * axis)])
     start = Matrix(symbols.quaternion)
-    attitude = Matrix(qmul(start, turn))
+    attitude = Matrix(quaternion_product(start, turn))
     d.step(
         r"A turn by $\theta$ about that axis, from the attitude $q$ at the start, satisfies the quaternion equation.",
         rate(attitude, {theta: dtheta}),
-        Matrix(qmul(attitude, [0, *(dtheta * axis)])) / 2,
+        Matrix(quaternion_product(attitude, [0, *(dtheta * axis)])) / 2,
         because=r"$\theta$ changes at the rate $\omega_3$",
         named=r"\frac{d}{dt} \left( q\, e^{k \theta/2} \right)",
         display=r"\tfrac12 \left( q\, e^{k \theta/2} \right) (0, 0, 0, \dot\theta)",
     )
-    dcm_start, turning = Matrix(dcm_of()), elementary_rotation(2, theta)
+    dcm_start, turning = Matrix(quaternion_to_dcm()), elementary_rotation(2, theta)
     d.step(
         "The axis keeps its direction in space.",
         rate(dcm_start * turning * axis, {theta: dtheta}),

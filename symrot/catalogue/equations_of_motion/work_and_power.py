@@ -5,7 +5,7 @@ from sympy import Matrix, Rational, diag
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR, attitude_rates, pairs, rate, squared
 from symrot.dynamics.equations import angular_acceleration
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.proof.derivation import Derivation
 
 HALF = Rational(1, 2)
@@ -59,7 +59,7 @@ def _forces(d: Derivation) -> None:
         because="the distance of the points does not change",
         named=r"\epsilon\,(r - d) \cdot \left( \omega \times r - \omega \times d \right)",
     )
-    dcm_sb = Matrix(dcm_of())
+    dcm_sb = Matrix(quaternion_to_dcm())
     d.notation(
         {r"\tau_b": second, r"\omega_b": OMEGA, r"\tau_s": dcm_sb * second, r"\omega_s": dcm_sb * OMEGA}
     )  # fmt: skip
@@ -111,7 +111,7 @@ def _energy(d: Derivation) -> None:
 
 def _kinds(d: Derivation) -> None:
     d.section("Torques that keep energy, and torques that take it")
-    fixed, arm, dcm_sb = Matrix(symbols.normal), Matrix(symbols.center_of_mass), Matrix(dcm_of())
+    fixed, arm, dcm_sb = Matrix(symbols.normal), Matrix(symbols.center_of_mass), Matrix(quaternion_to_dcm())
     down = dcm_sb.T * fixed
     d.notation({"c": arm, r"\gamma": down}, attitude_rates())
     d.step(

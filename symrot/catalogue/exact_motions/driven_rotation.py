@@ -7,7 +7,7 @@ from symrot.catalogue.tools import swept_body as _swept_body
 from symrot.catalogue.tools.elliptic import I, imaginary
 from symrot.catalogue.tools.motion import pairs, rate
 from symrot.dynamics.equations import angular_acceleration
-from symrot.kinematics.quaternion import qmul, quaternion_rates
+from symrot.kinematics.quaternion import quaternion_product, quaternion_rates
 from symrot.proof.derivation import Derivation
 
 A, _, C = symbols.principal
@@ -69,7 +69,7 @@ def _pushed(d: Derivation) -> None:
     q = Matrix(symbols.quaternion)
     d.notation({"q": q, "e_3": AXIS, r"\theta": ANGLE}, {T: S.One})
     turn = Matrix([cos(ANGLE / 2), 0, 0, sin(ANGLE / 2)])
-    attitude = Matrix(qmul(q, turn))
+    attitude = Matrix(quaternion_product(q, turn))
     d.step(
         "The attitude: a turn by that angle, from the attitude $q$ at the start.",
         attitude.diff(T),

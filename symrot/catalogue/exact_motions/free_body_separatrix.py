@@ -15,7 +15,7 @@ P, TIME, PSI = symbols.p, symbols.t, symbols.psi
 MIDDLE = A * C * (ONE**2 + THREE**2) / (C * ONE**2 + A * THREE**2)
 """The intermediate moment, from H^2 = 2 T B."""
 SPEED = SIGN * THREE * (C - MIDDLE) / (MIDDLE * C) * H / ONE
-GIVEN = [H**2 - ONE**2 - THREE**2, SIGN**2 - 1]
+RELATIONS = [H**2 - ONE**2 - THREE**2, SIGN**2 - 1]
 SHARE = Symbol("h")
 """tanh(p t/2)"""
 
@@ -75,7 +75,7 @@ def derive() -> Derivation:
         rate(momentum, _share(SPEED)),
         momentum.cross(omega),
         because="$B$ and $p$ are put in",
-        relations=GIVEN,
+        relations=RELATIONS,
         named=r"\dot L",
         display=r"L \times \omega",
     )
@@ -84,7 +84,7 @@ def derive() -> Derivation:
         Matrix([squared(momentum), momentum.dot(omega) * MIDDLE]),
         Matrix([H**2, H**2]),
         because=r"$\tanh^2 + \mathrm{sech}^2 = 1$",
-        relations=GIVEN,
+        relations=RELATIONS,
         named=r"\begin{bmatrix} L \cdot L \\ B\,L \cdot \omega \end{bmatrix}",
     )
     _attitude(d, momentum, omega)
@@ -110,7 +110,7 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         speed,
         H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2]),
         because=r"$2 T = H^2 / B$",
-        relations=GIVEN,
+        relations=RELATIONS,
         named=r"\dot\psi = \frac{2 T + H\,\omega_3}{H + L_3}",
         display=r"\frac{H}{B} - \sigma\,p\,\frac{L_1}{H + L_3}",
     )
@@ -121,7 +121,7 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         rate(turned, {TIME: Integer(1)} | _share(P)),
         H / MIDDLE - SIGN * P * momentum[0] / (H + momentum[2]),
         because=r"$H^2 - \ell_3^2 = \ell_1^2$",
-        relations=GIVEN,
+        relations=RELATIONS,
         named=r"\frac{d}{dt} \left( \frac{H}{B}\,t - 2 \sigma \arctan \frac{\ell_1\,h}{H + \ell_3} \right)",
         display=r"\frac{H}{B} - \sigma\,p\,\frac{L_1}{H + L_3}",
     )
@@ -134,7 +134,7 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         rate(rotation, _share(SPEED) | {PSI: H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2])}),
         rotation * skew(omega),
         because="of the steps before",
-        relations=GIVEN,
+        relations=RELATIONS,
         named=r"\dot R",
         display=r"R\,[\omega]_\times",
     )

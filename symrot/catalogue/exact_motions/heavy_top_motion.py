@@ -6,7 +6,7 @@ from symrot import symbols
 from symrot.catalogue.tools.elliptic import CN, DN, MU, SN, W_VALUES, I, derivatives, imaginary, shifted, squares
 from symrot.catalogue.tools.motion import rate
 from symrot.kinematics.euler import dcm
-from symrot.kinematics.quaternion import dcm_of
+from symrot.kinematics.quaternion import quaternion_to_dcm
 from symrot.kinematics.rotations import elementary_rotation
 from symrot.proof.derivation import Derivation
 
@@ -143,10 +143,10 @@ def _attitude(d: Derivation) -> None:
         r"$(\mathrm{Re}\,\alpha, \mathrm{Re}\,\beta, \mathrm{Im}\,\beta, \mathrm{Im}\,\alpha)$."
     )
     turns = {f"R_{n}": lambda angle, axis=axis: elementary_rotation(axis, angle) for n, axis in ((1, "X"), (3, "Z"))}
-    d.notation({"R": dcm_of, "q": Matrix(quaternion)} | turns)
+    d.notation({"R": quaternion_to_dcm, "q": Matrix(quaternion)} | turns)
     d.step(
         "It gives the rotation of the angles of ZXZ.",
-        dcm_of(quaternion),
+        quaternion_to_dcm(quaternion),
         dcm("ZXZ"),
         because="double angles",
         named=r"R(q)",

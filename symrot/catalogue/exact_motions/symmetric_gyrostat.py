@@ -5,7 +5,7 @@ from sympy import Matrix, S, cos, diag, sin, sqrt
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, attitude_rates, pairs, rate, squared
 from symrot.dynamics.equations import angular_acceleration
-from symrot.kinematics.quaternion import dcm_of, qmul, quaternion_rates, unit_relation
+from symrot.kinematics.quaternion import quaternion_product, quaternion_rates, quaternion_to_dcm, unit_relation
 from symrot.proof.derivation import Derivation
 
 A, _, C = symbols.principal
@@ -36,7 +36,7 @@ def derive() -> Derivation:
         "No torque acts. The angular momentum is",
         ("L", momentum),
     )
-    d.notation({r"\omega": OMEGA, "e_3": AXIS, "R": Matrix(dcm_of())})
+    d.notation({r"\omega": OMEGA, "e_3": AXIS, "R": Matrix(quaternion_to_dcm())})
     d.notation({r"\dot\omega_b": alpha_b})
     _body(d, alpha_b)
     d.section("Two steady rotations")
@@ -52,7 +52,7 @@ def derive() -> Derivation:
     d.notation({"L": momentum}, along)
     d.step(
         "The angular momentum is fixed in space.",
-        rate(Matrix(dcm_of()) * momentum, along),
+        rate(Matrix(quaternion_to_dcm()) * momentum, along),
         0,
         because=r"$\dot L = L \times \omega$ in the body",
         relations=[unit_relation()],
@@ -96,8 +96,8 @@ def _attitude(d: Derivation) -> None:
     about_momentum = Matrix([cos(half_h), *(sin(half_h) * direction)])
     about_axis = Matrix([cos(half_nu), 0, 0, sin(half_nu)])
     relations = [unit_relation(), squared(direction) - 1]
-    attitude = Matrix(qmul(about_momentum, START, about_axis))
-    turned = Matrix(dcm_of(Matrix(qmul(START, about_axis)))).T * direction
+    attitude = Matrix(quaternion_product(about_momentum, START, about_axis))
+    turned = Matrix(quaternion_to_dcm(Matrix(quaternion_product(START, about_axis)))).T * direction
     omega = 2 * symbols.p * turned + 2 * symbols.Omega * AXIS
     d.passage(
         r"Let $n$ be the direction of the angular momentum in space, $H$ its length, $q$ the attitude at the start, "
@@ -107,8 +107,8 @@ def _attitude(d: Derivation) -> None:
     )
     d.notation(
         {
-            "q": START, "n": direction, "p": symbols.p, r"\Omega": symbols.Omega, "R(t)": Matrix(dcm_of(attitude)),
-            "R": dcm_of, "n_b": turned, "q(t)": attitude,
+            "q": START, "n": direction, "p": symbols.p, r"\Omega": symbols.Omega,
+            "R(t)": Matrix(quaternion_to_dcm(attitude)), "R": quaternion_to_dcm, "n_b": turned, "q(t)": attitude,
         }
     )  # fmt: skip
     d.step(
@@ -123,7 +123,7 @@ def _attitude(d: Derivation) -> None:
     )
     d.step(
         r"The turn about $n$ itself does not matter for it.",
-        Matrix(dcm_of(attitude)).T * direction,
+        Matrix(quaternion_to_dcm(attitude)).T * direction,
         turned,
         because="the axis of a rotation stays where it is",
         relations=relations,

@@ -5,7 +5,7 @@ from sympy import Matrix, Rational, diag
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR, attitude_rates, pairs, rate, squared
 from symrot.dynamics.equations import angular_acceleration
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.proof.derivation import Derivation
 
 NONE = 0 * OMEGA
@@ -37,7 +37,7 @@ def derive() -> Derivation:
     )
     d.step(
         "All three components of angular momentum in space are kept.",
-        rate(Matrix(dcm_of()) * momentum_b, motion),
+        rate(Matrix(quaternion_to_dcm()) * momentum_b, motion),
         0,
         because="there is no torque, and Euler's equations say so in turning axes",
         relations=[unit_relation()],

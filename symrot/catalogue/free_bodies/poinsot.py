@@ -5,7 +5,7 @@ from sympy import Matrix, diag
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, attitude_rates, pairs, rate, squared
 from symrot.dynamics.equations import angular_acceleration
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.proof.derivation import Derivation
 
 A, B, C = symbols.principal
@@ -40,7 +40,7 @@ def derive() -> Derivation:
 def _rolling(d: Derivation) -> None:
     d.section("An ellipsoid that rolls on a plane")
     d.notation(
-        {"I": INERTIA, "L": MOMENTUM, r"\omega": OMEGA, "T": TWICE_ENERGY / 2, "R": Matrix(dcm_of())},
+        {"I": INERTIA, "L": MOMENTUM, r"\omega": OMEGA, "T": TWICE_ENERGY / 2, "R": Matrix(quaternion_to_dcm())},
         attitude_rates() | FREE,
     )
     d.notation({"n": Matrix(symbols.axis)})
@@ -54,7 +54,7 @@ def _rolling(d: Derivation) -> None:
     )
     d.step(
         "So the tangent plane there is across $L$, which is fixed in space.",
-        rate(Matrix(dcm_of()) * MOMENTUM, attitude_rates() | FREE),
+        rate(Matrix(quaternion_to_dcm()) * MOMENTUM, attitude_rates() | FREE),
         0,
         because="there is no torque",
         relations=[unit_relation()],

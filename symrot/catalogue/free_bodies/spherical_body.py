@@ -5,7 +5,7 @@ from sympy import Matrix, diag
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, attitude_rates, pairs, rate
 from symrot.dynamics.equations import angular_acceleration
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.proof.derivation import Derivation
 
 
@@ -20,7 +20,7 @@ def derive() -> Derivation:
         ),
     )
     inertia = diag(symbols.A, symbols.A, symbols.A)
-    dcm_sb = Matrix(dcm_of())
+    dcm_sb = Matrix(quaternion_to_dcm())
     free = angular_acceleration(inertia, OMEGA, 0 * OMEGA)
     d.step(
         "The tensor is the same in all axes.",

@@ -6,7 +6,7 @@ from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR, squared
 from symrot.inertia.tensor import about_point, inertia_of_point
 from symrot.kinematics.euler import rate_jacobian
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.proof.derivation import Derivation
 
 MASSES = symbols.particle_masses
@@ -96,7 +96,7 @@ def _forms(d: Derivation) -> None:
         named=r"\left. T \right|_{\omega = \Omega n}",
         display=r"\tfrac12 \left( n \cdot I\,n \right) \Omega^2",
     )
-    dcm_sb = Matrix(dcm_of())
+    dcm_sb = Matrix(quaternion_to_dcm())
     turned = dcm_sb * TENSOR * dcm_sb.T
     d.notation({r"\omega_s": dcm_sb * OMEGA, r"\omega_b": OMEGA, "I_s": turned, "I_b": TENSOR})
     d.step(

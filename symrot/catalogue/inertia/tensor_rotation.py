@@ -5,7 +5,7 @@ from sympy import Matrix, eye
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR, attitude_rates, pairs, rate
 from symrot.inertia.tensor import inertia_of_point, rotate
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.kinematics.rotations import skew
 from symrot.proof.derivation import Derivation
 
@@ -22,7 +22,7 @@ def derive() -> Derivation:
         ),
     )
     unit = [unit_relation()]
-    dcm_sb, point = Matrix(dcm_of()), Matrix(symbols.position)
+    dcm_sb, point = Matrix(quaternion_to_dcm()), Matrix(symbols.position)
     d.step(
         "A point that is turned has the turned tensor.",
         Matrix(inertia_of_point(symbols.m, dcm_sb * point)),

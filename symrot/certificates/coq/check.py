@@ -1,6 +1,6 @@
-"""Run Coq on files of theorems: every file checked, nothing admitted, no axiom but those of the real numbers.
+"""Run Coq on files of theorems and verify that nothing is admitted and that only axioms of the real numbers are used.
 
-The files are checked in a folder of their own, so that what Coq writes beside them lands nowhere else.
+The files are checked in a temporary folder, into which Coq also writes its own files.
 """
 
 import os
@@ -19,7 +19,7 @@ from symrot.errors import CertificateError, CompilerError
 
 __all__ = ["CoqResult", "TheoremResult", "check_kernel", "check_texts", "coqc", "unproven"]
 
-SECONDS, SECONDS_TO_ANSWER = 300, 20  # that one file may take, and the version
+SECONDS, SECONDS_TO_ANSWER = 300, 20  # limits for checking one file, and for printing the version
 
 _COMMENT = re.compile(r"\(\*.*?\*\)", re.DOTALL)
 _UNPROVEN = re.compile(
@@ -33,7 +33,7 @@ _PLACE = re.compile(r'File "[^"]*?([^/"]+)", line (\d+), characters [^:]*:\s*(.*
 
 @dataclass(frozen=True)
 class TheoremResult:
-    """What became of a theorem: ``"ok"``, ``"refused"``, or ``"not reached"`` behind a refused one."""
+    """The outcome of a theorem: ``"ok"``, ``"refused"``, or ``"not reached"`` if an earlier one was refused."""
 
     file: str
     name: str
@@ -42,15 +42,15 @@ class TheoremResult:
 
 @dataclass(frozen=True)
 class CoqResult:
-    """What Coq said of a set of files.
+    """The result of checking a set of files with Coq; it is true if there are no problems.
 
     Attributes
     ----------
     theorems : tuple of TheoremResult
     axioms : tuple of str
-        On which the theorems rest, all together.
+        The axioms on which the theorems rest, all together.
     problems : tuple of str
-        One sentence each: what was refused, where, and what Coq said.
+        One sentence each: what was refused, where, and the message of Coq.
     seconds : float
     version : str
     """
@@ -66,7 +66,7 @@ class CoqResult:
 
 
 def coqc() -> str | None:
-    """Return the path of Coq's compiler: that of the variable ``COQC``, else the one on the path; None without one."""
+    """Return the path of Coq's compiler, from the variable ``COQC`` or the search path; None without Coq."""
     return shutil.which(os.environ.get("COQC") or "coqc")
 
 
@@ -77,21 +77,21 @@ def coq_version(compiler: str) -> str:
 
 
 def unproven(text: str) -> tuple[str, ...]:
-    """Return the words of a file that assume or skip something instead of proving it; comments do not count."""
+    """Return the keywords of a file that assume or skip a proof; keywords in comments do not count."""
     return tuple(match[0] for match in _UNPROVEN.finditer(_COMMENT.sub(" ", text)))
 
 
 def check_kernel(kernel: str, seconds: float = SECONDS) -> CoqResult:
-    """Check the theorem about a kernel, with its file and those it requires, printed now.
+    """Print and check the file with the theorem about a kernel, and the files that it requires.
 
     Raises
     ------
     CertificateError
-        For a kernel without a theorem, or where there is no Coq.
+        If there is no theorem about the kernel, or Coq is not installed.
     """
     section = coq_section(kernel)
     if section is None:
-        raise CertificateError(f"{kernel}: expected a kernel that a theorem of Coq is about; `symrot prove` lists them")
+        raise CertificateError(f"{kernel}: expected a kernel with a theorem in Coq; `symrot prove` lists them")
     name = str(section["file"]).removesuffix(".v")
     return check_texts(coq_texts((name,)), seconds=seconds)
 
@@ -102,21 +102,23 @@ def check_texts(
     seconds: float = SECONDS,
     progress: Callable[[str], object] = lambda text: None,
 ) -> CoqResult:
-    """Check files of theorems, several at once.
+    """Check files of theorems with Coq, several at once.
 
     Parameters
     ----------
     texts : mapping of str to str
-        As from :func:`symrot.certificates.coq.library.coq_texts`: file name -> text.
+        File name -> text, as :func:`symrot.certificates.coq.library.coq_texts` returns them.
     jobs : int, optional
-        How many at once; the number of processors when left out.
+        Number of files to check at once; default: the number of processors.
     seconds : float
-        That one file may take.
+        Time limit for one file.
+    progress : callable
+        Called with a line of text when the check of a file begins.
 
     Raises
     ------
     CertificateError
-        Where there is no Coq.
+        If Coq is not installed.
     """
     compiler = coqc()
     if compiler is None:
@@ -129,27 +131,27 @@ def check_texts(
         place = Path(folder)
         for name, text in sources.items():
             (place / f"{name}.v").write_text(text, encoding="utf-8")
-        said: dict[str, str | None] = {}  # file -> complaint
-        spoken: dict[str, str] = {}
+        complaints: dict[str, str | None] = {}  # file -> message of Coq, or None
+        outputs: dict[str, str] = {}
 
         def one(name: str) -> None:
             required = _required(sources[name]) & sources.keys()
-            if any(said.get(each) is not None for each in required):
-                said[name] = "not checked, since a file that it requires was refused"
+            if any(complaints.get(each) is not None for each in required):
+                complaints[name] = "not checked, since a file that it requires was refused"
                 return
             progress(f"checking {name}.v ..")
-            said[name], spoken[name] = _compile(compiler, place, name, seconds)
+            complaints[name], outputs[name] = _compile(compiler, place, name, seconds)
 
         for level in _levels(sources):
             with ThreadPoolExecutor(jobs or os.cpu_count() or 1) as pool:
                 list(pool.map(one, level))
-    problems += [f"{name}.v: {complaint}" for name, complaint in said.items() if complaint]
-    axioms = _axioms(spoken.get(ASSUMPTIONS, ""))
+    problems += [f"{name}.v: {complaint}" for name, complaint in complaints.items() if complaint]
+    axioms = _axioms(outputs.get(ASSUMPTIONS, ""))
     problems += [f"the theorems rest on {axiom}, which is no axiom of the real numbers of Coq's standard library"
                  for axiom in axioms if axiom not in STANDARD_AXIOMS]  # fmt: skip
-    if said.get(ASSUMPTIONS) is None and not spoken.get(ASSUMPTIONS, "").strip():
+    if complaints.get(ASSUMPTIONS) is None and not outputs.get(ASSUMPTIONS, "").strip():
         problems.append("Coq did not say on which axioms the theorems rest")
-    theorems = [result for name, text in sources.items() for result in _results(name, text, said[name])]
+    theorems = [result for name, text in sources.items() for result in _results(name, text, complaints[name])]
     return CoqResult(tuple(theorems), axioms, tuple(problems), perf_counter() - start, coq_version(compiler))
 
 
@@ -159,7 +161,7 @@ def _required(text: str) -> set[str]:
 
 
 def _levels(sources: Mapping[str, str]) -> list[list[str]]:
-    """Return the files in groups, each after those that its members require."""
+    """Return the files in groups; the files that a group requires are in earlier groups."""
     levels: list[list[str]] = []
     left, done = dict(sources), set[str]()
     while left:
@@ -173,7 +175,7 @@ def _levels(sources: Mapping[str, str]) -> list[list[str]]:
 
 
 def _compile(compiler: str, place: Path, name: str, seconds: float) -> tuple[str | None, str]:
-    """Return what Coq complains of, or None, and what it printed."""
+    """Check one file; return the error message of Coq, or None, and its output."""
     command = [compiler, "-q", "-R", ".", "symrot", f"{name}.v"]
     try:
         done = run_tool(command, seconds, place)
@@ -181,26 +183,26 @@ def _compile(compiler: str, place: Path, name: str, seconds: float) -> tuple[str
         return f"not checked: {reason}", ""
     if done.returncode == 0:
         return None, done.stdout
-    found = _PLACE.search(done.stderr)
-    if found is None:
+    place_match = _PLACE.search(done.stderr)
+    if place_match is None:
         return f"Coq failed with exit code {done.returncode}: {' '.join(done.stderr.split())[-300:]}", done.stdout
-    return f"line {found[2]}: {' '.join(found[3].split())[:300]}", done.stdout
+    return f"line {place_match[2]}: {' '.join(place_match[3].split())[:300]}", done.stdout
 
 
 def _axioms(printed: str) -> tuple[str, ...]:
-    """Return the names in the answer to ``Print Assumptions``."""
+    """Return the names of the axioms in the output of ``Print Assumptions``."""
     return tuple(sorted({match[1] or match[2] for match in _AXIOM.finditer(printed) if match[0] != "Axioms:"}))
 
 
 def _results(name: str, text: str, complaint: str | None) -> list[TheoremResult]:
-    """Return the outcome of each theorem of a file, from the line that Coq refused, if any."""
+    """Return the outcome of each theorem of a file, given the error message of Coq, if any."""
     if name in (RULES, ASSUMPTIONS):
         return []
-    found = [(text.count("\n", 0, match.start()) + 1, match[1]) for match in _THEOREM.finditer(text)]
+    theorems = [(text.count("\n", 0, match.start()) + 1, match[1]) for match in _THEOREM.finditer(text)]
     if complaint is None:
-        return [TheoremResult(f"{name}.v", theorem, "ok") for _, theorem in found]
+        return [TheoremResult(f"{name}.v", theorem, "ok") for _, theorem in theorems]
     line = re.match(r"line (\d+):", complaint)
-    refused = max((start for start, _ in found if start <= int(line[1])), default=0) if line else 0
-    outcome = [("ok" if start < refused else "refused" if start == refused else "not reached", theorem)
-               for start, theorem in found]  # fmt: skip
-    return [TheoremResult(f"{name}.v", theorem, said) for said, theorem in outcome]
+    refused = max((start for start, _ in theorems if start <= int(line[1])), default=0) if line else 0
+    outcomes = [("ok" if start < refused else "refused" if start == refused else "not reached", theorem)
+               for start, theorem in theorems]  # fmt: skip
+    return [TheoremResult(f"{name}.v", theorem, result) for result, theorem in outcomes]

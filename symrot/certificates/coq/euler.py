@@ -1,8 +1,9 @@
-"""Theorems of Coq about Euler angles: for each of the 24 sequences, that the rates are the derivative of the dcm.
+"""Theorems of Coq about Euler angles: for each of the 24 sequences, the rates agree with the derivative of the dcm.
 
-The dcm is the product of three turns, each of which has its angular velocity; angular velocities add, carried by the
-turns between (``three_turns_body``, ``three_turns_space`` in ``rotation.v``). What is left is that the printed rate
-Jacobian is that sum: three identities of products of sines and cosines.
+The dcm is the product of three rotations with an angular velocity each. The angular velocity of the product is their
+sum, after each is carried into one frame by the rotations in between (``three_turns_body`` and ``three_turns_space`` in
+``rotation.v``). It remains to prove that the printed rate Jacobian is that sum: three identities of products of sines
+and cosines.
 """
 
 from sympy import cos, sin
@@ -20,12 +21,12 @@ __all__ = ["euler_file", "euler_files"]
 ANGLES = tuple(map(str, symbols.angles))
 RATES = tuple(map(str, symbols.angle_rates))
 OMEGA = {"body": tuple(map(str, symbols.omega_b)), "space": tuple(map(str, symbols.omega_s))}
-TURNED = {"body": "{dcm} *m skew {omega}", "space": "skew {omega} *m {dcm}"}  # dR/dt in terms of omega
+DCM_RATE = {"body": "{dcm} *m skew {omega}", "space": "skew {omega} *m {dcm}"}  # dR/dt in terms of omega
 
 _AT_T = " ".join(f"({angle} t)" for angle in ANGLES)
 _DCM = f"dcm {_AT_T}"
 _PATH = "fun u => dcm " + " ".join(f"({angle} u)" for angle in ANGLES)
-_GIVEN = derivatives(ANGLES, RATES)
+_HYPOTHESES = derivatives(ANGLES, RATES)
 _PRINTED = {
     "dcm": "dcm",
     "body_jacobian": "body_jacobian",
@@ -37,12 +38,12 @@ _PRINTED = {
 
 
 def euler_files() -> dict[str, str]:
-    """Return file name -> sequence."""
+    """Return the names of the files, each with its sequence."""
     return {prefix(sequence): sequence for sequence in SEQUENCES}
 
 
 def euler_file(sequence: str) -> CoqFile:
-    """Return the file of a sequence: its kernels as definitions, and their theorems."""
+    """Return the file about a sequence: its kernels as definitions, and their theorems."""
     name = prefix(sequence)
     kind = "intrinsic" if parse_sequence(sequence)[1] else "extrinsic"
     return CoqFile(
@@ -60,27 +61,27 @@ def euler_file(sequence: str) -> CoqFile:
     )
 
 
-def _turns(sequence: str) -> list[tuple[str, str]]:
+def _rotations(sequence: str) -> list[tuple[str, str]]:
     """Return (axis letter, angle) of the three factors of the dcm from left to right."""
     return [(AXES[factor.axis].lower(), str(factor.angle)) for factor in factors(sequence)]
 
 
 def _dcm(name: str, sequence: str) -> Theorem:
-    product = " *m ".join(f"R{axis} {angle}" for axis, angle in _turns(sequence))
-    said = f"dcm {' '.join(ANGLES)}"
+    product = " *m ".join(f"R{axis} {angle}" for axis, angle in _rotations(sequence))
+    dcm_text = f"dcm {' '.join(ANGLES)}"
     return Theorem(
         f"{name}_dcm",
         f"The matrix dcm is the product of the three turns of {sequence}.",
-        statement(f"{' '.join(ANGLES)} : R", conclusion=f"{said} = {product}"),
+        statement(f"{' '.join(ANGLES)} : R", conclusion=f"{dcm_text} = {product}"),
         "  intros. unfold dcm. by_ring.",
     )
 
 
 def _jacobian(name: str, sequence: str, frame: str) -> Theorem:
     omega = f"{frame}_jacobian {_AT_T} *v vec {' '.join(RATES)}"
-    derived = TURNED[frame].format(dcm=f"{_DCM}", omega="omega")
-    turns = [(axis, angle, RATES[ANGLES.index(angle)]) for axis, angle in _turns(sequence)]
-    carrying = turns[1:] if frame == "body" else turns[:-1]  # a turn carries the omega of those beyond it
+    derived = DCM_RATE[frame].format(dcm=f"{_DCM}", omega="omega")
+    turns = [(axis, angle, RATES[ANGLES.index(angle)]) for axis, angle in _rotations(sequence)]
+    carrying = turns[1:] if frame == "body" else turns[:-1]  # rotations that carry the omega of others into the frame
     steps = [
         "  intros phi theta psi t dphi dtheta dpsi Dphi Dtheta Dpsi omega.",
         f"  eapply (three_turns_{frame} ({_PATH})).",
@@ -96,7 +97,7 @@ def _jacobian(name: str, sequence: str, frame: str) -> Theorem:
         f"{frame} frame.",
         statement(
             f"({' '.join(ANGLES)} : R -> R) (t {' '.join(RATES)} : R)",
-            _GIVEN,
+            _HYPOTHESES,
             f"  let omega := {omega} in",
             conclusion=f"derivative ({_PATH}) t\n  ({derived})",
         ),
@@ -105,13 +106,13 @@ def _jacobian(name: str, sequence: str, frame: str) -> Theorem:
 
 
 def _determinant(name: str, sequence: str, frame: str) -> Theorem:
-    said = f"{frame}_jacobian {' '.join(ANGLES)}"
+    jacobian = f"{frame}_jacobian {' '.join(ANGLES)}"
     value = coq_expression(rate_jacobian(sequence, frame).determinant)
     circles = ", ".join(f"(sine_square {angle})" for angle in ANGLES).replace(",", "")
     return Theorem(
         f"{name}_{frame}_determinant",
         "Where the sequence locks: the determinant of B.",
-        statement(f"{' '.join(ANGLES)} : R", conclusion=f"det ({said}) = {value}"),
+        statement(f"{' '.join(ANGLES)} : R", conclusion=f"det ({jacobian}) = {value}"),
         f"  intros. unfold {frame}_jacobian. spread. ring [{circles}].",
         kernel=False,
     )
@@ -120,10 +121,12 @@ def _determinant(name: str, sequence: str, frame: str) -> Theorem:
 def _rates(name: str, sequence: str, frame: str) -> Theorem:
     omega = f"vec {' '.join(OMEGA[frame])}"
     rates = f"{frame}_rates {_AT_T} {' '.join(OMEGA[frame])}"
-    (middle,) = rate_jacobian(sequence, frame).determinant.atoms(sin, cos)  # what must not vanish
+    (middle,) = rate_jacobian(sequence, frame).determinant.atoms(
+        sin, cos
+    )  # the sine or cosine that is zero at the singularity
     locked = f"{middle.func.__name__} (theta t)"
     circles = " ".join(f"(sine_square ({angle} t))" for angle in ANGLES)
-    derived = TURNED[frame].format(dcm=_DCM, omega=f"({omega})")
+    derived = DCM_RATE[frame].format(dcm=_DCM, omega=f"({omega})")
     steps = [
         f"  intros phi theta psi t dphi dtheta dpsi {' '.join(OMEGA[frame])} Dphi Dtheta Dpsi K.",
         f"  assert (N : {locked} <> 0).",
@@ -141,7 +144,7 @@ def _rates(name: str, sequence: str, frame: str) -> Theorem:
         f"omega, given in the {frame} frame.",
         statement(
             f"({' '.join(ANGLES)} : R -> R) (t {' '.join(RATES)} {' '.join(OMEGA[frame])} : R)",
-            _GIVEN,
+            _HYPOTHESES,
             f"  det ({frame}_jacobian {_AT_T}) <> 0 ->",
             conclusion=f"(derivative ({_PATH}) t\n   ({derived})\n <->\n vec {' '.join(RATES)} = {rates})",
         ),
@@ -150,17 +153,17 @@ def _rates(name: str, sequence: str, frame: str) -> Theorem:
 
 
 def _quaternion(name: str, sequence: str) -> Theorem:
-    said = f"unit_quaternion {' '.join(ANGLES)}"
-    turns = [f"Q{axis} {angle}" for axis, angle in _turns(sequence)]
+    quaternion = f"unit_quaternion {' '.join(ANGLES)}"
+    turns = [f"Q{axis} {angle}" for axis, angle in _rotations(sequence)]
     steps = [
         "  intros. rewrite " + f"{name}_dcm.",
-        f"  replace ({said}) with ({' *q '.join(turns)})",
+        f"  replace ({quaternion}) with ({' *q '.join(turns)})",
         "    by (unfold unit_quaternion, Qx, Qy, Qz; by_ring).",
         "  repeat apply represents_qmul; first [apply Qx_represents | apply Qy_represents | apply Qz_represents].",
     ]
     return Theorem(
         f"{name}_quaternion",
         "The quaternion of the angles is a unit quaternion, and it turns vectors as the dcm does.",
-        statement(f"{' '.join(ANGLES)} : R", conclusion=f"represents ({said}) (dcm {' '.join(ANGLES)})"),
+        statement(f"{' '.join(ANGLES)} : R", conclusion=f"represents ({quaternion}) (dcm {' '.join(ANGLES)})"),
         "\n".join(steps),
     )

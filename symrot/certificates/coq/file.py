@@ -1,4 +1,4 @@
-"""A file of Coq: definitions, and theorems with their proofs."""
+"""Files of Coq: definitions, and theorems with their proofs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,10 +11,9 @@ __all__ = ["CoqFile", "Theorem", "derivatives", "statement"]
 
 @dataclass(frozen=True)
 class Theorem:
-    """A theorem: what it says in words and in Coq, and the tactics that prove it.
+    """A theorem: its statement in words (``about``) and in Coq, and the tactics that prove it.
 
-    ``statement`` is the text between the name and the proof; ``kernel`` whether the theorem of this name is about the
-    kernel of the same name.
+    ``kernel`` says whether the theorem is about the kernel of the same name.
     """
 
     name: str
@@ -25,21 +24,22 @@ class Theorem:
 
     @property
     def text(self) -> str:
+        """The theorem as text of Coq, with its comment and proof."""
         lines = [f"Theorem {self.name} :", *f"{self.statement}.".split("\n"), "Proof.", *self.proof.split("\n"), "Qed."]
         return "\n".join([comment(self.about), *(_short(line) for line in lines)])
 
 
 @dataclass(frozen=True)
 class CoqFile:
-    """A file that Coq checks by itself, after those it requires.
+    """A file of theorems, which Coq checks after the files that it requires.
 
     Attributes
     ----------
     name : str
-        Without the suffix ``.v``.
+        The file's name without the suffix ``.v``.
     title : str
     requires : tuple of str
-        Names of the files that it needs, those they need among them, in order.
+        Names of all files that it needs directly or indirectly, in order.
     definitions : tuple of str
     theorems : tuple of Theorem
     """
@@ -52,7 +52,7 @@ class CoqFile:
 
     @property
     def text(self) -> str:
-        """The file's text: same formulas, same bytes."""
+        """The file's text; the same formulas give the same bytes."""
         opening = [
             comment(f"{self.title} Printed by `symrot prove --coq`; do not edit."),
             "",
@@ -64,21 +64,22 @@ class CoqFile:
 
     @property
     def digest(self) -> str:
+        """The SHA-256 of the file's text."""
         return sha256(self.text.encode()).hexdigest()
 
 
 def _short(line: str) -> str:
-    """Return a line folded, if it must be, under its own indent."""
+    """Return a line, folded if it is too long, with its indent kept."""
     return folded(line, len(line) - len(line.lstrip()) + 2)
 
 
 def derivatives(functions: Sequence[str], rates: Sequence[str]) -> str:
-    """Return the hypotheses that functions have derivatives at t, each with its arrow."""
+    """Return the hypotheses that functions have some derivatives at t, each followed by an arrow."""
     pairs = zip(functions, rates, strict=True)
     return folded("  " + " ".join(f"derivable_pt_lim {each} t {rate} ->" for each, rate in pairs), 2)
 
 
 def statement(quantified: str, *hypotheses: str, conclusion: str) -> str:
-    """Return a statement: variables, hypotheses (each with its arrow) and conclusion, a line or more for each."""
+    """Return the statement of a theorem: variables, hypotheses (each ending in an arrow), conclusion, line by line."""
     lines = [folded(f"  forall {quantified},", 4), *hypotheses, *(f"  {line}" for line in conclusion.split("\n"))]
     return "\n".join(line for line in lines if line)

@@ -1,4 +1,4 @@
-"""All files of Coq that symrot prints, by name, and which theorem of which file is about a kernel."""
+"""The files of Coq that symrot prints, by name, and the theorem about each kernel."""
 
 from collections.abc import Callable
 from functools import cache, partial
@@ -13,13 +13,21 @@ from symrot.certificates.coq.quaternion import quaternion_file
 from symrot.certificates.coq.rodrigues import rodrigues_file
 from symrot.errors import InputError
 
-__all__ = ["STANDARD_AXIOMS", "assumptions_text", "coq_file", "coq_file_names", "coq_section", "coq_texts", "needed"]
+__all__ = [
+    "STANDARD_AXIOMS",
+    "assumptions_text",
+    "coq_file",
+    "coq_file_names",
+    "coq_section",
+    "coq_texts",
+    "with_required",
+]
 
 RULES = "rotation"
-"""The file of definitions and rules that all others require: not printed, but part of symrot."""
+"""The file of definitions and rules that all others require; it comes with symrot and is not printed."""
 
 ASSUMPTIONS = "assumptions"
-"""The file that asks Coq which axioms the theorems rest on."""
+"""The file that makes Coq print the axioms on which the theorems rest."""
 
 STANDARD_AXIOMS = (
     "Classical_Prop.classic",
@@ -27,7 +35,7 @@ STANDARD_AXIOMS = (
     "ClassicalDedekindReals.sig_not_dec",
     "FunctionalExtensionality.functional_extensionality_dep",
 )
-"""What the real numbers of Coq's standard library rest on; no theorem may rest on anything else."""
+"""The axioms of the real numbers in Coq's standard library; no theorem may rest on any other."""
 
 _FILES: dict[str, tuple[tuple[str, ...], Callable[[], CoqFile]]] = {
     "quaternions": (("quaternion_",), quaternion_file),
@@ -35,7 +43,7 @@ _FILES: dict[str, tuple[tuple[str, ...], Callable[[], CoqFile]]] = {
     "dynamics": (("euler_equations_", "kinetic_", "angular_", "inertia_rotated"), dynamics_file),
     **{name: ((f"{name}_",), partial(euler_file, sequence)) for name, sequence in euler_files().items()},
 }
-"""File, without ``.v`` -> how the names of the kernels in it begin, and what prints it; after those it requires."""
+"""File, without ``.v`` -> the prefixes of its kernels' names, and the function that makes it; required files first."""
 
 
 def coq_file_names() -> tuple[str, ...]:
@@ -45,12 +53,12 @@ def coq_file_names() -> tuple[str, ...]:
 
 @cache
 def coq_file(name: str) -> CoqFile:
-    """Return a file of theorems, printed now.
+    """Return a file of theorems.
 
     Raises
     ------
     InputError
-        For a name that is none.
+        If there is no file of that name.
     """
     if name not in _FILES:
         raise InputError(f"expected the name of a file of theorems, such as euler_zxz, got {name!r}")
@@ -60,12 +68,12 @@ def coq_file(name: str) -> CoqFile:
 
 @cache
 def rules_text() -> str:
-    """Return the text of ``rotation.v``: definitions, and the rules that the proofs use."""
+    """Return the text of ``rotation.v``: the definitions and rules that the proofs use."""
     return (files("symrot.certificates.coq") / f"{RULES}.v").read_text(encoding="utf-8")
 
 
 def assumptions_text(names: tuple[str, ...]) -> str:
-    """Return the file that prints the axioms on which the theorems of some files rest, all together."""
+    """Return the file that makes Coq print the axioms on which the theorems of some files rest, all together."""
     lines = [f"  let _ := {name}.{theorem.name} in" for name in names for theorem in coq_file(name).theorems]
     return "\n".join([
         "(* The axioms on which the theorems rest, all together. Printed by `symrot prove --coq`; do not edit. *)",
@@ -74,28 +82,28 @@ def assumptions_text(names: tuple[str, ...]) -> str:
     ]) + "\n"  # fmt: skip
 
 
-def needed(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the files of theorems that some files need, they themselves among them, in the order of the table."""
-    found = set(names)
+def with_required(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return some files of theorems and the files that they require, in the order of the table."""
+    files_needed = set(names)
     for name in names:
-        found |= set(coq_file(name).requires) - {RULES}
-    return tuple(name for name in coq_file_names() if name in found)
+        files_needed |= set(coq_file(name).requires) - {RULES}
+    return tuple(name for name in coq_file_names() if name in files_needed)
 
 
 def coq_texts(names: tuple[str, ...] | None = None) -> dict[str, str]:
-    """Return file name -> text of files of theorems (all when left out) with what checking them takes.
+    """Return files of theorems (default: all) and the files that checking them needs, as file name -> text.
 
     ``_CoqProject`` lists them for ``coq_makefile``.
     """
-    wanted = needed(coq_file_names() if names is None else names)
-    printed = {name: coq_file(name).text for name in wanted}
-    texts = {RULES: rules_text(), **printed, ASSUMPTIONS: assumptions_text(wanted)}
+    names_needed = with_required(coq_file_names() if names is None else names)
+    printed = {name: coq_file(name).text for name in names_needed}
+    texts = {RULES: rules_text(), **printed, ASSUMPTIONS: assumptions_text(names_needed)}
     project = "".join(f"{line}\n" for line in ("-R . symrot", *(f"{name}.v" for name in texts)))
     return {"_CoqProject": project, **{f"{name}.v": text for name, text in texts.items()}}
 
 
-def _home(kernel: str) -> tuple[str, Theorem] | None:
-    """Return the file and theorem of a kernel; only the file that may hold it is printed."""
+def _theorem_about(kernel: str) -> tuple[str, Theorem] | None:
+    """Return the file and the theorem about a kernel, or None; only the file that may hold it is made."""
     for name, (beginnings, _) in _FILES.items():
         if kernel.startswith(beginnings):
             for theorem in coq_file(name).theorems:
@@ -105,10 +113,10 @@ def _home(kernel: str) -> tuple[str, Theorem] | None:
 
 
 def coq_section(kernel: str) -> dict[str, Any] | None:
-    """Return what a certificate says of the theorem about a kernel; None where there is no theorem.
+    """Return the ``coq`` section of a certificate, about the theorem on a kernel; None if there is no theorem.
 
-    Deterministic, and found without Coq: it says which statement is to be checked, not that it has been
-    (:func:`symrot.certificates.coq.check.check_kernel` does).
+    The section is made without Coq: it states the theorem and does not say that Coq has checked it
+    (:func:`symrot.certificates.coq.check.check_kernel` checks it).
 
     Parameters
     ----------
@@ -119,9 +127,9 @@ def coq_section(kernel: str) -> dict[str, Any] | None:
     -------
     dict or None
         ``file``, ``theorem``, ``statement`` (its text), ``statement_sha256``, ``file_sha256``, ``requires`` (file ->
-        sha256) and ``axioms``: the theorem may rest on these and no others.
+        sha256) and ``axioms``, the only ones on which the theorem may rest.
     """
-    home = _home(kernel)
+    home = _theorem_about(kernel)
     if home is None:
         return None
     name, theorem = home

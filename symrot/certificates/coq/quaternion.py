@@ -1,9 +1,9 @@
-"""Theorems of Coq about unit quaternions: what they represent, and their rates."""
+"""Theorems of Coq about unit quaternions: the rotations that they represent, and their rates."""
 
 from collections.abc import Sequence
 
 from symrot import symbols
-from symrot.certificates.coq.euler import OMEGA, TURNED
+from symrot.certificates.coq.euler import DCM_RATE, OMEGA
 from symrot.certificates.coq.file import CoqFile, Theorem, derivatives, statement
 from symrot.certificates.coq.text import definition_text
 from symrot.kernels.library import definition
@@ -75,7 +75,7 @@ def _wrapped(text: str) -> str:
 
 
 def _path(name: str, parameters: Sequence[str]) -> tuple[str, str]:
-    """Return a dcm as function of time, and at t."""
+    """Return a dcm as a function of time and as its value at t, in text of Coq."""
     return (f"fun u => {name} " + " ".join(f"({each} u)" for each in parameters),
             f"{name} " + " ".join(f"({each} t)" for each in parameters))  # fmt: skip
 
@@ -98,7 +98,7 @@ def _rates(frame: str) -> Theorem:
             derivatives(Q, DQ),
             f"  {_UNIT_T} ->",
             f"  quat {' '.join(DQ)} = {frame}_rates {' '.join(f'({q} t)' for q in Q)} {' '.join(OMEGA[frame])} ->",
-            conclusion=f"derivative ({path}) t\n  ({TURNED[frame].format(dcm=dcm, omega=f'({omega})')}) /\\\n"
+            conclusion=f"derivative ({path}) t\n  ({DCM_RATE[frame].format(dcm=dcm, omega=f'({omega})')}) /\\\n"
             f"derivable_pt_lim (fun u => norm2 (quat {' '.join(f'({q} u)' for q in Q)})) t 0",
         ),
         f"  intros {opened} H E.\n"
@@ -128,7 +128,7 @@ def _only_rates(frame: str) -> Theorem:
             f"({' '.join(Q)} : R -> R) (t {' '.join(DQ)} {' '.join(OMEGA[frame])} : R)",
             derivatives(Q, DQ),
             f"  (forall u, norm2 (quat {' '.join(f'({q} u)' for q in Q)}) = 1) ->",
-            f"  derivative ({path}) t\n    ({TURNED[frame].format(dcm=dcm, omega=f'({omega})')}) ->",
+            f"  derivative ({path}) t\n    ({DCM_RATE[frame].format(dcm=dcm, omega=f'({omega})')}) ->",
             conclusion=f"quat {' '.join(DQ)} = {rates} {' '.join(OMEGA[frame])}",
         ),
         f"  intros {opened} U H.\n"

@@ -1,7 +1,7 @@
-"""Theorems of Coq about Rodrigues parameters, classical and modified: the attitude they name, and their rates."""
+"""Theorems of Coq about classical and modified Rodrigues parameters: the attitude they describe, and their rates."""
 
 from symrot import symbols
-from symrot.certificates.coq.euler import OMEGA, TURNED
+from symrot.certificates.coq.euler import DCM_RATE, OMEGA
 from symrot.certificates.coq.file import CoqFile, Theorem, derivatives, statement
 from symrot.certificates.coq.text import coq_expression, definition_text, matrix_text
 from symrot.kernels.library import definition
@@ -36,22 +36,22 @@ def rodrigues_file(name: str) -> CoqFile:
 
 
 def _norm(parameters: tuple[str, ...], at: str = "") -> str:
-    """Return the sum by which the formulas divide."""
+    """Return the sum of squares plus 1 by which the formulas divide, as text of Coq."""
     return " + ".join(f"{each}{at} ^ 2" for each in parameters) + " + 1"
 
 
 def _positive(parameters: tuple[str, ...], at: str = "") -> str:
-    """Return the tactic that shows that sum above zero."""
+    """Return the tactic that proves this sum to be positive."""
     return "(" + "; ".join(f"pose proof (pow2_ge_0 ({each}{at}))" for each in parameters) + "; lra)"
 
 
 def _quaternion(name: str, parameters: tuple[str, ...]) -> Theorem:
-    given, norm = " ".join(parameters), _norm(parameters)
+    names, norm = " ".join(parameters), _norm(parameters)
     return Theorem(
         f"{name}_quaternion",
         "The quaternion of the parameters is a unit quaternion, and it turns vectors as the dcm does.",
-        statement(f"{given} : R", conclusion=f"represents (unit_quaternion {given}) (dcm {given})"),
-        f"  intros {given}. assert (P : 0 < {norm}) by {_positive(parameters)}.\n"
+        statement(f"{names} : R", conclusion=f"represents (unit_quaternion {names}) (dcm {names})"),
+        f"  intros {names}. assert (P : 0 < {norm}) by {_positive(parameters)}.\n"
         f"  pose proof (sqrt_lt_R0 _ P) as S. pose proof (sqrt_sqrt ({norm}) (Rlt_le _ _ P)) as E.\n"
         "  assert (N := Rgt_not_eq _ _ P). assert (M := Rgt_not_eq _ _ S).\n"
         "  unfold unit_quaternion, dcm.\n"
@@ -94,9 +94,9 @@ def _rates(name: str, parameters: tuple[str, ...], frame: str) -> Theorem:
     rates, path, at = _RATES[name], _path(parameters), _at(parameters)
     turning = f"{name}_turning {' '.join(parameters)} t {' '.join(rates)} D1 D2 D3"
     rotation = f"represents_rotation _ _ ({name}_quaternion {at})"
-    given = f"  - exact ({turning}).\n"
+    derivative_proof = f"  - exact ({turning}).\n"
     if frame == "space":
-        given = (
+        derivative_proof = (
             f"  - replace (space_jacobian {at} *v vec {' '.join(rates)})\n"
             f"      with (dcm {at} *v (body_jacobian {at} *v vec {' '.join(rates)}))\n"
             "      by (unfold space_jacobian, body_jacobian, dcm; spread; f_equal; field; exact P).\n"
@@ -107,7 +107,7 @@ def _rates(name: str, parameters: tuple[str, ...], frame: str) -> Theorem:
     determinant = coq_expression(projection(name).rate_matrix(frame).determinant)
     for each in parameters:
         determinant = determinant.replace(each, f"{each} t")
-    derived = TURNED[frame].format(dcm=f"dcm {at}", omega=f"({omega})")
+    derived = DCM_RATE[frame].format(dcm=f"dcm {at}", omega=f"({omega})")
     return Theorem(
         f"{name}_{frame}_rates",
         f"The parameters move at the printed rates if and only if the dcm turns with the angular velocity omega, given "
@@ -122,7 +122,9 @@ def _rates(name: str, parameters: tuple[str, ...], frame: str) -> Theorem:
         f"    by {_positive(parameters, ' t')}.\n"
         "  pose proof (pow_nonzero _ 2 P) as P2. pose proof (pow_nonzero _ 3 P) as P3.\n"
         f"  apply (only_{frame}_rates ({path}) t ({frame}_jacobian {at})).\n"
-        f"  - exact ({rotation}).\n" + given + f"  - replace (det ({frame}_jacobian {at})) with ({determinant})\n"
+        f"  - exact ({rotation}).\n"
+        + derivative_proof
+        + f"  - replace (det ({frame}_jacobian {at})) with ({determinant})\n"
         f"      by (unfold {frame}_jacobian; spread; field; exact P).\n"
         "    unfold Rdiv. apply Rmult_integral_contrapositive_currified; [lra | apply Rinv_neq_0_compat; assumption].\n"
         f"  - unfold {frame}_jacobian, {frame}_rates. spread. f_equal; field; exact P.",

@@ -1,6 +1,6 @@
-"""SymPy expressions and kernels as text of Coq: rational functions of real variables, their sines, cosines and roots.
+"""Print SymPy expressions and kernels as text of Coq: rational functions, sines, cosines and roots of real variables.
 
-Terms and factors come in SymPy's canonical order, so that the same formula gives the same bytes everywhere.
+Terms and factors are in SymPy's canonical order, so that the same formula gives the same bytes on every machine.
 """
 
 from collections.abc import Iterable, Sequence
@@ -15,25 +15,25 @@ __all__ = ["comment", "coq_expression", "definition_text", "folded", "matrix_tex
 
 WIDTH = 118
 _SHAPES = {1: "R", 3: "vector", 4: "quaternion", 6: "matrix", 9: "matrix"}  # number of components -> type in rotation.v
-
 _MAKERS = {3: "vec", 4: "quat", 6: "tensor", 9: "mat"}
 _FUNCTIONS = {sin: "sin", cos: "cos"}
-_SUM, _PRODUCT, _POWER, _ATOM = range(4)  # how tightly a text holds together
+_SUM, _PRODUCT, _POWER, _ATOM = range(4)  # precedence of the outermost operation of a text
 
 
 def coq_expression(expression: Expr) -> str:
-    """Return the text of an expression over R.
+    """Return the text of a real expression.
 
     Raises
     ------
     CertificateError
-        For anything but integers, fractions, symbols, sums, products, whole powers, square roots, sines and cosines.
+        If the expression holds anything but rational numbers, symbols, sums, products, integer powers, square roots,
+        sines and cosines.
     """
     return _print(expression)[0]
 
 
 def _print(expression: Expr) -> tuple[str, int]:
-    """Return the text of an expression and how tightly it holds together."""
+    """Return the text of an expression and the precedence of its outermost operation."""
     if isinstance(expression, Symbol):
         return str(expression), _ATOM
     if isinstance(expression, Rational):
@@ -96,17 +96,17 @@ def _power(expression: Pow) -> tuple[str, int]:
 
 
 def folded(text: str, indent: int = 0) -> str:
-    """Return a text in lines of at most :data:`WIDTH` letters, all but the first indented."""
+    """Return a text in lines of at most :data:`WIDTH` characters, all but the first indented."""
     return fill(text, WIDTH, subsequent_indent=" " * indent, break_long_words=False, break_on_hyphens=False)
 
 
 def comment(text: str) -> str:
-    """Return a comment, folded; what Coq would take for the end or beginning of one is set apart."""
+    """Return a comment of Coq in folded lines; comment marks inside the text are broken up."""
     return folded("(* " + text.replace("(*", "( *").replace("*)", "* )") + " *)", 3)
 
 
 def _record(formulas: Sequence[Expr]) -> str:
-    """Return a vector, quaternion or matrix (row by row) of formulas with an indent of 2; a single one as it is."""
+    """Return formulas as a vector, quaternion or matrix (row by row), indented by 2; a single formula as itself."""
     if len(formulas) == 1:
         return folded(f"  {coq_expression(formulas[0])}", 4)
     texts = [_within(formula, _ATOM) for formula in formulas]
@@ -117,13 +117,13 @@ def _record(formulas: Sequence[Expr]) -> str:
     return "\n".join([f"  {_MAKERS[len(formulas)]}", *rows])
 
 
-def _defined(name: str, given: Iterable[str], size: int, body: str) -> str:
-    return folded(f"Definition {name} ({' '.join(given)} : R) : {_SHAPES[size]} :=", 4) + f"\n{body}."
+def _defined(name: str, variable_names: Iterable[str], size: int, body: str) -> str:
+    return folded(f"Definition {name} ({' '.join(variable_names)} : R) : {_SHAPES[size]} :=", 4) + f"\n{body}."
 
 
-def matrix_text(name: str, given: Iterable[str], formulas: Sequence[Expr]) -> str:
-    """Return the definition of a function of real variables whose value is a record of formulas."""
-    return _defined(name, given, len(formulas), _record(formulas))
+def matrix_text(name: str, variable_names: Iterable[str], formulas: Sequence[Expr]) -> str:
+    """Return the definition of a function of real variables whose value is a vector, quaternion or matrix."""
+    return _defined(name, variable_names, len(formulas), _record(formulas))
 
 
 def definition_text(kernel: Definition, name: str, output: str | None = None) -> str:
@@ -133,11 +133,11 @@ def definition_text(kernel: Definition, name: str, output: str | None = None) ->
     ----------
     kernel : Definition
     name : str
-        What it is called in Coq.
+        The name of the function in Coq.
     output : str, optional
-        Which of the kernel's outputs; the first when left out.
+        The name of the output; default: the first output.
     """
-    formulas = next(found for target, found in kernel.results if output in (None, target.name))
+    formulas = next(values for target, values in kernel.results if output in (None, target.name))
     lines = [folded(f"  let {symbol} := {coq_expression(value)} in", 4) for symbol, value in kernel.named]
     body = "\n".join([*lines, _record(formulas)])
     return _defined(name, variables(kernel), len(formulas), body)
@@ -145,4 +145,4 @@ def definition_text(kernel: Definition, name: str, output: str | None = None) ->
 
 def variables(kernel: Definition) -> list[str]:
     """Return the names of the components of a kernel's inputs, in order."""
-    return [component[0] for given in kernel.inputs for component in given.components]
+    return [component[0] for argument in kernel.inputs for component in argument.components]

@@ -1,7 +1,7 @@
-"""Compile emitted C and compare what comes out with the text: the objects section of a certificate.
+"""Compile emitted C and compare the object code with the C text: the ``objects`` section of a certificate.
 
-The section names compilers and their versions, so that it is true of one machine only. It is written on request, beside
-the certificate and outside of what is compared byte for byte.
+The section names compilers and their versions, so it describes one machine. It is therefore written only on request,
+and left out where certificates are compared byte for byte.
 """
 
 from collections.abc import Iterable, Sequence
@@ -11,7 +11,7 @@ from shutil import which
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from symrot.certificates.flags import judge
+from symrot.certificates.flags import classify_flags
 from symrot.certificates.object_code.comparison import ObjectVerdict, compare_object
 from symrot.certificates.tools import run_tool
 from symrot.errors import CertificateError, CompilerError
@@ -25,17 +25,18 @@ FLAGS: tuple[tuple[str, ...], ...] = (
     ("-O3", "-mavx2", "-mfma", "-fno-tree-slp-vectorize", *STRICT), ("-O3", "-mavx2", "-mfma", *STRICT),
     ("-O2", "-mavx2", "-mfma", "-ffp-contract=fast", "-fno-math-errno"),
 )  # fmt: skip
-"""Flags of the table: strict code for SSE2 and AVX2; where gcc 12 fuses although it is told not to; contraction."""
+"""Sets of flags that are tried: strict code for SSE2 and AVX2, a set under which gcc 12 fuses a*b + c although it is
+forbidden to, and contraction."""
 SECONDS, SECONDS_TO_ANSWER = 120, 20
 
 
 def compile_object(compiler: str, flags: Sequence[str], source: Path, target: Path) -> None:
-    """Compile one C file into an object file, with the folder of the source in the search path of headers.
+    """Compile one C file into an object file; headers are also searched in the folder of the source.
 
     Raises
     ------
     CompilerError
-        If the compiler is not there, does not end in time, or refuses: its first complaint is quoted.
+        If the compiler is missing, takes too long, or reports an error, which is then quoted.
     """
     path = which(compiler)
     if path is None:
@@ -48,12 +49,12 @@ def compile_object(compiler: str, flags: Sequence[str], source: Path, target: Pa
 
 
 def compiler_version(compiler: str) -> str:
-    """Return the first line that a compiler says of itself; an empty text where it is not there.
+    """Return the first line that a compiler prints for ``--version``; an empty text if it is not installed.
 
     Raises
     ------
     CompilerError
-        If it cannot be run, or gives no answer in time.
+        If it cannot be run, or does not answer in time.
     """
     path = which(compiler)
     return "" if path is None else run_tool([path, "--version"], SECONDS_TO_ANSWER).stdout.split("\n")[0].strip()
@@ -65,36 +66,37 @@ def objects_section(
     compilers: Iterable[str] = COMPILERS,
     flags: Iterable[Sequence[str]] = FLAGS,
 ) -> dict[str, Any]:
-    """Compile a kernel with each compiler and each set of flags, and compare each object with the text.
+    """Compile a kernel with each compiler and each set of flags, and compare each object file with the C text.
 
     Parameters
     ----------
     source : Path
-        A C file as symrot emits it, its header beside it.
+        A C file that symrot emitted, with its header in the same folder.
     functions : sequence of str
         One-sample functions; default: all that the text defines.
     compilers, flags : iterables
-        Names of compilers, of which those that are missing are listed as such, and sets of flags.
+        The commands of compilers and the sets of flags; a compiler that is not installed is listed as missing.
 
     Returns
     -------
     dict
-        Plain data, the same for the same text and compilers: ``source`` (name, SHA-256), ``objects`` (compiler,
-        version, flags, SHA-256 of the object, functions with verdict, reason, cases, instructions), ``missing``
-        (compilers), ``accepted`` (whether all are), ``means`` (what the verdicts say).
+        Data for JSON, the same for the same text and compilers: ``source`` (name, SHA-256), ``objects`` (for each,
+        compiler, version, flags, SHA-256, and functions with verdict, reason, cases, instructions), ``missing``
+        (compilers that are not installed), ``accepted`` (whether all verdicts accept), ``means`` (how to read the
+        verdicts).
 
     Raises
     ------
     CertificateError
-        For a text that is not of the emitted subset.
+        If the C text is not of the subset that symrot emits.
     CompilerError
-        If there is no ``objdump``, or a compiler refuses the text.
+        If there is no ``objdump``, or a compiler rejects the text.
     """
     try:
         text = source.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as reason:
         raise CertificateError(f"{source}: expected a C file that can be read ({reason})") from None
-    found, missing = [], []
+    objects, missing = [], []
     flag_sets = [tuple(item) for item in flags]
     for compiler in compilers:
         version = compiler_version(compiler)
@@ -102,12 +104,12 @@ def objects_section(
             missing.append(compiler)
             continue
         for chosen in flag_sets:
-            found.append(_object(source, text, functions, compiler, version, chosen))
+            objects.append(_object(source, text, functions, compiler, version, chosen))
     return {
         "source": {"name": source.name, "sha256": sha256(text.encode()).hexdigest()},
-        "objects": found,
+        "objects": objects,
         "missing": missing,
-        "accepted": bool(found) and all(item["accepted"] for item in found),
+        "accepted": bool(objects) and all(item["accepted"] for item in objects),
         "means": MEANS,
     }
 
@@ -122,12 +124,13 @@ MEANS = (
 def _object(
     source: Path, text: str, functions: Sequence[str], compiler: str, version: str, flags: tuple[str, ...]
 ) -> dict[str, Any]:
+    """Compile a C file once and return the entry for it in the ``objects`` section."""
     with TemporaryDirectory(prefix="symrot-") as directory:
         target = Path(directory) / f"{source.stem}.o"
         compile_object(compiler, flags, source, target)
         verdicts = compare_object(text, target, functions, source.name)
         digest = sha256(target.read_bytes()).hexdigest()
-    judgement = judge((compiler, *flags))
+    judgement = classify_flags((compiler, *flags))
     return {
         "compiler": compiler,
         "version": version,
@@ -135,11 +138,11 @@ def _object(
         "flags_hold": judgement.holds,
         "sha256": digest,
         "accepted": judgement.accepted and all(item.accepted for item in verdicts),
-        "functions": [_plain(item) for item in verdicts],
+        "functions": [_verdict_to_json(item) for item in verdicts],
     }
 
 
-def _plain(verdict: ObjectVerdict) -> dict[str, Any]:
+def _verdict_to_json(verdict: ObjectVerdict) -> dict[str, Any]:
     return {
         "name": verdict.function, "verdict": verdict.verdict, "output": verdict.output, "reason": verdict.reason,
         "cases": verdict.cases, "instructions": verdict.instructions,

@@ -1,12 +1,14 @@
-"""Object code = C text, rounding for rounding, for the one-sample functions of a kernel.
+"""Prove that object code computes what its C text says, rounding for rounding, in the one-sample functions of a kernel.
 
-The machine code of a function is run on terms (:mod:`symrot.certificates.object_code.machine`), the C text is read back
-(:mod:`symrot.certificates.readback.readback`), and both are compared as terms under bit-exact laws
-(:mod:`symrot.certificates.object_code.terms`), case by case where comparisons of numbers decide.
+The machine code of a function is executed on symbolic terms (:mod:`symrot.certificates.object_code.machine`), the C
+text is read back (:mod:`symrot.certificates.readback.readback`), and both results are compared as terms under bit-exact
+laws (:mod:`symrot.certificates.object_code.terms`). Where a result depends on comparisons of numbers, every case is
+compared.
 
-What ``identical`` says: for all inputs the outputs have the same bits, signed zeros and infinities included, NaN for
-NaN (their payloads are not compared); in rounding to nearest, with the same functions of libm, input and output arrays
-apart from each other, and the processor and ``objdump`` right. Loops over samples (``*_batch``) are not compared.
+The verdict ``identical`` means: for all inputs the outputs have the same bits, signed zeros and infinities included,
+and are NaN together (payloads of NaN are not compared). It assumes rounding to nearest, the same functions of libm,
+input and output arrays that do not overlap, and that the processor and ``objdump`` are correct. Loops over samples
+(``*_batch``) are not compared.
 """
 
 from collections.abc import Iterable, Sequence
@@ -14,11 +16,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
-from symrot.certificates.object_code.disassembly import Listing, listing
-from symrot.certificates.object_code.machine import Finished, arguments, ways
-from symrot.certificates.object_code.state import Array, Context, NotUnderstood
-from symrot.certificates.object_code.terms import ANY, RELATION, Known, Outcomes, Pair, Terms, value_of
-from symrot.certificates.readback.c_functions import Function, functions_of
+from symrot.certificates.object_code.disassembly import Listing, read_listing
+from symrot.certificates.object_code.machine import ExecutionPath, execution_paths, state_at_call
+from symrot.certificates.object_code.state import ArrayArgument, CallContext, NotUnderstood
+from symrot.certificates.object_code.terms import ANY, RELATION, Known, Outcomes, Pair, Terms, number_from_bits
+from symrot.certificates.readback.c_functions import CFunction, functions_of
 from symrot.certificates.readback.operations import Operations, operands
 from symrot.certificates.readback.readback import read_kernel
 from symrot.errors import CertificateError
@@ -36,18 +38,18 @@ __all__ = [
 IDENTICAL, CONTRACTED = "identical", "identical up to contraction"
 DIFFERS, NOT_UNDERSTOOD = "differs", "not understood"
 WIDTH = {"binary64": 64, "binary32": 32}
-TOPS = (8, 24, 40, 56)  # places of the return address, modulo 64: 8 modulo 16 is all that is agreed on
-MOST_CASES = 20_000
+RETURN_ADDRESS_PLACES = (8, 24, 40, 56)  # modulo 64; the calling convention fixes the place to 8 modulo 16 only
+MAX_CASES = 20_000
 
 
 @dataclass(frozen=True)
 class ObjectVerdict:
-    """What was found of one function.
+    """The verdict on the machine code of one function.
 
-    ``verdict`` is one of "identical", "identical up to contraction" (each fused multiply-add is the product and the sum
-    of the C text with one rounding fewer, the sign of a sum that is zero aside), "differs" (``output`` is the first
-    that does, ``reason`` says how) and "not understood" (``reason`` names instruction and address). Only the first two
-    are acceptance.
+    ``verdict`` is "identical", "identical up to contraction" (each fused multiply-add replaces a product and a sum of
+    the C text with one rounding fewer; the sign of a sum that is zero may differ), "differs" (``output`` is the first
+    output that does, ``reason`` says how) or "not understood" (``reason`` names the instruction and its address). Only
+    the first two verdicts accept the function.
     """
 
     function: str
@@ -59,10 +61,11 @@ class ObjectVerdict:
 
     @property
     def accepted(self) -> bool:
+        """Whether the verdict accepts the function."""
         return self.verdict in (IDENTICAL, CONTRACTED)
 
     def sentence(self) -> str:
-        """Return the verdict as one line."""
+        """Return function, verdict and reason as one line."""
         where = f", output {self.output}" if self.output else ""
         return f"{self.function}: {self.verdict}{where}{f': {self.reason}' if self.reason else ''}"
 
@@ -70,14 +73,14 @@ class ObjectVerdict:
 def compare_object(
     text: str, path: Path, functions: Sequence[str] = (), where: str = "kernel"
 ) -> tuple[ObjectVerdict, ...]:
-    """Compare functions of an object file with the C text they were compiled from.
+    """Compare functions of an object file with the C text from which they were compiled.
 
     Parameters
     ----------
     text : str
-        A C file as symrot emits it.
+        A C file that symrot emitted.
     path : Path
-        What ``cc -c`` made of it, for x86-64 ELF.
+        The object file that ``cc -c`` made of it, for x86-64 ELF.
     functions : sequence of str
         One-sample functions; default: all that the text defines.
     where : str
@@ -86,104 +89,115 @@ def compare_object(
     Raises
     ------
     CertificateError
-        For a text that is not of the emitted subset, or a file that is no object file for x86-64 or lacks a function.
+        If the text is not of the subset that symrot emits, or the file is not an object file for x86-64 or lacks a
+        function.
     CompilerError
         If there is no ``objdump``.
     """
-    found = functions_of(text, where)
-    names = tuple(functions) or one_sample_functions(found)
-    unknown = [name for name in names if name not in found]
+    functions_in_text = functions_of(text, where)
+    names = tuple(functions) or one_sample_functions(functions_in_text)
+    unknown = [name for name in names if name not in functions_in_text]
     if unknown:
-        raise CertificateError(f"{where}: expected a definition of {unknown[0]}, got {', '.join(found)}")
-    shown = listing(path)
-    return tuple(compare_function(read_kernel(text, name, where), found[name], shown) for name in names)
+        raise CertificateError(f"{where}: expected a definition of {unknown[0]}, got {', '.join(functions_in_text)}")
+    listing = read_listing(path)
+    return tuple(compare_function(read_kernel(text, name, where), functions_in_text[name], listing) for name in names)
 
 
-def one_sample_functions(found: dict[str, Function]) -> tuple[str, ...]:
+def one_sample_functions(functions: dict[str, CFunction]) -> tuple[str, ...]:
     """Return the names of the functions that compute one sample."""
     return tuple(
         name
-        for name, function in found.items()
+        for name, function in functions.items()
         if function.returns == "void" and all(p.type != "size_t" for p in function.parameters)
     )
 
 
-def compare_function(text: Operations, function: Function, shown: Listing) -> ObjectVerdict:
+def compare_function(text: Operations, function: CFunction, listing: Listing) -> ObjectVerdict:
     """Compare the operations of a C function with the machine code of the same name."""
-    start = shown.function(function.name)
+    start = listing.function(function.name)
     masked = any(
         instruction.mnemonic == "and" and instruction.text.split(None, 1)[1].startswith("rsp,")
-        for instruction in shown.code.values()
+        for instruction in listing.code.values()
         if instruction.operands
     )
-    verdicts = [_compare(text, function, shown, start, top) for top in (TOPS if masked else TOPS[:1])]
+    verdicts = [
+        _compare(text, function, listing, start, top)
+        for top in (RETURN_ADDRESS_PLACES if masked else RETURN_ADDRESS_PLACES[:1])
+    ]
     order = (NOT_UNDERSTOOD, DIFFERS, CONTRACTED, IDENTICAL)
     return min(verdicts, key=lambda item: order.index(item.verdict))
 
 
-def _compare(text: Operations, function: Function, shown: Listing, start: tuple[str, int], top: int) -> ObjectVerdict:
+def _compare(
+    text: Operations, function: CFunction, listing: Listing, start: tuple[str, int], top: int
+) -> ObjectVerdict:
+    """Compare a function with its machine code, for one place of the return address on the stack."""
     width, terms = WIDTH[text.precision], Terms()
-    wanted = _terms_of(text, terms, width)
+    expected = _terms_from_operations(text, terms, width)
     pointers = [p for p in function.parameters if p.size > 0]
-    arrays = {p.name: Array(p.name, p.size * width // 8, not p.is_const) for p in pointers}
+    arrays = {p.name: ArrayArgument(p.name, p.size * width // 8, not p.is_const) for p in pointers}
     numbers = tuple(p.name for p in function.parameters if p.size == 0)
-    context = Context(terms, shown, width, arrays, top)
+    context = CallContext(terms, listing, width, arrays, top)
     worst, cases, instructions = IDENTICAL, 0, 0
     try:
-        for way in ways(arguments(context, tuple(arrays), numbers, start)):
-            instructions = max(instructions, way.instructions)
-            got = _outputs(way, text, terms, width)
-            got, known, split = _unfused(terms, got, way.known)
-            for output, reason in _cases(terms, text, wanted, got, known, known is not way.known):
+        for path in execution_paths(state_at_call(context, tuple(arrays), numbers, start)):
+            instructions = max(instructions, path.instructions)
+            outputs = _outputs(path, text, terms, width)
+            outputs, known, split = _unfused(terms, outputs, path.known)
+            for output, reason in _cases(terms, text, expected, outputs, known, known is not path.known):
                 cases += 1
                 if output or split:
                     reason = reason or f"the product {split} is rounded in one place and fused in another"
                     return ObjectVerdict(function.name, DIFFERS, output, reason, cases, instructions)
-                if cases > MOST_CASES:
-                    raise NotUnderstood(f"more than {MOST_CASES} cases of comparisons")
-            worst = CONTRACTED if known is not way.known else worst
+                if cases > MAX_CASES:
+                    raise NotUnderstood(f"more than {MAX_CASES} cases of comparisons")
+            worst = CONTRACTED if known is not path.known else worst
     except NotUnderstood as reason:
         return ObjectVerdict(function.name, NOT_UNDERSTOOD, "", str(reason), cases, instructions)
     return ObjectVerdict(function.name, worst, "", "", cases, instructions)
 
 
-def _terms_of(text: Operations, terms: Terms, width: int) -> list[int]:
-    """Return the outputs of the C text as terms."""
+def _terms_from_operations(text: Operations, terms: Terms, width: int) -> list[int]:
+    """Return the terms of the outputs of the C text."""
     known: list[int] = []
     binary = {"add": terms.add, "sub": terms.sub, "mul": terms.mul, "div": terms.div, "copysign": terms.copysign}
     unary = {"neg": terms.neg, "abs": terms.abs, "sqrt": terms.sqrt}
     for node in text.nodes:
-        taken = [known[place] for place in operands(node)]
+        arguments = [known[place] for place in operands(node)]
         kind = node[0]
         if kind == "in":
             known.append(terms.input(width, node[1]))
         elif kind == "const":
             known.append(terms.number(width, node[1]))
         elif kind == "call":
-            known.append(terms.call(node[1], width, taken))
+            known.append(terms.call(node[1], width, arguments))
         elif kind == "select":
-            known.append(terms.choose(terms.mask(width, RELATION[node[1]], *taken[:2]), *taken[2:]))
+            known.append(terms.choose(terms.mask(width, RELATION[node[1]], *arguments[:2]), *arguments[2:]))
         elif kind in unary:
-            known.append(unary[kind](*taken))
+            known.append(unary[kind](*arguments))
         else:
-            known.append(binary[kind](*taken))
+            known.append(binary[kind](*arguments))
     return [known[place] for _, place in text.outputs]
 
 
-def _outputs(way: Finished, text: Operations, terms: Terms, width: int) -> list[int]:
-    """Return the outputs as they stand in memory at the end of one way."""
-    found = []
+def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) -> list[int]:
+    """Return the terms that the output arrays hold at the end of one execution path."""
+    outputs = []
     for place, _ in text.outputs:
         name, index = place.removesuffix("]").split("[")
-        words = [way.memory.get((name, (int(index) * width + 32 * part) // 8)) for part in range(width // 32)]
+        words = [path.memory.get((name, (int(index) * width + 32 * part) // 8)) for part in range(width // 32)]
         if None in words:
-            raise NotUnderstood(f"an end at which {place} is not written")
-        found.append(words[0] if width == 32 else terms.join(*(word for word in words if word is not None)))
-    return [item for item in found if item is not None]
+            raise NotUnderstood(f"a path at whose end {place} is not written")
+        outputs.append(words[0] if width == 32 else terms.join(*(word for word in words if word is not None)))
+    return [item for item in outputs if item is not None]
 
 
 def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Known, str]:
-    """Return outputs and comparisons with every fused operation as two; and a product that is fused only in places."""
+    """Return outputs and comparisons with every fused operation split in two, and a product that was fused only partly.
+
+    The last is a product, as text, that is fused in one place and rounded in another, or whose comparison contradicts
+    another one; an empty text if there is none.
+    """
     pairs = [operand for pair in known for operand in pair]
     if not any(terms.kind(index) in ("fma", "fnma") for index in terms.order(got + pairs)):
         return got, known, ""
@@ -191,21 +205,24 @@ def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Kno
     split = _split_product(terms, got + pairs)
     for pair, outcomes in known.items():
         a, b = terms.rebuilt(pair, {}, fused=False)
-        turned_outcomes, *rounded = terms.compared(outcomes, a, b)
+        swapped_outcomes, *rounded = terms.compared(outcomes, a, b)
         place = (rounded[0], rounded[1])
-        merged[place] = merged.get(place, ANY) & turned_outcomes
-        split = split or ("" if merged[place] else shown_term(terms, a, 2))
+        merged[place] = merged.get(place, ANY) & swapped_outcomes
+        split = split or ("" if merged[place] else term_text(terms, a, 2))
     return terms.rebuilt(got, {}, fused=False), merged, split
 
 
 def _cases(
-    terms: Terms, text: Operations, wanted: list[int], got: list[int], known: Known, fused: bool
+    terms: Terms, text: Operations, expected: list[int], got: list[int], known: Known, fused: bool
 ) -> Iterable[tuple[str, str]]:
-    """Compare outputs in all cases that comparisons leave: of each, the first that differs and how, or nothing."""
+    """Compare the outputs in every case of the undecided comparisons.
+
+    Yields for each case the first output that differs and the reason, or two empty texts if all agree.
+    """
     waiting = [dict(known)]
     while waiting:
         case = waiting.pop()
-        first, second = terms.rebuilt(wanted, case), terms.rebuilt(got, case)
+        first, second = terms.rebuilt(expected, case), terms.rebuilt(got, case)
         if first == second or (fused and _apart_from_zeros(terms, first, second)):
             yield "", ""
             continue
@@ -220,29 +237,33 @@ def _cases(
 
 
 def _apart_from_zeros(terms: Terms, first: list[int], second: list[int]) -> bool:
-    """Return whether outputs are equal but for signs of zeros: gcc fuses -(a*b + c) into (-a)*b + (-c)."""
+    """Return whether outputs are equal except for signs of zeros: gcc fuses -(a*b + c) into (-a)*b + (-c)."""
     return terms.without_signs_of_zero(first) == terms.without_signs_of_zero(second)
 
 
 def _split_product(terms: Terms, roots: list[int]) -> str:
-    """Return a product that is rounded in one place and not in another: its error would not cancel where it did."""
+    """Return a product, as text, that is rounded in one place and fused in another; an empty text if there is none.
+
+    Where its rounding error cancels in the C text, it no longer cancels in the object code.
+    """
     below = terms.order(roots)
     fused = {terms.mul(*terms.nodes[index][2:4]) for index in below if terms.kind(index) in ("fma", "fnma")}
     both = [index for index in below if index in fused and terms.kind(index) == "mul" and not _is_exact(terms, index)]
-    return shown_term(terms, both[0], 2) if both else ""
+    return term_text(terms, both[0], 2) if both else ""
 
 
 def _is_exact(terms: Terms, product: int) -> bool:
+    """Return whether a product is exact because a factor is 2."""
     width = terms.width(product)
     return any(terms.constant(factor) == terms.constant(terms.number(width, Fraction(2)))
                for factor in terms.nodes[product][2:])  # fmt: skip
 
 
-def _difference(terms: Terms, want: int, have: int) -> str:
-    """Return where two terms part, as a sentence: the C text has one operation, the object code another."""
+def _difference(terms: Terms, expected: int, got: int) -> str:
+    """Return a sentence that shows the first operations in which the terms of C text and object code differ."""
     while True:
-        first, second = terms.operands(want), terms.operands(have)
-        left, right = terms.nodes[want], terms.nodes[have]
+        first, second = terms.operands(expected), terms.operands(got)
+        left, right = terms.nodes[expected], terms.nodes[got]
         if (
             not first
             or len(first) != len(second)
@@ -252,21 +273,21 @@ def _difference(terms: Terms, want: int, have: int) -> str:
         apart = [(a, b) for a, b in zip(first, second, strict=True) if a != b]
         if len(apart) != 1:
             break
-        want, have = apart[0]
-    return f"the C text has {shown_term(terms, want)}, the object code {shown_term(terms, have)}"
+        expected, got = apart[0]
+    return f"the C text has {term_text(terms, expected)}, the object code {term_text(terms, got)}"
 
 
-def shown_term(terms: Terms, index: int, depth: int = 3) -> str:
-    """Return a term as text, to a depth."""
+def term_text(terms: Terms, index: int, depth: int = 3) -> str:
+    """Return a term as text; operations nested deeper than ``depth`` are abbreviated."""
     node = terms.nodes[index]
     kind = node[0]
     if kind == "in":
         return str(node[2])
     if kind == "bits":
-        return repr(value_of(node[2], node[1]))
+        return repr(number_from_bits(node[2], node[1]))
     if kind in ("token", "address", "unknown"):
         return {"token": str(node[2]), "unknown": "a value that nobody set"}.get(kind, f"the address of {node[2]}")
     if depth == 0:
         return ".."
     name = str(node[2]) if kind == "call" else kind
-    return f"{name}({', '.join(shown_term(terms, operand, depth - 1) for operand in terms.operands(index))})"
+    return f"{name}({', '.join(term_text(terms, operand, depth - 1) for operand in terms.operands(index))})"

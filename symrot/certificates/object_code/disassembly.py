@@ -1,7 +1,7 @@
-"""An object file as ``objdump`` shows it: its instructions, its constants and where its relocations point.
+"""Read an object file through ``objdump``: its instructions, its constants and the targets of its relocations.
 
-Only what ``objdump`` prints is read, and every line of it must be understood; the file itself is never opened. Nothing
-here knows what an instruction does (:mod:`symrot.certificates.object_code.machine`).
+Only the output of ``objdump`` is read, and a line that cannot be parsed is an error; the file itself is never opened.
+The meaning of instructions is defined in :mod:`symrot.certificates.object_code.machine`.
 """
 
 import re
@@ -14,20 +14,30 @@ from pathlib import Path
 from symrot.certificates.tools import run_tool
 from symrot.errors import CertificateError, CompilerError
 
-__all__ = ["Constant", "Instruction", "Listing", "Memory", "Operand", "Register", "Relocation", "listing", "missing"]
+__all__ = [
+    "Constant",
+    "Instruction",
+    "Listing",
+    "Memory",
+    "Operand",
+    "Register",
+    "Relocation",
+    "read_listing",
+    "why_no_objdump",
+]
 
 FORMAT = "elf64-x86-64"
 SECONDS = 60
-"""In which objdump has to answer."""
+"""The time that objdump may take."""
 
 SIZES = {"BYTE": 1, "WORD": 2, "DWORD": 4, "QWORD": 8, "XMMWORD": 16, "YMMWORD": 32}
 RELATIVE = (
     "R_X86_64_PC32",
     "R_X86_64_PLT32",
-)  # both: symbol + addend - place, in a linked program or through its table
+)  # both are symbol + addend - place, after linking directly or through the procedure linkage table
 INDIRECT = ("R_X86_64_GOTPCREL", "R_X86_64_GOTPCRELX", "R_X86_64_REX_GOTPCRELX")
 _PREFIXES = {"rep", "repz", "bnd", "notrack", "data16", "cs", "ds"}
-_PREFIXED = {"nop", "ret", "jmp", "call"}  # where prefixes change nothing
+_PREFIXED = {"nop", "ret", "jmp", "call"}  # instructions whose effect these prefixes do not change
 
 _HEAD = re.compile(r"[0-9a-f]+ <(?P<name>.+)>:")
 _LINE = re.compile(r"\s*(?P<address>[0-9a-f]+):\t(?P<bytes>(?:[0-9a-f]{2} )+)\s*(?:\t(?P<text>.*))?")
@@ -47,21 +57,21 @@ _PART = re.compile(r"(?P<sign>[+-]?)(?:(?P<register>[a-z]\w*)(?:\*(?P<scale>[124
 
 @dataclass(frozen=True)
 class Register:
-    """A register by the name that the instruction uses."""
+    """A register operand, by the name that the instruction uses."""
 
     name: str
 
 
 @dataclass(frozen=True)
 class Constant:
-    """A number inside an instruction, or the address of a jump."""
+    """An immediate operand: a number inside an instruction, or the target address of a jump."""
 
     value: int
 
 
 @dataclass(frozen=True)
 class Memory:
-    """``size`` bytes at base + index*scale + offset; ``size`` is 0 where the instruction does not say."""
+    """A memory operand: ``size`` bytes at base + index*scale + offset; size 0 where the instruction names none."""
 
     size: int
     segment: str
@@ -76,7 +86,7 @@ Operand = Register | Constant | Memory
 
 @dataclass(frozen=True)
 class Relocation:
-    """What the linker will write into an instruction: ``addend`` already counts from the instruction's end."""
+    """An address that the linker will write into an instruction; ``addend`` is relative to the instruction's end."""
 
     kind: str
     symbol: str
@@ -85,7 +95,7 @@ class Relocation:
 
 @dataclass(frozen=True)
 class Instruction:
-    """One instruction of a section, at an address, ``size`` bytes long."""
+    """One machine instruction: its section and address, its length ``size`` in bytes, and its operands."""
 
     section: str
     address: int
@@ -98,20 +108,20 @@ class Instruction:
 
 @dataclass(frozen=True)
 class Listing:
-    """All that is read of an object file."""
+    """The content of an object file: instructions, symbols and constants."""
 
     where: str
     code: Mapping[tuple[str, int], Instruction]
-    symbols: Mapping[str, tuple[str, int]]  # name -> section, offset; section "" where another file defines it
-    constants: Mapping[str, bytes]  # sections that are read only and need no relocation
+    symbols: Mapping[str, tuple[str, int]]  # name -> section, offset; section "" if another file defines it
+    constants: Mapping[str, bytes]  # name of a read-only section without relocations -> its bytes
 
     def function(self, name: str) -> tuple[str, int]:
-        """Return section and address of a function.
+        """Return the section and address of a function.
 
         Raises
         ------
         CertificateError
-            If the file does not define it.
+            If the object file does not define it.
         """
         section, address = self.symbols.get(name, ("", 0))
         if (section, address) in self.code:
@@ -124,14 +134,14 @@ class Listing:
         raise CertificateError(f"{self.where}: expected machine code of {name}, got {why}")
 
 
-def missing() -> str:
-    """Return an empty text, or the sentence that says why no object file can be read."""
+def why_no_objdump() -> str:
+    """Return a sentence that says why object files cannot be read here; an empty text if they can."""
     return (
         "" if shutil.which("objdump") else "reading object code needs objdump (GNU binutils), which is not on the path"
     )
 
 
-def listing(path: Path) -> Listing:
+def read_listing(path: Path) -> Listing:
     """Return the code and the constants of a relocatable object file (``cc -c``) for x86-64 ELF.
 
     Raises
@@ -139,22 +149,24 @@ def listing(path: Path) -> Listing:
     CompilerError
         If there is no ``objdump``.
     CertificateError
-        If the file is none, is for another machine, is linked already, or holds something that is not understood.
+        If the file is missing, is for another machine, is linked already, or has content that cannot be parsed.
     """
-    if missing():
-        raise CompilerError(missing())
+    if why_no_objdump():
+        raise CompilerError(why_no_objdump())
     where = path.name
     if not path.is_file():
         got = "a folder" if path.is_dir() else "another kind of file" if path.exists() else "none"
         raise CertificateError(f"{path}: expected an object file, got {got}")
     if not path.stat().st_size:
         raise CertificateError(f"{path}: expected an object file, got an empty one")
-    shown = _objdump(path, "-f")
-    if "In archive " in shown:
+    header = _objdump(path, "-f")
+    if "In archive " in header:
         raise CertificateError(f"{where}: expected one object file as `cc -c` makes it, got an archive of them")
-    found = re.search(r"file format (\S+)", shown)
-    if found is None or found[1] != FORMAT or "DYNAMIC" in shown or "EXEC_P" in shown:
-        kind = f"{found[1]}{', linked' if found[1] == FORMAT else ''}" if found else "no object code"
+    format_match = re.search(r"file format (\S+)", header)
+    if format_match is None or format_match[1] != FORMAT or "DYNAMIC" in header or "EXEC_P" in header:
+        kind = (
+            f"{format_match[1]}{', linked' if format_match[1] == FORMAT else ''}" if format_match else "no object code"
+        )
         raise CertificateError(f"{where}: expected an object file as `cc -c` makes it for {FORMAT}, got {kind}")
     symbols = _symbols(_objdump(path, "-t", "-w"), where)
     return Listing(
@@ -163,6 +175,7 @@ def listing(path: Path) -> Listing:
 
 
 def _objdump(path: Path, *options: str) -> str:
+    """Run objdump on a file and return its output."""
     environment = {"LC_ALL": "C", "PATH": _search_path()}
     command = ["objdump", *options, "--", str(path)]
     done = run_tool(command, SECONDS, environment=environment)
@@ -180,20 +193,22 @@ def _search_path() -> str:
 
 
 def _symbols(text: str, where: str) -> dict[str, tuple[str, int]]:
-    found: dict[str, tuple[str, int]] = {}
+    """Return the symbol table: name -> section and offset."""
+    symbols: dict[str, tuple[str, int]] = {}
     for line in text.splitlines():
         match = _SYMBOL.fullmatch(line)
-        if match is None or "f" in match["flags"]:  # the name of a source file is no place
+        if match is None or "f" in match["flags"]:  # a line without a symbol, or the name of a source file
             continue
         section = {"*UND*": "", "*COM*": "*COM*"}.get(match["section"], match["section"])
         place = (section, int(match["value"], 16))
-        if found.setdefault(match["name"], place) != place:
+        if symbols.setdefault(match["name"], place) != place:
             raise CertificateError(f"{where}: expected one place for the symbol {match['name']!r}, got two")
-    return found
+    return symbols
 
 
 def _constants(path: Path, where: str) -> dict[str, bytes]:
-    found: dict[str, bytes] = {}
+    """Return the bytes of the read-only sections that need no relocation."""
+    constants: dict[str, bytes] = {}
     for line in _objdump(path, "-h", "-w").splitlines():
         match = _SECTION.fullmatch(line)
         if match is None:
@@ -203,19 +218,20 @@ def _constants(path: Path, where: str) -> dict[str, bytes]:
             continue
         name, size = match["name"], int(match["size"], 16)
         content = bytearray()
-        for shown in _objdump(path, "-s", "-j", name).splitlines():
-            row = _BYTES.match(shown)
+        for dumped in _objdump(path, "-s", "-j", name).splitlines():
+            row = _BYTES.match(dumped)
             if row is not None:
                 if int(row["address"], 16) != len(content):
                     raise CertificateError(f"{where}: expected the bytes of {name} in order")
                 content += bytes.fromhex(row["words"])
         if len(content) != size:
             raise CertificateError(f"{where}: expected {size} bytes in {name}, objdump shows {len(content)}")
-        found[name] = bytes(content)
-    return found
+        constants[name] = bytes(content)
+    return constants
 
 
 def _code(text: str, where: str) -> dict[tuple[str, int], Instruction]:
+    """Return the instructions of all sections, by section and address."""
     rows: list[tuple[str, int, bytes, str]] = []
     relocations: dict[tuple[str, int], tuple[str, str, int]] = {}
     section = ""
@@ -233,10 +249,10 @@ def _code(text: str, where: str) -> dict[tuple[str, int], Instruction]:
                 raise CertificateError(f"{where}: expected a line of objdump, got {body.strip()[:80]!r}")
         if row is not None:
             rows.append((section, int(row["address"], 16), bytes.fromhex(row["bytes"]), row["text"] or "(bad)"))
-        for found in [alone, *(_RELOCATION.fullmatch(item) for item in relocated)]:
-            if found is not None:
-                plus = int(found["plus"] or "0", 16)
-                relocations[section, int(found["address"], 16)] = (found["kind"], found["symbol"], plus)
+        for relocation in [alone, *(_RELOCATION.fullmatch(item) for item in relocated)]:
+            if relocation is not None:
+                plus = int(relocation["plus"] or "0", 16)
+                relocations[section, int(relocation["address"], 16)] = (relocation["kind"], relocation["symbol"], plus)
     code = {(row[0], row[1]): _instruction(*row, relocations, where) for row in rows}
     if len(code) != len(rows):
         raise CertificateError(f"{where}: expected one instruction at a place, got two sections of one name")
@@ -247,6 +263,7 @@ def _instruction(
     section: str, address: int, content: bytes, text: str,
     relocations: Mapping[tuple[str, int], tuple[str, str, int]], where: str,
 ) -> Instruction:  # fmt: skip
+    """Return one instruction from a line of disassembly and the relocations inside it."""
     inside = [
         (at, relocations[section, at]) for at in range(address, address + len(content)) if (section, at) in relocations
     ]
@@ -271,12 +288,13 @@ def _instruction(
 
 @cache
 def _operands(text: str) -> tuple[Operand, ...] | None:
-    """Return the operands, or None where one is not understood."""
-    found = [_operand(item.strip()) for item in text.split(",")]
-    return None if None in found else tuple(item for item in found if item is not None)
+    """Return the operands of an instruction, or None if one of them cannot be parsed."""
+    operands = [_operand(item.strip()) for item in text.split(",")]
+    return None if None in operands else tuple(item for item in operands if item is not None)
 
 
 def _operand(text: str) -> Operand | None:
+    """Return an operand in Intel syntax, or None if it cannot be parsed."""
     if re.fullmatch(r"-?0x[0-9a-f]+|[0-9a-f]+|\d+", text) and not re.fullmatch(r"[a-d][hl]", text):
         return Constant(int(text, 16))
     if re.fullmatch(r"[a-z]\w*", text):
@@ -291,6 +309,7 @@ def _operand(text: str) -> Operand | None:
 
 
 def _address(inside: str, size: int, segment: str) -> Memory | None:
+    """Return a memory operand from the text between its brackets, or None if it cannot be parsed."""
     base = index = ""
     scale, offset, position = 1, 0, 0
     while position < len(inside):

@@ -1,21 +1,21 @@
-"""What the instructions on whole numbers and addresses do, and where any instruction finds its operands."""
+"""Execute instructions on integers and addresses, and read and write the operands of any instruction."""
 
 from collections.abc import Callable
 
 from symrot.certificates.object_code.disassembly import INDIRECT, RELATIVE, Constant, Instruction, Memory, Register
-from symrot.certificates.object_code.state import GENERAL, STACK, NotUnderstood, State, Words
+from symrot.certificates.object_code.state import GENERAL, STACK, MachineState, NotUnderstood, Words
 from symrot.certificates.object_code.terms import Outcomes
 
 __all__ = [
     "CONDITIONS",
     "INTEGERS",
-    "holds",
-    "linked",
+    "condition_holds",
+    "memory_place",
     "operands_of",
-    "place_of",
-    "popped",
+    "pop_words",
     "read",
-    "stack_of",
+    "relocated_place",
+    "stack_place",
     "symbol_of",
     "write",
 ]
@@ -42,36 +42,37 @@ OF_INTEGERS: dict[str, Callable[[int, int, int, int], bool]] = {  # zero, sign, 
 CONDITIONS = set(OF_NUMBERS) | set(OF_INTEGERS)
 
 
-def place_of(state: State, instruction: Instruction, operand: Memory) -> tuple[str, int]:
+def memory_place(state: MachineState, instruction: Instruction, operand: Memory) -> tuple[str, int]:
+    """Return the base and offset of a memory operand, which may be relative to the instruction pointer."""
     if operand.base != "rip":
         return state.address(operand)
     if operand.segment or operand.index:
-        raise NotUnderstood(f"segment {operand.segment}")
-    return linked(state, instruction, RELATIVE)
+        raise NotUnderstood(f"an address in the segment {operand.segment}")
+    return relocated_place(state, instruction, RELATIVE)
 
 
-def linked(state: State, instruction: Instruction, kinds: tuple[str, ...]) -> tuple[str, int]:
-    """Return base and offset that a relocation points to; base "" for what another file defines."""
+def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[str, ...]) -> tuple[str, int]:
+    """Return the base and offset to which a relocation points; the base is "" if another file defines the symbol."""
     relocation = instruction.relocation
     if relocation is None or relocation.kind not in kinds:
-        raise NotUnderstood("an address without a relocation of a kind that is known")
+        raise NotUnderstood("an address without a relocation of a known kind")
     place = state.context.listing.symbols.get(relocation.symbol)
     if place is None:
-        raise NotUnderstood(f"the symbol {relocation.symbol}")
+        raise NotUnderstood(f"the unknown symbol {relocation.symbol}")
     section, offset = place
     return (f"section {section}", offset + relocation.addend) if section else ("", relocation.addend)
 
 
-def symbol_of(state: State, instruction: Instruction) -> int:
-    """Return the address of what another file defines, as the table of the linker holds it."""
-    base, offset = linked(state, instruction, INDIRECT)
+def symbol_of(state: MachineState, instruction: Instruction) -> int:
+    """Return the address of a symbol that another file defines, read from the global offset table."""
+    base, offset = relocated_place(state, instruction, INDIRECT)
     if base or offset or instruction.relocation is None:
         raise NotUnderstood("an address that only the linker knows")
     return state.context.terms.address(f"symbol {instruction.relocation.symbol}", 0)
 
 
-def read(state: State, instruction: Instruction, operand: object, size: int) -> Words:
-    """Return the words of a general register, of memory or of a constant."""
+def read(state: MachineState, instruction: Instruction, operand: object, size: int) -> Words:
+    """Return the words of a source operand: a general register, memory or a constant."""
     if isinstance(operand, Register):
         if GENERAL.get(operand.name, ("", 0))[1] != size:
             raise NotUnderstood(f"{operand.name} as {size} bytes")
@@ -86,43 +87,44 @@ def read(state: State, instruction: Instruction, operand: object, size: int) -> 
         return state.halves(symbol_of(state, instruction))
     if operand.size not in (size, 0) or size < 4:
         raise NotUnderstood(f"{operand.size} bytes of memory")
-    return state.load(*place_of(state, instruction, operand), size // 4)
+    return state.load(*memory_place(state, instruction, operand), size // 4)
 
 
-def write(state: State, instruction: Instruction, operand: object, words: Words) -> None:
+def write(state: MachineState, instruction: Instruction, operand: object, words: Words) -> None:
+    """Write words to a destination operand: a general register or memory."""
     if isinstance(operand, Register):
         state.set_register(operand.name, words)
     elif isinstance(operand, Memory) and operand.size == 4 * len(words):
-        state.store(*place_of(state, instruction, operand), words)
+        state.store(*memory_place(state, instruction, operand), words)
     else:
-        raise NotUnderstood("where it writes")
+        raise NotUnderstood("a destination of an unexpected kind")
 
 
 def _size(instruction: Instruction) -> int:
-    """Return the bytes of the first operand that tells."""
+    """Return the operand size of an instruction in bytes, from its first operand that has a size."""
     for operand in instruction.operands:
         if isinstance(operand, Register) and operand.name in GENERAL:
             return GENERAL[operand.name][1]
         if isinstance(operand, Memory) and operand.size:
             return operand.size
-    raise NotUnderstood("the size of its operands")
+    raise NotUnderstood("operands of unknown size")
 
 
-# --- whole numbers and addresses --------------------------------------------------------------------------------------
+# --- integers and addresses -------------------------------------------------------------------------------------------
 
 
-def _mov(state: State, instruction: Instruction) -> None:
+def _mov(state: MachineState, instruction: Instruction) -> None:
     target, source = operands_of(instruction, 2)
     write(state, instruction, target, read(state, instruction, source, _size(instruction)))
 
 
-def _lea(state: State, instruction: Instruction) -> None:
+def _lea(state: MachineState, instruction: Instruction) -> None:
     target, source = operands_of(instruction, 2)
     if not isinstance(source, Memory) or _size(instruction) != 8:
         raise NotUnderstood("an address of less than 64 bits")
     terms = state.context.terms
     try:
-        base, offset = place_of(state, instruction, source)
+        base, offset = memory_place(state, instruction, source)
         words = state.halves(terms.address(base, offset))
     except NotUnderstood:
         parts = [
@@ -137,13 +139,14 @@ def _lea(state: State, instruction: Instruction) -> None:
 
 
 def operands_of(instruction: Instruction, count: int) -> tuple[object, ...]:
+    """Return the operands of an instruction; raise NotUnderstood if their number is not ``count``."""
     if len(instruction.operands) != count:
         raise NotUnderstood(f"{len(instruction.operands)} operands")
     return instruction.operands
 
 
-def _arithmetic(name: str) -> Callable[[State, Instruction], None]:
-    def arithmetic(state: State, instruction: Instruction) -> None:
+def _arithmetic(name: str) -> Callable[[MachineState, Instruction], None]:
+    def arithmetic(state: MachineState, instruction: Instruction) -> None:
         target, source = operands_of(instruction, 2)
         size = _size(instruction)
         if size == 1:
@@ -158,24 +161,25 @@ def _arithmetic(name: str) -> Callable[[State, Instruction], None]:
     return arithmetic
 
 
-def _byte_test(state: State, instruction: Instruction, name: str) -> None:
-    """test al, al and the like, of a byte that is known."""
+def _byte_test(state: MachineState, instruction: Instruction, name: str) -> None:
+    """Execute ``test al, al`` and the like, whose byte must have a known value."""
     target, source = instruction.operands
     if name not in ("test", "or", "and") or target != source or not isinstance(target, Register):
-        raise NotUnderstood("single bytes")
+        raise NotUnderstood("an operation on single bytes")
     value = _known_byte(state, target.name)
     state.flags = ("integers", (int(value == 0), value >> 7, 0, 0))
 
 
-def _known_byte(state: State, name: str) -> int:
+def _known_byte(state: MachineState, name: str) -> int:
     whole, size = GENERAL.get(name, ("", 0))
     low = state.context.terms.lowest_byte(state.general[whole][0]) if size == 1 else None
     if low is None:
-        raise NotUnderstood("single bytes")
+        raise NotUnderstood("an operation on single bytes")
     return low
 
 
-def _computed(state: State, name: str, first: Words, second: Words) -> tuple[Words, tuple[str, tuple[int, ...]]]:
+def _computed(state: MachineState, name: str, first: Words, second: Words) -> tuple[Words, tuple[str, tuple[int, ...]]]:
+    """Return the result of an operation on integers or addresses, and the flags after it."""
     terms, bits = state.context.terms, 32 * len(first)
     x, y = state.integer(first), state.integer(second)
     a, b = state.whole(first), state.whole(second)
@@ -194,7 +198,7 @@ def _computed(state: State, name: str, first: Words, second: Words) -> tuple[Wor
         return state.halves(terms.address(node[2], offset)), unknown
     if name in ("and", "or", "xor"):
         return state.halves({"and": terms.bit_and, "or": terms.bit_or, "xor": terms.bit_xor}[name](a, b)), unknown
-    raise NotUnderstood("whole numbers that are not known")
+    raise NotUnderstood("integers whose values are not known")
 
 
 _INTEGER: dict[str, Callable[[int, int], int]] = {
@@ -205,7 +209,7 @@ _INTEGER: dict[str, Callable[[int, int], int]] = {
 
 
 def _flags(name: str, x: int, y: int, value: int, bits: int) -> tuple[int, int, int, int]:
-    """Return zero, sign, carry and overflow."""
+    """Return the flags zero, sign, carry and overflow after an operation on integers."""
     top = bits - 1
     carry = overflow = 0
     if name in ("sub", "cmp"):
@@ -215,10 +219,10 @@ def _flags(name: str, x: int, y: int, value: int, bits: int) -> tuple[int, int, 
     return int(value == 0), value >> top, carry, overflow
 
 
-def _one(name: str, number: int) -> Callable[[State, Instruction], None]:
-    """Return inc, dec and shifts by one place."""
+def _one(name: str, number: int) -> Callable[[MachineState, Instruction], None]:
+    """Return the effect of inc or dec: adding or subtracting a constant."""
 
-    def step(state: State, instruction: Instruction) -> None:
+    def step(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)
         size = _size(instruction)
         constant = read(state, instruction, Constant(number), size)
@@ -229,12 +233,12 @@ def _one(name: str, number: int) -> Callable[[State, Instruction], None]:
     return step
 
 
-def _shift(name: str) -> Callable[[State, Instruction], None]:
-    def shift(state: State, instruction: Instruction) -> None:
+def _shift(name: str) -> Callable[[MachineState, Instruction], None]:
+    def shift(state: MachineState, instruction: Instruction) -> None:
         target, count = instruction.operands if len(instruction.operands) == 2 else (*instruction.operands, Constant(1))
         size = _size(instruction)
         if not isinstance(count, Constant) or count.value >= 8 * size:
-            raise NotUnderstood("a shift by what is no constant")
+            raise NotUnderstood("a shift by an amount that is not constant")
         words, _ = _computed(state, name, read(state, instruction, target, size), read(state, instruction, count, size))
         write(state, instruction, target, words)
         state.flags = ("unknown", ())
@@ -242,11 +246,11 @@ def _shift(name: str) -> Callable[[State, Instruction], None]:
     return shift
 
 
-def _imul(state: State, instruction: Instruction) -> None:
+def _imul(state: MachineState, instruction: Instruction) -> None:
     target, *sources = instruction.operands
     size = _size(instruction)
     if not 1 <= len(sources) <= 2:
-        raise NotUnderstood("its operands")
+        raise NotUnderstood("operands of an unexpected kind")
     first, second = (
         read(state, instruction, item, size) for item in (sources if len(sources) == 2 else (target, *sources))
     )
@@ -255,57 +259,59 @@ def _imul(state: State, instruction: Instruction) -> None:
     state.flags = ("unknown", ())
 
 
-def _push(state: State, instruction: Instruction) -> None:
+def _push(state: MachineState, instruction: Instruction) -> None:
     (source,) = operands_of(instruction, 1)
     words = read(state, instruction, source, 8)
-    base, offset = stack_of(state)
+    base, offset = stack_place(state)
     state.store(base, offset - 8, words)
     state.general["rsp"] = state.halves(state.context.terms.address(base, offset - 8))
 
 
-def _pop(state: State, instruction: Instruction) -> None:
+def _pop(state: MachineState, instruction: Instruction) -> None:
     (target,) = operands_of(instruction, 1)
-    write(state, instruction, target, popped(state))
+    write(state, instruction, target, pop_words(state))
 
 
-def popped(state: State) -> Words:
-    base, offset = stack_of(state)
+def pop_words(state: MachineState) -> Words:
+    """Pop 8 bytes from the stack and return their words."""
+    base, offset = stack_place(state)
     words = state.load(base, offset, 2)
     state.general["rsp"] = state.halves(state.context.terms.address(base, offset + 8))
     return words
 
 
-def stack_of(state: State) -> tuple[str, int]:
+def stack_place(state: MachineState) -> tuple[str, int]:
+    """Return the base and offset to which the stack pointer points."""
     node = state.context.terms.nodes[state.whole(state.general["rsp"])]
     if node[0] != "address" or node[2] != STACK:
-        raise NotUnderstood("a stack pointer that is none")
+        raise NotUnderstood("a stack pointer that does not point into the stack")
     return node[2], node[3]
 
 
-def _leave(state: State, instruction: Instruction) -> None:
+def _leave(state: MachineState, instruction: Instruction) -> None:
     state.general["rsp"] = list(state.general["rbp"])
-    state.general["rbp"] = popped(state)
+    state.general["rbp"] = pop_words(state)
 
 
-def holds(state: State, condition: str) -> bool:
-    """Return whether a condition holds after the last comparison."""
+def condition_holds(state: MachineState, condition: str) -> bool:
+    """Return whether a condition code holds for the current flags."""
     kind, values = state.flags
     if kind == "numbers" and condition in OF_NUMBERS:
         return state.decide(OF_NUMBERS[condition], values[0], values[1])
     if kind == "integers" and condition in OF_INTEGERS:
         zero, sign, carry, overflow = values
         return bool(OF_INTEGERS[condition](zero, sign, carry, overflow))
-    raise NotUnderstood("a condition that is not known")
+    raise NotUnderstood("a condition whose outcome is not known")
 
 
-def _set(condition: str) -> Callable[[State, Instruction], None]:
-    def set_byte(state: State, instruction: Instruction) -> None:
+def _set(condition: str) -> Callable[[MachineState, Instruction], None]:
+    def set_byte(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)
         if not isinstance(target, Register) or GENERAL.get(target.name, ("", 0))[1] != 1:
-            raise NotUnderstood("single bytes")
+            raise NotUnderstood("an operation on single bytes")
         whole, terms = GENERAL[target.name][0], state.context.terms
         low = terms.constant(state.general[whole][0])
-        is_set = holds(state, condition)
+        is_set = condition_holds(state, condition)
         if low is None:
             state.general[whole][0] = terms.unknown(int(is_set))
         else:
@@ -314,25 +320,25 @@ def _set(condition: str) -> Callable[[State, Instruction], None]:
     return set_byte
 
 
-def _movzx(state: State, instruction: Instruction) -> None:
+def _movzx(state: MachineState, instruction: Instruction) -> None:
     target, source = operands_of(instruction, 2)
     if not isinstance(source, Register) or not isinstance(target, Register):
-        raise NotUnderstood("single bytes")
+        raise NotUnderstood("an operation on single bytes")
     byte = _known_byte(state, source.name)
     state.set_register(target.name, read(state, instruction, Constant(byte), GENERAL[target.name][1]))
 
 
-def _cmov(condition: str) -> Callable[[State, Instruction], None]:
-    def cmov(state: State, instruction: Instruction) -> None:
+def _cmov(condition: str) -> Callable[[MachineState, Instruction], None]:
+    def cmov(state: MachineState, instruction: Instruction) -> None:
         target, source = operands_of(instruction, 2)
         size = _size(instruction)
-        chosen = source if holds(state, condition) else target
+        chosen = source if condition_holds(state, condition) else target
         write(state, instruction, target, read(state, instruction, chosen, size))
 
     return cmov
 
 
-INTEGERS: dict[str, Callable[[State, Instruction], None]] = {
+INTEGERS: dict[str, Callable[[MachineState, Instruction], None]] = {
     "mov": _mov, "movabs": _mov, "lea": _lea, "imul": _imul, "push": _push, "pop": _pop, "leave": _leave,
     "movzx": _movzx, "inc": _one("add", 1), "dec": _one("sub", 1), "shl": _shift("shl"), "sal": _shift("shl"),
     "shr": _shift("shr"),

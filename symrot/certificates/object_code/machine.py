@@ -1,8 +1,8 @@
-"""Run a function of an object file on terms: every way through it, each with what its comparisons have shown.
+"""Execute a function of an object file on symbolic terms, along every path that its comparisons of numbers allow.
 
-Whole numbers and addresses must be known, so that loops and tables are followed as they are; a comparison of numbers
-that is not known is followed both ways. Whatever is not in the tables, or leaves the stack, the registers or an array
-in a state that the calling convention (System V, x86-64) forbids, is not understood.
+Integers and addresses must have known values, so that loops and tables are followed as they are. A comparison of
+numbers whose outcome is not known is followed both ways. An instruction that is in no table, or a state of stack,
+registers or arrays that the calling convention (System V, x86-64) forbids, raises :class:`NotUnderstood`.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -12,34 +12,42 @@ from symrot.certificates.object_code.disassembly import RELATIVE, Constant, Inst
 from symrot.certificates.object_code.integers import (
     CONDITIONS,
     INTEGERS,
-    holds,
-    linked,
+    condition_holds,
     operands_of,
-    popped,
+    pop_words,
     read,
-    stack_of,
+    relocated_place,
+    stack_place,
 )
-from symrot.certificates.object_code.moves import vector
-from symrot.certificates.object_code.state import STACK, Context, NotUnderstood, Split, State, Words
+from symrot.certificates.object_code.moves import run_vector_instruction
+from symrot.certificates.object_code.state import (
+    STACK,
+    CallContext,
+    MachineState,
+    NotUnderstood,
+    UndecidedBranch,
+    Words,
+)
 from symrot.certificates.object_code.terms import Outcomes, Terms
 
-__all__ = ["Finished", "arguments", "ways"]
+__all__ = ["ExecutionPath", "execution_paths", "state_at_call"]
 
-LONGEST, MOST = 100_000, 4096  # instructions on one way, ways
-SAVED = ("rbx", "rbp", "r12", "r13", "r14", "r15")
-LOST = ("rax", "rcx", "rdx", "rsi", "rdi", "r8", "r9", "r10", "r11")
+MAX_INSTRUCTIONS = 100_000  # on one path
+MAX_PATHS = 4096  # through one function
+CALLEE_SAVED = ("rbx", "rbp", "r12", "r13", "r14", "r15")
+CALLER_SAVED = ("rax", "rcx", "rdx", "rsi", "rdi", "r8", "r9", "r10", "r11")
 POINTERS = ("rdi", "rsi", "rdx", "rcx", "r8", "r9")
 LIBRARY = {"sin": 1, "cos": 1, "tan": 1, "asin": 1, "acos": 1, "atan": 1, "atan2": 2, "exp": 1, "log": 1, "sinh": 1,
            "cosh": 1, "tanh": 1}  # fmt: skip
 EXACT: dict[str, tuple[int, Callable[..., int]]] = {
     "sqrt": (1, Terms.sqrt), "fabs": (1, Terms.abs), "copysign": (2, Terms.copysign),
 }  # fmt: skip
-NOTHING = {"nop", "endbr64"}
+NO_OPERATION = {"nop", "endbr64"}
 
 
 @dataclass(frozen=True)
-class Finished:
-    """A function at its end: what was written, and the comparisons on the way there."""
+class ExecutionPath:
+    """One path through a function: the memory at its end, and the outcomes of comparisons that lead there."""
 
     memory: Mapping[tuple[str, int], int]
     known: Mapping[tuple[int, int], Outcomes]
@@ -47,11 +55,13 @@ class Finished:
     visited: frozenset[tuple[str, int]]
 
 
-def arguments(context: Context, names: tuple[str, ...], numbers: tuple[str, ...], start: tuple[str, int]) -> State:
-    """Return the machine at the call of a function: arrays by name, then numbers."""
+def state_at_call(
+    context: CallContext, names: tuple[str, ...], numbers: tuple[str, ...], start: tuple[str, int]
+) -> MachineState:
+    """Return the state of the machine when a function is called, with its arrays by name, then its numbers."""
     terms = context.terms
-    state = State(context, start, {}, {})
-    for name in (*LOST, *SAVED, "rsp"):
+    state = MachineState(context, start, {}, {})
+    for name in (*CALLER_SAVED, *CALLEE_SAVED, "rsp"):
         state.general[name] = state.halves(terms.token(f"{name} at the call"))
     for number in range(32):
         state.vector[f"ymm{number}"] = [terms.unknown() for _ in range(8)]
@@ -73,49 +83,50 @@ def arguments(context: Context, names: tuple[str, ...], numbers: tuple[str, ...]
     return state
 
 
-def ways(state: State) -> Iterator[Finished]:
-    """Follow a function from its call to all its ends.
+def execution_paths(state: MachineState) -> Iterator[ExecutionPath]:
+    """Yield every path through a function, from its call to a return.
 
     Raises
     ------
     NotUnderstood
-        With the instruction and its address.
+        Naming the instruction that cannot be followed, and its address.
     """
     waiting, count = [(state, 0, frozenset[tuple[str, int]]())], 0
     while waiting:
         current, steps, visited = waiting.pop()
         count += 1
-        if count > MOST:
-            raise NotUnderstood(f"more than {MOST} ways through the function")
+        if count > MAX_PATHS:
+            raise NotUnderstood(f"more than {MAX_PATHS} paths through the function")
         seen = set(visited)
         try:
             while current.at != ("", 0):
                 seen.add(current.at)
-                _step(current)
+                _run_step(current)
                 steps += 1
-                if steps > LONGEST:
-                    raise NotUnderstood(f"more than {LONGEST} instructions")
-        except Split as split:
-            for outcomes in reversed(split.ways):
+                if steps > MAX_INSTRUCTIONS:
+                    raise NotUnderstood(f"more than {MAX_INSTRUCTIONS} instructions")
+        except UndecidedBranch as split:
+            for outcomes in reversed(split.branches):
                 waiting.append((current.branch(split.pair, outcomes), steps, frozenset(seen)))
             continue
-        yield Finished(current.memory, current.known, steps, frozenset(seen))
+        yield ExecutionPath(current.memory, current.known, steps, frozenset(seen))
 
 
-def _step(state: State) -> None:
+def _run_step(state: MachineState) -> None:
+    """Execute the instruction at which the machine is; name it in the error if it is not understood."""
     instruction = state.context.listing.code.get(state.at)
     if instruction is None:
         raise NotUnderstood(f"no instruction at {state.at[1]:#x} of {state.at[0]}")
     try:
-        state.at = _run(state, instruction)
+        state.at = _run_instruction(state, instruction)
     except NotUnderstood as reason:
         raise NotUnderstood(
             f"{instruction.text!r} at {instruction.address:#x} of {instruction.section}: {reason}"
         ) from None
 
 
-def _run(state: State, instruction: Instruction) -> tuple[str, int]:
-    """Do one instruction and return where the next one is."""
+def _run_instruction(state: MachineState, instruction: Instruction) -> tuple[str, int]:
+    """Execute one instruction and return the place of the next one."""
     mnemonic = instruction.mnemonic
     following = (instruction.section, instruction.address + instruction.size)
     if (
@@ -124,7 +135,7 @@ def _run(state: State, instruction: Instruction) -> tuple[str, int]:
         and not any(isinstance(item, Memory) and item.base == "rip" for item in instruction.operands)
     ):
         raise NotUnderstood("an address that only the linker knows")
-    if mnemonic in NOTHING or (mnemonic == "xchg" and instruction.operands == (Register("ax"), Register("ax"))):
+    if mnemonic in NO_OPERATION or (mnemonic == "xchg" and instruction.operands == (Register("ax"), Register("ax"))):
         return following
     flow = FLOW.get(mnemonic)
     if flow is not None:
@@ -133,30 +144,30 @@ def _run(state: State, instruction: Instruction) -> tuple[str, int]:
     if plain is not None:
         plain(state, instruction)
         return following
-    vector(state, instruction)
+    run_vector_instruction(state, instruction)
     return following
 
 
 # --- jumps and calls --------------------------------------------------------------------------------------------------
 
 
-def _target(state: State, instruction: Instruction) -> tuple[str, int] | str:
-    """Return where a jump goes: a place of the file, or the name of what another file defines."""
+def _target(state: MachineState, instruction: Instruction) -> tuple[str, int] | str:
+    """Return the target of a jump: a place in this file, or the name of a function that another file defines."""
     (operand,) = operands_of(instruction, 1)
     if isinstance(operand, Constant):
         if instruction.relocation is None:
             return instruction.section, operand.value
-        base, offset = linked(state, instruction, RELATIVE)
+        base, offset = relocated_place(state, instruction, RELATIVE)
         if base or not offset:
             return (base.removeprefix("section "), offset) if base else instruction.relocation.symbol
-        raise NotUnderstood("a jump to a place between others")
+        raise NotUnderstood("a jump into the middle of a function")
     node = state.context.terms.nodes[state.whole(read(state, instruction, operand, 8))]
     if node[0] != "address" or not node[2].startswith("symbol ") or node[3]:
         raise NotUnderstood("a jump to an address that is computed")
     return str(node[2].removeprefix("symbol "))
 
 
-def _jump(state: State, instruction: Instruction, following: tuple[str, int]) -> tuple[str, int]:
+def _jump(state: MachineState, instruction: Instruction, following: tuple[str, int]) -> tuple[str, int]:
     target = _target(state, instruction)
     if isinstance(target, str):
         _call_library(state, target, 8)
@@ -164,35 +175,35 @@ def _jump(state: State, instruction: Instruction, following: tuple[str, int]) ->
     return target
 
 
-def _jump_if(condition: str) -> Callable[[State, Instruction, tuple[str, int]], tuple[str, int]]:
-    def jump(state: State, instruction: Instruction, following: tuple[str, int]) -> tuple[str, int]:
+def _jump_if(condition: str) -> Callable[[MachineState, Instruction, tuple[str, int]], tuple[str, int]]:
+    def jump(state: MachineState, instruction: Instruction, following: tuple[str, int]) -> tuple[str, int]:
         target = _target(state, instruction)
         if isinstance(target, str):
             raise NotUnderstood(f"a jump to {target}")
-        return target if holds(state, condition) else following
+        return target if condition_holds(state, condition) else following
 
     return jump
 
 
-def _call(state: State, instruction: Instruction, following: tuple[str, int]) -> tuple[str, int]:
+def _call(state: MachineState, instruction: Instruction, following: tuple[str, int]) -> tuple[str, int]:
     target = _target(state, instruction)
     if isinstance(target, str):
         _call_library(state, target, 0)
         return following
-    base, offset = stack_of(state)
+    base, offset = stack_place(state)
     terms = state.context.terms
     state.store(base, offset - 8, state.halves(terms.address(f"section {following[0]}", following[1])))
     state.general["rsp"] = state.halves(terms.address(base, offset - 8))
     return target
 
 
-def _return(state: State, instruction: Instruction, _: tuple[str, int]) -> tuple[str, int]:
+def _return(state: MachineState, instruction: Instruction, _: tuple[str, int]) -> tuple[str, int]:
     terms = state.context.terms
-    node = terms.nodes[state.whole(popped(state))]
+    node = terms.nodes[state.whole(pop_words(state))]
     if node == ("token", 64, "the return address"):
-        if stack_of(state) != (STACK, state.context.top + 8):
+        if stack_place(state) != (STACK, state.context.top + 8):
             raise NotUnderstood("a stack that is not as it was at the call")
-        for name in SAVED:
+        for name in CALLEE_SAVED:
             if state.general[name] != state.halves(terms.token(f"{name} at the call")):
                 raise NotUnderstood(f"{name} is not as it was at the call")
         return "", 0
@@ -201,38 +212,38 @@ def _return(state: State, instruction: Instruction, _: tuple[str, int]) -> tuple
     return node[2].removeprefix("section "), node[3]
 
 
-FLOW: dict[str, Callable[[State, Instruction, tuple[str, int]], tuple[str, int]]] = {
+FLOW: dict[str, Callable[[MachineState, Instruction, tuple[str, int]], tuple[str, int]]] = {
     "jmp": _jump, "call": _call, "ret": _return, **{f"j{name}": _jump_if(name) for name in CONDITIONS},
 }  # fmt: skip
 
 
-def _call_library(state: State, name: str, on_stack: int) -> None:
-    """Do what a function of the C library does; every register that it may change is lost."""
+def _call_library(state: MachineState, name: str, on_stack: int) -> None:
+    """Apply a function of the C library; the registers that it may change become unknown."""
     terms = state.context.terms
-    _, offset = stack_of(state)
+    _, offset = stack_place(state)
     if (offset + on_stack) % 16:
-        raise NotUnderstood("a call with the stack between two places of 16 bytes")
+        raise NotUnderstood("a call with a stack pointer that is not aligned to 16 bytes")
     bare, width = (name[:-1], 32) if name.endswith("f") else (name, 64)
-    taken = [state.whole(state.vector[f"ymm{place}"][: width // 32]) for place in range(2)]
+    operands = [state.whole(state.vector[f"ymm{place}"][: width // 32]) for place in range(2)]
     written: list[tuple[str, int, Words]] = []
     result: Words = []
     if bare == "sincos":
         for pointer, function in (("rdi", "sin"), ("rsi", "cos")):
             node = terms.nodes[state.whole(state.general[pointer])]
             if node[0] != "address":
-                raise NotUnderstood("sincos to an address that is not known")
-            written.append((node[2], node[3], state.halves(terms.call(function, width, taken[:1]))))
+                raise NotUnderstood("a call of sincos with an address that is not known")
+            written.append((node[2], node[3], state.halves(terms.call(function, width, operands[:1]))))
     elif bare in LIBRARY:
-        result = state.halves(terms.call(bare, width, taken[: LIBRARY[bare]]))
+        result = state.halves(terms.call(bare, width, operands[: LIBRARY[bare]]))
     elif bare in EXACT:
         count, operation = EXACT[bare]
-        result = state.halves(operation(terms, *taken[:count]))
+        result = state.halves(operation(terms, *operands[:count]))
     else:
         raise NotUnderstood(f"a call of {name}")
     state.forget_below(offset)
     for place in written:
         state.store(*place)
-    for register in LOST:
+    for register in CALLER_SAVED:
         state.general[register] = [terms.unknown(), terms.unknown()]
     for number in range(32):
         state.vector[f"ymm{number}"] = [terms.unknown() for _ in range(8)]

@@ -1,26 +1,26 @@
-"""What the SSE2 and AVX instructions do with registers and memory: moves, comparisons, and all of the two tables."""
+"""Execute SSE2 and AVX instructions on registers and memory: moves and comparisons, and the tables of other modules."""
 
 from collections.abc import Callable
 
 from symrot.certificates.object_code.disassembly import Constant, Instruction, Memory, Register
-from symrot.certificates.object_code.integers import operands_of, place_of, read, write
+from symrot.certificates.object_code.integers import memory_place, operands_of, read, write
 from symrot.certificates.object_code.numbers import NUMERIC
 from symrot.certificates.object_code.shuffles import SHUFFLES, SOURCE_BYTES
-from symrot.certificates.object_code.state import VECTORS, NotUnderstood, State, Words
+from symrot.certificates.object_code.state import VECTORS, MachineState, NotUnderstood, Words
 
-__all__ = ["vector"]
+__all__ = ["run_vector_instruction"]
 
 ALIGNED = {"movaps", "movapd", "movdqa", "movdqa32", "movdqa64", "movntpd", "movntps"}
 UNALIGNED = {"movups", "movupd", "movdqu", "movdqu32", "movdqu64", "lddqu"}
 
 
-def _source(state: State, instruction: Instruction, operand: object, size: int, bare: str) -> Words:
-    """Return the words of a vector register, or ``size`` bytes of memory."""
+def _source(state: MachineState, instruction: Instruction, operand: object, size: int, bare: str) -> Words:
+    """Return the words of a source operand: a vector register, or ``size`` bytes of memory."""
     if isinstance(operand, Register) and operand.name in VECTORS:
         return list(state.register(operand.name))
     if not isinstance(operand, Memory) or operand.size not in (size, 0):
-        raise NotUnderstood("its operands")
-    base, offset = place_of(state, instruction, operand)
+        raise NotUnderstood("operands of an unexpected kind")
+    base, offset = memory_place(state, instruction, operand)
     is_vex = instruction.mnemonic.startswith("v")
     must_be_aligned = size >= 16 and bare not in UNALIGNED and (not is_vex or bare in ALIGNED)
     if must_be_aligned and (base in state.context.arrays or offset % size):
@@ -28,8 +28,8 @@ def _source(state: State, instruction: Instruction, operand: object, size: int, 
     return state.load(base, offset, size // 4)
 
 
-def vector(state: State, instruction: Instruction) -> None:
-    """Follow an instruction on vector registers; raises NotUnderstood for one that is in no table."""
+def run_vector_instruction(state: MachineState, instruction: Instruction) -> None:
+    """Execute an instruction on vector registers; raise NotUnderstood if it is in no table."""
     is_vex = instruction.mnemonic.startswith("v")
     bare = instruction.mnemonic[1:] if is_vex else instruction.mnemonic
     move = MOVES.get(bare)
@@ -44,25 +44,25 @@ def vector(state: State, instruction: Instruction) -> None:
         bare = f"{bare} by words"
     operation = SHUFFLES.get(bare) or NUMERIC.get(bare)
     if operation is None or not operands:
-        raise NotUnderstood("an instruction that is not known")
+        raise NotUnderstood("an unknown instruction")
     target = operands[0]
     if isinstance(target, Memory):  # vextractf128
         words = operation(state, [_source(state, instruction, item, 32, bare) for item in operands[1:]], constant or 0)
         write(state, instruction, target, words)
         return
     if not isinstance(target, Register) or target.name not in VECTORS:
-        raise NotUnderstood("its operands")
+        raise NotUnderstood("operands of an unexpected kind")
     count = VECTORS[target.name][1]
     keeps_target = not is_vex or bare.startswith(("fmadd", "fmsub", "fnmadd", "fnmsub"))
-    taken = [
+    source_words = [
         _source(state, instruction, item, _bytes_of(bare, item, 4 * count), bare)
         for item in (operands if keeps_target else operands[1:])
     ]
-    state.set_vector(target.name, operation(state, taken, constant or 0)[:count], is_vex)
+    state.set_vector(target.name, operation(state, source_words, constant or 0)[:count], is_vex)
 
 
 def _bytes_of(bare: str, operand: object, whole: int) -> int:
-    """Return how many bytes a source in memory has: those that the listing names, where they are allowed."""
+    """Return the size in bytes of a source operand in memory, which depends on the instruction."""
     if not isinstance(operand, Memory):
         return whole
     if bare in SOURCE_BYTES:
@@ -74,11 +74,11 @@ def _bytes_of(bare: str, operand: object, whole: int) -> int:
     return whole
 
 
-def _move_whole(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+def _move_whole(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
     target, source = operands_of(instruction, 2)
     if isinstance(target, Memory):
         words = _source(state, instruction, source, 0, bare)
-        base, offset = place_of(state, instruction, target)
+        base, offset = memory_place(state, instruction, target)
         if bare in ALIGNED and (base in state.context.arrays or offset % (4 * len(words))):
             raise NotUnderstood(f"an aligned access to {base}")
         write(state, instruction, target, words)
@@ -88,10 +88,10 @@ def _move_whole(state: State, instruction: Instruction, bare: str, is_vex: bool)
     state.set_vector(target.name, _source(state, instruction, source, 4 * count, bare), is_vex)
 
 
-def _move_scalar(size: int) -> Callable[[State, Instruction, str, bool], None]:
-    """Return movss, movsd: from memory they clear the rest, from a register they keep it."""
+def _move_scalar(size: int) -> Callable[[MachineState, Instruction, str, bool], None]:
+    """Return movss or movsd, which clear the upper words if the source is memory and keep them if it is a register."""
 
-    def move(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+    def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources = instruction.operands
         words = _source(state, instruction, sources[-1], size, bare)[: size // 4]
         if isinstance(target, Memory):
@@ -101,17 +101,17 @@ def _move_scalar(size: int) -> Callable[[State, Instruction, str, bool], None]:
         if isinstance(sources[-1], Memory):
             rest = state.zeros(4 - len(words))
         else:
-            kept = sources[0] if len(sources) == 2 else target
-            rest = _source(state, instruction, kept, 16, bare)[size // 4 :]
+            first = sources[0] if len(sources) == 2 else target
+            rest = _source(state, instruction, first, 16, bare)[size // 4 :]
         state.set_vector(target.name, words + rest, is_vex)
 
     return move
 
 
-def _move_bits(size: int) -> Callable[[State, Instruction, str, bool], None]:
-    """Return movd, movq: between vectors, general registers and memory."""
+def _move_bits(size: int) -> Callable[[MachineState, Instruction, str, bool], None]:
+    """Return movd or movq, which move between vector registers, general registers and memory."""
 
-    def move(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+    def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, source = operands_of(instruction, 2)
         if isinstance(source, Register) and source.name in VECTORS:
             words = state.register(source.name)[: size // 4]
@@ -125,49 +125,49 @@ def _move_bits(size: int) -> Callable[[State, Instruction, str, bool], None]:
     return move
 
 
-def _move_half(start: int) -> Callable[[State, Instruction, str, bool], None]:
-    """Return movlpd, movhpd: 64 bits between memory and one half of 128."""
+def _move_half(start: int) -> Callable[[MachineState, Instruction, str, bool], None]:
+    """Return movlpd or movhpd, which move 64 bits between memory and one half of a 128-bit register."""
 
-    def move(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+    def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources = instruction.operands
         if isinstance(target, Memory):
             write(state, instruction, target, _source(state, instruction, sources[0], 0, bare)[start : start + 2])
             return
         assert isinstance(target, Register)
-        kept = _source(state, instruction, sources[0] if len(sources) == 2 else target, 16, bare)
+        first = _source(state, instruction, sources[0] if len(sources) == 2 else target, 16, bare)
         words = _source(state, instruction, sources[-1], 8, bare)
         if not isinstance(sources[-1], Memory):
-            raise NotUnderstood("its operands")
-        state.set_vector(target.name, kept[:start] + words + kept[start + 2 :], is_vex)
+            raise NotUnderstood("operands of an unexpected kind")
+        state.set_vector(target.name, first[:start] + words + first[start + 2 :], is_vex)
 
     return move
 
 
-def _extract(size: int) -> Callable[[State, Instruction, str, bool], None]:
-    def move(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+def _extract(size: int) -> Callable[[MachineState, Instruction, str, bool], None]:
+    def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, source, place = operands_of(instruction, 3)
         if not isinstance(place, Constant):
-            raise NotUnderstood("its operands")
+            raise NotUnderstood("operands of an unexpected kind")
         start = place.value * (size // 4) % 4
         write(state, instruction, target, _source(state, instruction, source, 16, bare)[start : start + size // 4])
 
     return move
 
 
-def _insert(size: int) -> Callable[[State, Instruction, str, bool], None]:
-    def move(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+def _insert(size: int) -> Callable[[MachineState, Instruction, str, bool], None]:
+    def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources, place = instruction.operands
         if not isinstance(place, Constant) or not isinstance(target, Register):
-            raise NotUnderstood("its operands")
-        kept = _source(state, instruction, sources[0] if len(sources) == 2 else target, 16, bare)
+            raise NotUnderstood("operands of an unexpected kind")
+        first = _source(state, instruction, sources[0] if len(sources) == 2 else target, 16, bare)
         start, words = place.value * (size // 4) % 4, read(state, instruction, sources[-1], size)
-        state.set_vector(target.name, kept[:start] + words + kept[start + size // 4 :], is_vex)
+        state.set_vector(target.name, first[:start] + words + first[start + size // 4 :], is_vex)
 
     return move
 
 
-def _ucomi(size: int) -> Callable[[State, Instruction, str, bool], None]:
-    def compare(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+def _ucomi(size: int) -> Callable[[MachineState, Instruction, str, bool], None]:
+    def compare(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         first, second = (
             _source(state, instruction, item, size, bare)[: size // 4] for item in operands_of(instruction, 2)
         )
@@ -176,12 +176,12 @@ def _ucomi(size: int) -> Callable[[State, Instruction, str, bool], None]:
     return compare
 
 
-def _clear_upper(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+def _clear_upper(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
     for number in range(16):
         state.vector[f"ymm{number}"][4:] = state.zeros(4)
 
 
-MOVES: dict[str, Callable[[State, Instruction, str, bool], None]] = {
+MOVES: dict[str, Callable[[MachineState, Instruction, str, bool], None]] = {
     **dict.fromkeys(sorted(ALIGNED | UNALIGNED), _move_whole),
     "zeroupper": _clear_upper, "ucomisd": _ucomi(8), "comisd": _ucomi(8), "ucomiss": _ucomi(4), "comiss": _ucomi(4),
     "movss": _move_scalar(4), "movsd": _move_scalar(8), "movd": _move_bits(4), "movq": _move_bits(8),

@@ -1,18 +1,19 @@
-"""What the SSE2 and AVX instructions on numbers do: arithmetic, comparisons, masks, fused operations.
+"""The effect of SSE2 and AVX instructions on numbers: arithmetic, comparisons, masks, fused operations.
 
-Each entry of the table takes the sources as words and returns the words it writes. Moves of words from place to place
-are in :mod:`symrot.certificates.object_code.shuffles`. Scalar instructions keep the rest of the first source; VEX forms
-(``v...``) name the first source, the older ones take it from where they write.
+Each entry of the table takes the words of the sources and returns the words of the result. Instructions that only
+rearrange words are in :mod:`symrot.certificates.object_code.shuffles`. Scalar instructions keep the upper words of the
+first source; VEX forms (``v...``) name the first source, the older forms use their destination as the first source.
 """
 
 from collections.abc import Callable
 
-from symrot.certificates.object_code.state import NotUnderstood, State, Words
+from symrot.certificates.object_code.state import MachineState, NotUnderstood, Words
 from symrot.certificates.object_code.terms import ANY, Outcomes, Terms
 
 __all__ = ["NUMERIC", "Numeric"]
 
-Numeric = Callable[[State, list[Words], int], Words]  # state, sources (first the one that is kept), constant
+# from the state, the sources (the first supplies the upper words) and a constant
+Numeric = Callable[[MachineState, list[Words], int], Words]
 WIDTHS = {"d": 64, "s": 32}
 PREDICATES: dict[str, Outcomes] = {
     "eq": frozenset("="), "lt": frozenset("<"), "le": frozenset("<="), "unord": frozenset("?"),
@@ -20,28 +21,28 @@ PREDICATES: dict[str, Outcomes] = {
     "eq_uq": frozenset("=?"), "nge": frozenset("<?"), "ngt": frozenset("<=?"), "false": frozenset(),
     "neq_oq": frozenset("<>"), "ge": frozenset(">="), "gt": frozenset(">"), "true": ANY,
 }  # fmt: skip
-_QUIET = (  # other names of the same relation, which differ in exceptions
+_QUIET = (  # predicates of the same relation, which differ in the floating-point exceptions that they raise
     ("eq", "eq_os"), ("lt", "lt_oq"), ("le", "le_oq"), ("unord", "unord_s"), ("neq", "neq_us"), ("nlt", "nlt_uq"),
     ("nle", "nle_uq"), ("ord", "ord_s"), ("eq_uq", "eq_us"), ("nge", "nge_uq"), ("ngt", "ngt_uq"),
     ("false", "false_os"), ("neq_oq", "neq_os"), ("ge", "ge_oq"), ("gt", "gt_oq"), ("true", "true_us"),
 )  # fmt: skip
 
 
-def _lanes(state: State, words: Words, width: int) -> list[int]:
-    """Return the terms of that width that words are."""
+def _lanes(state: MachineState, words: Words, width: int) -> list[int]:
+    """Return the terms of a width that some words of 32 bits make up."""
     if width == 32:
         return list(words)
     return [state.whole(words[place : place + 2]) for place in range(0, len(words), 2)]
 
 
 def _each(suffix: str, operation: Callable[..., int], arguments: int = 2) -> Numeric:
-    """Return an instruction that does one operation on each lane (``p``) or on the first (``s``)."""
+    """Return an instruction that applies an operation to every lane (packed, ``p``) or to the first (scalar, ``s``)."""
     width, is_packed = WIDTHS[suffix[1]], suffix[0] == "p"
 
-    def numeric(state: State, sources: list[Words], _: int) -> Words:
-        taken = sources[-arguments:]
+    def numeric(state: MachineState, sources: list[Words], _: int) -> Words:
+        operands = sources[-arguments:]
         count = len(sources[0]) if is_packed else width // 32
-        lanes = zip(*(_lanes(state, words[:count], width) for words in taken), strict=True)
+        lanes = zip(*(_lanes(state, words[:count], width) for words in operands), strict=True)
         done = [word for lane in lanes for word in state.halves(operation(state.context.terms, *lane))]
         return done + sources[0][count:]
 
@@ -49,7 +50,7 @@ def _each(suffix: str, operation: Callable[..., int], arguments: int = 2) -> Num
 
 
 def _alternating(suffix: str, even: Callable[..., int], odd: Callable[..., int]) -> Numeric:
-    def numeric(state: State, sources: list[Words], _: int) -> Words:
+    def numeric(state: MachineState, sources: list[Words], _: int) -> Words:
         lanes = zip(*(_lanes(state, words, WIDTHS[suffix[1]]) for words in sources), strict=True)
         terms = state.context.terms
         return [
@@ -62,41 +63,41 @@ def _alternating(suffix: str, even: Callable[..., int], odd: Callable[..., int])
 
 
 def _horizontal(suffix: str, operation: Callable[..., int]) -> Numeric:
-    def numeric(state: State, sources: list[Words], _: int) -> Words:
-        found: Words = []
+    def numeric(state: MachineState, sources: list[Words], _: int) -> Words:
+        results: Words = []
         for start in range(0, len(sources[0]), 4):
             for words in sources:
                 lanes = _lanes(state, words[start : start + 4], WIDTHS[suffix[1]])
                 for first, second in zip(lanes[::2], lanes[1::2], strict=True):
-                    found += state.halves(operation(state.context.terms, first, second))
-        return found
+                    results += state.halves(operation(state.context.terms, first, second))
+        return results
 
     return numeric
 
 
 def _bitwise(operation: Callable[..., int]) -> Numeric:
-    """Return an instruction on bits: 64 at a time where a source is a number or a mask of 64."""
+    """Return an instruction on bits, applied to 64 bits at a time if a source is a term of 64 bits, else to 32."""
 
-    def numeric(state: State, sources: list[Words], _: int) -> Words:
-        terms, found = state.context.terms, list[int]()
+    def numeric(state: MachineState, sources: list[Words], _: int) -> Words:
+        terms, results = state.context.terms, list[int]()
         for place in range(0, len(sources[0]), 2):
             halves = [words[place : place + 2] for words in sources]
             if any(terms.kind(terms.join(*words)) != "join" for words in halves) and any(
                 terms.kind(word) == "part" for words in halves for word in words
             ):
-                found += state.halves(operation(terms, *(terms.join(*words) for words in halves)))
+                results += state.halves(operation(terms, *(terms.join(*words) for words in halves)))
             else:
-                found += [operation(terms, first, second) for first, second in zip(*halves, strict=True)]
-        return found
+                results += [operation(terms, first, second) for first, second in zip(*halves, strict=True)]
+        return results
 
     return numeric
 
 
 def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
-    """Return a comparison into masks; the constant says which where the name does not."""
+    """Return a comparison whose result is a mask; the constant selects the relation if the mnemonic does not."""
     by_number = list(PREDICATES.values())
 
-    def numeric(state: State, sources: list[Words], constant: int) -> Words:
+    def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         if outcomes is None and not 0 <= constant < 32:
             raise NotUnderstood(f"the comparison {constant}")
         chosen = by_number[constant % 16] if outcomes is None else outcomes
@@ -106,10 +107,13 @@ def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
 
 
 def _fused(suffix: str, order: str, negated: bool, subtracted: tuple[bool, ...]) -> Numeric:
-    """Return a*b + c in one rounding; ``order`` says which operands are a, b and c, ``subtracted`` by lane."""
+    """Return the effect of a fused multiply-add: a*b + c, rounded once.
+
+    ``order`` says which operands are a, b and c; ``subtracted`` whether c is subtracted, in even and odd lanes.
+    """
     places = tuple(int(digit) - 1 for digit in order)
 
-    def of(lane_subtracted: bool) -> Callable[..., int]:
+    def fused(lane_subtracted: bool) -> Callable[..., int]:
         def one(terms: Terms, *lane: int) -> int:
             a, b, c = (lane[place] for place in places)
             return terms.fma(terms.neg(a) if negated else a, b, terms.neg(c) if lane_subtracted else c)
@@ -117,8 +121,8 @@ def _fused(suffix: str, order: str, negated: bool, subtracted: tuple[bool, ...])
         return one
 
     if len(subtracted) == 2:
-        return _alternating(suffix, of(subtracted[0]), of(subtracted[1]))
-    return _each(suffix, of(subtracted[0]), 3)
+        return _alternating(suffix, fused(subtracted[0]), fused(subtracted[1]))
+    return _each(suffix, fused(subtracted[0]), 3)
 
 
 def _less(terms: Terms, a: int, b: int) -> int:
@@ -130,7 +134,7 @@ def _greater(terms: Terms, a: int, b: int) -> int:
 
 
 def _blended(suffix: str) -> Numeric:
-    """Return a choice by the sign bit of the last source: a mask has that of all its bits."""
+    """Return a choice by the sign bit of the last source; all bits of a mask equal its sign bit."""
 
     def one(terms: Terms, a: int, b: int, mask: int) -> int:
         value = terms.constant(mask)
@@ -145,25 +149,25 @@ def _approximate(name: str) -> Callable[..., int]:
     return lambda terms, a: terms.opaque(name, terms.width(a), a)
 
 
-def _same(state: State, sources: list[Words], _: int) -> Words:
+def _same(state: MachineState, sources: list[Words], _: int) -> Words:
     if sources[0] != sources[1]:
-        raise NotUnderstood("a comparison of whole numbers")
+        raise NotUnderstood("a comparison of integers")
     return [state.context.terms.bits(32, -1)] * len(sources[0])
 
 
 def _shifted(width: int, shift: Callable[[int, int, int], int]) -> Numeric:
-    """Return a shift of constants; others are not shifted in kernels."""
+    """Return a shift of constants; kernels shift nothing else."""
 
-    def numeric(state: State, sources: list[Words], constant: int) -> Words:
-        terms, found = state.context.terms, list[int]()
+    def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
+        terms, results = state.context.terms, list[int]()
         for lane in _lanes(state, sources[-1], width):
             value = terms.constant(lane)
             if value is None:
-                raise NotUnderstood("a shift of what is no constant")
-            found += state.halves(
+                raise NotUnderstood("a shift of a number that is not constant")
+            results += state.halves(
                 terms.bits(width, shift(value, constant, width) if constant < width else _out(shift, value, width))
             )
-        return found
+        return results
 
     return numeric
 
@@ -218,7 +222,7 @@ def _table() -> dict[str, Numeric]:
     return table | {"pcmpeqd": _same, "pcmpeqq": _same, "pcmpeqb": _same, "pcmpeqw": _same}
 
 
-_FUSED = (  # name, is the product negated, is the last operand subtracted, by lane
+_FUSED = (  # name, whether the product is negated, whether the last operand is subtracted, by lane
     ("madd", False, (False,)), ("msub", False, (True,)), ("nmadd", True, (False,)), ("nmsub", True, (True,)),
     ("maddsub", False, (True, False)), ("msubadd", False, (False, True)),
 )  # fmt: skip

@@ -1,39 +1,39 @@
-"""What the SSE2 and AVX instructions that only move words do: unpack, shuffle, blend, insert, broadcast.
+"""The effect of SSE2 and AVX instructions that only rearrange words: unpack, shuffle, blend, insert, broadcast.
 
-Each entry of the table takes the sources as words and a constant, and returns the words it writes.
+Each entry of the table takes the words of the sources and a constant, and returns the words of the result.
 """
 
 from collections.abc import Callable, Sequence
 
-from symrot.certificates.object_code.state import NotUnderstood, State, Words
+from symrot.certificates.object_code.state import MachineState, NotUnderstood, Words
 
 __all__ = ["SHUFFLES", "SOURCE_BYTES", "Shuffle"]
 
-Shuffle = Callable[[State, list[Words], int], Words]
+Shuffle = Callable[[MachineState, list[Words], int], Words]
 
 
 def _pick(places: Sequence[int]) -> Shuffle:
-    """Return a choice of words within each 128 bits: 0 to 3 of the first source, 4 to 7 of the second."""
+    """Return a shuffle by fixed places within each 128 bits: 0 to 3 in the first source, 4 to 7 in the last."""
 
-    def shuffle(_: State, sources: list[Words], __: int) -> Words:
-        found: Words = []
+    def shuffle(_: MachineState, sources: list[Words], __: int) -> Words:
+        picked: Words = []
         for start in range(0, len(sources[0]), 4):
             both = sources[0][start : start + 4] + sources[-1][start : start + 4]
-            found += [both[place] for place in places]
-        return found
+            picked += [both[place] for place in places]
+        return picked
 
     return shuffle
 
 
 def _by_constant(places: Callable[[int, int], Sequence[int]]) -> Shuffle:
-    """Return a choice of words that a constant makes; ``places`` takes it and the number of the 128 bits."""
+    """Return a shuffle whose places follow from its constant; ``places`` takes the constant and the lane's number."""
 
-    def shuffle(state: State, sources: list[Words], constant: int) -> Words:
-        found: Words = []
+    def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:
+        picked: Words = []
         for lane, start in enumerate(range(0, len(sources[0]), 4)):
             part = [words[start : start + 4] for words in sources]
-            found += _pick(places(constant, lane))(state, part, 0)
-        return found
+            picked += _pick(places(constant, lane))(state, part, 0)
+        return picked
 
     return shuffle
 
@@ -62,119 +62,119 @@ def _permilps(constant: int, _: int) -> list[int]:
 
 
 def _blend(words_per_bit: int) -> Shuffle:
-    def shuffle(_: State, sources: list[Words], constant: int) -> Words:
+    def shuffle(_: MachineState, sources: list[Words], constant: int) -> Words:
         first, second = sources
         return [(second if constant >> place // words_per_bit & 1 else first)[place] for place in range(len(first))]
 
     return shuffle
 
 
-def _pblendw(_: State, sources: list[Words], constant: int) -> Words:
-    found: Words = []
+def _pblendw(_: MachineState, sources: list[Words], constant: int) -> Words:
+    blended: Words = []
     for place in range(len(sources[0])):
         chosen = constant >> 2 * (place % 4) & 3
         if chosen not in (0, 3):
             raise NotUnderstood("a blend of half words")
-        found.append(sources[1 if chosen else 0][place])
-    return found
+        blended.append(sources[1 if chosen else 0][place])
+    return blended
 
 
-def _permpd(_: State, sources: list[Words], constant: int) -> Words:
+def _permpd(_: MachineState, sources: list[Words], constant: int) -> Words:
     return [sources[-1][2 * place + half] for place in _two_bits(constant) for half in (0, 1)]
 
 
-def _permute_lanes(state: State, sources: list[Words], constant: int) -> Words:
+def _permute_lanes(state: MachineState, sources: list[Words], constant: int) -> Words:
     halves = [words[start : start + 4] for words in sources for start in (0, 4)]
     picked = ((constant >> shift & 8, halves[constant >> shift & 3]) for shift in (0, 4))
     return [word for is_zero, words in picked for word in (state.zeros(4) if is_zero else words)]
 
 
-def _permps(state: State, sources: list[Words], _: int) -> Words:
-    """vpermps, vpermd: the first source says which word of the second."""
+def _permps(state: MachineState, sources: list[Words], _: int) -> Words:
+    """Return the words of the second source that the first source numbers: vpermps, vpermd."""
     return [sources[1][_constant(state, word) & 7] for word in sources[0]]
 
 
-def _permilps_by_words(state: State, sources: list[Words], _: int) -> Words:
+def _permilps_by_words(state: MachineState, sources: list[Words], _: int) -> Words:
     return [sources[0][place & ~3 | _constant(state, word) & 3] for place, word in enumerate(sources[1])]
 
 
-def _permilpd_by_words(state: State, sources: list[Words], _: int) -> Words:
+def _permilpd_by_words(state: MachineState, sources: list[Words], _: int) -> Words:
     chosen = [_constant(state, word) >> 1 & 1 for word in sources[1][::2]]
     return [sources[0][place // 2 * 4 + 2 * bit + half] for place, bit in enumerate(chosen) for half in (0, 1)]
 
 
-def _insert_lane(_: State, sources: list[Words], constant: int) -> Words:
+def _insert_lane(_: MachineState, sources: list[Words], constant: int) -> Words:
     low, high = sources[0][:4], sources[0][4:]
     return low + sources[1] if constant & 1 else sources[1] + high
 
 
-def _extract_lane(_: State, sources: list[Words], constant: int) -> Words:
+def _extract_lane(_: MachineState, sources: list[Words], constant: int) -> Words:
     return sources[-1][4 * (constant & 1) : 4 * (constant & 1) + 4]
 
 
-def _insertps(state: State, sources: list[Words], constant: int) -> Words:
+def _insertps(state: MachineState, sources: list[Words], constant: int) -> Words:
     source = sources[1][constant >> 6 if len(sources[1]) == 4 else 0]
-    found = list(sources[0])
-    found[constant >> 4 & 3] = source
-    return [state.zeros(1)[0] if constant >> place & 1 else word for place, word in enumerate(found)]
+    words = list(sources[0])
+    words[constant >> 4 & 3] = source
+    return [state.zeros(1)[0] if constant >> place & 1 else word for place, word in enumerate(words)]
 
 
-def _align(_: State, sources: list[Words], constant: int) -> Words:
+def _align(_: MachineState, sources: list[Words], constant: int) -> Words:
     if constant % 4 or constant > 16:
         raise NotUnderstood("a shift of single bytes")
-    found: Words = []
+    aligned: Words = []
     for start in range(0, len(sources[0]), 4):
-        found += (sources[1][start : start + 4] + sources[0][start : start + 4])[constant // 4 :][:4]
-    return found
+        aligned += (sources[1][start : start + 4] + sources[0][start : start + 4])[constant // 4 :][:4]
+    return aligned
 
 
 def _shift_bytes(left: bool) -> Shuffle:
-    def shuffle(state: State, sources: list[Words], constant: int) -> Words:
+    def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:
         if constant % 4:
             raise NotUnderstood("a shift of single bytes")
-        moved, found = min(constant // 4, 4), list[int]()
+        moved, shifted = min(constant // 4, 4), list[int]()
         for start in range(0, len(sources[-1]), 4):
             words, zeros = sources[-1][start : start + 4], state.zeros(moved)
-            found += zeros + words[: 4 - moved] if left else words[moved:] + zeros
-        return found
+            shifted += zeros + words[: 4 - moved] if left else words[moved:] + zeros
+        return shifted
 
     return shuffle
 
 
-def _constant(state: State, word: int) -> int:
+def _constant(state: MachineState, word: int) -> int:
     value = state.context.terms.constant(word)
     if value is None:
-        raise NotUnderstood("a shuffle by what is no constant")
+        raise NotUnderstood("a shuffle by places that are not constant")
     return value
 
 
-def _pshufb(state: State, sources: list[Words], _: int) -> Words:
-    found: Words = []
+def _pshufb(state: MachineState, sources: list[Words], _: int) -> Words:
+    shuffled: Words = []
     for place, word in enumerate(sources[1]):
         control = _constant(state, word).to_bytes(4, "little")
         if all(byte & 0x80 for byte in control):
-            found += state.zeros(1)
+            shuffled += state.zeros(1)
         elif control[0] % 4 == 0 and all((byte & 0x8F) == (control[0] & 15) + i for i, byte in enumerate(control)):
-            found.append(sources[0][(place & ~3) + (control[0] & 15) // 4])
+            shuffled.append(sources[0][(place & ~3) + (control[0] & 15) // 4])
         else:
             raise NotUnderstood("a shuffle of single bytes")
-    return found
+    return shuffled
 
 
 def _broadcast(count: int) -> Shuffle:
-    """Return the repetition of the first words; as many as the register holds are kept by the machine."""
+    """Return a shuffle that repeats the first ``count`` words; the machine cuts the result to the register's length."""
     return lambda _, sources, __: sources[-1][:count] * (8 // count)
 
 
-def _broadcast_byte(state: State, sources: list[Words], _: int) -> Words:
+def _broadcast_byte(state: MachineState, sources: list[Words], _: int) -> Words:
     byte = state.context.terms.lowest_byte(sources[-1][0])
     if byte is None:
-        raise NotUnderstood("a byte that is not known")
+        raise NotUnderstood("a byte whose value is not known")
     return [state.context.terms.bits(32, byte * 0x01010101)] * 8
 
 
-def _doubled(_: State, sources: list[Words], __: int) -> Words:
-    """movddup: the low 64 bits of each 128, twice."""
+def _doubled(_: MachineState, sources: list[Words], __: int) -> Words:
+    """Return the low 64 bits of each 128, twice: movddup."""
     return [word for start in range(0, len(sources[-1]), 4) for word in sources[-1][start : start + 2] * 2]
 
 
@@ -193,4 +193,8 @@ SHUFFLES: dict[str, Shuffle] = {
     "pbroadcastq": _broadcast(2), "broadcastf128": _broadcast(4), "broadcasti128": _broadcast(4),
     "pbroadcastb": _broadcast_byte, "permilps by words": _permilps_by_words, "permilpd by words": _permilpd_by_words,
 }  # fmt: skip
-SOURCE_BYTES: dict[str, int] = {"insertps": 4, "extractf128": 32, "extracti128": 32}  # of the last source, in memory
+SOURCE_BYTES: dict[str, int] = {
+    "insertps": 4,
+    "extractf128": 32,
+    "extracti128": 32,
+}  # size of the last source, if in memory

@@ -1,4 +1,7 @@
-"""Registers, memory and comparisons of a machine whose numbers are terms, words of 32 bits."""
+"""The state of an x86-64 processor whose values are symbolic terms: registers, memory, flags, known comparisons.
+
+Values are stored as words of 32 bits.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -6,39 +9,52 @@ from dataclasses import dataclass, field, replace
 from symrot.certificates.object_code.disassembly import Listing, Memory
 from symrot.certificates.object_code.terms import ANY, Outcomes, Pair, Terms
 
-__all__ = ["GENERAL", "STACK", "VECTORS", "Array", "Context", "NotUnderstood", "Split", "State", "Words"]
+__all__ = [
+    "GENERAL",
+    "STACK",
+    "VECTORS",
+    "ArrayArgument",
+    "CallContext",
+    "MachineState",
+    "NotUnderstood",
+    "UndecidedBranch",
+    "Words",
+]
 
 Words = list[int]
 STACK = "stack"
 _LOW = {"rax": "al", "rcx": "cl", "rdx": "dl", "rbx": "bl", "rsi": "sil", "rdi": "dil", "rbp": "bpl", "rsp": "spl"}
 _OLD = {full: (f"e{full[1:]}", full[1:]) for full in _LOW}
 _NEW = [f"r{number}" for number in range(8, 16)]
-GENERAL: dict[str, tuple[str, int]] = {  # name -> the whole register, bytes
+GENERAL: dict[str, tuple[str, int]] = {  # name -> the full register, size in bytes
     **{name: (name, 8) for name in (*_LOW, *_NEW)},
     **{short: (full, size) for full, names in _OLD.items() for short, size in zip(names, (4, 2), strict=True)},
     **{low: (full, 1) for full, low in _LOW.items()},
     **{f"{name}{mark}": (name, size) for name in _NEW for mark, size in (("d", 4), ("w", 2), ("b", 1))},
 }
-VECTORS: dict[str, tuple[str, int]] = {  # name -> the whole register, words
+VECTORS: dict[str, tuple[str, int]] = {  # name -> the full register, size in words
     **{f"xmm{number}": (f"ymm{number}", 4) for number in range(32)},
     **{f"ymm{number}": (f"ymm{number}", 8) for number in range(32)},
 }
 
 
 class NotUnderstood(Exception):
-    """An instruction, or what it does here, is beyond this reader."""
+    """Raised for an instruction, or an effect of it in the current state, that this module does not model."""
 
 
-class Split(Exception):
-    """The outcome of a comparison must be known to go on: both ways are to be followed."""
+class UndecidedBranch(Exception):
+    """Raised where execution depends on a comparison with unknown outcome: both branches must be followed.
+
+    ``pair`` are the terms that are compared, ``branches`` the two sets of outcomes.
+    """
 
     def __init__(self, pair: Pair, first: Outcomes, second: Outcomes) -> None:
-        self.pair, self.ways = pair, (first, second)
+        self.pair, self.branches = pair, (first, second)
 
 
 @dataclass(frozen=True)
-class Array:
-    """An argument that is an array: bytes, and whether it may be written."""
+class ArrayArgument:
+    """An array argument of a function: its name, its size in bytes, and whether the function may write it."""
 
     name: str
     size: int
@@ -46,21 +62,21 @@ class Array:
 
 
 @dataclass(frozen=True)
-class Context:
-    """What does not change while a function runs."""
+class CallContext:
+    """The facts about a call that stay the same while the function runs."""
 
     terms: Terms
     listing: Listing
-    width: int  # of a number: 64 or 32
-    arrays: Mapping[str, Array]
-    top: int  # where the stack begins to be the caller's: the return address
+    width: int  # bits of a number: 64 or 32
+    arrays: Mapping[str, ArrayArgument]
+    top: int  # offset of the return address: from here on the stack belongs to the caller
 
 
 @dataclass
-class State:
-    """A machine at one instruction; ``known`` is what comparisons on its way have shown."""
+class MachineState:
+    """The state before one instruction; ``known`` holds the outcomes of comparisons on the path so far."""
 
-    context: Context
+    context: CallContext
     at: tuple[str, int]
     general: dict[str, Words]
     vector: dict[str, Words]
@@ -68,8 +84,8 @@ class State:
     known: dict[Pair, Outcomes] = field(default_factory=dict)
     flags: tuple[str, tuple[int, ...]] = ("unknown", ())
 
-    def branch(self, pair: Pair, outcomes: Outcomes) -> "State":
-        """Return a copy that knows more of a comparison."""
+    def branch(self, pair: Pair, outcomes: Outcomes) -> "MachineState":
+        """Return a copy of the state in which a comparison has one of the given outcomes."""
         return replace(
             self,
             general={name: list(words) for name, words in self.general.items()},
@@ -81,7 +97,7 @@ class State:
     # --- numbers ------------------------------------------------------------------------------------------------------
 
     def decide(self, outcomes: Outcomes, a: int, b: int) -> bool:
-        """Return whether a comparison has one of the outcomes; :class:`Split` where that is not known."""
+        """Return whether a comparison has one of the outcomes; raise :class:`UndecidedBranch` if that is not known."""
         terms = self.context.terms
         a, b = terms.rebuilt((a, b), self.known)
         inner = terms.undecided((a, b))
@@ -89,25 +105,25 @@ class State:
         decided = terms.constant(mask)
         if decided is not None:
             return decided != 0
-        _, _, wanted, *pair = terms.nodes[mask]
+        _, _, accepted, *pair = terms.nodes[mask]
         possible = self.known.get((pair[0], pair[1]), ANY)
-        if inner is None and (possible <= wanted or not possible & wanted):
-            return bool(possible <= wanted)
-        raise Split((pair[0], pair[1]), possible & wanted, possible - wanted)
+        if inner is None and (possible <= accepted or not possible & accepted):
+            return bool(possible <= accepted)
+        raise UndecidedBranch((pair[0], pair[1]), possible & accepted, possible - accepted)
 
     def integer(self, words: Words) -> int | None:
-        """Return the number that constant words are."""
+        """Return the integer that some words hold, or None if they are not constant."""
         values = [self.context.terms.constant(word) for word in words]
         if any(value is None for value in values):
             return None
         return sum(value << 32 * place for place, value in enumerate(values) if value is not None)
 
     def whole(self, words: Words) -> int:
-        """Return one term of one or two words."""
+        """Return one term made of one or two words."""
         return words[0] if len(words) == 1 else self.context.terms.join(*words)
 
     def halves(self, term: int) -> Words:
-        """Return the words of a term."""
+        """Return a term split into its words."""
         terms = self.context.terms
         return [term] if terms.width(term) == 32 else [terms.word(term, 0), terms.word(term, 1)]
 
@@ -124,35 +140,35 @@ class State:
             return self.vector[whole][:count]
         whole, size = GENERAL.get(name, ("", 0))
         if size < 4:
-            raise NotUnderstood(f"register {name}")
+            raise NotUnderstood(f"the use of register {name}")
         return self.general[whole][: size // 4]
 
     def set_register(self, name: str, words: Words) -> None:
-        """Write a general register; its upper half becomes zero where only the lower is written."""
+        """Write a general register; writing its lower half sets the upper half to zero."""
         whole, size = GENERAL.get(name, ("", 0))
         if size < 4 or len(words) != size // 4:
-            raise NotUnderstood(f"register {name}")
+            raise NotUnderstood(f"the use of register {name}")
         self.general[whole] = words + self.zeros(2 - len(words))
 
     def set_vector(self, name: str, words: Words, is_vex: bool) -> None:
-        """Write the low words of a vector register; VEX instructions clear the rest."""
+        """Write the low words of a vector register; VEX instructions set its other words to zero."""
         if name not in VECTORS:
-            raise NotUnderstood(f"register {name}")
+            raise NotUnderstood(f"the use of register {name}")
         whole = VECTORS[name][0]
         self.vector[whole] = words + (self.zeros(8 - len(words)) if is_vex else self.vector[whole][len(words) :])
 
     # --- memory -------------------------------------------------------------------------------------------------------
 
     def address(self, operand: Memory) -> tuple[str, int]:
-        """Return base and offset of an operand without relocation."""
+        """Return the base and offset of a memory operand that has no relocation."""
         if operand.segment:
-            raise NotUnderstood(f"segment {operand.segment}")
+            raise NotUnderstood(f"an address in the segment {operand.segment}")
         base, offset = "", operand.offset
         for name, scale in ((operand.base, 1), (operand.index, operand.scale)):
             if not name:
                 continue
             if GENERAL.get(name, ("", 0))[1] != 8:
-                raise NotUnderstood(f"address register {name}")
+                raise NotUnderstood(f"{name} as an address register")
             words = self.register(name)
             node = self.context.terms.nodes[self.whole(words)]
             value = self.integer(words)
@@ -167,9 +183,9 @@ class State:
         return base, offset
 
     def load(self, base: str, offset: int, count: int) -> Words:
-        """Return words of memory."""
+        """Return ``count`` words of memory."""
         if offset % 4:
-            raise NotUnderstood("memory that is not in words")
+            raise NotUnderstood("an address that is not a multiple of 4")
         return [self._load(base, offset + 4 * place) for place in range(count)]
 
     def _load(self, base: str, offset: int) -> int:
@@ -192,10 +208,10 @@ class State:
         return terms.bits(32, int.from_bytes(content[offset : offset + 4], "little"))
 
     def store(self, base: str, offset: int, words: Words) -> None:
-        """Write words of memory: the stack below the caller's, or an output."""
+        """Write words to memory: to the function's own part of the stack, or to an output array."""
         array = self.context.arrays.get(base)
         if offset % 4:
-            raise NotUnderstood("memory that is not in words")
+            raise NotUnderstood("an address that is not a multiple of 4")
         for place, word in enumerate(words):
             at = offset + 4 * place
             if array is None and not (base == STACK and at < self.context.top):
@@ -205,6 +221,6 @@ class State:
             self.memory[base, at] = word
 
     def forget_below(self, offset: int) -> None:
-        """Forget what lies below the stack pointer: a call may write there."""
+        """Discard the memory below the stack pointer, where a call may write."""
         for place in [place for place in self.memory if place[0] == STACK and place[1] < offset]:
             del self.memory[place]

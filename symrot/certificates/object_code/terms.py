@@ -1,15 +1,16 @@
-"""Values of machine code as terms, equal exactly when they are one: bit-exact laws, applied on construction.
+"""Symbolic values of machine code, brought to a common form by bit-exact laws when they are made.
 
-A term is the bits of 32 or 64 places. Two terms with one index have the same bits on every input, in rounding to
-nearest; the bits of a NaN are not told apart, the sign of a zero is. The laws, all exact, overflow and underflow and
-signed zeros included::
+A term stands for 32 or 64 bits. Two terms with the same index have the same bits on every input, in rounding to
+nearest; zeros of different sign differ, NaNs of different payload do not. The laws hold exactly, also under overflow
+and underflow and for signed zeros::
 
     a - b = a + (-b)      a + b = b + a      a*b = b*a      (-a)*b = -(a*b)      (-a)/b = a/(-b) = -(a/b)
     a + a = 2*a           2^j*(2^k*a) = 2^(j+k)*a, j, k >= 0                     a/2^k = a*2^-k
     1*a = a               a + (-0) = a       a*copysign(1, b) = a with its sign changed by that of b
     a < b = b > a = -b < -a                  signs, magnitudes and masks as the bits they are
 
-``-(a + b) = (-a) + (-b)`` is not one: it fails in the sign of a sum that is zero; nor is any that moves a rounding.
+``-(a + b) = (-a) + (-b)`` is not among the laws, since it fails in the sign of a sum that is zero; nor is any law that
+moves a rounding.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -30,7 +31,7 @@ __all__ = [
     "Pair",
     "Term",
     "Terms",
-    "value_of",
+    "number_from_bits",
 ]
 
 Term = tuple[Any, ...]
@@ -44,22 +45,22 @@ RELATION: dict[str, Outcomes] = {
     "<": frozenset("<"), "<=": frozenset("<="), ">": frozenset(">"), ">=": frozenset(">="), "==": frozenset("="),
     "!=": frozenset("<>?"),
 }  # fmt: skip
-_TURNED = {LESS: GREATER, GREATER: LESS, EQUAL: EQUAL, UNORDERED: UNORDERED}
+_SWAPPED = {LESS: GREATER, GREATER: LESS, EQUAL: EQUAL, UNORDERED: UNORDERED}
 _FORMATS = {32: ("<f", "<I"), 64: ("<d", "<Q")}
-_CHILDREN: dict[str, int] = {  # kind -> first of its operands that are terms; the rest of the tuple are terms
+_FIRST_OPERAND: dict[str, int] = {  # kind -> place of its first operand; the rest of the tuple are operands
     "mul": 2, "add": 2, "div": 2, "neg": 2, "abs": 2, "sqrt": 2, "sign": 2, "and": 2, "or": 2, "xor": 2, "andn": 2,
     "fma": 2, "fnma": 2, "choose": 2, "mask": 3, "call": 3, "join": 2, "part": 3,
 }  # fmt: skip
 
 
-def value_of(bits: int, width: int) -> float:
-    """Return the number that 32 or 64 bits are."""
+def number_from_bits(bits: int, width: int) -> float:
+    """Return the floating-point number with some bits, 32 or 64 of them."""
     number, whole = _FORMATS[width]
     return float(unpack(number, pack(whole, bits))[0])
 
 
-def _bits_of(value: float, width: int) -> int | None:
-    """Return the bits of the nearest number of that width; None for a NaN, or for one beyond the largest."""
+def _bits_from_number(value: float, width: int) -> int | None:
+    """Return the bits of a number rounded to a width; None for a NaN or an overflow."""
     number, whole = _FORMATS[width]
     try:
         return None if value != value else int(unpack(whole, pack(number, value))[0])
@@ -67,13 +68,13 @@ def _bits_of(value: float, width: int) -> int | None:
         return None
 
 
-def turned(outcomes: Iterable[str]) -> Outcomes:
-    """Return the outcomes of a comparison with its sides exchanged."""
-    return frozenset(_TURNED[item] for item in outcomes)
+def swapped(outcomes: Iterable[str]) -> Outcomes:
+    """Return the outcomes of a comparison after its sides are swapped."""
+    return frozenset(_SWAPPED[item] for item in outcomes)
 
 
 class Terms:
-    """A store of terms, each once; every method takes and returns indices."""
+    """A store of terms that holds equal terms once; its methods take and return indices of terms."""
 
     def __init__(self) -> None:
         self.nodes: list[Term] = []
@@ -86,61 +87,66 @@ class Terms:
         return self.places[term]
 
     def width(self, a: int) -> int:
+        """Return the number of bits of a term, 32 or 64."""
         return int(self.nodes[a][1])
 
     def kind(self, a: int) -> str:
+        """Return the kind of a term, such as ``"add"``."""
         return str(self.nodes[a][0])
 
     # --- leaves ---------------------------------------------------------------------------------------------------
 
     def input(self, width: int, place: str) -> int:
+        """Return the number that the caller passes at a place, such as ``"q[1]"``."""
         return self._add("in", width, place)
 
     def bits(self, width: int, value: int) -> int:
+        """Return a constant from its bits."""
         return self._add("bits", width, value & ((1 << width) - 1))
 
     def number(self, width: int, value: Fraction) -> int:
-        """Return a constant that is exact at its width."""
-        bits = _bits_of(float(value), width)
-        if bits is None or Fraction(value_of(bits, width)) != value:
+        """Return the constant with a value, which must be exact at the width; raise ValueError otherwise."""
+        bits = _bits_from_number(float(value), width)
+        if bits is None or Fraction(number_from_bits(bits, width)) != value:
             raise ValueError(f"expected a number of {width} bits, got {value}")
         return self.bits(width, bits)
 
     def unknown(self, byte: int | None = None) -> int:
-        """Return 32 bits that nothing is known of, but for the lowest byte where it is given."""
+        """Return a new word of 32 unknown bits, except for its lowest byte if one is passed."""
         return self._add("unknown", 32, len(self.nodes), byte)
 
     def lowest_byte(self, a: int) -> int | None:
-        """Return the lowest byte of a word, or None where it is not known."""
+        """Return the lowest byte of a word, or None if it is not known."""
         value = self.nodes[a][3] if self.kind(a) == "unknown" else self.constant(a)
         return None if value is None else int(value) & 0xFF
 
     def token(self, name: str) -> int:
-        """Return 64 bits that stand for themselves: what a register held before."""
+        """Return 64 bits known only by name, such as the content of a register before the call."""
         return self._add("token", 64, name)
 
     def address(self, base: str, offset: int) -> int:
+        """Return the address at an offset from a base: an array, the stack, a section or a symbol."""
         return self._add("address", 64, base, offset)
 
     def constant(self, a: int) -> int | None:
-        """Return the bits of a constant, or None."""
+        """Return the bits of a constant term, or None for any other term."""
         return self.nodes[a][2] if self.nodes[a][0] == "bits" else None
 
     def _value(self, a: int) -> float | None:
         bits = self.constant(a)
-        return None if bits is None else value_of(bits, self.width(a))
+        return None if bits is None else number_from_bits(bits, self.width(a))
 
-    # --- words: a 64-bit term is two of 32 ------------------------------------------------------------------------
+    # --- words: a 64-bit term consists of two of 32 bits ----------------------------------------------------------
 
     def word(self, a: int, part: int) -> int:
-        """Return the low (0) or high (1) half of 64 bits."""
+        """Return the low (``part`` 0) or high (1) half of a 64-bit term."""
         node = self.nodes[a]
         if node[0] == "bits":
             return self.bits(32, node[2] >> 32 * part)
         return int(node[2 + part]) if node[0] == "join" else self._add("part", 32, part, a)
 
     def join(self, low: int, high: int) -> int:
-        """Return 64 bits of two halves."""
+        """Return the 64-bit term with these halves."""
         first, second = self.nodes[low], self.nodes[high]
         if first[0] == "bits" and second[0] == "bits":
             return self.bits(64, first[2] | second[2] << 32)
@@ -157,6 +163,7 @@ class Terms:
         return 1 << self.width(a) - 1
 
     def bit_and(self, a: int, b: int) -> int:
+        """Return ``a & b``."""
         if self.constant(b) is None:
             a, b = b, a
         mask, width = self.constant(b), self.width(a)
@@ -182,6 +189,7 @@ class Terms:
         return self._add("andn", self.width(a), a, b)
 
     def bit_or(self, a: int, b: int) -> int:
+        """Return ``a | b``."""
         if self.constant(b) is None:
             a, b = b, a
         mask, value = self.constant(b), self.constant(a)
@@ -194,6 +202,7 @@ class Terms:
         return self._add("or", self.width(a), *sorted((a, b)))
 
     def bit_xor(self, a: int, b: int) -> int:
+        """Return ``a ^ b``."""
         if self.constant(b) is None:
             a, b = b, a
         mask, value, width = self.constant(b), self.constant(a), self.width(a)
@@ -211,12 +220,14 @@ class Terms:
         return self._add("xor", width, *sorted((a, b)))
 
     def neg(self, a: int) -> int:
+        """Return ``a`` with its sign bit inverted."""
         node = self.nodes[a]
         if node[0] == "bits":
             return self.bits(node[1], node[2] ^ self._sign_bit(a))
         return int(node[2]) if node[0] == "neg" else self._add("neg", node[1], a)
 
     def abs(self, a: int) -> int:
+        """Return ``a`` with its sign bit cleared."""
         node = self.nodes[a]
         if node[0] == "bits":
             return self.bits(node[1], node[2] & (self._sign_bit(a) - 1))
@@ -225,7 +236,7 @@ class Terms:
         return self.abs(node[2]) if node[0] == "neg" else self._add("abs", node[1], a)
 
     def sign(self, a: int) -> int:
-        """Return the sign bit, alone."""
+        """Return the sign bit of a term, with all other bits 0."""
         node = self.nodes[a]
         if node[0] == "bits":
             return self.bits(node[1], node[2] & self._sign_bit(a))
@@ -234,26 +245,31 @@ class Terms:
         return self._add("sign", node[1], a)
 
     def copysign(self, a: int, b: int) -> int:
+        """Return the magnitude of a with the sign of b."""
         return self.bit_or(self.abs(a), self.sign(b))
 
     # --- rounded operations -------------------------------------------------------------------------------------------
 
-    def _folded(self, a: int, b: int, of: Callable[[float, float], float]) -> int | None:
-        """Return the constant of two constants: rounded once, for a double rounds floats without a second error."""
+    def _folded(self, a: int, b: int, operation: Callable[[float, float], float]) -> int | None:
+        """Return the result of an operation on two constants, or None if it is not a finite constant.
+
+        Computing in double and then rounding to float rounds correctly: double has more than twice the digits.
+        """
         x, y = self._value(a), self._value(b)
         if x is None or y is None or not (isfinite(x) and isfinite(y)):
             return None
-        bits = _bits_of(of(x, y), self.width(a))
+        bits = _bits_from_number(operation(x, y), self.width(a))
         return None if bits is None else self.bits(self.width(a), bits)
 
     def _signed(self, a: int) -> tuple[int, bool]:
-        """Return what is left of a factor without its minus, and whether it had one."""
+        """Return a factor without its minus sign, and whether it had one."""
         if self.kind(a) == "neg":
             return int(self.nodes[a][2]), True
         value = self.constant(a)
         return (self.neg(a), True) if value is not None and value & self._sign_bit(a) else (a, False)
 
     def add(self, a: int, b: int) -> int:
+        """Return a + b, rounded."""
         folded = self._folded(a, b, lambda x, y: x + y)
         if folded is not None:
             return folded
@@ -265,9 +281,11 @@ class Terms:
         return self._add("add", self.width(a), *sorted((a, b)))
 
     def sub(self, a: int, b: int) -> int:
+        """Return a - b, rounded."""
         return self.add(a, self.neg(b))
 
     def mul(self, a: int, b: int) -> int:
+        """Return a*b, rounded."""
         folded = self._folded(a, b, lambda x, y: x * y)
         if folded is not None:
             return folded
@@ -285,8 +303,8 @@ class Terms:
             for inner, other in (self.nodes[a][2:], self.nodes[a][:1:-1]):
                 scale = self._value(inner)
                 if scale is not None and scale >= 2.0 and _is_power_of_two(scale):
-                    both = _bits_of(scale * factor, width)
-                    if both is not None and isfinite(value_of(both, width)):
+                    both = _bits_from_number(scale * factor, width)
+                    if both is not None and isfinite(number_from_bits(both, width)):
                         return self._add("mul", width, *sorted((self.bits(width, both), other)))
         one = self.number(width, Fraction(1))
         for item, other in ((a, b), (b, a)):
@@ -297,6 +315,7 @@ class Terms:
         return self._add("mul", width, *sorted((a, b)))
 
     def div(self, a: int, b: int) -> int:
+        """Return a/b, rounded."""
         if self._value(b) != 0.0:
             folded = self._folded(a, b, lambda x, y: x / y)
             if folded is not None:
@@ -304,13 +323,14 @@ class Terms:
         (a, first), (b, second) = self._signed(a), self._signed(b)
         divisor = self._value(b)
         if divisor is not None and divisor != 0.0 and isfinite(divisor) and _is_power_of_two(divisor):
-            inverse = _bits_of(1.0 / divisor, self.width(a))
-            if inverse is not None and _is_inverse(value_of(inverse, self.width(a)), divisor):
+            inverse = _bits_from_number(1.0 / divisor, self.width(a))
+            if inverse is not None and _is_inverse(number_from_bits(inverse, self.width(a)), divisor):
                 return self.mul(self.neg(a) if first != second else a, self.bits(self.width(a), inverse))
         quotient = self._add("div", self.width(a), a, b)
         return self.neg(quotient) if first != second else quotient
 
     def sqrt(self, a: int) -> int:
+        """Return the square root of a, rounded."""
         return self._add("sqrt", self.width(a), a)
 
     def fma(self, a: int, b: int, c: int) -> int:
@@ -319,29 +339,30 @@ class Terms:
         return self._add("fnma" if first != second else "fma", self.width(a), *sorted((a, b)), c)
 
     def call(self, name: str, width: int, arguments: Iterable[int]) -> int:
+        """Return the value of a function of the C library."""
         return self._add("call", width, name, *arguments)
 
     def opaque(self, name: str, width: int, *arguments: int) -> int:
-        """Return the value of an instruction that is known to round in another way than the C text can say."""
+        """Return the result of an instruction whose rounding no operation of C text can express."""
         return self.call(f"[{name}]", width, arguments)
 
     # --- choices ------------------------------------------------------------------------------------------------------
 
     def compared(self, outcomes: Outcomes, a: int, b: int) -> tuple[Outcomes, int, int]:
-        """Return the same comparison as all its equals have it: a constant second, no minus on both sides."""
+        """Return a comparison in the form that all equivalent ones share: a constant second, no minus on both sides."""
         zero = self.bits(self.width(a), 0)
         a, b = (zero if self._value(item) == 0.0 else item for item in (a, b))
         if self.constant(a) is not None and self.constant(b) is None:
-            a, b, outcomes = b, a, turned(outcomes)
+            a, b, outcomes = b, a, swapped(outcomes)
         if self.kind(a) == "neg" and (self.kind(b) == "neg" or self.constant(b) is not None):
-            a, b, outcomes = int(self.nodes[a][2]), self.neg(b), turned(outcomes)
+            a, b, outcomes = int(self.nodes[a][2]), self.neg(b), swapped(outcomes)
             b = zero if self._value(b) == 0.0 else b
         if self.constant(b) is None and b < a:
-            a, b, outcomes = b, a, turned(outcomes)
+            a, b, outcomes = b, a, swapped(outcomes)
         return outcomes, a, b
 
     def mask(self, width: int, outcomes: Outcomes, a: int, b: int) -> int:
-        """Return all ones where the comparison of two numbers has one of the outcomes, else zero."""
+        """Return the mask of a comparison: all ones if two numbers compare with one of the outcomes, else zero."""
         outcomes, a, b = self.compared(outcomes, a, b)
         x, y = self._value(a), self._value(b)
         if x is not None and y is not None:
@@ -352,7 +373,7 @@ class Terms:
         return self._add("mask", width, outcomes, a, b)
 
     def choose(self, mask: int, x: int, y: int) -> int:
-        """Return x where the mask is ones, y where it is zero."""
+        """Return the term that is x if a mask is all ones, and y if it is zero."""
         decided = self.constant(mask)
         if decided is not None and decided in (0, self._ones(mask)):
             return x if decided else y
@@ -361,45 +382,46 @@ class Terms:
     # --- the whole graph ----------------------------------------------------------------------------------------------
 
     def operands(self, a: int) -> tuple[int, ...]:
+        """Return the operands of a term."""
         node = self.nodes[a]
-        return tuple(node[_CHILDREN[node[0]] :]) if node[0] in _CHILDREN else ()
+        return tuple(node[_FIRST_OPERAND[node[0]] :]) if node[0] in _FIRST_OPERAND else ()
 
     def order(self, roots: Iterable[int]) -> list[int]:
-        """Return all terms below some, operands first."""
+        """Return the terms on which some terms depend, these included, operands before their users."""
         seen: set[int] = set()
-        found: list[int] = []
+        ordered: list[int] = []
         stack = [(root, False) for root in reversed(list(roots))]
         while stack:
             index, ready = stack.pop()
             if ready:
-                found.append(index)
+                ordered.append(index)
             elif index not in seen:
                 seen.add(index)
                 stack.append((index, True))
                 stack += [(operand, False) for operand in reversed(self.operands(index))]
-        return found
+        return ordered
 
     def rebuilt(self, roots: Iterable[int], known: Known, fused: bool = True) -> list[int]:
-        """Return terms as they are where comparisons have known outcomes; without ``fused``, a*b + c rounds twice."""
+        """Return terms simplified by known outcomes of comparisons; without ``fused``, a*b + c is rounded twice."""
         roots = list(roots)
         new: dict[int, int] = {}
         for index in self.order(roots):
-            node, first = self.nodes[index], _CHILDREN.get(self.kind(index))
+            node, first = self.nodes[index], _FIRST_OPERAND.get(self.kind(index))
             if first is None:
                 new[index] = index
                 continue
-            taken = [new[operand] for operand in node[first:]]
+            operands = [new[operand] for operand in node[first:]]
             if node[0] in ("fma", "fnma") and not fused:
-                product = self.mul(*taken[:2])
-                new[index] = self.add(product if node[0] == "fma" else self.neg(product), taken[2])
+                product = self.mul(*operands[:2])
+                new[index] = self.add(product if node[0] == "fma" else self.neg(product), operands[2])
             elif node[0] == "mask":
-                new[index] = self._decided(node[1], node[2], taken, known)
+                new[index] = self._decided(node[1], node[2], operands, known)
             else:
-                new[index] = self._again(node, taken)
+                new[index] = self._reconstructed(node, operands)
         return [new[root] for root in roots]
 
-    def _decided(self, width: int, outcomes: Outcomes, taken: list[int], known: Known) -> int:
-        mask = self.mask(width, outcomes, *taken)
+    def _decided(self, width: int, outcomes: Outcomes, operands: list[int], known: Known) -> int:
+        mask = self.mask(width, outcomes, *operands)
         if self.kind(mask) == "mask":
             _, _, outcomes, a, b = self.nodes[mask]
             possible = known.get((a, b), ANY)
@@ -407,39 +429,40 @@ class Terms:
                 return self.bits(width, -1 if possible <= outcomes else 0)
         return mask
 
-    def _again(self, node: Term, taken: list[int]) -> int:
+    def _reconstructed(self, node: Term, operands: list[int]) -> int:
         kind = node[0]
         if kind == "call":
-            return self.call(node[2], node[1], taken)
+            return self.call(node[2], node[1], operands)
         if kind == "part":
-            return self.word(taken[0], node[2])
+            return self.word(operands[0], node[2])
         if kind == "fnma":
-            return self.fma(self.neg(taken[0]), *taken[1:])
-        return int(_AGAIN[kind](self, *taken))
+            return self.fma(self.neg(operands[0]), *operands[1:])
+        return int(_CONSTRUCTORS[kind](self, *operands))
 
     def without_signs_of_zero(self, roots: Iterable[int]) -> list[int]:
-        """Return terms that are one where -(a + b) = (-a) + (-b), which fails in the sign of a sum that is zero.
+        """Return terms simplified by -(a + b) = (-a) + (-b), which fails only in the sign of a sum that is zero.
 
-        Only where that sign stays one of a zero: divisors, angles of two sides and signs that are taken keep theirs.
+        The law is not applied to divisors, arguments of functions and terms whose sign is extracted: there the sign of
+        a zero would change more than the sign of a zero.
         """
         roots = list(roots)
         new: dict[int, int] = {}
         for index in self.order(roots):
-            kind, taken = self.kind(index), [new[operand] for operand in self.operands(index)]
+            kind, operands = self.kind(index), [new[operand] for operand in self.operands(index)]
             if kind == "add":
-                (a, first), (b, second) = sorted(map(self._signed, taken))
+                (a, first), (b, second) = sorted(map(self._signed, operands))
                 total = self.add(a, self.neg(b) if first != second else b)
                 new[index] = self.neg(total) if first else total
             elif kind == "div":
-                new[index] = self.div(taken[0], self.operands(index)[1])
+                new[index] = self.div(operands[0], self.operands(index)[1])
             elif kind in ("mul", "neg", "abs", "sqrt"):
-                new[index] = self._again(self.nodes[index], taken)
+                new[index] = self._reconstructed(self.nodes[index], operands)
             else:
                 new[index] = index
         return [new[root] for root in roots]
 
     def undecided(self, roots: Iterable[int]) -> int | None:
-        """Return a mask below some terms that no other mask is below, or None."""
+        """Return a mask on which some terms depend and which depends on no other mask; None if there is none."""
         return next((index for index in self.order(roots) if self.kind(index) == "mask"), None)
 
 
@@ -454,7 +477,7 @@ def _is_inverse(value: float, divisor: float) -> bool:
     return isfinite(value) and Fraction(value) * Fraction(divisor) == 1
 
 
-_AGAIN: dict[str, Callable[..., int]] = {
+_CONSTRUCTORS: dict[str, Callable[..., int]] = {
     "mul": Terms.mul, "add": Terms.add, "div": Terms.div, "neg": Terms.neg, "abs": Terms.abs, "sqrt": Terms.sqrt,
     "sign": Terms.sign, "and": Terms.bit_and, "or": Terms.bit_or, "xor": Terms.bit_xor, "andn": Terms.bit_andn,
     "fma": Terms.fma, "choose": Terms.choose, "join": Terms.join,

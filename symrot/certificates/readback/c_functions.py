@@ -1,6 +1,6 @@
-"""C text as the functions it defines, each a list of tokens; whatever is not of the emitted subset is refused.
+"""Split C text into the functions that it defines, each a list of tokens; refuse all C that symrot does not emit.
 
-Nothing here is shared with the emitter.
+This module shares no code with the emitter, so that a mistake there cannot hide here.
 """
 
 import re
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from symrot.errors import CertificateError
 
-__all__ = ["Cursor", "Function", "Parameter", "Token", "functions_of"]
+__all__ = ["CFunction", "Cursor", "Parameter", "Token", "functions_of"]
 
 _TOKEN = re.compile(
     r"(?P<space>\s+)|(?P<number>(?:0[xX][0-9a-fA-F]+\.?[0-9a-fA-F]*[pP][+-]?\d+|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)f?)"
@@ -21,7 +21,7 @@ _DIRECTIVE = re.compile(r'\s*#\s*(?:include\s*(?:<(?:math|stddef)\.h>|"\w+\.h")|
 
 @dataclass(frozen=True)
 class Token:
-    """A word, number or mark of C: its kind (``name``, ``number``, ``mark``), text and line."""
+    """A token of C: its kind (``name``, ``number`` or ``mark``), its text and its line."""
 
     kind: str
     text: str
@@ -30,7 +30,7 @@ class Token:
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a C function: ``size`` is 0 for a scalar, -1 for a pointer without a size."""
+    """A parameter of a C function; ``size`` is the length of an array, 0 for a scalar, -1 for a bare pointer."""
 
     name: str
     type: str
@@ -39,8 +39,8 @@ class Parameter:
 
 
 @dataclass(frozen=True)
-class Function:
-    """A C function as tokens: what it takes and its body, read when it is called or asked for."""
+class CFunction:
+    """A C function: its signature, and its body as tokens that are parsed only when the function is needed."""
 
     name: str
     returns: str
@@ -50,7 +50,8 @@ class Function:
 
 
 def _tokens(text: str, where: str) -> list[Token]:
-    if "??" in text or "\\" in text:  # trigraphs, spliced lines: never emitted, and a reader may be led astray by them
+    """Return the tokens of a C file without comments and directives."""
+    if "??" in text or "\\" in text:  # trigraphs and spliced lines are never emitted, and could hide code from a reader
         raise CertificateError(f"{where}: expected C as symrot emits it, got a backslash or a trigraph")
     bare = _COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
     lines = bare.split("\n")
@@ -61,7 +62,7 @@ def _tokens(text: str, where: str) -> list[Token]:
                     f"{where}, line {number}: expected an #include that symrot emits, got {line.strip()!r}"
                 )
             lines[number - 1] = ""
-    found: list[Token] = []
+    tokens: list[Token] = []
     for number, line in enumerate(lines, 1):
         position = 0
         while position < len(line):
@@ -72,56 +73,57 @@ def _tokens(text: str, where: str) -> list[Token]:
                 )
             position = match.end()
             if match.lastgroup != "space":
-                found.append(Token(str(match.lastgroup), match[0], number))
-    return found
+                tokens.append(Token(str(match.lastgroup), match[0], number))
+    return tokens
 
 
 class Cursor:
-    """Tokens of one file or one body, taken from left to right."""
+    """The tokens of one file or one body, with the position up to which they are read."""
 
     def __init__(self, tokens: list[Token] | tuple[Token, ...], where: str) -> None:
         self.tokens, self.where, self.index = tokens, where, 0
 
     def peek(self, ahead: int = 0) -> str:
-        """Return the text of the token at hand or ahead of it; nothing beyond the end."""
+        """Return the text of the current token, or of a later one; an empty text beyond the end."""
         index = self.index + ahead
         return self.tokens[index].text if index < len(self.tokens) else ""
 
     def next(self) -> Token:
-        """Return the token at hand and go on."""
+        """Return the current token and advance."""
         if self.index >= len(self.tokens):
             raise self.fail("more text")
         self.index += 1
         return self.tokens[self.index - 1]
 
-    def fail(self, expected: str) -> CertificateError:
-        """Return the error for the token at hand."""
+    def fail(self, expected: str, got: str = "") -> CertificateError:
+        """Return the error that says what was expected in a line, and what it is: by default the current token."""
         at = min(self.index, len(self.tokens) - 1)
-        found = repr(self.tokens[at].text) if 0 <= self.index < len(self.tokens) else "the end"
+        if not got:
+            got = repr(self.tokens[at].text) if 0 <= self.index < len(self.tokens) else "the end"
         line = self.tokens[at].line if self.tokens else 1
-        return CertificateError(f"{self.where}, line {line}: expected {expected}, got {found}")
+        return CertificateError(f"{self.where}, line {line}: expected {expected}, got {got}")
 
     def expect(self, *marks: str) -> None:
-        """Go on past tokens of these texts, or raise."""
+        """Advance past tokens with exactly these texts; raise CertificateError at the first that differs."""
         for mark in marks:
             if self.peek() != mark:
                 raise self.fail(f"'{mark}'")
             self.index += 1
 
     def name(self) -> str:
-        """Return the name at hand and go on."""
+        """Return the current token, which must be a name, and advance."""
         if self.index >= len(self.tokens) or self.tokens[self.index].kind != "name":
             raise self.fail("a name")
         return self.next().text
 
     def integer(self) -> int:
-        """Return the index at hand and go on."""
+        """Return the current token, which must be an integer, as a number and advance."""
         if not self.peek().isdigit():
             raise self.fail("an index")
         return int(self.next().text)
 
     def block(self) -> tuple[Token, ...]:
-        """Return the tokens between the brace at hand and the one that closes it."""
+        """Return the tokens between the current opening brace and its closing brace, and advance past both."""
         self.expect("{")
         start, depth = self.index, 1
         while depth:
@@ -129,28 +131,29 @@ class Cursor:
         return tuple(self.tokens[start : self.index - 1])
 
 
-def functions_of(text: str, where: str = "kernel") -> dict[str, Function]:
-    """Return the functions that a C file defines, by name.
+def functions_of(text: str, where: str = "kernel") -> dict[str, CFunction]:
+    """Return the functions that a C file defines, by name; prototypes are skipped.
 
     Raises
     ------
     CertificateError
-        For anything that is not of the emitted subset, with its line.
+        For any C that symrot does not emit, with its line.
     """
-    cursor, found = Cursor(_tokens(text, where), where), {}
+    cursor, functions = Cursor(_tokens(text, where), where), {}
     while cursor.index < len(cursor.tokens):
         function = _function(cursor)
         if function is None:
             continue
-        if function.name in found:
+        if function.name in functions:
             raise CertificateError(
                 f"{where}, line {function.line}: expected one definition of {function.name}, got two"
             )
-        found[function.name] = function
-    return found
+        functions[function.name] = function
+    return functions
 
 
-def _function(cursor: Cursor) -> Function | None:
+def _function(cursor: Cursor) -> CFunction | None:
+    """Read a function definition; return None for a prototype."""
     while cursor.peek() in ("static", "inline"):
         cursor.next()
     line = cursor.tokens[cursor.index].line if cursor.index < len(cursor.tokens) else 0
@@ -165,14 +168,15 @@ def _function(cursor: Cursor) -> Function | None:
         parameters.append(_parameter(cursor))
     cursor.expect(")")
     if len({parameter.name for parameter in parameters}) != len(parameters):
-        raise cursor.fail(f"different names for the parameters of {name}")
+        raise cursor.fail(f"different names for the parameters of {name}", "one name twice")
     if cursor.peek() == ";":
         cursor.next()
         return None
-    return Function(name, returns, tuple(parameters), cursor.block(), line)
+    return CFunction(name, returns, tuple(parameters), cursor.block(), line)
 
 
 def _parameter(cursor: Cursor) -> Parameter:
+    """Read one parameter of a function."""
     is_const = cursor.peek() == "const"
     if is_const:
         cursor.next()

@@ -1,7 +1,8 @@
-"""Read the header of an emitted kernel strictly: what it may hold beside the prototypes of its C file is listed here.
+"""Check the header of an emitted kernel: it holds the fixed lines listed here and the prototypes of its C file.
 
-A header can change what a C file means: a macro called ``sin`` is enough. Comments aside, every line has to be one of
-the lines below, in this order, and every prototype that of a function which the C file defines. Standard library only.
+A header can change what a C file means: a macro called ``sin`` is enough. So, apart from comments, every line must be
+one of the lines below, in this order, or belong to the prototype of a function that the C file defines. Only the
+standard library is used.
 """
 
 import re
@@ -53,19 +54,19 @@ _END = """
 
 
 def check_header(header: str, source: str, name: str) -> None:
-    """Refuse a header that says more than the prototypes of its C file.
+    """Raise CertificateError if a header holds anything but the fixed lines and the prototypes of its C file.
 
     Parameters
     ----------
     header, source : str
         The texts of NAME.h and NAME.c.
     name : str
-        The kernel.
+        The name of the kernel.
 
     Raises
     ------
     CertificateError
-        With the first line that is not expected, or a prototype without its function.
+        Naming the first unexpected line, or a prototype without a function.
     """
     if re.search(r"\\|\?\?|[\0-\x09\x0b-\x1f]", header):
         raise CertificateError(f"{name}.h: expected no backslash, trigraph or control character")
@@ -75,18 +76,18 @@ def check_header(header: str, source: str, name: str) -> None:
     for optional in map(_lines, (_INDEPENDENT, _SPAN)):
         top += optional if lines[len(top) : len(top) + 1] == optional[:1] else []
     top += _lines(_OPEN)
-    for got, wanted in zip(lines, top, strict=False):
-        if got != wanted:
-            raise CertificateError(f"{name}.h: expected the line {wanted!r}, got {got[:80]!r}")
+    for got, fixed in zip(lines, top, strict=False):
+        if got != fixed:
+            raise CertificateError(f"{name}.h: expected the line {fixed!r}, got {got[:80]!r}")
     middle = lines[len(top) : len(lines) - len(end)]
     if len(lines) < len(top) + len(end) or lines[len(lines) - len(end) :] != end:
         raise CertificateError(f"{name}.h: expected the lines {' '.join(end)!r} at the end")
     if any("#" in line for line in middle):
         raise CertificateError(f"{name}.h: expected nothing but prototypes between the guards")
-    said = {_words(each) for each in " ".join(middle).split(";") if each.strip()}
+    declared = {_words(each) for each in " ".join(middle).split(";") if each.strip()}
     defined = {_words(head) for head in re.findall(r"^(void \w+\([^()]*\))\s*\{", _COMMENT.sub(" ", source), re.M)}
-    if said != defined:
-        odd = sorted(said ^ defined)[0]
+    if declared != defined:
+        odd = sorted(declared ^ defined)[0]
         raise CertificateError(f"{name}.h: expected the prototypes of the functions of {name}.c, and {odd!r} differs")
 
 

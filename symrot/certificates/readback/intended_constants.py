@@ -1,4 +1,7 @@
-"""What a rounded constant stands for: the simplest fraction, or fraction of pi, that rounds to it. Standard library."""
+"""Recover the number that a rounded constant stands for: the simplest fraction, or multiple of pi, that rounds to it.
+
+Only the standard library is used.
+"""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -8,27 +11,27 @@ from struct import pack, unpack
 from symrot.errors import CertificateError
 from symrot.formula.exact_numbers import PI
 
-__all__ = ["Meant", "meaning", "rounds_to"]
+__all__ = ["IntendedConstant", "intended_value", "rounds_to"]
 
-SHORT = 12  # significant bits of a number that stands for itself
-SIMPLE = 2**32  # largest numerator times denominator of what a constant may stand for
+SHORT = 12  # a number of at most so many significant bits stands for itself
+SIMPLE = 2**32  # largest product of numerator and denominator of a fraction that a constant may stand for
 
 
 @dataclass(frozen=True)
-class Meant:
-    """A constant as written, and the number it stands for: ``fraction``, or that times pi."""
+class IntendedConstant:
+    """A constant as the C text writes it, and the number it stands for: ``fraction``, times pi if ``times_pi``."""
 
     written: Fraction
     fraction: Fraction
     times_pi: bool
 
     def rounds(self, precision: str) -> bool:
-        """Tell whether the number rounds to what is written."""
+        """Tell whether the intended number, rounded to a precision, is the written constant."""
         return rounds_to(self.fraction * PI if self.times_pi else self.fraction, precision) == self.written
 
 
 def rounds_to(value: Fraction, precision: str) -> Fraction:
-    """Return the number of a precision nearest to a value, ties to even."""
+    """Return a value rounded to the nearest number of a precision, ties to even."""
     if precision == "binary64":
         return Fraction(value.numerator / value.denominator)  # Python rounds a quotient of integers correctly
     near = float(unpack("f", pack("f", float(value)))[0])
@@ -37,30 +40,30 @@ def rounds_to(value: Fraction, precision: str) -> Fraction:
         Fraction(unpack("f", pack("i", bits + step))[0]) for step in (-1, 0, 1) if bits + step >= 0 or near < 0
     ]
     closest = min(abs(candidate - value) for candidate in candidates)
-    found = [candidate for candidate in candidates if abs(candidate - value) == closest]
-    return min(found, key=lambda candidate: unpack("i", pack("f", float(candidate)))[0] & 1)
+    nearest = [candidate for candidate in candidates if abs(candidate - value) == closest]
+    return min(nearest, key=lambda candidate: unpack("i", pack("f", float(candidate)))[0] & 1)
 
 
-def meaning(value: Fraction, precision: str) -> Meant:
-    """Return what a constant stands for.
+def intended_value(value: Fraction, precision: str) -> IntendedConstant:
+    """Return the number that a constant stands for: itself if it is short, else a simple fraction or multiple of pi.
 
     Raises
     ------
     CertificateError
-        If neither it nor a simple fraction, or a simple fraction of pi, rounds to it.
+        If the constant is long and no simple fraction or multiple of pi rounds to it.
     """
     mantissa = frexp(float(value))[0]
     if (mantissa * 2**SHORT).is_integer() and Fraction(float(value)) == value:
-        return Meant(value, value, False)
+        return IntendedConstant(value, value, False)
     digits = {"binary64": 53, "binary32": 24}[precision]
     half = Fraction(2) ** (frexp(float(value))[1] - digits - 1)
     candidates = []
     for unit, times_pi in ((Fraction(1), False), (PI, True)):
         simple = _simplest((abs(value) - half) / unit, (abs(value) + half) / unit)
-        candidates.append(Meant(value, simple if value > 0 else -simple, times_pi))
-    for meant in sorted(candidates, key=lambda meant: _size(meant.fraction)):
-        if _size(meant.fraction) <= SIMPLE and meant.rounds(precision):
-            return meant
+        candidates.append(IntendedConstant(value, simple if value > 0 else -simple, times_pi))
+    for candidate in sorted(candidates, key=lambda candidate: _size(candidate.fraction)):
+        if _size(candidate.fraction) <= SIMPLE and candidate.rounds(precision):
+            return candidate
     raise CertificateError(
         f"expected a constant that a simple fraction or a multiple of pi rounds to, got {float(value)!r}"
     )
@@ -71,7 +74,7 @@ def _size(fraction: Fraction) -> int:
 
 
 def _simplest(low: Fraction, high: Fraction) -> Fraction:
-    """Return the fraction of least denominator in a closed interval of positive numbers."""
+    """Return the fraction with the smallest denominator in a closed interval of positive numbers."""
     whole = low.numerator // low.denominator
     if low == whole:
         return Fraction(whole)

@@ -1,8 +1,8 @@
-"""What a compiled kernel computes, rounding for rounding: a graph of operations, each node one rounded operation.
+"""The operations of a kernel, rounding for rounding: a graph in which each node is one rounded operation.
 
-The readers of C text (:mod:`symrot.certificates.readback.readback`) and of object code make such graphs; the
-certificates compare and analyse them. Standard library only, and nothing from the emitter: a checker that shares code
-checks nothing.
+The reader of C text (:mod:`symrot.certificates.readback.readback`) makes such graphs; the certificates compare and
+analyse them. This module uses only the standard library and nothing of the emitter: a checker that shared code with it
+would repeat its mistakes.
 
 A node is a tuple; operands are indices of earlier nodes::
 
@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-__all__ = ["BINARY", "RELATIONS", "UNARY", "Builder", "Node", "Operations", "operands"]
+__all__ = ["BINARY", "RELATIONS", "UNARY", "GraphBuilder", "Node", "Operations", "operands"]
 
 Node = tuple[Any, ...]
 
@@ -37,7 +37,7 @@ RELATIONS: dict[str, Callable[[Any, Any], bool]] = {
 
 
 def operands(node: Node) -> tuple[int, ...]:
-    """Return the indices of the nodes that a node takes."""
+    """Return the indices of the operands of a node."""
     kind = node[0]
     if kind in ("in", "const"):
         return ()
@@ -51,8 +51,8 @@ class Operations:
     """A kernel as rounded operations.
 
     ``precision`` is ``"binary64"`` or ``"binary32"``; ``inputs`` are places such as ``"q[1]"`` or ``"t"`` in the order
-    of the arguments; ``outputs`` are (place, node) in the order of the arguments. Only nodes that an output needs are
-    kept, in the order of first use.
+    of the arguments; ``outputs`` are pairs (place, index of its node) in the order of the arguments. ``nodes`` holds
+    only what some output needs, operands before the operations that use them.
     """
 
     name: str
@@ -67,59 +67,68 @@ class Operations:
         functions: Mapping[str, Callable[..., Any]],
         number: Callable[[Fraction], Any],
     ) -> dict[str, Any]:
-        """Return the outputs by place, over any kind of number.
+        """Return the outputs by place, computed with any kind of number.
 
-        ``functions`` holds what is called (``sin``, ...) and, where the kind of number has no operator for it,
-        ``sqrt``, ``abs``, ``copysign`` and ``select`` (taking relation, i, j, x, y); ``number`` makes a constant.
+        Parameters
+        ----------
+        values : mapping of str
+            Place of an input -> its value.
+        functions : mapping of str to callable
+            The functions that the nodes call (``sin``, ...), and ``sqrt``, ``abs``, ``copysign`` and ``select`` (with
+            the arguments relation, i, j, x, y) if the kind of number has no operator for them.
+        number : callable
+            Converts a constant, a Fraction, to the kind of number.
         """
         known: list[Any] = []
         for node in self.nodes:
-            known.append(_computed(node, known, values, functions, number))
+            known.append(_node_value(node, known, values, functions, number))
         return {place: known[index] for place, index in self.outputs}
 
     def to_json(self) -> dict[str, Any]:
-        """Return plain data, numbers as exact text."""
+        """Return the operations as data for JSON, with constants as exact text."""
         return {
             "name": self.name, "precision": self.precision, "inputs": list(self.inputs),
-            "nodes": [_plain(node) for node in self.nodes], "outputs": [list(item) for item in self.outputs],
+            "nodes": [_node_to_json(node) for node in self.nodes], "outputs": [list(item) for item in self.outputs],
         }  # fmt: skip
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> "Operations":
-        """Return the operations that :meth:`to_json` saved."""
+        """Return the operations from the data that :meth:`to_json` returned."""
         return cls(
-            data["name"], data["precision"], tuple(data["inputs"]), tuple(_node(node) for node in data["nodes"]),
+            data["name"], data["precision"], tuple(data["inputs"]),
+            tuple(_node_from_json(node) for node in data["nodes"]),
             tuple((place, index) for place, index in data["outputs"]),
         )  # fmt: skip
 
     def counts(self) -> dict[str, int]:
-        """Return how many operations there are of each kind, calls by their name."""
+        """Return the number of operations of each kind; calls count under the name of their function."""
         names = [node[1] if node[0] == "call" else node[0] for node in self.nodes if node[0] not in ("in", "const")]
         return {name: names.count(name) for name in sorted(set(names))}
 
     def digest(self) -> str:
-        """Return the SHA-256 of what is computed, whatever the kernel is called and whatever inputs it leaves alone."""
+        """Return the SHA-256 of the computation alone: neither the kernel's name nor its unused inputs change it."""
         data = self.to_json() | {"name": "", "inputs": []}
         return hashlib.sha256(json.dumps(data, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
 
-def _computed(
+def _node_value(
     node: Node, known: Sequence[Any], values: Mapping[str, Any],
     functions: Mapping[str, Callable[..., Any]], number: Callable[[Fraction], Any],
 ) -> Any:  # fmt: skip
+    """Return the value of a node from the values of the nodes before it."""
     kind = node[0]
     if kind == "in":
         return values[node[1]]
     if kind == "const":
         return number(node[1])
-    taken = [known[i] for i in operands(node)]
+    arguments = [known[i] for i in operands(node)]
     if kind == "call":
-        return functions[node[1]](*taken)
+        return functions[node[1]](*arguments)
     if kind in functions:
-        return functions[kind](node[1], *taken) if kind == "select" else functions[kind](*taken)
+        return functions[kind](node[1], *arguments) if kind == "select" else functions[kind](*arguments)
     if kind == "select":
-        return taken[2] if RELATIONS[node[1]](taken[0], taken[1]) else taken[3]
-    return _ARITHMETIC[kind](*taken)
+        return arguments[2] if RELATIONS[node[1]](arguments[0], arguments[1]) else arguments[3]
+    return _ARITHMETIC[kind](*arguments)
 
 
 _ARITHMETIC: dict[str, Callable[..., Any]] = {
@@ -132,27 +141,27 @@ _ARITHMETIC: dict[str, Callable[..., Any]] = {
 }
 
 
-def _plain(node: Node) -> list[Any]:
+def _node_to_json(node: Node) -> list[Any]:
     if node[0] == "const":
         return ["const", str(node[1])]
     return [node[0], node[1], list(node[2])] if node[0] == "call" else list(node)
 
 
-def _node(data: Sequence[Any]) -> Node:
+def _node_from_json(data: Sequence[Any]) -> Node:
     if data[0] == "const":
         return ("const", Fraction(data[1]))
     return ("call", data[1], tuple(data[2])) if data[0] == "call" else tuple(data)
 
 
-class Builder:
-    """Collects nodes, equal ones once, and makes :class:`Operations` of those that outputs need."""
+class GraphBuilder:
+    """Collects nodes, storing equal ones once, and makes :class:`Operations` of the nodes that the outputs need."""
 
     def __init__(self) -> None:
         self.nodes: list[Node] = []
         self.places: dict[Node, int] = {}
 
     def add(self, *node: Any) -> int:
-        """Return the index of a node, which is new or known."""
+        """Return the index of a node; the node is added if it is new."""
         if node not in self.places:
             self.places[node] = len(self.nodes)
             self.nodes.append(node)
@@ -161,9 +170,9 @@ class Builder:
     def finish(
         self, name: str, precision: str, inputs: Sequence[str], outputs: Sequence[tuple[str, int]]
     ) -> Operations:
-        """Return the operations behind some outputs, renumbered in the order in which the outputs need them."""
+        """Return the operations that some outputs need, numbered in the order of first use."""
         order: dict[int, int] = {}
-        kept: list[Node] = []
+        needed: list[Node] = []
         for _, root in outputs:
             stack = [(root, False)]
             while stack:
@@ -172,13 +181,13 @@ class Builder:
                     continue
                 node = self.nodes[index]
                 if ready:
-                    order[index] = len(kept)
-                    kept.append(_renumbered(node, order))
+                    order[index] = len(needed)
+                    needed.append(_renumbered(node, order))
                 else:
                     stack.append((index, True))
                     stack += [(operand, False) for operand in reversed(operands(node))]
         return Operations(
-            name, precision, tuple(inputs), tuple(kept), tuple((place, order[index]) for place, index in outputs)
+            name, precision, tuple(inputs), tuple(needed), tuple((place, order[index]) for place, index in outputs)
         )
 
 

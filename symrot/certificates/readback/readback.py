@@ -1,8 +1,9 @@
-"""Read emitted C back as the operations it computes; refuse whatever is not understood.
+"""Read emitted C back as the operations that it computes; refuse all C that symrot does not emit.
 
-The subset: functions of ``double`` or ``float``; ``const`` temporaries that are assigned once; ``+ - * /``, unary
-minus, ``a < b ? x : y``; calls of the C library and of ``static inline`` functions of the same file; each element of an
-output array assigned once; in a batch, one loop over samples. Nothing here is shared with the emitter.
+The accepted subset of C: functions of ``double`` or ``float``; ``const`` temporaries that are assigned once;
+``+ - * /``, unary minus, ``a < b ? x : y``; calls of the C library and of ``static inline`` functions of the same
+file; each element of an output array assigned once; in a batch, one loop over samples. This module shares no code with
+the emitter.
 """
 
 from collections.abc import Mapping
@@ -10,8 +11,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from struct import pack, unpack
 
-from symrot.certificates.readback.c_functions import Cursor, Function, Parameter, Token, functions_of
-from symrot.certificates.readback.operations import RELATIONS, Builder, Operations
+from symrot.certificates.readback.c_functions import CFunction, Cursor, Parameter, Token, functions_of
+from symrot.certificates.readback.operations import RELATIONS, GraphBuilder, Operations
 from symrot.errors import CertificateError
 
 __all__ = ["LIBRARY", "read_batch", "read_kernel"]
@@ -21,41 +22,44 @@ LIBRARY: dict[str, int] = {  # functions of <math.h> that kernels call, without 
     "sinh": 1, "cosh": 1, "tanh": 1,
 }  # fmt: skip
 ROUNDED = {"sqrt": ("sqrt", 1), "fabs": ("abs", 1), "copysign": ("copysign", 2)}  # exact, or rounded correctly
-NEAR = {"symrot_sin": "sin", "symrot_cos": "cos"}  # of symrot_math.h, in batches: assumed to its stated error
-ARC = {"symrot_atan2": "atan2"}  # the same, for all numbers
-# of symrot_math.h: choices without a branch
+VECTORISED = {"symrot_sin": "sin", "symrot_cos": "cos"}  # vectorised, from symrot_math.h; their error is assumed
+ARC = {"symrot_atan2": "atan2"}  # likewise, accurate for all arguments
+# from symrot_math.h: choices without a branch
 SELECT = {"symrot_select_lt": "<", "symrot_select_eq": "==", "symrot_choose_ge": ">="}
-SPAN = "SYMROT_SPAN"  # samples that several loops of a batch take in turn
-DEEPEST = 200  # nested levels of an expression
+SPAN = "SYMROT_SPAN"  # samples in a block that several loops of a batch process one after the other
+DEEPEST = 200  # limit on the nesting of an expression
 
 
 @dataclass
 class _Scope:
-    """Names while one function is read: values, arrays, and what has been written."""
+    """The names known inside one function: values by name, arrays by name, and the output elements assigned so far."""
 
     values: dict[str, int] = field(default_factory=dict)
     arrays: dict[str, Parameter] = field(default_factory=dict)
+    scalars: frozenset[str] = frozenset()  # arrays of a batch that hold one number for each sample
     written: dict[tuple[str, int], int] = field(default_factory=dict)
-    loop: str = ""  # name of the index of the sample, in a batch
-    count: str = ""  # name of the number of samples
+    loop: str = ""  # in a batch, the name of the sample's index
+    count: str = ""  # in a batch, the name of the number of samples
 
 
-class _Reader:
-    """Reads the body of one function into a graph, the functions it calls in their place."""
+class _BodyReader:
+    """Reads the body of one function into a graph of operations; functions of the same file are inlined."""
 
-    def __init__(self, functions: Mapping[str, Function], where: str, real: str, batch: bool = False) -> None:
+    def __init__(self, functions: Mapping[str, CFunction], where: str, real: str, batch: bool = False) -> None:
         self.functions, self.where, self.real, self.batch = functions, where, real, batch
-        self.builder = Builder()
+        self.builder = GraphBuilder()
         self.inputs: dict[str, int] = {}  # place -> its node
         self.calls: list[str] = []
         self.depth = 0
-        self.turning: set[int] | None = None  # what symrot_sin and symrot_cos are taken of, where they may be called
+        # the arguments of symrot_sin and symrot_cos; None where these must not be called
+        self.vectorised_angles: set[int] | None = None
 
     def input(self, place: str) -> int:
+        """Return the node of the input at a place."""
         return self.inputs.setdefault(place, self.builder.add("in", place))
 
     def statements(self, cursor: Cursor, scope: _Scope) -> int | None:
-        """Read statements to the end of a body; return the node of ``return``, if there is one."""
+        """Read statements to the end of a body; return the node of its ``return``, or None if it has no return."""
         while cursor.peek():
             if cursor.peek() == "(":
                 cursor.expect("(", "void", ")")
@@ -72,7 +76,7 @@ class _Reader:
                 cursor.expect("const", self.real)
                 name = cursor.name()
                 if name in scope.values or name in scope.arrays or name in (scope.loop, scope.count):
-                    raise cursor.fail(f"a new name instead of {name}")
+                    raise cursor.fail("a new name", repr(name))
                 cursor.expect("=")
                 scope.values[name] = self.expression(cursor, scope)
                 cursor.expect(";")
@@ -81,41 +85,50 @@ class _Reader:
         return None
 
     def _known(self, cursor: Cursor, scope: _Scope, name: str) -> None:
+        """Raise CertificateError if a name is neither a value nor an array."""
         if name not in scope.values and name not in scope.arrays:
-            raise cursor.fail(f"the name of a parameter instead of {name}")
+            raise cursor.fail("the name of a parameter", repr(name))
 
     def _assignment(self, cursor: Cursor, scope: _Scope) -> None:
+        """Read an assignment to one element of an output array."""
         name = cursor.name()
         array = scope.arrays.get(name)
         if array is None or array.is_const:
-            raise cursor.fail(f"an output array instead of {name}")
+            raise cursor.fail("an output array", repr(name))
         index = self._index(cursor, scope, array)
         cursor.expect("=")
         value = self.expression(cursor, scope)
         cursor.expect(";")
         if (name, index) in scope.written:
-            raise cursor.fail(f"one assignment to {name}[{index}], and here is a second; before")
+            raise cursor.fail(f"one assignment to {name}[{index}]", "a second one")
         scope.written[name, index] = value
 
     def _index(self, cursor: Cursor, scope: _Scope, array: Parameter) -> int:
-        """Read ``[i]`` of an array with a size, ``[i*n + k]`` of one in a batch."""
+        """Read the index of an array: ``[i]`` of a fixed size, else ``[k]``, ``[n + k]``, ``[i*n + k]``; return i."""
         cursor.expect("[")
         if array.size > 0:
             index = cursor.integer()
             if index >= array.size:
-                raise cursor.fail(f"an index below {array.size} for {array.name}")
+                raise cursor.fail(f"an index below {array.size} for {array.name}", str(index))
         else:
             if not scope.loop:
-                raise cursor.fail(f"an array with a size instead of {array.name}")
-            index = cursor.integer()
-            cursor.expect("*", scope.count, "+", scope.loop)
+                raise cursor.fail("an array with a size", repr(array.name))
+            index = 0
+            if cursor.peek() == scope.count:
+                index = 1
+                cursor.expect(scope.count, "+")
+            elif cursor.peek() != scope.loop:
+                index = cursor.integer()
+                cursor.expect("*", scope.count, "+")
+            cursor.expect(scope.loop)
         cursor.expect("]")
         return index
 
     def expression(self, cursor: Cursor, scope: _Scope) -> int:
+        """Read a choice or a sum, the whole of an expression; return its node."""
         self.depth += 1
         if self.depth > DEEPEST:
-            raise cursor.fail(f"at most {DEEPEST} nested levels")
+            raise cursor.fail(f"an expression of at most {DEEPEST} nested levels", "a deeper one")
         value = self.sum(cursor, scope)
         relation = cursor.peek()
         if relation in RELATIONS:
@@ -129,6 +142,7 @@ class _Reader:
         return value
 
     def sum(self, cursor: Cursor, scope: _Scope) -> int:
+        """Read terms with + or - between them; return the node."""
         value = self.product(cursor, scope)
         while cursor.peek() in ("+", "-"):
             kind = "add" if cursor.next().text == "+" else "sub"
@@ -136,6 +150,7 @@ class _Reader:
         return value
 
     def product(self, cursor: Cursor, scope: _Scope) -> int:
+        """Read factors with * or / between them; return the node."""
         value = self.factor(cursor, scope)
         while cursor.peek() in ("*", "/"):
             kind = "mul" if cursor.next().text == "*" else "div"
@@ -143,6 +158,7 @@ class _Reader:
         return value
 
     def factor(self, cursor: Cursor, scope: _Scope) -> int:
+        """Read a sign, a bracket, a literal, a call, an array element or a name; return the node."""
         if cursor.peek() == "-":
             cursor.next()
             value = self.factor(cursor, scope)
@@ -161,12 +177,13 @@ class _Reader:
         if cursor.peek() == "[":
             return self._element(cursor, scope, name)
         if name not in scope.values:
-            raise cursor.fail(f"a name that has a value instead of {name}, before")
+            raise cursor.fail("a name that has a value", repr(name))
         return scope.values[name]
 
     def _literal(self, cursor: Cursor) -> int:
+        """Read a floating-point literal of the type of the kernel; return the node."""
         text = cursor.peek()
-        is_float = text.endswith("f")  # a hexadecimal literal has a decimal exponent, so that its f is a suffix too
+        is_float = text.endswith("f")  # a suffix in hexadecimal literals too: their exponent is decimal
         if is_float != (self.real == "float") or text.isdigit():
             raise cursor.fail(f"a literal of type {self.real}")
         cursor.next()
@@ -177,58 +194,61 @@ class _Reader:
         return self.builder.add("const", Fraction(value))
 
     def _element(self, cursor: Cursor, scope: _Scope, name: str) -> int:
+        """Read an element of an input array; return the node."""
         array = scope.arrays.get(name)
         if array is None or not array.is_const:
-            raise cursor.fail(f"an input array instead of {name}, before")
-        if scope.loop and cursor.peek(1) == scope.loop:  # a scalar of one sample, t[k]
+            raise cursor.fail("an input array", repr(name))
+        if scope.loop and name in scope.scalars:  # a scalar of one sample, t[k]
             cursor.expect("[", scope.loop, "]")
             return self.input(name)
         return self.input(f"{name}[{self._index(cursor, scope, array)}]")
 
     def _call(self, cursor: Cursor, scope: _Scope, name: str) -> int:
+        """Read the arguments of a function; return the node of the call."""
         cursor.expect("(")
-        taken = [self.expression(cursor, scope)]
+        arguments = [self.expression(cursor, scope)]
         while cursor.peek() == ",":
             cursor.next()
-            taken.append(self.expression(cursor, scope))
+            arguments.append(self.expression(cursor, scope))
         cursor.expect(")")
         if name in self.functions:
-            return self._inlined(cursor, self.functions[name], taken)
+            return self._inlined(cursor, self.functions[name], arguments)
         bare = name.removesuffix("f") if self.real == "float" else name
         if self.real == "float" and bare == name:
-            raise cursor.fail(f"the float form of {name}, before")
-        if bare in ROUNDED and ROUNDED[bare][1] == len(taken):
-            return self.builder.add(ROUNDED[bare][0], *taken)
-        if self.turning is not None and bare in NEAR and len(taken) == 1:
-            self.turning.add(taken[0])
-            return self.builder.add("call", NEAR[bare], tuple(taken))
-        if self.batch and bare in ARC and len(taken) == 2:
-            return self.builder.add("call", ARC[bare], tuple(taken))
-        if self.batch and bare in SELECT and len(taken) == 4:
-            return self.builder.add("select", SELECT[bare], *taken)
-        if LIBRARY.get(bare) != len(taken):
-            raise cursor.fail(f"a function of <math.h> that kernels use instead of {name}, before")
-        return self.builder.add("call", bare, tuple(taken))
+            raise cursor.fail(f"the float form of {name}", repr(name))
+        if bare in ROUNDED and ROUNDED[bare][1] == len(arguments):
+            return self.builder.add(ROUNDED[bare][0], *arguments)
+        if self.vectorised_angles is not None and bare in VECTORISED and len(arguments) == 1:
+            self.vectorised_angles.add(arguments[0])
+            return self.builder.add("call", VECTORISED[bare], tuple(arguments))
+        if self.batch and bare in ARC and len(arguments) == 2:
+            return self.builder.add("call", ARC[bare], tuple(arguments))
+        if self.batch and bare in SELECT and len(arguments) == 4:
+            return self.builder.add("select", SELECT[bare], *arguments)
+        if LIBRARY.get(bare) != len(arguments):
+            raise cursor.fail("a function of <math.h> that kernels use", repr(name))
+        return self.builder.add("call", bare, tuple(arguments))
 
-    def _inlined(self, cursor: Cursor, function: Function, taken: list[int]) -> int:
-        wanted = function.parameters
-        if function.returns != self.real or any(p.size or p.type != self.real for p in wanted):
-            raise cursor.fail(f"a function of {self.real} instead of {function.name}, before")
-        if len(wanted) != len(taken):
-            raise cursor.fail(f"{len(wanted)} arguments for {function.name} instead of {len(taken)}, before")
+    def _inlined(self, cursor: Cursor, function: CFunction, arguments: list[int]) -> int:
+        """Read the body of a function of the same file with these arguments; return the node of its result."""
+        parameters = function.parameters
+        if function.returns != self.real or any(p.size or p.type != self.real for p in parameters):
+            raise cursor.fail(f"a function of {self.real}", repr(function.name))
+        if len(parameters) != len(arguments):
+            raise cursor.fail(f"{len(parameters)} arguments for {function.name}", str(len(arguments)))
         if function.name in self.calls:
-            raise cursor.fail(f"no recursion, as in {function.name}, before")
+            raise cursor.fail("functions without recursion", f"a call of {function.name} in itself")
         self.calls.append(function.name)
-        scope = _Scope(values={p.name: value for p, value in zip(wanted, taken, strict=True)})
+        scope = _Scope(values={p.name: value for p, value in zip(parameters, arguments, strict=True)})
         value = self.statements(Cursor(function.body, self.where), scope)
         self.calls.pop()
         if value is None:
-            raise cursor.fail(f"a return in {function.name}, before")
+            raise cursor.fail(f"a return statement in {function.name}", "none")
         return value
 
 
 def _nearest_float(digits: str, value: float) -> float:
-    """Return the float nearest to decimal text, without the double rounding through a double."""
+    """Return the float nearest to decimal text; rounding it to a double first could give the neighbouring float."""
     if digits.lower().startswith("0x"):
         return float(unpack("f", pack("f", value))[0])
     exact, rounded = Fraction(digits), float(unpack("f", pack("f", value))[0])
@@ -239,13 +259,15 @@ def _nearest_float(digits: str, value: float) -> float:
     return min(ties, key=lambda item: unpack("I", pack("f", item))[0] & 1)
 
 
-def _defined(functions: Mapping[str, Function], name: str, where: str) -> Function:
+def _defined(functions: Mapping[str, CFunction], name: str, where: str) -> CFunction:
+    """Return the function of a name, or raise CertificateError."""
     if name not in functions:
         raise CertificateError(f"{where}: expected a definition of {name}, got {', '.join(functions) or 'no function'}")
     return functions[name]
 
 
-def _real_of(function: Function, where: str) -> str:
+def _real_of(function: CFunction, where: str) -> str:
+    """Return the type of all numbers of a kernel, double or float."""
     types = {p.type for p in function.parameters} - {"size_t"}
     if function.returns != "void" or len(types) != 1:
         raise CertificateError(f"{where}, line {function.line}: expected a kernel of one type, double or float")
@@ -256,27 +278,27 @@ PRECISION = {"double": "binary64", "float": "binary32"}
 
 
 def read_kernel(text: str, name: str, where: str = "kernel") -> Operations:
-    """Return the operations of the one-sample function of that name.
+    """Return the operations of a one-sample function of a C file.
 
     Parameters
     ----------
     text : str
         A C file as symrot emits it.
     name : str
-        The function.
+        The name of the function.
     where : str
         The file's name, for errors.
 
     Raises
     ------
     CertificateError
-        For anything that is not of the emitted subset: an unknown call, a name without value, an output that is not
-        assigned or twice, an index beyond its array.
+        For any C that symrot does not emit: an unknown call, a name without a value, an output that is assigned twice
+        or never, an index beyond its array.
     """
     functions = functions_of(text, where)
     function = _defined(functions, name, where)
     real = _real_of(function, where)
-    reader, scope = _Reader(functions, where, real), _Scope()
+    reader, scope = _BodyReader(functions, where, real), _Scope()
     for parameter in function.parameters:
         if parameter.size == 0:
             scope.values[parameter.name] = reader.input(parameter.name)
@@ -291,19 +313,19 @@ def read_kernel(text: str, name: str, where: str = "kernel") -> Operations:
 
 
 def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
-    """Return the operations of one sample of the batch function ``name``; places are those of the one-sample function.
+    """Return the operations that a batch function performs on one sample, with the places of the one-sample function.
 
     Raises
     ------
     CertificateError
-        As :func:`read_kernel`, and for a loop that is not the one over all samples.
+        As :func:`read_kernel`, and if a loop does not run over all samples.
 
     Notes
     -----
     ``symrot_sin``, ``symrot_cos`` and ``symrot_atan2`` are read as sine, cosine and arc tangent: that
-    ``symrot_math.h`` computes them to its stated error is an assumption. The first two are accepted where each angle is
-    asked whether it is in their range, and the block is computed again by the same operations with the C library where
-    one is not.
+    ``symrot_math.h`` computes them to its stated error is an assumption. ``symrot_sin`` and ``symrot_cos`` hold for a
+    range of angles only. They are accepted if the loop tests each of their arguments for that range, and a second loop
+    computes the block again with the C library if a test fails.
     """
     functions = functions_of(text, where)
     function = _defined(functions, name, where)
@@ -311,8 +333,10 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
     counts = [p.name for p in function.parameters if p.type == "size_t"]
     if len(counts) != 1:
         raise CertificateError(f"{where}, line {function.line}: expected one number of samples for {name}")
-    reader, scope = _Reader(functions, where, real, batch=True), _Scope(count=counts[0])
+    reader, scope = _BodyReader(functions, where, real, batch=True), _Scope(count=counts[0])
     scope.arrays = {p.name: p for p in function.parameters if p.type != "size_t"}
+    one = functions.get(name.removesuffix("_batch"))
+    scope.scalars = frozenset(p.name for p in one.parameters if not p.size) if one else frozenset()
     cursor = Cursor(function.body, where)
     while cursor.peek() == "(":
         cursor.expect("(", "void", ")")
@@ -332,7 +356,7 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
 
 
 def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token, ...]:
-    """Return the body of the loop over samples from start to end."""
+    """Read the head of the loop over the samples from start to end; return its body."""
     if cursor.peek() == "SYMROT_INDEPENDENT":
         cursor.next()
     cursor.expect("for", "(", "size_t")
@@ -341,50 +365,51 @@ def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token
     return cursor.block()
 
 
-def _parts(cursor: Cursor, reader: _Reader, scope: _Scope) -> None:
-    """Read loops over the same samples, one block after the other: each assigns outputs of its own."""
+def _parts(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
+    """Read several loops over the same block of samples, each of which assigns other outputs."""
     _heads(cursor, scope, SPAN)
     while cursor.peek() != "}":
-        part = _Scope(arrays=scope.arrays, count=scope.count)
+        part = _Scope(arrays=scope.arrays, scalars=scope.scalars, count=scope.count)
         reader.statements(Cursor(_samples(cursor, part, "start", "end"), cursor.where), part)
         twice = [f"{name}[{index}]" for name, index in part.written if (name, index) in scope.written]
         if twice:
-            raise cursor.fail(f"one assignment to {twice[0]}, and the loop before has a second; before")
+            raise cursor.fail(f"one assignment to {twice[0]}", "a second one in another loop")
         scope.written |= part.written
     cursor.expect("}")
 
 
 def _heads(cursor: Cursor, scope: _Scope, size: str) -> None:
-    """Read the head of a loop over blocks of samples, and the end of the block at hand."""
+    """Read the head of a loop over blocks of samples, and the line that computes the end of the current block."""
     cursor.expect(*f"for ( size_t start = 0 ; start < {scope.count} ; start + = {size} ) {{".split())
     cursor.expect(*f"const size_t end = {scope.count} - start < {size} ? {scope.count} : start + {size} ;".split())
 
 
-def _blocks(cursor: Cursor, reader: _Reader, scope: _Scope) -> None:
-    """Read the loop over blocks: samples by ``symrot_math.h``, and again by the C library if an angle is far.
+def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
+    """Read a loop over blocks that computes with ``symrot_math.h``, then with the C library if an angle is too large.
 
-    Both compute the same, and each angle that ``symrot_sin`` or ``symrot_cos`` is taken of is asked how far it is.
+    Both computations must be the same operations, and the test for large angles must cover every argument of
+    ``symrot_sin`` and ``symrot_cos``.
     """
     _heads(cursor, scope, "SYMROT_BLOCK")
     cursor.expect("uint32_t" if reader.real == "float" else "uint64_t", "beyond", "=", "0", ";")
     far = "symrot_farf" if reader.real == "float" else "symrot_far"
     body = _samples(cursor, scope, "start", "end")
     split = next((i for i, token in enumerate(body) if token.text == "beyond"), len(body))
-    plain = _Scope(arrays=scope.arrays, loop=scope.loop, count=scope.count)
-    reader.turning = set()
+    plain = _Scope(arrays=scope.arrays, scalars=scope.scalars, loop=scope.loop, count=scope.count)
+    reader.vectorised_angles = set()
     reader.statements(Cursor(body[:split], cursor.where), scope)
-    asked, mark = set(), "="
-    question = Cursor(body[split:], cursor.where)
-    question.expect("beyond", "+")
-    while question.peek() == mark:
-        question.expect(mark, far, "(")
-        asked.add(reader.expression(question, scope))
-        question.expect(")")
+    tested, mark = set(), "="
+    range_test = Cursor(body[split:], cursor.where)
+    range_test.expect("beyond", "+")
+    while range_test.peek() == mark:
+        range_test.expect(mark, far, "(")
+        tested.add(reader.expression(range_test, scope))
+        range_test.expect(")")
         mark = "+"
-    question.expect(";")
-    if question.peek() or not reader.turning <= asked:
-        raise question.fail(f"the end of the loop after {far} of each angle")
-    reader.turning = None
+    range_test.expect(";")
+    if range_test.peek() or not reader.vectorised_angles <= tested:
+        raise range_test.fail(f"the end of the loop after {far} of each angle")
+    reader.vectorised_angles = None
     cursor.expect(*["const", "size_t", "again", "=", "beyond", "==", "0", "?", "start", ":", "end", ";"])
     reader.statements(Cursor(_samples(cursor, plain, "start", "again"), cursor.where), plain)
     cursor.expect("}")
@@ -393,8 +418,9 @@ def _blocks(cursor: Cursor, reader: _Reader, scope: _Scope) -> None:
 
 
 def _finished(
-    reader: _Reader, scope: _Scope, function: Function, places: list[tuple[str, int]], where: str
+    reader: _BodyReader, scope: _Scope, function: CFunction, places: list[tuple[str, int]], where: str
 ) -> Operations:
+    """Return the operations that were read; raise CertificateError if an output is not assigned."""
     missing = [f"{name}[{index}]" for name, index in places if (name, index) not in scope.written]
     if missing or not places:
         raise CertificateError(f"{where}: expected {function.name} to assign {', '.join(missing) or 'an output'}")

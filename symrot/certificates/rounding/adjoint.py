@@ -1,15 +1,15 @@
-"""The rounding error of one output on many boxes at once: the sum of local errors times derivatives, all enclosed.
+"""Bounds of the rounding error of one output on many boxes at once: the sum of local errors times derivatives.
 
-Let the operations 1 .. k be computed and the rest be exact, for k from 0 to all: the output moves from the exact value
-to the computed one, by one local error at a time. By the mean value theorem,
+Let the operations 1 to k be computed with rounding and the others exactly, for k from 0 to the number of operations:
+the output moves from its exact to its computed value, by one local error at a time. By the mean value theorem,
 
-    computed - exact = sum over operations of (derivative of the output by its value) * (its own rounding error),
+    computed - exact = sum over operations of (derivative of the output by the result) * (rounding error of the result),
 
-where the derivatives are taken at values between exact and computed ones, and the errors are those that operations
-make of computed operands. Enclosures of all such values come from intervals, the derivatives from one pass backwards
-over them, the errors from half a unit in the last place. No term of second order is left out.
+where the derivatives are evaluated between exact and computed values, and the rounding errors are those of operations
+on computed operands. Interval arithmetic encloses all these values, one pass backwards through the graph encloses the
+derivatives, and half a unit in the last place bounds the rounding errors. No term of second order is neglected.
 
-Choices compare computed numbers: what a branch tells of these narrows the errors, not the derivatives.
+Choices compare computed numbers: the condition of a branch narrows the rounding errors, not the derivatives.
 """
 
 from collections.abc import Callable, Sequence
@@ -21,13 +21,13 @@ from math import inf, nextafter, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.certificates.readback.intended_constants import meaning
+from symrot.certificates.readback.intended_constants import intended_value
 from symrot.certificates.readback.operations import Node
 from symrot.certificates.rounding import functions, intervals
-from symrot.certificates.rounding.centred import Centred
-from symrot.certificates.rounding.choices import decide, narrow
+from symrot.certificates.rounding.centred import CentredForms
+from symrot.certificates.rounding.choices import decide_branches, narrow_to_branch
 from symrot.certificates.rounding.intervals import DIGITS, Array
-from symrot.certificates.rounding.output_graph import Cone, is_short, places_of
+from symrot.certificates.rounding.output_graph import OutputGraph, is_short, operand_places
 from symrot.certificates.rounding.region import EVERYWHERE, Region, off_unit
 from symrot.errors import CertificateError
 from symrot.formula.exact_numbers import PI
@@ -39,9 +39,12 @@ LIBM_ULP = 1.0  # error of sin, cos and atan2, in units in the last place of the
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Of each box: the bound (infinite where none was found, -1 where the region is empty), what is in the way
-    (node, -1 if nothing), the condition that is not decided (-1 if none), the largest value of the output, and
-    whether an atan2 may jump by a whole turn."""
+    """The result for each box of a batch.
+
+    ``bound`` is the error bound: infinite if there is none, -1 if the box holds no point of the region. ``obstacle`` is
+    the node that prevents a finite bound, or -1. ``undecided`` is a condition that the box does not decide, or -1.
+    ``value`` is the largest absolute value of the output. ``turns`` is whether an atan2 may jump by 2 pi.
+    """
 
     bound: Array
     obstacle: NDArray[np.int64]
@@ -51,10 +54,10 @@ class Evaluation:
 
 
 @dataclass
-class _State:
-    """One pass over the nodes of a cone."""
+class _ErrorPass:
+    """The state of one pass over the nodes of a graph."""
 
-    cone: Cone
+    graph: OutputGraph
     boxes: Array  # (2, inputs, n)
     decided: NDArray[np.int8]  # (conditions, n)
     region: Region
@@ -62,42 +65,44 @@ class _State:
     values: list[Array]
     errors: list[Array | None]
     outside: NDArray[np.bool_]
-    centred: Centred | None
-    cuts: dict[int, NDArray[np.bool_]]  # where the atan2 of a node may be on both sides of its cut
+    centred: CentredForms | None
+    cuts: dict[int, NDArray[np.bool_]]  # node of an atan2 -> boxes on which it may jump at its branch cut
 
     def __post_init__(self) -> None:
-        self.precision = self.cone.precision
+        self.precision = self.graph.precision
         self.unit = 2.0 ** -DIGITS[self.precision]
 
     def rounded(self, exact: Array, factor: float = 1.0) -> tuple[Array, Array]:
-        """Return what is computed for exact results, and its error: to the nearest, or ``factor`` half units."""
+        """Return the computed values for exact results, and their errors: ``factor`` half units in the last place."""
         error = intervals.half_ulp(intervals.magnitude(exact), self.precision) * factor
         if factor != 1.0:
             return intervals.widened(exact, error), error
         return intervals.rounded_to(exact, self.precision), error
 
     def refined(self, node: Node, values: Sequence[Array], plain: Array) -> Array:
-        """Return an enclosure of an exact result, by its mean value form if these are asked for."""
+        """Return an enclosure of an exact result, tightened by its mean value form if the pass uses these."""
         if self.centred is None:
             return plain
-        return self.centred.refined(node, places_of(node), values, plain)
+        return self.centred.refined(node, operand_places(node), values, plain)
 
     def relative(self, exact: Array, units: float, least: float) -> tuple[Array, Array]:
-        """Return what is computed with a relative error, in unit roundoffs, and that error."""
+        """Return the computed values for exact results, and their errors: ``units`` unit roundoffs plus ``least``."""
         error = intervals.magnitude(exact) * (units * self.unit * (1 + 2.0**-20)) + least
         return intervals.widened(exact, error), error
 
 
-Forward = Callable[[_State, Node, Sequence[Array]], tuple[Array, Array | None]]
+# --- forward: the values of a node and a bound of its rounding error, None if it has no error -------------------------
+
+Forward = Callable[[_ErrorPass, Node, Sequence[Array]], tuple[Array, Array | None]]
 
 
-def _input(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+def _input(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Array, Array | None]:
     return state.boxes[:, node[1]], None
 
 
-def _constant(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+def _constant(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Array, Array | None]:
     value = intervals.point(float(node[1]), state.boxes.shape[2])
-    series = any(relation == "<" for relation, _, _ in state.cone.conditions)
+    series = any(relation == "<" for relation, _, _ in state.graph.conditions)
     error = _constant_error(node[1], state.precision, not series)
     if not error:
         return value, None
@@ -105,26 +110,27 @@ def _constant(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array,
 
 
 @cache
-def _constant_error(written: Fraction, precision: str, told: bool) -> float:
-    """Return how far a constant is at most from what it stands for.
+def _constant_error(written: Fraction, precision: str, use_intended: bool) -> float:
+    """Return a bound of the distance between a constant and the number that it stands for.
 
-    ``told``: that is what link 3 reads; it is not of a series, whose coefficients link 3 takes as those of Taylor.
+    With ``use_intended`` that number is the one that the readback recovers. Otherwise the constant may be a coefficient
+    of a Taylor series, and the bound is that of any number rounded to it.
     """
     if is_short(written):
         return 0.0
     try:
-        meant = meaning(written, precision) if told else None
+        intended = intended_value(written, precision) if use_intended else None
     except CertificateError:
-        meant = None
-    if meant is None:
+        intended = None
+    if intended is None:
         return float(intervals.half_ulp(np.array([nextafter(abs(float(written)), inf)]), precision)[0])
-    error = abs(written - meant.fraction * (PI if meant.times_pi else 1))
+    error = abs(written - intended.fraction * (PI if intended.times_pi else 1))
     return float(error) * (1 + 2.0**-50)
 
 
-def _step(state: _State, index: int) -> Array:
-    """Return a power of two that every value of a node is a multiple of."""
-    node, value = state.cone.nodes[index], state.values[index]
+def _grid_step(state: _ErrorPass, index: int) -> Array:
+    """Return a power of two of which every value of a node is a multiple."""
+    node, value = state.graph.nodes[index], state.values[index]
     if node[0] == "const":
         above, below = abs(node[1].numerator), node[1].denominator
         return np.full(value.shape[1], (above & -above) / below if above else inf)
@@ -132,13 +138,15 @@ def _step(state: _State, index: int) -> Array:
     return intervals.binade(least) * (2 * state.unit)
 
 
-def _sum(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
-    a, b = taken[0], taken[1] if node[0] == "add" else intervals.negative(taken[1])
-    value, error = state.rounded(state.refined(node, taken, intervals.add(a, b)))
-    error = np.minimum(error, np.minimum(intervals.magnitude(a), intervals.magnitude(b)))  # RN(a+b) is as near as a, b
-    near = (a[0] > 0) & (b[1] < 0) & (-2 * b[1] >= a[1]) & (2 * a[0] >= -b[0])  # Sterbenz: b/2 <= a <= 2b is exact
+def _sum(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Array, Array | None]:
+    a, b = operands[0], operands[1] if node[0] == "add" else intervals.negative(operands[1])
+    value, error = state.rounded(state.refined(node, operands, intervals.add(a, b)))
+    error = np.minimum(
+        error, np.minimum(intervals.magnitude(a), intervals.magnitude(b))
+    )  # a and b are floating-point numbers: the rounded sum is at least as near as they are
+    near = (a[0] > 0) & (b[1] < 0) & (-2 * b[1] >= a[1]) & (2 * a[0] >= -b[0])  # exact for b/2 <= a <= 2b (Sterbenz)
     near |= (b[0] > 0) & (a[1] < 0) & (-2 * a[1] >= b[1]) & (2 * b[0] >= -a[0])
-    step = np.minimum(*(_step(state, i) for i in node[1:]))  # both are multiples of it, and so is their sum
+    step = np.minimum(*(_grid_step(state, i) for i in node[1:]))  # both operands, and so their sum, are multiples of it
     near |= intervals.magnitude(value) * state.unit <= step
     return value, np.where(near, 0.0, error)
 
@@ -150,47 +158,47 @@ def _power_of_two(node: Node) -> bool:
     return bool(above & (above - 1) == 0 and below & (below - 1) == 0)
 
 
-def _product(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
-    value, error = state.rounded(state.refined(node, taken, intervals.multiply(*taken)))
-    factors = [state.cone.nodes[i] for i in node[1:]]
+def _product(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Array, Array | None]:
+    value, error = state.rounded(state.refined(node, operands, intervals.multiply(*operands)))
+    factors = [state.graph.nodes[i] for i in node[1:]]
     scaled = [factor for factor in factors if _power_of_two(factor)]
-    if scaled:  # exact, but for results below the least normal number
+    if scaled:  # exact, except for results below the least normal number
         return value, np.full_like(error, intervals.ETA) if abs(scaled[0][1]) < 1 else None
     return value, error
 
 
-def _square(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
-    return state.rounded(state.refined(node, taken, intervals.square(taken[0])))
+def _square(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Array, Array | None]:
+    return state.rounded(state.refined(node, operands, intervals.square(operands[0])))
 
 
-def _quotient(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
-    return state.rounded(intervals.divide(*taken))
+def _quotient(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Array, Array | None]:
+    return state.rounded(intervals.divide(*operands))
 
 
-def _root(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
-    return state.rounded(intervals.square_root(taken[0]))
+def _root(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Array, Array | None]:
+    return state.rounded(intervals.square_root(operands[0]))
 
 
-def _sign(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
-    a = taken[0]
+def _sign(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Array, Array | None]:
+    a = operands[0]
     if node[0] == "neg":
         return intervals.negative(a), None
     size = np.stack([np.where(intervals.contains_zero(a), 0.0, np.abs(a).min(axis=0)), np.abs(a).max(axis=0)])
     if node[0] == "abs":
         return size, None
-    b = taken[1]
+    b = operands[1]
     either = np.stack([-size[1], size[1]])
     return np.where(b[0] > 0, size, np.where(b[1] < 0, intervals.negative(size), either)), None
 
 
-def _circular(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+def _circular(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Array, Array | None]:
     enclosure = functions.sine if node[0] == "sin" else functions.cosine
-    value, error = state.rounded(enclosure(taken[0]), 2 * state.libm_ulp)
+    value, error = state.rounded(enclosure(operands[0]), 2 * state.libm_ulp)
     return np.clip(value, -1.0, 1.0), error
 
 
-def _angle(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
-    y, x = taken
+def _angle(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Array, Array | None]:
+    y, x = operands
     if state.region.clearance:
         length = intervals.add(intervals.square(y), intervals.square(x))
         state.outside |= length[1] < state.region.clearance**2
@@ -199,32 +207,32 @@ def _angle(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Ar
     return value, error
 
 
-def _error_of_root(state: _State, taken: Sequence[Array], total: Array) -> Array:
-    """Return what the root of a sum of squares moves by their rounding, half units in the last place each."""
-    squares = [intervals.half_ulp(intervals.magnitude(intervals.square(part)), state.precision) for part in taken]
-    size = intervals.magnitude(total) * (1 + len(taken) * 2.0**-22)  # of a partial sum, its rounding included
-    error = sum(squares, (len(taken) - 1) * intervals.half_ulp(size, state.precision))
+def _error_of_root(state: _ErrorPass, operands: Sequence[Array], total: Array) -> Array:
+    """Return a bound of the error in the root of a sum of squares that the rounding of squares and sums causes."""
+    squares = [intervals.half_ulp(intervals.magnitude(intervals.square(part)), state.precision) for part in operands]
+    size = intervals.magnitude(total) * (1 + len(operands) * 2.0**-22)  # bound of a partial sum, its rounding included
+    error = sum(squares, (len(operands) - 1) * intervals.half_ulp(size, state.precision))
     least = np.sqrt(np.maximum(total[0] - error, 0.0))
     return np.where(least > 0, error / (2 * least), inf) * (1 + 2.0**-40)
 
 
-def _norm(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
-    total = intervals.square(taken[0])
-    for part in taken[1:]:
+def _norm(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Array, Array | None]:
+    total = intervals.square(operands[0])
+    for part in operands[1:]:
         total = intervals.add(total, intervals.square(part))
     least = {"binary64": 1e-161, "binary32": 1e-22}[state.precision]  # squares below the least normal number
     root = intervals.square_root(total)
     value, error = state.relative(root, node[1] / 2, least)
-    error = np.minimum(error, _error_of_root(state, taken, total))
+    error = np.minimum(error, _error_of_root(state, operands, total))
     rounding = intervals.half_ulp(intervals.magnitude(value), state.precision)
     value = intervals.rounded_to(intervals.widened(value, rounding), state.precision)
     return np.stack([np.maximum(value[0], 0.0), value[1]]), error + rounding
 
 
-def _sinc(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
-    exact = functions.sinc(taken[0])
-    sine = intervals.magnitude(functions.sine(taken[0]))
-    size = np.where(intervals.contains_zero(taken[0]), 0.0, np.abs(taken[0]).min(axis=0))
+def _sinc(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Array, Array | None]:
+    exact = functions.sinc(operands[0])
+    sine = intervals.magnitude(functions.sine(operands[0]))
+    size = np.where(intervals.contains_zero(operands[0]), 0.0, np.abs(operands[0]).min(axis=0))
     with np.errstate(divide="ignore"):
         of_sine = 2 * state.libm_ulp * intervals.half_ulp(sine, state.precision) / size
     of_sine = np.fmin(of_sine, intervals.magnitude(exact) * (2 * state.libm_ulp * state.unit)) * (1 + 2.0**-20)
@@ -233,19 +241,19 @@ def _sinc(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Arr
     return intervals.widened(value, rounding), of_sine + rounding
 
 
-def _arc_ratio(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
-    s, c = taken
+def _arc_ratio(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Array, Array | None]:
+    s, c = operands
     value, _, _ = functions.arc_ratio_terms(s, c, _length(s, c))
     return state.relative(value, 2 * state.libm_ulp + 1, 0.0)
 
 
-GAP_END = 8.0  # |x| beyond which the error of a gap function is not tabulated
+GAP_END = 8.0  # largest |x| for which the error of a gap function is tabulated
 GAP_CELLS = 8192
 
 
 @cache
-def _gap_errors(own: Cone, libm_ulp: float) -> tuple[Array, ...]:
-    """Return the largest error of a gap function on 2^k neighbouring cells of [0, GAP_END], for k = 0, 1, .."""
+def _gap_errors(own: OutputGraph, libm_ulp: float) -> tuple[Array, ...]:
+    """Return, for k = 0, 1, .., the largest errors of a gap function on 2^k neighbouring cells of [0, GAP_END]."""
     ends = np.linspace(0.0, GAP_END, GAP_CELLS + 1)
     boxes = np.stack([ends[:-1], ends[1:]])[:, None]
     sides = [evaluate(own, boxes, np.full((1, GAP_CELLS), side, np.int8), libm_ulp=libm_ulp).bound for side in (0, 1)]
@@ -256,10 +264,10 @@ def _gap_errors(own: Cone, libm_ulp: float) -> tuple[Array, ...]:
     return tuple(levels)
 
 
-def _gap(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+def _gap(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Array, Array | None]:
     levels = _gap_errors(node[2], state.libm_ulp)
-    size = intervals.magnitude(taken[0])
-    least = np.where(intervals.contains_zero(taken[0]), 0.0, np.abs(taken[0]).min(axis=0))
+    size = intervals.magnitude(operands[0])
+    least = np.where(intervals.contains_zero(operands[0]), 0.0, np.abs(operands[0]).min(axis=0))
     inside = size < GAP_END
     first = np.floor(np.where(inside, least, 0.0) * (GAP_CELLS / GAP_END)).astype(np.int64)
     last = np.floor(np.where(inside, size, 0.0) * (GAP_CELLS / GAP_END)).astype(np.int64)
@@ -268,7 +276,7 @@ def _gap(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Arra
     for k, values in enumerate(levels):
         here = inside & (level == k)
         error[here] = np.maximum(values[first[here]], values[last[here] - 2**k + 1])
-    return intervals.widened(_GAP_VALUES[node[1]](taken[0]), error), error
+    return intervals.widened(_GAP_VALUES[node[1]](operands[0]), error), error
 
 
 _GAP_VALUES = {"sine_gap": functions.sine_gap, "tangent_gap": functions.tangent_gap}
@@ -279,17 +287,17 @@ def _length(a: Array, b: Array) -> Array:
     return intervals.square_root(intervals.add(intervals.square(a), intervals.square(b)))
 
 
-def _choice(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+def _choice(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Array, Array | None]:
     decision = state.decided[node[1]]
-    value = np.where(decision == 1, taken[0], np.where(decision == 0, taken[1], intervals.hull(*taken)))
-    if state.cone.conditions[node[1]][0] != "<":
+    value = np.where(decision == 1, operands[0], np.where(decision == 0, operands[1], intervals.hull(*operands)))
+    if state.graph.conditions[node[1]][0] != "<":
         return value, None
-    left_out = intervals.magnitude(taken[0]) * _left_out(state.precision)
+    left_out = intervals.magnitude(operands[0]) * _truncation_error(state.precision)
     return intervals.widened(value, left_out), np.where(decision == 0, 0.0, left_out)
 
 
-def _left_out(precision: str) -> float:
-    """Return what a series leaves out at most, relative to its value: link 3 proves it for each."""
+def _truncation_error(precision: str) -> float:
+    """Return a bound of a series' truncation error, relative to its value; the proof of the C text verifies it."""
     return 2.0 ** -(DIGITS[precision] + 2) * (1 + 2.0**-20)
 
 
@@ -299,35 +307,37 @@ FORWARD: dict[str, Forward] = {
     "norm": _norm, "sinc": _sinc, "arc_ratio": _arc_ratio, "gap": _gap, "select": _choice,
 }  # fmt: skip
 
-_times = intervals.multiply_loosely
+# --- backward: the derivative of the output by each operand, from its derivative by the node --------------------------
+
+_multiply = intervals.multiply_loosely
 
 
-def _from_sum(state: _State, index: int, adjoint: Array) -> list[Array]:
-    return [adjoint, adjoint if state.cone.nodes[index][0] == "add" else intervals.negative(adjoint)]
+def _from_sum(state: _ErrorPass, index: int, adjoint: Array) -> list[Array]:
+    return [adjoint, adjoint if state.graph.nodes[index][0] == "add" else intervals.negative(adjoint)]
 
 
-def _from_product(state: _State, index: int, adjoint: Array) -> list[Array]:
-    a, b = state.cone.nodes[index][1:]
-    return [_times(adjoint, state.values[b]), _times(adjoint, state.values[a])]
+def _from_product(state: _ErrorPass, index: int, adjoint: Array) -> list[Array]:
+    a, b = state.graph.nodes[index][1:]
+    return [_multiply(adjoint, state.values[b]), _multiply(adjoint, state.values[a])]
 
 
-def _from_square(state: _State, index: int, adjoint: Array) -> list[Array]:
-    return [_times(adjoint, 2 * state.values[state.cone.nodes[index][1]])]
+def _from_square(state: _ErrorPass, index: int, adjoint: Array) -> list[Array]:
+    return [_multiply(adjoint, 2 * state.values[state.graph.nodes[index][1]])]
 
 
-def _from_quotient(state: _State, index: int, adjoint: Array) -> list[Array]:
-    a, b = (state.values[i] for i in state.cone.nodes[index][1:])
+def _from_quotient(state: _ErrorPass, index: int, adjoint: Array) -> list[Array]:
+    a, b = (state.values[i] for i in state.graph.nodes[index][1:])
     by_above = intervals.divide(adjoint, b)
-    return [by_above, intervals.negative(_times(by_above, intervals.divide(a, b)))]
+    return [by_above, intervals.negative(_multiply(by_above, intervals.divide(a, b)))]
 
 
-def _from_root(state: _State, index: int, adjoint: Array) -> list[Array]:
-    root = intervals.square_root(state.values[state.cone.nodes[index][1]])
+def _from_root(state: _ErrorPass, index: int, adjoint: Array) -> list[Array]:
+    root = intervals.square_root(state.values[state.graph.nodes[index][1]])
     return [intervals.divide(adjoint, 2 * root)]
 
 
-def _from_sign(state: _State, index: int, adjoint: Array) -> list[Array]:
-    node = state.cone.nodes[index]
+def _from_sign(state: _ErrorPass, index: int, adjoint: Array) -> list[Array]:
+    node = state.graph.nodes[index]
     if node[0] == "neg":
         return [intervals.negative(adjoint)]
     size = intervals.magnitude(adjoint)
@@ -338,54 +348,57 @@ def _from_sign(state: _State, index: int, adjoint: Array) -> list[Array]:
     return [either, np.zeros_like(adjoint)]
 
 
-def _from_sine(state: _State, index: int, adjoint: Array) -> list[Array]:
-    return [_times(adjoint, functions.cosine(state.values[state.cone.nodes[index][1]]))]
+def _from_sine(state: _ErrorPass, index: int, adjoint: Array) -> list[Array]:
+    return [_multiply(adjoint, functions.cosine(state.values[state.graph.nodes[index][1]]))]
 
 
-def _from_cosine(state: _State, index: int, adjoint: Array) -> list[Array]:
-    return [intervals.negative(_times(adjoint, functions.sine(state.values[state.cone.nodes[index][1]])))]
+def _from_cosine(state: _ErrorPass, index: int, adjoint: Array) -> list[Array]:
+    return [intervals.negative(_multiply(adjoint, functions.sine(state.values[state.graph.nodes[index][1]])))]
 
 
-def _from_angle(state: _State, index: int, adjoint: Array) -> list[Array]:
-    y, x = (state.values[i] for i in state.cone.nodes[index][1:])
-    return [_times(adjoint, functions.arc_slope(x, y)), intervals.negative(_times(adjoint, functions.arc_slope(y, x)))]
+def _from_angle(state: _ErrorPass, index: int, adjoint: Array) -> list[Array]:
+    y, x = (state.values[i] for i in state.graph.nodes[index][1:])
+    return [
+        _multiply(adjoint, functions.arc_slope(x, y)),
+        intervals.negative(_multiply(adjoint, functions.arc_slope(y, x))),
+    ]
 
 
-def _from_norm(state: _State, index: int, adjoint: Array) -> list[Array]:
-    taken = [state.values[i] for i in state.cone.nodes[index][2:]]
-    total = intervals.square(taken[0])
-    for part in taken[1:]:
+def _from_norm(state: _ErrorPass, index: int, adjoint: Array) -> list[Array]:
+    parts = [state.values[i] for i in state.graph.nodes[index][2:]]
+    total = intervals.square(parts[0])
+    for part in parts[1:]:
         total = intervals.add(total, intervals.square(part))
     root = intervals.square_root(total)
-    found = []
-    for part in taken:
+    derivatives = []
+    for part in parts:
         slope = intervals.divide(part, root)
         bounded = np.where(np.isfinite(slope), np.clip(slope, -1.0, 1.0), np.array([[-1.0], [1.0]]))
-        found.append(_times(adjoint, bounded))
-    return found
+        derivatives.append(_multiply(adjoint, bounded))
+    return derivatives
 
 
-def _from_sinc(state: _State, index: int, adjoint: Array) -> list[Array]:
-    return [_times(adjoint, functions.sinc_slope(state.values[state.cone.nodes[index][1]]))]
+def _from_sinc(state: _ErrorPass, index: int, adjoint: Array) -> list[Array]:
+    return [_multiply(adjoint, functions.sinc_slope(state.values[state.graph.nodes[index][1]]))]
 
 
-def _from_arc_ratio(state: _State, index: int, adjoint: Array) -> list[Array]:
-    s, c = (state.values[i] for i in state.cone.nodes[index][1:])
+def _from_arc_ratio(state: _ErrorPass, index: int, adjoint: Array) -> list[Array]:
+    s, c = (state.values[i] for i in state.graph.nodes[index][1:])
     _, by_s, by_c = functions.arc_ratio_terms(s, c, _length(s, c))
-    return [_times(adjoint, by_s), _times(adjoint, by_c)]
+    return [_multiply(adjoint, by_s), _multiply(adjoint, by_c)]
 
 
-def _from_gap(state: _State, index: int, adjoint: Array) -> list[Array]:
-    node = state.cone.nodes[index]
-    return [_times(adjoint, _GAP_SLOPES[node[1]](state.values[node[3]]))]
+def _from_gap(state: _ErrorPass, index: int, adjoint: Array) -> list[Array]:
+    node = state.graph.nodes[index]
+    return [_multiply(adjoint, _GAP_SLOPES[node[1]](state.values[node[3]]))]
 
 
-def _from_choice(state: _State, index: int, adjoint: Array) -> list[Array]:
-    decision = state.decided[state.cone.nodes[index][1]]
+def _from_choice(state: _ErrorPass, index: int, adjoint: Array) -> list[Array]:
+    decision = state.decided[state.graph.nodes[index][1]]
     return [np.where(decision != 0, adjoint, 0.0), np.where(decision != 1, adjoint, 0.0)]
 
 
-BACKWARD: dict[str, Callable[[_State, int, Array], list[Array]]] = {
+BACKWARD: dict[str, Callable[[_ErrorPass, int, Array], list[Array]]] = {
     "add": _from_sum, "sub": _from_sum, "mul": _from_product, "square": _from_square, "div": _from_quotient,
     "sqrt": _from_root, "neg": _from_sign, "abs": _from_sign, "copysign": _from_sign, "sin": _from_sine,
     "cos": _from_cosine, "atan2": _from_angle, "norm": _from_norm, "sinc": _from_sinc, "arc_ratio": _from_arc_ratio,
@@ -394,70 +407,72 @@ BACKWARD: dict[str, Callable[[_State, int, Array], list[Array]]] = {
 
 
 def evaluate(
-    cone: Cone, boxes: Array, decided: NDArray[np.int8], region: Region = EVERYWHERE,
+    graph: OutputGraph, boxes: Array, decided: NDArray[np.int8], region: Region = EVERYWHERE,
     libm_ulp: float = LIBM_ULP, centred: bool = False,
 ) -> Evaluation:  # fmt: skip
-    """Return bounds of the rounding error of an output on boxes.
+    """Return bounds of the rounding error of an output on each of some boxes.
 
     Parameters
     ----------
-    cone : Cone
+    graph : OutputGraph
         The computation of the output.
     boxes : ndarray, shape (2, inputs, n)
         Least and largest value of each input.
     decided : ndarray of int8, shape (conditions, n)
-        The branch that is taken: 1 where the relation holds, 0 where not, -1 for either.
+        The branch of each condition: 1 where the relation holds, 0 where it does not, -1 if both are possible.
     region : Region
-        Restrictions; a box outside of them gets the bound -1.
+        Restrictions of the inputs; a box without a point of the region gets the bound -1.
     libm_ulp : float
         Largest error of sin, cos and atan2, in units in the last place.
     centred : bool
-        Enclose polynomials by mean value forms: tighter, and slower.
+        Enclose polynomials by mean value forms, which is tighter and slower.
     """
     count = boxes.shape[2]
-    state = _State(cone, boxes, decided.copy(), region, libm_ulp, [], [], np.zeros(count, bool),
-                   Centred(boxes) if centred else None, {})  # fmt: skip
+    state = _ErrorPass(graph, boxes, decided.copy(), region, libm_ulp, [], [], np.zeros(count, bool),
+                   CentredForms(boxes) if centred else None, {})  # fmt: skip
     undecided = np.full(count, -1, np.int64)
     waiting: dict[int, list[int]] = {}
-    for number, (_, i, j) in enumerate(cone.conditions):
+    for number, (_, i, j) in enumerate(graph.conditions):
         waiting.setdefault(max(i, j), []).append(number)
-    computed = replace(state, values=[], outside=state.outside.copy(), cuts={}) if cone.conditions else state
+    computed = replace(state, values=[], outside=state.outside.copy(), cuts={}) if graph.conditions else state
     with np.errstate(all="ignore"):
-        state.outside |= off_unit(boxes, region, cone.places)
-        for index, node in enumerate(cone.nodes):
-            state.errors.append(_forwards(state, computed, node))
+        state.outside |= off_unit(boxes, region, graph.places)
+        for index, node in enumerate(graph.nodes):
+            state.errors.append(_forward_pass(state, computed, node))
             for number in waiting.get(index, ()):
-                relation, i, j = cone.conditions[number]
-                beside, open_ = decide(relation, computed.values[i], computed.values[j], state.decided[number])
-                state.outside |= beside
+                relation, i, j = graph.conditions[number]
+                excluded, open_ = decide_branches(
+                    relation, computed.values[i], computed.values[j], state.decided[number]
+                )
+                state.outside |= excluded
                 undecided = np.where((undecided < 0) & open_, number, undecided)
-                narrow(cone, number, state.decided[number], computed.values)
-        bound, obstacle, turns = _backwards(state)
+                narrow_to_branch(graph, number, state.decided[number], computed.values)
+        bound, obstacle, turns = _backward_pass(state)
     bound = np.where((obstacle >= 0) | (undecided >= 0), inf, bound)
     bound = np.where(state.outside, -1.0, bound)
     return Evaluation(bound, obstacle, undecided, intervals.magnitude(state.values[-1]), turns & ~state.outside)
 
 
-def _forwards(state: _State, computed: _State, node: Node) -> Array | None:
-    """Enclose what a node may be on the way from exact to computed, and when computed; return its rounding error."""
-    value, error = FORWARD[node[0]](state, node, [state.values[i] for i in places_of(node)])
+def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array | None:
+    """Enclose the values of a node between exact and computed, and its computed values; return its rounding error."""
+    value, error = FORWARD[node[0]](state, node, [state.values[i] for i in operand_places(node)])
     state.values.append(value)
     if state.centred is not None:
-        state.centred.close(node, places_of(node), error)
+        state.centred.close(node, operand_places(node), error)
     if computed is not state:
-        found, error = FORWARD[node[0]](computed, node, [computed.values[i] for i in places_of(node)])
-        both = np.stack([np.maximum(value[0], found[0]), np.minimum(value[1], found[1])])
+        computed_value, error = FORWARD[node[0]](computed, node, [computed.values[i] for i in operand_places(node)])
+        both = np.stack([np.maximum(value[0], computed_value[0]), np.minimum(value[1], computed_value[1])])
         computed.values.append(np.where(both[0] <= both[1], both, value))
     return error
 
 
-def _backwards(state: _State) -> tuple[Array, NDArray[np.int64], NDArray[np.bool_]]:
-    """Return the sum of errors times derivatives, and the first node that is in the way of a finite one, or -1.
+def _backward_pass(state: _ErrorPass) -> tuple[Array, NDArray[np.int64], NDArray[np.bool_]]:
+    """Return the sum of errors times derivatives, the node that prevents a finite sum (or -1), and possible jumps.
 
-    An angle that may jump by a whole turn may only be added to the output, whose error is then that modulo a turn.
-    What no branch uses may be anything; what is used has to be finite, whatever its derivative.
+    An angle that may jump by 2 pi must enter the output with derivative 1 or -1; the error of the output is then
+    meant modulo 2 pi. A node that no possible branch uses may have any value; every other node must be finite.
     """
-    nodes = state.cone.nodes
+    nodes = state.graph.nodes
     count = state.boxes.shape[2]
     adjoints: list[Array | None] = [None] * len(nodes)
     adjoints[-1] = intervals.point(1.0, count)
@@ -465,7 +480,7 @@ def _backwards(state: _State) -> tuple[Array, NDArray[np.int64], NDArray[np.bool
     used[-1][:] = True
     bound, of_value = np.zeros(count), np.full(count, -1, np.int64)
     of_slope, turns = of_value, np.zeros(count, bool)
-    combine = intervals.add if state.cone.conditions else lambda a, b: intervals.widened(a + b, 0.0)
+    combine = intervals.add if state.graph.conditions else lambda a, b: intervals.widened(a + b, 0.0)
     for index in range(len(nodes) - 1, -1, -1):
         adjoint, error, here = adjoints[index], state.errors[index], used[index]
         if adjoint is None:
@@ -483,13 +498,13 @@ def _backwards(state: _State) -> tuple[Array, NDArray[np.int64], NDArray[np.bool
         clear = (of_slope < 0) & here & np.isfinite(adjoint).all(axis=0)
         decision = state.decided[nodes[index][1]] if kind == "select" else None
         for branch, (place, part) in enumerate(
-            zip(places_of(nodes[index]), BACKWARD[kind](state, index, adjoint), strict=True)
+            zip(operand_places(nodes[index]), BACKWARD[kind](state, index, adjoint), strict=True)
         ):
-            taken = here if decision is None else here & (decision != branch)
-            used[place] |= taken
-            of_slope = np.where(clear & taken & ~np.isfinite(part).all(axis=0), index, of_slope)
+            active = here if decision is None else here & (decision != branch)
+            used[place] |= active
+            of_slope = np.where(clear & active & ~np.isfinite(part).all(axis=0), index, of_slope)
             known = adjoints[place]
-            part = np.where(taken, part, 0.0)
+            part = np.where(active, part, 0.0)
             adjoints[place] = part if known is None else combine(known, part)
     whole = bound * (1 + 2.0**-52 * (2 * len(nodes) + 4)) + 1e-320 * len(nodes) * (bound > 0)
     obstacle = np.where(of_value >= 0, of_value, np.where(np.isfinite(whole), -1, of_slope))

@@ -1,12 +1,12 @@
-"""Link 4 of a certificate: bounds of the rounding error of a kernel's outputs on a box of inputs.
+"""Bounds of the rounding error of a kernel's outputs on a box of inputs: the ``rounding`` section of a certificate.
 
-For the certificate: :func:`rounding_section` returns plain data that is the same, byte for byte, on every machine;
-:func:`check_section` verifies it, at once what a point evaluation can tell and, with ``rerun``, everything.
+:func:`rounding_section` returns the section as data that is the same, byte for byte, on every machine.
+:func:`check_section` checks at once what evaluations at single points can tell; with ``rerun``, all bounds are computed
+again.
 
-What is bounded is the absolute error of each output against the exact formula (link 3) at the same floating-point
-inputs. Where a choice compares rounded numbers, the exact formula is followed along the branch that the kernel took;
-such choices are listed. An angle whose choices wrap it is compared modulo whole turns. Every number on the way is
-finite on the box, so that nothing overflows.
+A bound limits the absolute error of an output against the exact formula at the same floating-point inputs. If a choice
+compares rounded numbers, the exact formula follows the branch that the kernel took; such choices are listed. An angle
+that is wrapped is compared modulo 2 pi. Every intermediate number is finite on the box, so that nothing overflows.
 """
 
 import hashlib
@@ -22,31 +22,43 @@ import numpy as np
 
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.rounding.adjoint import LIBM_ULP, evaluate
-from symrot.certificates.rounding.branch_and_bound import Search, search
+from symrot.certificates.rounding.branch_and_bound import SearchResult, search
 from symrot.certificates.rounding.intervals import DIGITS, Array
-from symrot.certificates.rounding.output_graph import Cone, cone_of
+from symrot.certificates.rounding.output_graph import OutputGraph, output_graph
 from symrot.certificates.rounding.region import EVERYWHERE, Region
 from symrot.certificates.rounding.store import Store
 from symrot.errors import CertificateError, InputError
 from symrot.formula.exact_numbers import show
 
-__all__ = ["BUDGET", "STORE", "Box", "OutputBound", "Task", "bound_outputs", "bound_task", "check_bounds",
-           "check_section", "reached", "rounding_section", "tasks"]  # fmt: skip
+__all__ = [
+    "BUDGET",
+    "STORE",
+    "BoundTask",
+    "Box",
+    "OutputBound",
+    "bound_outputs",
+    "bound_task",
+    "bound_tasks",
+    "check_bounds",
+    "check_section",
+    "error_at_point",
+    "rounding_section",
+]  # fmt: skip
 
 Box = Mapping[str, tuple[Fraction, Fraction]]  # place of an input, such as "q[1]" -> least and largest value
 
 BUDGET = 100_000  # evaluations of boxes per output
-LARGEST, LARGEST_EXPONENT = Fraction(float_info.max), 1023  # of a double, and of a power of two that is one
+LARGEST, LARGEST_EXPONENT = Fraction(float_info.max), 1023  # the largest double; exponent of the largest power of two
 STORE = Store()
 
 
 @dataclass(frozen=True)
 class OutputBound:
-    """The bound of one output: no error is larger than ``bound``; by the same method a point reaches ``pointwise``.
+    """The bound of one output: no error is larger than ``bound``, and at the point ``at`` the bound is ``pointwise``.
 
-    ``at`` is that point; ``scale`` a power of two not below the values met (or 2^1023); ``turns``: the error is that
-    modulo whole turns; ``choices`` are the comparisons of rounded numbers, whose branch is taken as computed;
-    ``contraction_safe``: the bound holds for fused multiply-adds too.
+    ``scale`` is a power of two that is at least the largest value of the output at the evaluated points (or 2^1023).
+    ``turns`` says that the error is meant modulo 2 pi. ``choices`` are the comparisons of rounded numbers, whose branch
+    is followed as computed. ``contraction_safe`` says that the bound also holds with fused multiply-adds.
     """
 
     output: str
@@ -62,10 +74,10 @@ class OutputBound:
 
 
 @dataclass(frozen=True)
-class Task:
-    """The bound of one computation on one box: equal ones of different kernels are found once."""
+class BoundTask:
+    """The task to bound the error of one computation on one box; equal tasks of different kernels are done once."""
 
-    cone: Cone
+    graph: OutputGraph
     low: tuple[float, ...]
     high: tuple[float, ...]
     region: Region
@@ -74,12 +86,12 @@ class Task:
 
     @property
     def key(self) -> str:
-        """A name that equal tasks have in common."""
-        numbers = {place: k for k, place in enumerate(self.cone.places)}
+        """The key of the task in the store, which equal tasks share."""
+        numbers = {place: k for k, place in enumerate(self.graph.places)}
         groups = sorted(tuple(numbers.get(place, -1) for place in group) for group in self.region.unit)
         ends = [x.hex() for x in (*self.low, *self.high)]
-        said = [self.cone.digest, ends, groups, self.region.clearance, self.budget, self.libm_ulp]
-        return hashlib.sha256(repr(said).encode()).hexdigest()
+        contents = [self.graph.digest, ends, groups, self.region.clearance, self.budget, self.libm_ulp]
+        return hashlib.sha256(repr(contents).encode()).hexdigest()
 
     @property
     def box(self) -> Array:
@@ -87,44 +99,46 @@ class Task:
         return np.array([self.low, self.high])
 
 
-def tasks(
+def bound_tasks(
     operations: Operations, box: Box, region: Region = EVERYWHERE, budget: int = BUDGET, libm_ulp: float = LIBM_ULP
-) -> dict[str, Task]:
-    """Return what has to be bounded for each output.
+) -> dict[str, BoundTask]:
+    """Return the task that bounds each output.
 
     Raises
     ------
     InputError
-        For a box with a range that is missing, unknown, reversed or not finite; for a region of other inputs.
+        If a range of the box is missing, unknown, reversed or not finite, or if the region is about other inputs.
     """
     _check_box(operations, box)
     strangers = sorted({place for group in region.unit for place in group} - set(operations.inputs))
     if strangers:
         known = ", ".join(operations.inputs)
         raise InputError(f"{operations.name}: expected unit groups of {known}, got {strangers[0]}")
-    found = {}
+    tasks_by_output = {}
     for place, index in operations.outputs:
-        cone = cone_of(operations, index)
-        low = tuple(_outward(box[name][0], -inf) for name in cone.places)
-        high = tuple(_outward(box[name][1], inf) for name in cone.places)
-        used = tuple(group for group in region.unit if set(group) & set(cone.places))
-        atan2 = any(node[0] == "atan2" for node in cone.nodes)
+        graph = output_graph(operations, index)
+        low = tuple(_outward(box[name][0], -inf) for name in graph.places)
+        high = tuple(_outward(box[name][1], inf) for name in graph.places)
+        used = tuple(group for group in region.unit if set(group) & set(graph.places))
+        atan2 = any(node[0] == "atan2" for node in graph.nodes)
         own = Region(used, region.clearance if atan2 else 0.0)
-        found[place] = Task(cone, low, high, own, budget, libm_ulp)
-    return found
+        tasks_by_output[place] = BoundTask(graph, low, high, own, budget, libm_ulp)
+    return tasks_by_output
 
 
 def _outward(value: Fraction, direction: float) -> float:
+    """Return a value rounded to a float towards ``direction``, which is -inf or inf."""
     near = float(value)
     exact = Fraction(near)
     return near if exact == value or (exact < value) == (direction < 0) else nextafter(near, direction)
 
 
 def _check_box(operations: Operations, box: Box) -> None:
+    """Raise InputError if a box has no proper range for an input, or has one for an unknown input."""
     unknown = sorted(set(box) - set(operations.inputs))
     if unknown:
         raise InputError(
-            f"{operations.name}: expected a box of {', '.join(operations.inputs)}, got one of {unknown[0]}"
+            f"{operations.name}: expected a box of {', '.join(operations.inputs)}, got a range of {unknown[0]}"
         )
     for place in operations.inputs:
         if place not in box:
@@ -139,14 +153,14 @@ def _check_box(operations: Operations, box: Box) -> None:
             )
 
 
-def bound_task(task: Task, fresh: bool = False) -> Search:
-    """Return the bound of one computation, from the store if it is known and ``fresh`` does not forbid it."""
-    known = None if fresh else STORE.get(task.key)
-    if known is None:
-        with np.errstate(all="ignore"):  # ranges may be points
-            known = search(task.cone, task.box, task.region, task.budget, task.libm_ulp)
-        STORE.put(task.key, known)
-    return known
+def bound_task(task: BoundTask, fresh: bool = False) -> SearchResult:
+    """Return the bound of one computation: from the store if it is there, unless ``fresh`` asks for a new search."""
+    result = None if fresh else STORE.get(task.key)
+    if result is None:
+        with np.errstate(all="ignore"):  # a range may be a single point
+            result = search(task.graph, task.box, task.region, task.budget, task.libm_ulp)
+        STORE.put(task.key, result)
+    return result
 
 
 def bound_outputs(
@@ -158,51 +172,53 @@ def bound_outputs(
     Parameters
     ----------
     operations : Operations
-        As read back from C (:func:`symrot.certificates.readback.readback.read_kernel`).
+        The operations read back from C (:func:`symrot.certificates.readback.readback.read_kernel`).
     box : mapping
         Place of an input, such as ``"q[1]"`` -> least and largest value, both exact.
     region : Region
-        What holds in the box beyond its sides.
+        Restrictions of the inputs in the box.
     budget : int
-        Evaluations of boxes per output.
+        Number of evaluations of boxes per output after which the search stops.
     libm_ulp : float
         Largest error of sin, cos and atan2, in units in the last place.
     fresh : bool
-        Bound again what the cache knows.
+        Search again for bounds that the store holds.
 
     Raises
     ------
     InputError
-        For a box that cannot be one, or on which an output has no bound: it says which and near where.
+        If the box is not valid, or an output has no bound on it; the message names the output and a point near the
+        singularity.
     """
     return tuple(
-        _found(operations, place, task, bound_task(task, fresh))
-        for place, task in tasks(operations, box, region, budget, libm_ulp).items()
+        _output_bound(operations, place, task, bound_task(task, fresh))
+        for place, task in bound_tasks(operations, box, region, budget, libm_ulp).items()
     )
 
 
-def _found(operations: Operations, place: str, task: Task, found: Search) -> OutputBound:
-    at = tuple(zip(task.cone.places, found.worst, strict=True))
-    if found.bound == inf:
-        inputs = task.cone.inputs_of[found.obstacle]
+def _output_bound(operations: Operations, place: str, task: BoundTask, result: SearchResult) -> OutputBound:
+    """Return the bound of an output from the result of a search; raise InputError if it is infinite."""
+    at = tuple(zip(task.graph.places, result.worst, strict=True))
+    if result.bound == inf:
+        inputs = task.graph.inputs_of[result.obstacle]
         where = ", ".join(f"{name} = {x:.6g}" for k, (name, x) in enumerate(at) if k in inputs)
-        what = task.cone.text(found.obstacle)
+        what = task.graph.text(result.obstacle)
         raise InputError(
             f"{operations.name}: expected a box without singular points, got one where {place} has no bound: "
             f"{what} is not known to stay away from its singular values near {where}"
         )
-    mantissa, exponent = frexp(found.largest_value)
+    mantissa, exponent = frexp(result.largest_value)
     power = min(exponent - (mantissa == 0.5), LARGEST_EXPONENT)
-    scale = ldexp(1.0, power) if found.largest_value > 0 else 1.0
-    choices = tuple(_said_choices(task))
+    scale = ldexp(1.0, power) if result.largest_value > 0 else 1.0
+    choices = tuple(_choice_phrases(task))
     return OutputBound(
-        place, found.bound, found.pointwise, at, float(scale), found.evaluations, found.converged, found.turns, choices,
-        task.cone.contraction_safe,
+        place, result.bound, result.pointwise, at, float(scale), result.evaluations, result.converged, result.turns,
+        choices, task.graph.contraction_safe,
     )  # fmt: skip
 
 
-def _said_choices(task: Task) -> list[str]:
-    return [f"{text}, by whole turns" if turns else text for text, turns in task.cone.choices]
+def _choice_phrases(task: BoundTask) -> list[str]:
+    return [f"{text}, by whole turns" if turns else text for text, turns in task.graph.choices]
 
 
 # --- the section of the certificate -----------------------------------------------------------------------------------
@@ -226,15 +242,15 @@ def rounding_section(
     operations_double: Operations, operations_float: Operations | None, box: Box, region: Region = EVERYWHERE,
     budget: int = BUDGET, libm_ulp: float = LIBM_ULP, fresh: bool = False,
 ) -> dict[str, Any]:  # fmt: skip
-    """Return link 4 of a certificate as plain data, numbers as hexadecimal text: the same bytes on every machine.
+    """Return the ``rounding`` section of a certificate as data for JSON, the same bytes on every machine.
 
     Parameters
     ----------
     operations_double, operations_float : Operations
-        The one-sample functions NAME and NAMEf as read back; the second may be left out (None).
+        The operations of the one-sample functions NAME and NAMEf; None if there is no function for floats.
     box, region, budget, libm_ulp, fresh
-        As for :func:`bound_outputs`; :func:`symrot.certificates.rounding.library.problem` gives those of a library
-        kernel.
+        As for :func:`bound_outputs`; :func:`symrot.certificates.rounding.library.library_problem` returns box and
+        region of a library kernel.
 
     Returns
     -------
@@ -242,8 +258,8 @@ def rounding_section(
         ``{"meaning", "assumptions", "libm_ulp", "budget", "box": {place: [hex, hex]}, "unit_groups", "clearance",
         "precisions": [{"precision", "operations_sha256", "unit", "outputs": [..]}]}``, each output with ``"output",
         "absolute", "units", "pointwise", "at", "scale", "evaluations", "converged", "modulo_turns", "choices",
-        "contraction_safe"``; ``absolute`` is the bound, ``units`` the same in units of ``unit`` (2^-53 or 2^-24),
-        rounded up.
+        "contraction_safe"``. ``absolute`` is the bound, ``units`` the bound in multiples of ``unit`` (2^-53 or 2^-24),
+        rounded up. Numbers are hexadecimal text.
 
     Raises
     ------
@@ -251,13 +267,13 @@ def rounding_section(
         As :func:`bound_outputs`.
     """
     kernels = [operations_double] if operations_float is None else [operations_double, operations_float]
-    return _question(box, region, budget, libm_ulp) | {
-        "precisions": [_precision(kernel, box, region, budget, libm_ulp, fresh) for kernel in kernels]
+    return _section_head(box, region, budget, libm_ulp) | {
+        "precisions": [_bounded_precision(kernel, box, region, budget, libm_ulp, fresh) for kernel in kernels]
     }
 
 
-def _question(box: Box, region: Region, budget: int, libm_ulp: float) -> dict[str, Any]:
-    """Return what bounds are asked for, in the one way in which it is written."""
+def _section_head(box: Box, region: Region, budget: int, libm_ulp: float) -> dict[str, Any]:
+    """Return the part of a section that states the problem: assumptions, box, region and budget."""
     return {
         "meaning": MEANING, "assumptions": _assumptions(libm_ulp), "libm_ulp": float(libm_ulp).hex(), "budget": budget,
         "box": {place: [_outward(low, -inf).hex(), _outward(high, inf).hex()] for place, (low, high) in box.items()},
@@ -265,15 +281,15 @@ def _question(box: Box, region: Region, budget: int, libm_ulp: float) -> dict[st
     }  # fmt: skip
 
 
-def _precision(
+def _bounded_precision(
     operations: Operations, box: Box, region: Region, budget: int, libm_ulp: float, fresh: bool
 ) -> dict[str, Any]:
     unit = 2.0 ** -DIGITS[operations.precision]
     bounds = bound_outputs(operations, box, region, budget, libm_ulp, fresh)
-    return _part(operations, [_output(found, unit) for found in bounds])
+    return _precision_part(operations, [_plain_output(bound, unit) for bound in bounds])
 
 
-def _part(operations: Operations, outputs: list[dict[str, Any]]) -> dict[str, Any]:
+def _precision_part(operations: Operations, outputs: list[dict[str, Any]]) -> dict[str, Any]:
     unit = 2.0 ** -DIGITS[operations.precision]
     return {
         "precision": operations.precision, "operations_sha256": operations.digest(), "unit": unit.hex(),
@@ -282,22 +298,22 @@ def _part(operations: Operations, outputs: list[dict[str, Any]]) -> dict[str, An
 
 
 def _alike(a: object, b: object) -> bool:
-    """Tell whether two values are the same text: true is not 1."""
+    """Tell whether two values are the same JSON text, in which true and 1 differ."""
     return json.dumps(a, sort_keys=True) == json.dumps(b, sort_keys=True)
 
 
-def _output(found: OutputBound, unit: float) -> dict[str, Any]:
+def _plain_output(bound: OutputBound, unit: float) -> dict[str, Any]:
     return {
-        "output": found.output, "absolute": found.bound.hex(), "units": _units(Fraction(found.bound) / Fraction(unit)),
-        "pointwise": found.pointwise.hex(), "at": {name: x.hex() for name, x in found.at},
-        "scale": found.scale.hex(), "evaluations": found.evaluations, "converged": found.converged,
-        "modulo_turns": found.turns, "choices": list(found.choices),
-        "contraction_safe": found.contraction_safe,
+        "output": bound.output, "absolute": bound.bound.hex(), "units": _units(Fraction(bound.bound) / Fraction(unit)),
+        "pointwise": bound.pointwise.hex(), "at": {name: x.hex() for name, x in bound.at},
+        "scale": bound.scale.hex(), "evaluations": bound.evaluations, "converged": bound.converged,
+        "modulo_turns": bound.turns, "choices": list(bound.choices),
+        "contraction_safe": bound.contraction_safe,
     }  # fmt: skip
 
 
 def _units(value: Fraction) -> str:
-    """Return a number in decimal, four digits, rounded up."""
+    """Return a number as decimal text with four digits, rounded up."""
     if value == 0:
         return "0"
     exponent = len(str(int(value))) - 1 if value >= 1 else -1
@@ -313,16 +329,16 @@ def _units(value: Fraction) -> str:
 def check_section(
     section: Mapping[str, Any], operations_double: Operations, operations_float: Operations | None, rerun: bool = False
 ) -> None:
-    """Verify what a point evaluation can tell of link 4 of a certificate; with ``rerun``: everything, from nothing.
+    """Check a ``rounding`` section as far as evaluations at single points can; with ``rerun``, check every bound.
 
-    At once: that it is about these operations and all their outputs, that its numbers are finite, in order and written
-    as they are printed, and that no bound is below what the method finds at the stored point. That bounds hold on the
-    whole box, :func:`check_bounds` proves.
+    The section must be about these operations and all their outputs; its numbers must be finite, in order and in the
+    printed form; no bound may be below the error bound at the stored point. :func:`check_bounds` proves that the bounds
+    hold on the whole box.
 
     Raises
     ------
     CertificateError
-        Saying what does not hold.
+        Naming what is wrong.
     """
     kernels = {kernel.precision: kernel for kernel in (operations_double, operations_float) if kernel is not None}
     try:
@@ -334,17 +350,17 @@ def check_section(
         libm_ulp, budget = float.fromhex(section["libm_ulp"]), int(section["budget"])
         for part in section["precisions"]:
             _check_precision(part, kernels[part["precision"]], box, region, libm_ulp)
-        said = [part["precision"] for part in section["precisions"]]
-    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
+        precisions = [part["precision"] for part in section["precisions"]]
+    except (CertificateError, KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
         if isinstance(error, CertificateError | InputError):
             raise CertificateError(str(error)) from None
         raise CertificateError(
-            f"expected a section of rounding bounds, got one without or with a bad {error}"
+            f"expected a section of rounding bounds, got one in which this is missing or wrong: {error}"
         ) from None
-    if said != list(kernels):
-        raise CertificateError(f"expected bounds for {' and '.join(kernels)}, got {' and '.join(said) or 'none'}")
-    question = _question(box, region, budget, libm_ulp)
-    if not _alike({name: value for name, value in section.items() if name != "precisions"}, question):
+    if precisions != list(kernels):
+        raise CertificateError(f"expected bounds for {' and '.join(kernels)}, got {' and '.join(precisions) or 'none'}")
+    head = _section_head(box, region, budget, libm_ulp)
+    if not _alike({name: value for name, value in section.items() if name != "precisions"}, head):
         raise CertificateError("expected a box and assumptions as this method prints them, got others")
     if rerun:
         check_bounds(section, operations_double, operations_float, fresh=True)
@@ -353,14 +369,15 @@ def check_section(
 def check_bounds(
     section: Mapping[str, Any], operations_double: Operations, operations_float: Operations | None, fresh: bool = False
 ) -> None:
-    """Verify every bound of a section that :func:`check_section` verified, by bounding again, up to the first other.
+    """Check every bound of a section that :func:`check_section` accepted, by computing the bounds again.
 
-    ``fresh``: from nothing; otherwise what the store knows is not found again. No more evaluations than BUDGET.
+    With ``fresh`` every bound is searched again; otherwise bounds in the store are used. The section must not ask for
+    more evaluations than :data:`BUDGET`.
 
     Raises
     ------
     CertificateError
-        Saying which bound does not hold.
+        Naming the first bound that differs.
     """
     region = Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
     box = {
@@ -373,52 +390,57 @@ def check_bounds(
         if operations is None:
             continue
         unit, libm_ulp = 2.0 ** -DIGITS[operations.precision], float.fromhex(section["libm_ulp"])
-        if not _alike({**part, "outputs": []}, _part(operations, [])):
-            raise CertificateError(f"{operations.name}: expected a part of bounds as it is printed, got another")
-        wanted = tasks(operations, box, region, section["budget"], libm_ulp)
-        for item, (place, task) in zip(part["outputs"], wanted.items(), strict=True):
+        if not _alike({**part, "outputs": []}, _precision_part(operations, [])):
+            raise CertificateError(
+                f"{operations.name}: expected the bounds of a precision in the printed form, got another form"
+            )
+        tasks_by_output = bound_tasks(operations, box, region, section["budget"], libm_ulp)
+        for item, (place, task) in zip(part["outputs"], tasks_by_output.items(), strict=True):
             try:
-                found = _output(_found(operations, place, task, bound_task(task, fresh)), unit)
+                recomputed = _plain_output(_output_bound(operations, place, task, bound_task(task, fresh)), unit)
             except InputError as reason:
                 raise CertificateError(str(reason)) from None
-            if not _alike(item, found):
+            if not _alike(item, recomputed):
                 raise CertificateError(
-                    f"{operations.name}: expected what bounding again finds of {place} on the box of the certificate, "
-                    f"{found['units']} units, got something else ({item['units']} units)"
+                    f"{operations.name}: expected the bound of {place} that searching again finds on the box of the "
+                    f"certificate, {recomputed['units']} units, got something else ({item['units']} units)"
                 )
 
 
 def _check_precision(
     part: Mapping[str, Any], operations: Operations, box: Box, region: Region, libm_ulp: float
 ) -> None:
+    """Check the part of a section about one precision, as far as single points can."""
     name = operations.name
     if part["operations_sha256"] != operations.digest():
-        raise CertificateError(f"{name}: expected bounds of these operations, got those of others")
-    wanted = tasks(operations, box, region, 0, libm_ulp)
+        raise CertificateError(f"{name}: expected bounds of these operations, got bounds of others")
+    tasks_by_output = bound_tasks(operations, box, region, 0, libm_ulp)
     unit = 2.0 ** -DIGITS[operations.precision]
-    if [item["output"] for item in part["outputs"]] != list(wanted) or float.fromhex(part["unit"]) != unit:
-        raise CertificateError(f"{name}: expected bounds of {', '.join(wanted)}")
+    if [item["output"] for item in part["outputs"]] != list(tasks_by_output) or float.fromhex(part["unit"]) != unit:
+        raise CertificateError(f"{name}: expected bounds of {', '.join(tasks_by_output)}")
     for item in part["outputs"]:
-        task, said = wanted[item["output"]], float.fromhex(item["absolute"])
-        at = np.array([float.fromhex(item["at"][place]) for place in task.cone.places])
-        if not isfinite(said) or said < 0 or item["units"] != _units(Fraction(said) / Fraction(unit)):
+        task, bound = tasks_by_output[item["output"]], float.fromhex(item["absolute"])
+        at = np.array([float.fromhex(item["at"][place]) for place in task.graph.places])
+        if not isfinite(bound) or bound < 0 or item["units"] != _units(Fraction(bound) / Fraction(unit)):
             raise CertificateError(f"{name}: expected a finite bound of {item['output']}, got {item['units']}")
-        choices, safe = _said_choices(task), task.cone.contraction_safe
+        choices, safe = _choice_phrases(task), task.graph.contraction_safe
         if item["choices"] != choices or item["contraction_safe"] is not safe:
             raise CertificateError(f"{name}: expected the choices of {item['output']} as they are in its operations")
         if at.size and not ((task.box[0] <= at) & (at <= task.box[1])).all():
             raise CertificateError(f"{name}: expected a point of the box for {item['output']}, got another")
-        least = reached(task, at)
-        if not least <= float.fromhex(item["pointwise"]) * (1 + 1e-9) or float.fromhex(item["pointwise"]) > said:
+        least = error_at_point(task, at)
+        if not least <= float.fromhex(item["pointwise"]) * (1 + 1e-9) or float.fromhex(item["pointwise"]) > bound:
             raise CertificateError(
                 f"{name}: expected a bound of {item['output']} of at least {least / unit:.6g} units, "
                 f"which a point of the box reaches, got {item['units']}"
             )
 
 
-def reached(task: Task, at: Array) -> float:
-    """Return what the method finds at one point, the least over the branches that are open there: no bound is below."""
+def error_at_point(task: BoundTask, at: Array) -> float:
+    """Return the error bound at one point, 0 if there is none; a bound on a box that holds the point is no smaller."""
     point = np.stack([at, at])[:, :, None]
-    found = evaluate(task.cone, point, np.full((len(task.cone.conditions), 1), -1, np.int8), task.region, task.libm_ulp)
-    value = float(found.bound[0])
+    evaluation = evaluate(
+        task.graph, point, np.full((len(task.graph.conditions), 1), -1, np.int8), task.region, task.libm_ulp
+    )
+    value = float(evaluation.bound[0])
     return value if isfinite(value) else 0.0

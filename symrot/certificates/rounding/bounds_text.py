@@ -1,7 +1,6 @@
-"""The bounds of a library kernel on its own box: as a section of its certificate, and in words for the head of its C.
+"""The bounds of a library kernel on its own box: as a section of its certificate, and as text for its C header comment.
 
-The head repeats what the certificate says, so the bounds are those of the operations that are read back from the text
-under the head.
+Both are computed from the operations that are read back from the C text, so that the comment and the certificate agree.
 """
 
 from collections.abc import Mapping
@@ -13,12 +12,12 @@ from typing import Any
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.rounding.adjoint import LIBM_ULP
 from symrot.certificates.rounding.bounds import BUDGET, rounding_section
-from symrot.certificates.rounding.library import operations_of, problem
+from symrot.certificates.rounding.library import library_problem, operations_of
 from symrot.certificates.rounding.region import UNIT_NORM, Region
 from symrot.errors import InputError
 from symrot.kernels.library import definition
 
-__all__ = ["in_words", "library_region", "library_section", "region_in_words", "region_of", "rounded_up"]
+__all__ = ["bounds_sentence", "library_region", "library_section", "region_of", "region_phrases", "rounded_up"]
 
 DIGITS = 3
 Section = dict[str, Any]
@@ -26,48 +25,50 @@ Section = dict[str, Any]
 
 @lru_cache(maxsize=512)
 def _sections(name: str, double: Operations, single: Operations) -> Section | str:
-    given = problem(definition(name), double)
+    problem = library_problem(definition(name), double)
     try:
-        return rounding_section(double, single, given.box, given.region)
+        return rounding_section(double, single, problem.box, problem.region)
     except InputError as reason:
         return str(reason)
 
 
 def library_section(name: str, source: str) -> Section | str:
-    """Return link 4 of a kernel of the library on its own box; the reason, as text, if it has no bound there.
+    """Return the ``rounding`` section of a library kernel on its own box, or the reason, as text, why it has no bound.
 
     Parameters
     ----------
     name : str
-        The kernel.
+        The name of the kernel.
     source : str
-        Its C text, with or without its head.
+        Its C text, with or without the comment at its head.
     """
     return _sections(name, *operations_of(name, source))
 
 
 def library_region(name: str, source: str) -> Section:
-    """Return what a section of a kernel says, whatever its box: region, error of libm, budget."""
-    region = problem(definition(name), operations_of(name, source)[0]).region
+    """Return the entries of a kernel's section that do not depend on the box: region, error of libm, budget."""
+    region = library_problem(definition(name), operations_of(name, source)[0]).region
     return {
         "unit_groups": [list(group) for group in region.unit], "clearance": float(region.clearance).hex(),
         "libm_ulp": float(LIBM_ULP).hex(), "budget": BUDGET,
     }  # fmt: skip
 
 
-def in_words(name: str, source: str) -> str:
-    """Return the bounds of a kernel of the library as a sentence without its full stop: largest errors by result."""
+def bounds_sentence(name: str, source: str) -> str:
+    """Return the bounds of a library kernel, the largest error of each result, as a sentence without a full stop."""
     section = library_section(name, source)
     if isinstance(section, str):
         return f"no bound; {section.partition(': ')[2]}"
-    found = definition(name)
-    said = [_of_result(section, target.name, sorted({c[1] for c in target.components})) for target, _ in found.results]
+    kernel = definition(name)
+    phrases = [
+        _result_phrase(section, target.name, sorted({c[1] for c in target.components})) for target, _ in kernel.results
+    ]
     turns = any(each["modulo_turns"] for part in section["precisions"] for each in part["outputs"])
-    more = [*region_in_words(region_of(section)), *(["angles modulo whole turns"] if turns else [])]
-    return f"on the box at most {'; '.join(said)} (float functions in brackets){'; '.join(['', *more])}"
+    restrictions = [*region_phrases(region_of(section)), *(["angles modulo whole turns"] if turns else [])]
+    return f"on the box at most {'; '.join(phrases)} (float functions in brackets){'; '.join(['', *restrictions])}"
 
 
-def _of_result(section: Section, name: str, units: list[str]) -> str:
+def _result_phrase(section: Section, name: str, units: list[str]) -> str:
     """Return the largest errors of one result in both precisions."""
     double, single = (
         rounded_up(max(
@@ -81,7 +82,7 @@ def _of_result(section: Section, name: str, units: list[str]) -> str:
 
 
 def rounded_up(value: Fraction) -> str:
-    """Return a number in decimal that is not below it, three digits."""
+    """Return a number as decimal text with three digits, rounded up."""
     if not value:
         return "0"
     exponent = 0
@@ -97,14 +98,14 @@ def rounded_up(value: Fraction) -> str:
 
 
 def region_of(section: Mapping[str, Any]) -> Region:
-    """Return the region that a section is about."""
+    """Return the region on which a section states its bounds."""
     return Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
 
 
-def region_in_words(region: Region) -> list[str]:
-    """Return what holds on a box beside its sides."""
-    spare = f"2^{frexp(UNIT_NORM)[1] - 1}"  # said exactly: rounded up it would be more than what is proven
-    found = [f"{', '.join(group)}: squares add up to 1, but for {spare}" for group in region.unit]
+def region_phrases(region: Region) -> list[str]:
+    """Return the restrictions of a region as phrases."""
+    spare = f"2^{frexp(UNIT_NORM)[1] - 1}"  # exact: a rounded number would claim more than is proven
+    phrases = [f"{', '.join(group)}: squares add up to 1, but for {spare}" for group in region.unit]
     if region.clearance:
-        found.append(f"every atan2 with arguments of length at least {region.clearance:g}")
-    return found
+        phrases.append(f"every atan2 with arguments of length at least {region.clearance:g}")
+    return phrases

@@ -1,8 +1,8 @@
-"""Choices between branches on boxes: which are possible, and what a branch tells of the numbers compared.
+"""Choices between branches on boxes: the possible branches, and the ranges of the compared numbers in a branch.
 
-A choice compares computed numbers, so what it tells is of these alone: of two of them the larger is at least what
-the smaller is at least. And the larger of RN(p + q) and RN(p - q) is at least p, because one of q and -q is not
-negative and rounding keeps order.
+A choice compares computed numbers, so only ranges of computed numbers may be narrowed. If one number is at least
+another, its range starts no lower than that of the other. And the larger of RN(p + q) and RN(p - q) is at least p,
+because q or -q is not negative and rounding keeps order.
 """
 
 from collections.abc import Callable, Sequence
@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from symrot.certificates.readback.operations import Node
 from symrot.certificates.rounding.intervals import Array, negative
-from symrot.certificates.rounding.output_graph import Cone
+from symrot.certificates.rounding.output_graph import OutputGraph
 
-__all__ = ["decide", "narrow"]
+__all__ = ["decide_branches", "narrow_to_branch"]
 
-_POSSIBLE: dict[str, Callable[[Array, Array], Any]] = {  # whether a relation may hold, and whether it may fail
+_POSSIBLE: dict[str, Callable[[Array, Array], Any]] = {  # relation -> whether it may hold, whether it may fail
     "<": lambda a, b: (a[0] < b[1], a[1] >= b[0]),
     "<=": lambda a, b: (a[0] <= b[1], a[1] > b[0]),
     ">": lambda a, b: (a[1] > b[0], a[0] <= b[1]),
@@ -26,17 +26,18 @@ _POSSIBLE: dict[str, Callable[[Array, Array], Any]] = {  # whether a relation ma
     "==": lambda a, b: ((a[0] <= b[1]) & (a[1] >= b[0]), (a[0] != a[1]) | (b[0] != b[1]) | (a[0] != b[0])),
     "!=": lambda a, b: ((a[0] != a[1]) | (b[0] != b[1]) | (a[0] != b[0]), (a[0] <= b[1]) & (a[1] >= b[0])),
 }
-_NOT_LESS = {  # the decision with which the left side is at least the right one, and that with which it is at most
+_NOT_LESS = {  # relation -> the branch in which left >= right, the branch in which left <= right
     "<": (0, 1), "<=": (0, 1), ">": (1, 0), ">=": (1, 0), "==": (1, 1), "!=": (0, 0),
 }  # fmt: skip
 
 
-def decide(
+def decide_branches(
     relation: str, a: Array, b: Array, decision: NDArray[np.int8]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Take the branch that is the only possible one, in place.
+    """Decide a condition on the boxes where only one branch is possible; ``decision`` is changed in place.
 
-    Returns which boxes lie outside of the branch that they were given, and of which both branches are open.
+    Returns which boxes lie outside the branch that was decided for them before, and on which both branches are
+    possible.
     """
     holds, fails = _POSSIBLE[relation](a, b)
     outside = ((decision == 1) & ~holds) | ((decision == 0) & ~fails)
@@ -46,40 +47,40 @@ def decide(
     return outside, open_ & holds & fails
 
 
-def narrow(cone: Cone, number: int, decision: NDArray[np.int8], computed: list[Array]) -> None:
-    """Narrow enclosures of computed numbers to the branch of a condition that is taken, in place."""
-    relation, i, j = cone.conditions[number]
+def narrow_to_branch(graph: OutputGraph, number: int, decision: NDArray[np.int8], computed: list[Array]) -> None:
+    """Narrow enclosures of computed numbers, in place, to the values possible in the decided branch of a condition."""
+    relation, i, j = graph.conditions[number]
     larger, smaller = _NOT_LESS[relation]
-    _order(cone.nodes, i, j, decision == larger, computed)
-    _order(cone.nodes, j, i, decision == smaller, computed)
+    _narrow_ordered(graph.nodes, i, j, decision == larger, computed)
+    _narrow_ordered(graph.nodes, j, i, decision == smaller, computed)
 
 
-def _order(nodes: Sequence[Node], i: int, j: int, here: NDArray[np.bool_], computed: list[Array]) -> None:
-    """Narrow what is known of two numbers where the first is at least the second."""
+def _narrow_ordered(nodes: Sequence[Node], i: int, j: int, here: NDArray[np.bool_], computed: list[Array]) -> None:
+    """Narrow the enclosures of two numbers on the boxes ``here``, where the first is at least the second."""
     least, most = computed[j][0], computed[i][1]
     middle = _middle(nodes[i], nodes[j])
     if middle is not None:
         least, most = np.maximum(least, computed[middle][0]), np.minimum(most, computed[middle][1])
-    _limit(nodes, i, 0, np.where(here, least, -inf), computed)
-    _limit(nodes, j, 1, np.where(here, most, inf), computed)
+    _narrow_end(nodes, i, 0, np.where(here, least, -inf), computed)
+    _narrow_end(nodes, j, 1, np.where(here, most, inf), computed)
 
 
-def _limit(nodes: Sequence[Node], k: int, row: int, end: Array, computed: list[Array]) -> None:
-    """Narrow what is known of a number from below (row 0) or above (row 1)."""
+def _narrow_end(nodes: Sequence[Node], k: int, row: int, end: Array, computed: list[Array]) -> None:
+    """Narrow the enclosure of a number at its lower end (``row`` 0) or its upper end (1)."""
     kind = nodes[k][0]
-    if kind in ("mul", "square"):  # where it is fused, a sum takes the product as it is
+    if kind in ("mul", "square"):  # a fused sum uses the unrounded product, for which the comparison says nothing
         return
     if kind == "neg":
-        _limit(nodes, nodes[k][1], 1 - row, -end, computed)
+        _narrow_end(nodes, nodes[k][1], 1 - row, -end, computed)
         computed[k] = negative(computed[nodes[k][1]])
         return
-    found = computed[k].copy()
-    found[row] = np.minimum(found[row], end) if row else np.maximum(found[row], end)
-    computed[k] = np.where(found[0] <= found[1], found, computed[k])
+    ends = computed[k].copy()
+    ends[row] = np.minimum(ends[row], end) if row else np.maximum(ends[row], end)
+    computed[k] = np.where(ends[0] <= ends[1], ends, computed[k])
 
 
 def _middle(one: Node, other: Node) -> int | None:
-    """Return p where the nodes are p + q and p - q."""
+    """Return the node p if two nodes are p + q and p - q, in any order; None otherwise."""
     if (one[0], other[0]) == ("sub", "add"):
         one, other = other, one
     if (one[0], other[0]) != ("add", "sub") or set(one[1:]) != set(other[1:]):

@@ -1,7 +1,7 @@
 """Ranges of a scene kernel's parameters from ranges of the physical constants in them, by interval arithmetic.
 
-A kernel takes parameters such as ``(B - C)/A``, not the moments of inertia themselves. Where these are ranges, each
-parameter is enclosed in one: exact at its ends for rational formulas, never too small. Standard library only.
+The arguments of a kernel are parameters such as ``(B - C)/A``, not the moments of inertia themselves. If the moments
+may vary, each parameter gets a range that contains all its values. Only the standard library is used.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -13,108 +13,113 @@ from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
 from symrot.formula.tree import Node, evaluate, names, text
 
-__all__ = ["Range", "enclosed"]
+__all__ = ["ExactRange", "parameter_range"]
 
-PIECES = 256  # parts of the box of the constants: of each the formula is enclosed
-SPARE = Fraction(1, 2**240)  # above the error of numbers that are not rational
+PIECES = 256  # parts into which the box of the constants is cut for a tighter enclosure
+SPARE = Fraction(1, 2**240)  # larger than the error of irrational numbers, which are rounded to 2^-250
 
 
 @dataclass(frozen=True)
-class Range:
-    """All numbers from ``low`` to ``high``; operations return a range of all results."""
+class ExactRange:
+    """The numbers from ``low`` to ``high``; operations return a range that contains all results."""
 
     low: Fraction
     high: Fraction
 
     @classmethod
-    def about(cls, value: Fraction) -> "Range":
-        """Return the range of a number that was rounded to 2^-250."""
+    def about(cls, value: Fraction) -> "ExactRange":
+        """Return a range that contains the number of which ``value`` is a rounding to 2^-250."""
         spare = SPARE * max(abs(value), Fraction(1))
         return cls(value - spare, value + spare)
 
-    def __neg__(self) -> "Range":
-        return Range(-self.high, -self.low)
+    def __neg__(self) -> "ExactRange":
+        return ExactRange(-self.high, -self.low)
 
-    def __add__(self, other: "Range") -> "Range":
-        return Range(self.low + other.low, self.high + other.high)
+    def __add__(self, other: "ExactRange") -> "ExactRange":
+        return ExactRange(self.low + other.low, self.high + other.high)
 
-    def __sub__(self, other: "Range") -> "Range":
+    def __sub__(self, other: "ExactRange") -> "ExactRange":
         return self + -other
 
-    def __mul__(self, other: "Range") -> "Range":
+    def __mul__(self, other: "ExactRange") -> "ExactRange":
         ends = [a * b for a in (self.low, self.high) for b in (other.low, other.high)]
-        return Range(min(ends), max(ends))
+        return ExactRange(min(ends), max(ends))
 
-    def __truediv__(self, other: "Range") -> "Range":
+    def __truediv__(self, other: "ExactRange") -> "ExactRange":
         if other.low <= 0 <= other.high:
             raise ZeroDivisionError
-        return self * Range(1 / other.high, 1 / other.low)
+        return self * ExactRange(1 / other.high, 1 / other.low)
 
-    def __abs__(self) -> "Range":
+    def __abs__(self) -> "ExactRange":
         least = 0 if self.low <= 0 <= self.high else min(abs(self.low), abs(self.high))
-        return Range(Fraction(least), max(abs(self.low), abs(self.high)))
+        return ExactRange(Fraction(least), max(abs(self.low), abs(self.high)))
 
-    def __pow__(self, exponent: int) -> "Range":
+    def __pow__(self, exponent: int) -> "ExactRange":
         if exponent < 0:
-            return Range(Fraction(1), Fraction(1)) / self**-exponent
+            return ExactRange(Fraction(1), Fraction(1)) / self**-exponent
         base = self if exponent % 2 else abs(self)
-        return Range(base.low**exponent, base.high**exponent)
+        return ExactRange(base.low**exponent, base.high**exponent)
 
-    def parts(self, count: int) -> Iterator["Range"]:
-        """Return ranges that make up this one."""
+    def parts(self, count: int) -> Iterator["ExactRange"]:
+        """Return ``count`` equal ranges that together are this one."""
         step = (self.high - self.low) / count
-        return (Range(self.low + k * step, self.low + (k + 1) * step) for k in range(count))
+        return (ExactRange(self.low + k * step, self.low + (k + 1) * step) for k in range(count))
 
 
-def _sqrt(value: Range) -> Range:
-    return Range(Range.about(number.sqrt(value.low)).low, Range.about(number.sqrt(value.high)).high)
+def _sqrt(value: ExactRange) -> ExactRange:
+    return ExactRange(ExactRange.about(number.sqrt(value.low)).low, ExactRange.about(number.sqrt(value.high)).high)
 
 
-def _circular(value: Range) -> Range:
-    """Return a range of sines or cosines: those of a range that is no point are anywhere."""
-    return Range(Fraction(-1), Fraction(1))
+def _bounded_by_one(value: ExactRange) -> ExactRange:
+    """Return the range of a sine or cosine, [-1, 1], whatever its argument."""
+    return ExactRange(Fraction(-1), Fraction(1))
 
 
-_FUNCTIONS: dict[str, Callable[[Range], Range]] = {"sqrt": _sqrt, "sin": _circular, "cos": _circular, "abs": abs}
+_FUNCTIONS: dict[str, Callable[[ExactRange], ExactRange]] = {
+    "sqrt": _sqrt,
+    "sin": _bounded_by_one,
+    "cos": _bounded_by_one,
+    "abs": abs,
+}
 
 
-def enclosed(
+def parameter_range(
     name: str, formula: Node, constants: Mapping[str, Fraction], ranges: Mapping[str, tuple[Fraction, Fraction]]
 ) -> tuple[Fraction, Fraction]:
-    """Return least and largest value of a parameter, enclosed.
+    """Return a lower and an upper bound of a parameter.
 
     Parameters
     ----------
     name : str
-        The parameter, for errors.
+        The name of the parameter, for errors.
     formula : Node
-        What it is, over the physical constants.
+        Its formula in the physical constants.
     constants : mapping of str to Fraction
-        The values of a scene.
+        The values of the constants in the scene.
     ranges : mapping of str to (Fraction, Fraction)
-        Constants that may be anything between two ends instead.
+        Constants that vary between two ends instead.
 
     Raises
     ------
     InputError
-        For ranges on which the parameter is not finite, or no number.
+        If the parameter is not a finite number everywhere on the ranges.
     """
-    box = {constant: Range(*ends) for constant, ends in ranges.items() if constant in names(formula)}
-    points = {constant: Range(value, value) for constant, value in constants.items()}
-    values = {"pi": Range.about(number.PI), **points}
+    box = {constant: ExactRange(*ends) for constant, ends in ranges.items() if constant in names(formula)}
+    points = {constant: ExactRange(value, value) for constant, value in constants.items()}
+    values = {"pi": ExactRange.about(number.PI), **points}
     wide = [constant for constant, ends in box.items() if ends.low < ends.high]
     count = round(PIECES ** (1 / len(wide))) if wide else 1
     cut = [[(constant, part) for part in box[constant].parts(count if constant in wide else 1)] for constant in box]
     try:
-        found = [
-            evaluate(formula, values | dict(part), _FUNCTIONS, lambda value: Range(value, value))
+        enclosures = [
+            evaluate(formula, values | dict(part), _FUNCTIONS, lambda value: ExactRange(value, value))
             for part in product(*cut)
         ]
     except (ZeroDivisionError, ValueError):
-        said = ", ".join(
+        ranges_text = ", ".join(
             f"{constant} {number.show(ends.low)} .. {number.show(ends.high)}" for constant, ends in box.items()
         )
         raise InputError(
-            f"--box: expected ranges on which {name} = {text(formula)} is a finite number, got {said}"
+            f"--box: expected ranges on which {name} = {text(formula)} is a finite number, got {ranges_text}"
         ) from None
-    return min(each.low for each in found), max(each.high for each in found)
+    return min(each.low for each in enclosures), max(each.high for each in enclosures)

@@ -1,7 +1,8 @@
-"""Enclosures of sines, arc tangents and their relatives on intervals, from ``+ - * / sqrt`` alone.
+"""Enclosures of sine, cosine, arc tangent and related functions on intervals, from ``+ - * / sqrt`` alone.
 
-The sine of the machine's own library differs between machines; bounds may not. Arguments are reduced by pi/2 in two
-parts and summed as Taylor series, to an absolute error below 1e-15 that every result is widened by.
+The C library's sine differs between machines, but bounds must be the same everywhere. So arguments are reduced by
+multiples of pi/2, which is split in two parts, and Taylor series are summed. The absolute error stays below 1e-15;
+every result is widened by more than that.
 """
 
 from collections.abc import Callable
@@ -25,18 +26,18 @@ from symrot.certificates.rounding.intervals import (
 __all__ = ["arc_ratio_terms", "arc_slope", "arc_tangent", "cosine", "sinc", "sinc_slope", "sine",
            "sine_gap", "sine_gap_slope", "tangent_gap", "tangent_gap_slope"]  # fmt: skip
 
-SLACK = 2e-15  # absolute, many times what the series and the reduction lose
-FARTHEST = 2.0**20  # |x| beyond which nothing is reduced
-NEAR_CRITICAL = 1e-9  # in turns: an extremum this near counts as inside
+SLACK = 2e-15  # absolute widening, larger than the errors of series and reduction
+FARTHEST = 2.0**20  # largest |x| that is reduced; beyond it a sine is anything in [-1, 1]
+NEAR_CRITICAL = 1e-9  # in rotations of 2 pi: an extremum this near to an interval counts as inside
 
-_HALF_PI = (float.fromhex("0x1.921fb544p+0"), float.fromhex("0x1.0b4611a626331p-34"))  # 33 bits, and the rest
+_HALF_PI = (float.fromhex("0x1.921fb544p+0"), float.fromhex("0x1.0b4611a626331p-34"))  # the first 33 bits, and the rest
 
 
 def _series(terms: list[Fraction]) -> tuple[float, ...]:
     return tuple(float(term) for term in reversed(terms))
 
 
-TERMS = 13  # of x^2, enough for |x| <= 2
+TERMS = 13  # terms in x^2, enough for |x| <= 2
 _SINC = _series([Fraction((-1) ** n, factorial(2 * n + 1)) for n in range(TERMS)])
 _COSINE = _series([Fraction((-1) ** n, factorial(2 * n)) for n in range(TERMS)])
 _SINE_GAP = _series([Fraction((-1) ** n, factorial(2 * n + 3)) for n in range(TERMS)])
@@ -66,35 +67,35 @@ def _sine_of(x: Array, quarter_turns: int) -> Array:
 def _circular(x: Array, quarter_turns: int) -> Array:
     far = np.maximum(np.abs(x[0]), np.abs(x[1])) > FARTHEST
     ends = np.sort(_sine_of(np.where(far, 0.0, x), quarter_turns), axis=0)
-    found = np.clip(widened(ends, SLACK), -1.0, 1.0)
+    enclosure = np.clip(widened(ends, SLACK), -1.0, 1.0)
     turns = x / (2 * pi) + 0.25 * quarter_turns
     for row, peak in ((1, 0.25), (0, 0.75)):
         inside = np.floor(turns[1] - peak + NEAR_CRITICAL) != np.floor(turns[0] - peak - NEAR_CRITICAL)
-        found[row] = np.where(inside | far, 1.0 if row else -1.0, found[row])
-    return found
+        enclosure[row] = np.where(inside | far, 1.0 if row else -1.0, enclosure[row])
+    return enclosure
 
 
 def sine(x: Array) -> Array:
-    """Return an enclosure of sin on intervals."""
+    """Return an enclosure of the sine on intervals."""
     return _circular(x, 0)
 
 
 def cosine(x: Array) -> Array:
-    """Return an enclosure of cos on intervals."""
+    """Return an enclosure of the cosine on intervals."""
     return _circular(x, 1)
 
 
 def _size(x: Array) -> Array:
-    """Return the intervals of |x|."""
+    """Return |x| for intervals x."""
     size = np.abs(x)
     return np.stack([np.where(contains_zero(x), 0.0, size.min(axis=0)), size.max(axis=0)])
 
 
 @dataclass(frozen=True)
-class _Even:
-    """An even function of x: its series in x^2, its formula at numbers and on intervals, both for |x| >= 2.
+class _EvenFunction:
+    """An even function of x: its series in x^2 for |x| < 2, its formula at numbers and on intervals for |x| >= 2.
 
-    It falls for 0 <= x <= ``end`` and is at most ``crude`` in size everywhere.
+    The function decreases for 0 <= x <= ``end``, and its absolute value is at most ``crude`` everywhere.
     """
 
     series: tuple[float, ...]
@@ -104,21 +105,21 @@ class _Even:
     crude: float
 
     def __call__(self, x: Array) -> Array:
-        """Return an enclosure on intervals."""
+        """Return an enclosure of the function on intervals."""
         size = _size(x)
         low = np.minimum(size, self.end)
         far = np.maximum(low, 2.0)
         value = np.where(
             low < 2.0, _polynomial(self.series, low * low), self.formula(far, _sine_of(far, 0) / far, _sine_of(far, 1))
         )
-        found = widened(value[::-1], 2 * SLACK)
+        enclosure = widened(value[::-1], 2 * SLACK)
         beyond = size[1] > self.end
         if not beyond.any():
-            return found
+            return enclosure
         z = np.where(size[0] >= 2.0, size, 2.0)
         general = self.on_intervals(z, divide(sine(z), z), cosine(z))
         crude = np.array([[-self.crude], [self.crude]])
-        return np.where(beyond, np.where(size[0] >= 2.0, general, crude), found)
+        return np.where(beyond, np.where(size[0] >= 2.0, general, crude), enclosure)
 
 
 def _over(numerator: Array, z: Array, power: int) -> Array:
@@ -128,22 +129,22 @@ def _over(numerator: Array, z: Array, power: int) -> Array:
 
 
 _times = multiply_loosely
-sinc = _Even(_SINC, lambda z, s, c: s, lambda z, s, c: s, 4.4, 1.0)
-sine_gap = _Even(
+sinc = _EvenFunction(_SINC, lambda z, s, c: s, lambda z, s, c: s, 4.4, 1.0)
+sine_gap = _EvenFunction(
     _SINE_GAP,
     lambda z, s, c: (1 - s) / (z * z),
     lambda z, s, c: _over(add(np.ones_like(s), negative(s)), z, 2),
     6.0,
     1 / 6,
 )
-tangent_gap = _Even(
+tangent_gap = _EvenFunction(
     _TANGENT_GAP, lambda z, s, c: (s - c) / (z * z), lambda z, s, c: _over(add(s, negative(c)), z, 2), 5.7, 1 / 3
 )
-_sine_gap_factor = _Even(
+_sine_gap_factor = _EvenFunction(
     _SINE_GAP_SLOPE, lambda z, s, c: (2 + c - 3 * s) / (z * z * z * z),
     lambda z, s, c: _over(add(np.full_like(c, 2.0), add(c, _times(np.full_like(s, -3.0), s))), z, 4), 4.4, 1 / 60,
 )  # fmt: skip
-_tangent_gap_factor = _Even(
+_tangent_gap_factor = _EvenFunction(
     _TANGENT_GAP_SLOPE, lambda z, s, c: ((3 - z * z) * s - 3 * c) / (z * z * z * z),
     lambda z, s, c: _over(
         add(_times(add(np.full_like(z, 3.0), negative(_times(z, z))), s), _times(np.full_like(c, -3.0), c)), z, 4
@@ -152,12 +153,18 @@ _tangent_gap_factor = _Even(
 
 
 def tangent_gap_slope(x: Array) -> Array:
-    """Return an enclosure of the derivative, ``-x j2(x)/x^2``; the second factor falls from 1/15 at 0 to x = 5.7."""
+    """Return an enclosure of the derivative of ``tangent_gap``.
+
+    It is -x times ``j2(x)/x^2``, which decreases from 1/15 at x = 0 until x = 5.7.
+    """
     return negative(multiply_loosely(x, _tangent_gap_factor(x)))
 
 
 def sine_gap_slope(x: Array) -> Array:
-    """Return an enclosure of the derivative, -x times an integral of (1-s)^2 s sin(xs)/(2x), which falls to x = 4.4."""
+    """Return an enclosure of the derivative of ``sine_gap``.
+
+    It is -x times the integral of (1-s)^2 s sin(xs)/(2x) over s from 0 to 1, which decreases until x = 4.4.
+    """
     return negative(multiply_loosely(x, _sine_gap_factor(x)))
 
 
@@ -178,25 +185,25 @@ def _arc(z: Array) -> Array:
 
 
 def arc_tangent(y: Array, x: Array) -> Array:
-    """Return an enclosure of atan2(y, x); the whole turn where y changes its sign and x may be negative."""
+    """Return an enclosure of atan2(y, x); it is [-pi, pi] if y contains zero and x is not positive."""
     with np.errstate(all="ignore"):
         right, up = divide(y, x), divide(x, y)
         sloped = [_arc(np.where(np.isfinite(q), q, 0.0)) for q in (right, up[::-1])]
     quarter = np.where(y[0] > 0, pi / 2, -pi / 2)
-    found = np.where(x[0] > 0, sloped[0], np.where(contains_zero(y), np.array([[-pi], [pi]]), quarter - sloped[1]))
-    return np.clip(widened(found, 2 * SLACK), -pi - SLACK, pi + SLACK)
+    angles = np.where(x[0] > 0, sloped[0], np.where(contains_zero(y), np.array([[-pi], [pi]]), quarter - sloped[1]))
+    return np.clip(widened(angles, 2 * SLACK), -pi - SLACK, pi + SLACK)
 
 
 def arc_slope(a: Array, b: Array) -> Array:
-    """Return the least enclosure of a/(a^2 + b^2), by which atan2 grows; not finite where both hold zero."""
+    """Return the tightest enclosure of a/(a^2 + b^2), a derivative of atan2; infinite where both contain zero."""
     return np.stack([-_steepest(negative(a), b), _steepest(a, b)])
 
 
 def _steepest(a: Array, b: Array) -> Array:
-    """Return a bound of a/(a^2 + b^2) from above.
+    """Return an upper bound of a/(a^2 + b^2).
 
-    It is largest at the least |b| where a may be positive, at the largest where not; as a function of a it rises to
-    a = |b| and falls from there on.
+    If a may be positive, the maximum is at the least |b|, otherwise at the largest. As a function of a, the quotient
+    increases until a = |b| and decreases from there on.
     """
     size = _size(b)
     near, far = size

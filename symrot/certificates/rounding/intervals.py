@@ -1,9 +1,9 @@
-"""Intervals for rounding bounds: float64 arrays of shape (2, n), least and largest value of n boxes, rounded outward.
+"""Interval arithmetic for rounding bounds: float64 arrays of shape (2, n), the lower and upper ends of n intervals.
 
-An endpoint is moved outward by one step only where the operation was inexact, so that 1*1 stays 1: the size of a
-rounding error jumps at powers of two. Whether a sum is exact is decided by TwoSum, a product by Veltkamp's split. A
-step outward is Rump's: ``c + (phi |c| + eta)`` is never less than the next number. What overflows or divides by zero
-has an endpoint that is not finite. Only ``+ - * / sqrt`` are used, so that results are the same on every machine.
+Results are rounded outward, but an end is moved only if the operation was inexact, so that 1*1 stays 1: the size of a
+rounding error jumps at powers of two. TwoSum decides whether a sum is exact, Veltkamp's split whether a product is. A
+step outward is Rump's: ``c + (phi |c| + eta)`` is never less than the next number. Overflow and division by zero give
+ends that are not finite. Only ``+ - * / sqrt`` are used, so that results are the same on every machine.
 
 Source: Ogita, Rump, Oishi, SIAM J. Sci. Comput. 26 (2005) 1955 (TwoSum, Split); Rump, Zimmermann, Boldo, Melquiond,
 BIT 49 (2009) 419 (successor in rounding to nearest).
@@ -22,25 +22,25 @@ Array: TypeAlias = NDArray[np.float64]
 ETA = 5e-324  # smallest positive number
 PHI = 2.0**-53 * (1 + 2.0**-51)
 SPLIT = 134217729.0  # 2^27 + 1
-TINY = 1e-280  # below it a product may be inexact though its factors are short
+TINY = 1e-280  # a smaller product may be inexact even if its factors have few digits
 _EXPONENT = np.int64(0x7FF0000000000000)
 DIGITS = {"binary64": 53, "binary32": 24}
-_LEAST = {"binary64": ETA, "binary32": 2.0**-150}  # bound of the error of a result that is subnormal
+_LEAST = {"binary64": ETA, "binary32": 2.0**-150}  # bound of the error of a subnormal result
 
 
 def point(value: float, count: int) -> Array:
-    """Return the interval of one number, for some boxes."""
+    """Return ``count`` intervals that hold just one number."""
     return np.full((2, count), value)
 
 
 def widened(values: Array, by: Array | float) -> Array:
-    """Return intervals larger by at least ``by`` >= 0 on both sides."""
+    """Return intervals enlarged by at least ``by`` >= 0 on both sides."""
     step = by + (np.abs(values) * PHI + ETA)
     return np.stack([values[0] - step[0], values[1] + step[1]])
 
 
 def hull(a: Array, b: Array) -> Array:
-    """Return the least intervals that hold both."""
+    """Return the smallest intervals that contain both arguments."""
     return np.stack([np.minimum(a[0], b[0]), np.maximum(a[1], b[1])])
 
 
@@ -50,7 +50,7 @@ def magnitude(a: Array) -> Array:
 
 
 def contains_zero(a: Array) -> NDArray[np.bool_]:
-    """Tell which intervals hold zero."""
+    """Tell which intervals contain zero."""
     return np.asarray((a[0] <= 0) & (a[1] >= 0))
 
 
@@ -60,7 +60,7 @@ def negative(a: Array) -> Array:
 
 
 def add(a: Array, b: Array) -> Array:
-    """Return a + b; an exact endpoint stays as it is."""
+    """Return a + b; ends that are computed exactly are not moved."""
     total = a + b
     back = total - a
     error = (a - (total - back)) + (b - back)
@@ -75,7 +75,7 @@ def _short(a: Array) -> NDArray[np.bool_]:
 
 
 def multiply(a: Array, b: Array) -> Array:
-    """Return a * b; an exact endpoint stays as it is."""
+    """Return a * b; ends that are computed exactly are not moved."""
     products = a[:, None] * b[None]
     exact = (_short(a)[:, None] & _short(b)[None]) & (np.abs(products) > TINY)
     exact |= (a == 0)[:, None] | (b == 0)[None]
@@ -84,13 +84,13 @@ def multiply(a: Array, b: Array) -> Array:
 
 
 def multiply_loosely(a: Array, b: Array) -> Array:
-    """Return a * b, every endpoint one step outward: for derivatives, where a last bit is nothing."""
+    """Return a * b with every end moved outward; cheaper, for derivatives, where the last bit does not matter."""
     products = (a[:, None] * b[None]).reshape(4, -1)
     return widened(np.stack([products.min(axis=0), products.max(axis=0)]), 0.0)
 
 
 def square(a: Array) -> Array:
-    """Return a^2, which is not negative."""
+    """Return a^2; the lower end is never negative."""
     size = np.abs(a)
     low = np.where(contains_zero(a), 0.0, size.min(axis=0))
     ends = np.stack([low, size.max(axis=0)])
@@ -101,39 +101,39 @@ def square(a: Array) -> Array:
 
 
 def divide(a: Array, b: Array) -> Array:
-    """Return a / b, not finite where b holds zero."""
+    """Return a / b; infinite where b contains zero."""
     quotients = a[:, None] / b[None]
     exact = _short(quotients) & _short(b)[None] & (quotients * b[None] == a[:, None]) & (np.abs(quotients) > TINY)
     exact |= (a == 0)[:, None] & (b != 0)[None]
     step = (np.abs(quotients) * PHI + ETA) * ~exact
-    found = np.stack([(quotients - step).min(axis=(0, 1)), (quotients + step).max(axis=(0, 1))])
-    found[:, contains_zero(b)] = np.inf
-    return found
+    result = np.stack([(quotients - step).min(axis=(0, 1)), (quotients + step).max(axis=(0, 1))])
+    result[:, contains_zero(b)] = np.inf
+    return result
 
 
 def square_root(a: Array) -> Array:
-    """Return the square root, not finite where a holds negative numbers."""
+    """Return the square root of a; infinite where a contains negative numbers."""
     roots = np.sqrt(np.maximum(a, 0.0))
     step = (roots * PHI + ETA) * ~(_short(roots) & (roots * roots == a))
-    found = np.stack([np.maximum(roots[0] - step[0], 0.0), roots[1] + step[1]])
-    found[:, a[0] < 0] = np.inf
-    return found
+    result = np.stack([np.maximum(roots[0] - step[0], 0.0), roots[1] + step[1]])
+    result[:, a[0] < 0] = np.inf
+    return result
 
 
 def binade(size: Array) -> Array:
-    """Return the largest power of two that is at most a number, 0 for 0."""
+    """Return the largest power of two that is at most each number, 0 for 0."""
     return (size.view(np.int64) & _EXPONENT).view(np.float64)
 
 
 def half_ulp(size: Array, precision: str) -> Array:
-    """Return a bound of the error of rounding any number of at most that size: half a unit of the binade below it."""
+    """Return a bound of the error of rounding any number of at most this size: half a unit of the binade below it."""
     below = ((size.view(np.int64) - 1) & _EXPONENT).view(np.float64)
     unit = np.maximum(below * 2.0 ** -DIGITS[precision], _LEAST[precision])
     return np.where(size > 0, unit, 0.0)
 
 
 def rounded_to(a: Array, precision: str) -> Array:
-    """Return the hull of intervals and of what their numbers round to in a precision."""
+    """Return intervals that contain the given ones and all roundings of their numbers to a precision."""
     if precision == "binary64":
         return a
     with np.errstate(over="ignore"):

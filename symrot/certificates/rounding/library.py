@@ -1,7 +1,7 @@
-"""Rounding bounds of the kernels of the library: their boxes, all of them on several processes, the largest box.
+"""Rounding bounds of the kernels of the library: their boxes, a parallel search for all bounds, the largest box.
 
-For the certificate: :func:`problem` gives the box and region of a kernel, :func:`prepare` bounds all of them on some
-processes at once, so that :func:`symrot.certificates.rounding.bounds.rounding_section` finds each in the store.
+:func:`library_problem` returns the box and region of a kernel. :func:`prepare` bounds many kernels in several
+processes, so that :func:`symrot.certificates.rounding.bounds.rounding_section` finds every bound in the store.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -13,121 +13,122 @@ from math import inf
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_kernel
 from symrot.certificates.rounding.adjoint import LIBM_ULP
-from symrot.certificates.rounding.bounds import BUDGET, STORE, Box, Task, bound_task, tasks
-from symrot.certificates.rounding.branch_and_bound import Search, search
-from symrot.certificates.rounding.output_graph import cone_of
+from symrot.certificates.rounding.bounds import BUDGET, STORE, BoundTask, Box, bound_task, bound_tasks
+from symrot.certificates.rounding.branch_and_bound import SearchResult, search
+from symrot.certificates.rounding.output_graph import output_graph
 from symrot.certificates.rounding.region import EVERYWHERE, Region
 from symrot.errors import InputError
 from symrot.kernels.definition import Definition
 from symrot.kernels.library import definition
 
-__all__ = ["Problem", "largest_box", "operations_of", "prepare", "problem", "resized"]
+__all__ = ["RoundingProblem", "largest_box", "library_problem", "operations_of", "prepare", "resized"]
 
-CLEARANCE = 0.1  # least length of the arguments of an atan2 in the default region: the distance from gimbal lock
-STEPS = 12  # halvings of the interval that holds the size of the largest box
-LARGEST = 2.0**10  # times the size of the kernel's own box
+CLEARANCE = 0.1  # least length of the vector of arguments of atan2 in the default region: the distance from gimbal lock
+STEPS = 12  # bisection steps for the size of the largest box
+LARGEST = 2.0**10  # largest size that is tried, relative to the box of the kernel
 
 
 @dataclass(frozen=True)
-class Problem:
-    """The box and the region on which a kernel of the library is bounded, and the symbols of its places."""
+class RoundingProblem:
+    """The box and the region on which a kernel is bounded, and the symbols of its inputs."""
 
     box: Mapping[str, tuple[Fraction, Fraction]]
     region: Region
     symbols: Mapping[str, str]  # place -> component, such as "angles[1]" -> "theta"
 
     def place(self, name: str) -> str:
-        """Return the place of an input, by place or component; ``InputError`` for none."""
+        """Return the place of an input from its place or symbol; raise InputError if there is no such input."""
         for place, symbol in self.symbols.items():
             if name in (place, symbol):
                 return place
         raise InputError(f"expected an input, one of {', '.join(self.symbols.values())}, got {name!r}")
 
 
-def problem(found: Definition, operations: Operations) -> Problem:
-    """Return the box and region of a kernel.
+def library_problem(kernel: Definition, operations: Operations) -> RoundingProblem:
+    """Return the box and region of a library kernel.
 
-    The region is the whole box, rotation or not: a matrix is any nine numbers in [-1, 1], a quaternion any four. But
-    for kernels that take angles of a quaternion: those are bounded for unit quaternions, at a distance of 1/10 from the
-    points where an angle is not defined.
+    The region is usually the whole box: a matrix is any nine numbers in [-1, 1], a quaternion any four. Only kernels
+    that compute angles from a quaternion are bounded for unit quaternions, at a distance of at least 1/10 from the
+    points where an angle is undefined.
     """
     symbols = {
         (each.name if each.is_scalar else f"{each.name}[{i}]"): component[0]
-        for each in found.inputs
+        for each in kernel.inputs
         for i, component in enumerate(each.components)
     }
-    box = {place: found.box[symbol] for place, symbol in symbols.items()}
+    box = {place: kernel.box[symbol] for place, symbol in symbols.items()}
     if not any(node[0] == "call" and node[1] == "atan2" for node in operations.nodes):
-        return Problem(box, EVERYWHERE, symbols)
+        return RoundingProblem(box, EVERYWHERE, symbols)
     quaternions = tuple(
         tuple(f"{each.name}[{i}]" for i in range(4))
-        for each in found.inputs
+        for each in kernel.inputs
         if [component[0][1:] for component in each.components] == list("0123")
     )
-    cones = (cone_of(operations, index) for _, index in operations.outputs)
-    angles = any(node[0] == "atan2" for cone in cones for node in cone.nodes)
-    return Problem(box, Region(quaternions, CLEARANCE if angles else 0.0), symbols)
+    graphs = (output_graph(operations, index) for _, index in operations.outputs)
+    angles = any(node[0] == "atan2" for graph in graphs for node in graph.nodes)
+    return RoundingProblem(box, Region(quaternions, CLEARANCE if angles else 0.0), symbols)
 
 
 def operations_of(name: str, text: str) -> tuple[Operations, Operations]:
-    """Return the double and the float function of a kernel's C text."""
-    return read_kernel(text, name, f"{name}.c"), read_kernel(text, f"{name}f", f"{name}.c")
+    """Return the operations of the function for doubles and of the one for floats in a kernel's C text."""
+    function, file = f"symrot_{name}", f"{name}.c"
+    return read_kernel(text, function, file), read_kernel(text, f"{function}f", file)
 
 
-def _work(task: Task) -> Search:
-    return search(task.cone, task.box, task.region, task.budget, task.libm_ulp)
+def _search_task(task: BoundTask) -> SearchResult:
+    return search(task.graph, task.box, task.region, task.budget, task.libm_ulp)
 
 
 def prepare(
     kernels: Iterable[tuple[str, str]], workers: int = 2, budget: int = BUDGET, libm_ulp: float = LIBM_ULP,
     progress: Callable[[str], object] = lambda text: None, with_table: bool = True,
 ) -> int:  # fmt: skip
-    """Bound the outputs of kernels of the library, each computation once, and keep what was found in the store.
+    """Bound the outputs of kernels of the library, each computation once, and put the bounds in the store.
 
     Parameters
     ----------
     kernels : iterable of (name, C text)
     workers : int
-        Processes; 1 works in this one.
+        Number of processes; with 1 the bounds are computed in this process.
     budget, libm_ulp
         As for :func:`symrot.certificates.rounding.bounds.bound_outputs`.
     progress : callable
-        Takes a line of text, now and then.
+        Called from time to time with a line of text.
     with_table : bool
-        Whether the bounds that come with symrot are not to be found again.
+        Whether to use the bounds in the table that comes with symrot.
 
     Returns
     -------
     int
-        How many computations had to be bounded.
+        The number of computations that were bounded.
     """
-    waiting: dict[str, Task] = {}
+    waiting: dict[str, BoundTask] = {}
     for name, text in kernels:
         for operations in operations_of(name, text):
-            given = problem(definition(name), operations)
-            for task in tasks(operations, given.box, given.region, budget, libm_ulp).values():
+            problem = library_problem(definition(name), operations)
+            for task in bound_tasks(operations, problem.box, problem.region, budget, libm_ulp).values():
                 if STORE.get(task.key, with_table) is None:
                     waiting[task.key] = task
-    largest_first = sorted(waiting.values(), key=lambda task: (-len(task.cone.nodes) * len(task.low), task.key))
+    largest_first = sorted(waiting.values(), key=lambda task: (-len(task.graph.nodes) * len(task.low), task.key))
     if workers == 1 or len(waiting) < 2:
         for task in largest_first:
             bound_task(task)
         return len(waiting)
     with ProcessPoolExecutor(workers) as pool:
-        for number, (task, found) in enumerate(zip(largest_first, pool.map(_work, largest_first), strict=True)):
-            STORE.put(task.key, found)
+        for number, (task, result) in enumerate(zip(largest_first, pool.map(_search_task, largest_first), strict=True)):
+            STORE.put(task.key, result)
             progress(f"bounding {number + 1} of {len(waiting)} ..")
     return len(waiting)
 
 
 def resized(box: Box, size: float, places: Sequence[str]) -> dict[str, tuple[Fraction, Fraction]]:
-    """Return a box whose ranges at some places are ``size`` times as wide, about the same middles."""
-    found = dict(box)
+    """Return a box with the ranges at some places widened ``size`` times about their middles."""
+    wider = dict(box)
     for place in places:
         low, high = box[place]
         middle, half = (low + high) / 2, (high - low) / 2 * Fraction(size)
-        found[place] = (middle - half, middle + half)
-    return found
+        wider[place] = (middle - half, middle + half)
+    return wider
 
 
 def largest_box(
@@ -136,13 +137,13 @@ def largest_box(
 ) -> tuple[float, dict[str, tuple[Fraction, Fraction]]]:  # fmt: skip
     """Return the largest size, and the box of that size, on which every error is proven to be at most ``target``.
 
-    Sizes are multiples of the widths of ``box``, about its middle, at ``places`` only if they are given. They are
-    found by doubling and halving, to 1 part in 2^12.
+    A size is a factor on the widths of ``box`` about its middle, at all inputs or at ``places`` only. It is determined
+    by doubling and bisection, to 1 part in 2^12.
 
     Raises
     ------
     InputError
-        For a target that no size reaches, a place that is none, or a target that is not a positive number.
+        If no size meets the target, a place does not exist, or the target is not a positive number.
     """
     if not 0 < target < inf:
         raise InputError(f"expected a target error above 0, such as 1e-13, got {target!r}")
@@ -152,10 +153,10 @@ def largest_box(
             raise InputError(f"{operations.name}: expected one of {', '.join(box)}, got {place!r}")
 
     def holds(size: float) -> bool:
-        wanted = tasks(operations, resized(box, size, chosen), region, budget, libm_ulp)
+        tasks_by_output = bound_tasks(operations, resized(box, size, chosen), region, budget, libm_ulp)
         return all(
-            search(task.cone, task.box, task.region, budget, libm_ulp, target).bound <= target
-            for task in wanted.values()
+            search(task.graph, task.box, task.region, budget, libm_ulp, target).bound <= target
+            for task in tasks_by_output.values()
         )
 
     low, high = 0.0, 1.0
@@ -171,5 +172,5 @@ def largest_box(
         middle = (low + high) / 2
         low, high = (middle, high) if holds(middle) else (low, middle)
     if not low:
-        raise InputError(f"{operations.name}: expected a target that a box of some size has, got {target:g}")
+        raise InputError(f"{operations.name}: expected a target that a box of some size meets, got {target:g}")
     return low, resized(box, low, chosen)

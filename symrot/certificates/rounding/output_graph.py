@@ -1,11 +1,11 @@
-"""What one output depends on, in the form in which its rounding error is bounded.
+"""The computation of one output as a graph, in the form in which its rounding error is bounded.
 
-The operations behind an output, renumbered so that equal computations look equal whatever their kernel: inputs are
-numbered by first use. Computations that have a finite derivative only as a whole are one node each:
+A graph holds the operations on which an output depends. Inputs are numbered by first use, so that equal computations
+of different kernels are equal graphs. A computation whose derivative is finite only as a whole is a single node:
 
-``norm``: the root of a sum of squares, whose derivative x/|x| is at most 1 at zero too;
-``sinc``: ``x == 0 ? 1 : sin(x)/x``;  ``arc_ratio``: ``s == 0 ? 1/c : atan2(s, c)/s`` with s a root and c not negative;
-``gap``: ``x*x < split ? series : formula`` of (x - sin x)/x^3 or (sin x - x cos x)/x^3, with its own computation.
+``norm``: the root of a sum of squares, whose derivative x/|x| is at most 1 even at zero;
+``sinc``: ``x == 0 ? 1 : sin(x)/x``;  ``arc_ratio``: ``s == 0 ? 1/c : atan2(s, c)/s``, with s a root and c not negative;
+``gap``: ``x*x < split ? series : formula`` for (x - sin x)/x^3 or (sin x - x cos x)/x^3, with a graph of its own.
 """
 
 import hashlib
@@ -20,63 +20,64 @@ from symrot.certificates.readback.intended_constants import SHORT
 from symrot.certificates.readback.operations import Node, Operations, operands
 from symrot.errors import CertificateError
 
-__all__ = ["Cone", "cone_of"]
+__all__ = ["OutputGraph", "output_graph"]
 
 POLYNOMIAL = ("in", "const", "neg", "add", "sub", "mul", "square")
 CALLS = ("sin", "cos", "atan2")
 
 
 @dataclass(frozen=True)
-class Cone:
-    """The computation of one output: nodes with operands before them, the last node is the output.
+class OutputGraph:
+    """The computation of one output: nodes, each after its operands; the last node is the output.
 
-    Beside the kinds of :class:`Operations` there are ``("square", i)``, ``("sin", i)``, ``("cos", i)``,
+    In addition to the nodes of :class:`Operations` there are ``("square", i)``, ``("sin", i)``, ``("cos", i)``,
     ``("atan2", i, j)``, ``("norm", roundings, i, ...)``, ``("sinc", i)``, ``("arc_ratio", i, j)``,
-    ``("gap", name, Cone, i)`` and ``("select", condition, x, y)``; an input is ``("in", number)``. ``conditions`` are
-    (relation, i, j).
+    ``("gap", name, OutputGraph, i)`` and ``("select", condition, x, y)``; an input is ``("in", number)``.
+    ``conditions`` are tuples (relation, i, j).
     """
 
     precision: str
-    places: tuple[str, ...]  # of the inputs, by number
+    places: tuple[str, ...]  # place of each input, by number
     nodes: tuple[Node, ...]
     conditions: tuple[tuple[str, int, int], ...]
 
     @cached_property
     def digest(self) -> str:
-        """The SHA-256 of what is computed, whatever the inputs are called."""
-        nodes = [[str(item) for item in node] for node in self.nodes]
+        """The SHA-256 of the computation, independent of the names of the inputs."""
+        nodes = [[item.digest if isinstance(item, OutputGraph) else str(item) for item in node] for node in self.nodes]
         text = json.dumps([self.precision, nodes, self.conditions], separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
 
     @cached_property
     def inputs_of(self) -> tuple[frozenset[int], ...]:
-        """The inputs, by number, that each node depends on."""
-        found: list[frozenset[int]] = []
+        """The numbers of the inputs on which each node depends."""
+        inputs: list[frozenset[int]] = []
         for node in self.nodes:
             if node[0] == "in":
-                found.append(frozenset([node[1]]))
+                inputs.append(frozenset([node[1]]))
                 continue
-            taken = places_of(node)
+            operands = operand_places(node)
             if node[0] == "select":
-                taken = (*taken, *self.conditions[node[1]][1:])
-            found.append(frozenset().union(*(found[i] for i in taken)))
-        return tuple(found)
+                operands = (*operands, *self.conditions[node[1]][1:])
+            inputs.append(frozenset().union(*(inputs[i] for i in operands)))
+        return tuple(inputs)
 
     @cached_property
     def is_polynomial(self) -> bool:
-        """Whether the output is a polynomial in its inputs."""
+        """Whether the output is a polynomial in the inputs."""
         return all(node[0] in POLYNOMIAL for node in self.nodes)
 
     @cached_property
     def contraction_safe(self) -> bool:
-        """Whether the bound holds for fused multiply-adds too: each product that a sum takes is used by nothing else.
+        """Whether the bound also holds with fused multiply-adds: each product in a sum is used nowhere else.
 
-        A fused product has no rounding error of its own, and the sum errs by no more than both did. A product that is
-        fused in one place and rounded in another has two errors, which derivatives of opposite sign do not cancel.
+        A fused product has no rounding error of its own, and the error of the sum is at most the error of both
+        operations. A product that is fused in one place and rounded in another has two different errors, which no
+        longer cancel where derivatives have opposite signs.
         """
         users: list[list[int]] = [[] for _ in self.nodes]
         for index in range(len(self.nodes) - 1, -1, -1):
-            for place in places_of(self.nodes[index]):
+            for place in operand_places(self.nodes[index]):
                 users[place] += users[index] if self.nodes[index][0] == "neg" else [index]
         fused = all(
             len(users[k]) == 1 or not any(self.nodes[user][0] in ("add", "sub") for user in users[k])
@@ -87,28 +88,28 @@ class Cone:
 
     @cached_property
     def exact(self) -> tuple[bool, ...]:
-        """Which nodes are computed without any error before them: inputs, their signs, short constants."""
-        found: list[bool] = []
+        """Whether each node is free of rounding errors: inputs, their signs and absolute values, short constants."""
+        flags: list[bool] = []
         for node in self.nodes:
             kind = node[0]
             own = kind in ("in", "neg", "abs", "copysign") or (kind == "const" and is_short(node[1]))
-            found.append(own and all(found[i] for i in places_of(node)))
-        return tuple(found)
+            flags.append(own and all(flags[i] for i in operand_places(node)))
+        return tuple(flags)
 
     @cached_property
     def choices(self) -> tuple[tuple[str, bool], ...]:
-        """Each condition on what is rounded: its text, and whether its branches differ by whole turns only."""
-        found = []
+        """The conditions on rounded numbers: text, and whether the branches differ by multiples of 2 pi only."""
+        choices = []
         for number, (relation, i, j) in enumerate(self.conditions):
             if (self.exact[i] and self.exact[j]) or relation == "<":
                 continue
             turns = all(
-                _turned(self, node[2]) == _turned(self, node[3])
+                _modulo_two_pi(self, node[2]) == _modulo_two_pi(self, node[3])
                 for node in self.nodes
                 if node[0] == "select" and node[1] == number
             )
-            found.append((f"{self._text(i)} {relation} {self._text(j)}", turns))
-        return tuple(found)
+            choices.append((f"{self._text(i)} {relation} {self._text(j)}", turns))
+        return tuple(choices)
 
     def _text(self, index: int, depth: int = 4) -> str:
         node = self.nodes[index]
@@ -118,26 +119,26 @@ class Cone:
             return repr(float(node[1]))
         if not depth:
             return ".."
-        taken = [self._text(i, depth - 1) for i in places_of(node)]
+        operands = [self._text(i, depth - 1) for i in operand_places(node)]
         if node[0] in _SIGNS:
-            return f"({f' {_SIGNS[node[0]]} '.join(taken)})"
-        return f"{node[0]}({', '.join(taken)})"
+            return f"({f' {_SIGNS[node[0]]} '.join(operands)})"
+        return f"{node[0]}({', '.join(operands)})"
 
-    def culprit(self, index: int) -> int:
-        """Return the operand that makes a node infinite: a divisor, what a root is taken of, or the node itself."""
+    def singular_operand(self, index: int) -> int:
+        """Return the node whose value can make a node infinite: a divisor, a radicand, or else the node itself."""
         node = self.nodes[index]
         return int({"div": node[-1], "sqrt": node[-1]}.get(node[0], index))
 
     def text(self, index: int) -> str:
-        """Return a node as a short formula, for people."""
+        """Return a node as a short formula, for messages."""
         return self._text(index)
 
 
 _SIGNS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 
 
-def places_of(node: Node) -> tuple[int, ...]:
-    """Return the operands of a node of a cone."""
+def operand_places(node: Node) -> tuple[int, ...]:
+    """Return the indices of the operands of a node of a graph."""
     if node[0] in ("in", "const"):
         return ()
     if node[0] == "gap":
@@ -146,53 +147,55 @@ def places_of(node: Node) -> tuple[int, ...]:
 
 
 def is_short(value: Fraction) -> bool:
-    """Tell whether a constant stands for itself: one of few significant bits, as link 3 reads it."""
+    """Tell whether a constant stands for itself because it has few significant bits, as the readback decides too."""
     above = abs(value.numerator)
     odd = above // (above & -above) if above else 0
     return odd.bit_length() <= SHORT and value.denominator & (value.denominator - 1) == 0
 
 
-def _turned(cone: Cone, index: int, sign: int = 1) -> tuple[int, int]:
-    """Return what a node is but for whole turns and sign: a sum with a constant near 2 pi is what is added to it."""
-    node = cone.nodes[index]
+def _modulo_two_pi(graph: OutputGraph, index: int, sign: int = 1) -> tuple[int, int]:
+    """Return a node and a sign to which a node is equal modulo 2 pi: constants near 2 pi are dropped from sums."""
+    node = graph.nodes[index]
     if node[0] == "neg":
-        return _turned(cone, node[1], -sign)
+        return _modulo_two_pi(graph, node[1], -sign)
     if node[0] == "select":
-        first, second = _turned(cone, node[2], sign), _turned(cone, node[3], sign)
+        first, second = _modulo_two_pi(graph, node[2], sign), _modulo_two_pi(graph, node[3], sign)
         return first if first == second else (index, sign)
     if node[0] in ("add", "sub"):
         left, right = node[1:]
-        if _is_turn(cone.nodes[right]):
-            return _turned(cone, left, sign)
-        if _is_turn(cone.nodes[left]):
-            return _turned(cone, right, sign if node[0] == "add" else -sign)
+        if _is_two_pi(graph.nodes[right]):
+            return _modulo_two_pi(graph, left, sign)
+        if _is_two_pi(graph.nodes[left]):
+            return _modulo_two_pi(graph, right, sign if node[0] == "add" else -sign)
     return index, sign
 
 
-def _is_turn(node: Node) -> bool:
+def _is_two_pi(node: Node) -> bool:
     return node[0] == "const" and abs(abs(float(node[1])) - 6.283185307179586) < 1e-6
 
 
-class _Reader:
-    """Copies the operations behind one output into a cone."""
+class _GraphReader:
+    """Copies the operations on which one output depends into a graph."""
 
     def __init__(self, operations: Operations, leaf: int = -1) -> None:
-        self.operations, self.leaf = operations, leaf  # the leaf is an input, whatever it is computed from
+        self.operations, self.leaf = operations, leaf  # the leaf becomes an input of the graph
         self.source = operations.nodes
         self.nodes: list[Node] = []
         self.known: dict[Any, int] = {}
         self.numbers: dict[str, int] = {}
         self.conditions: list[tuple[str, int, int]] = []
         self.done: dict[int, int] = {}
-        self.root = -1  # that of a gap is read as it stands
+        self.root = -1  # the output of the graph inside a gap, which must not become a gap again
 
     def put(self, *node: Any) -> int:
+        """Return the index of a node of the graph; the node is added if it is new."""
         if node not in self.known:
             self.known[node] = len(self.nodes)
             self.nodes.append(node)
         return self.known[node]
 
     def read(self, index: int) -> int:
+        """Return the index of the node that an operation becomes."""
         if index not in self.done:
             self.done[index] = self._read(self.source[index], index)
         return self.done[index]
@@ -208,9 +211,9 @@ class _Reader:
         if kind == "mul" and node[1] == node[2]:
             return self.put("square", self.read(node[1]))
         for pattern in _PATTERNS if index != self.root else ():
-            found = pattern(self, node)
-            if found is not None:
-                return found
+            place = pattern(self, node)
+            if place is not None:
+                return place
         if kind == "select":
             left, right = self.read(node[2]), self.read(node[3])
             condition = (node[1], left, right)
@@ -224,7 +227,7 @@ class _Reader:
         return self.put(kind, *(self.read(i) for i in operands(node)))
 
     def squares(self, index: int, depth: int = 0) -> list[tuple[int, int]] | None:
-        """Return (what is squared, roundings above it) of a sum of squares."""
+        """Return the terms of a sum of squares, each with its number of roundings; None for any other node."""
         node = self.source[index]
         if node[0] == "mul" and node[1] == node[2]:
             return [(node[1], depth + 1)]
@@ -234,22 +237,24 @@ class _Reader:
         return None
 
 
-def _norm(reader: _Reader, node: Node) -> int | None:
+def _norm(reader: _GraphReader, node: Node) -> int | None:
+    """Return the node ``norm`` for the root of a sum of squares, or None for any other node."""
     squares = reader.squares(node[1]) if node[0] == "sqrt" else None
     if not squares:
         return None
     return reader.put("norm", max(depth for _, depth in squares), *(reader.read(i) for i, _ in squares))
 
 
-def _at_zero(reader: _Reader, node: Node) -> tuple[Node, Node] | None:
-    """Return both branches of a choice between a limit at zero and a quotient by what is compared."""
+def _at_zero(reader: _GraphReader, node: Node) -> tuple[Node, Node] | None:
+    """Return both branches of ``x == 0 ? limit : y/x``; None for any other node."""
     if node[0] != "select" or node[1] != "==" or reader.source[node[3]] != ("const", Fraction(0)):
         return None
     then, other = reader.source[node[4]], reader.source[node[5]]
     return (then, other) if other[0] == "div" and other[2] == node[2] else None
 
 
-def _sinc(reader: _Reader, node: Node) -> int | None:
+def _sinc(reader: _GraphReader, node: Node) -> int | None:
+    """Return the node ``sinc`` for ``x == 0 ? 1 : sin(x)/x``, or None for any other node."""
     branches = _at_zero(reader, node)
     if not branches or branches[0] != ("const", Fraction(1)):
         return None
@@ -258,7 +263,8 @@ def _sinc(reader: _Reader, node: Node) -> int | None:
     return reader.put("sinc", reader.read(node[2]))
 
 
-def _arc_ratio(reader: _Reader, node: Node) -> int | None:
+def _arc_ratio(reader: _GraphReader, node: Node) -> int | None:
+    """Return the node ``arc_ratio`` for ``s == 0 ? 1/c : atan2(s, c)/s``, or None for any other node."""
     branches = _at_zero(reader, node)
     if not branches or branches[0][0] != "div" or reader.source[branches[0][1]] != ("const", Fraction(1)):
         return None
@@ -270,11 +276,11 @@ def _arc_ratio(reader: _Reader, node: Node) -> int | None:
     return reader.put("arc_ratio", reader.read(s), reader.read(c))
 
 
-_GAPS = {"sine_gap": Fraction(1, 6), "tangent_gap": Fraction(1, 3)}  # their values at zero
+_GAPS = {"sine_gap": Fraction(1, 6), "tangent_gap": Fraction(1, 3)}  # function -> value at zero
 
 
-def _at_origin(reader: _Reader, index: int, square: int) -> Fraction | None:
-    """Return the value at zero of a polynomial in ``square``; None for anything else."""
+def _at_origin(reader: _GraphReader, index: int, square: int) -> Fraction | None:
+    """Return the value at zero of a polynomial in the node ``square``; None if the node is not such a polynomial."""
     node = reader.source[index]
     if index == square:
         return Fraction(0)
@@ -288,7 +294,8 @@ def _at_origin(reader: _Reader, index: int, square: int) -> Fraction | None:
     return left + right if node[0] == "add" else left * right
 
 
-def _gap(reader: _Reader, node: Node) -> int | None:
+def _gap(reader: _GraphReader, node: Node) -> int | None:
+    """Return the node ``gap`` for a choice between a series and a formula, or None for any other node."""
     if node[0] != "select" or node[1] != "<" or reader.source[node[2]][0] != "mul":
         return None
     leaf, other = reader.source[node[2]][1:]
@@ -296,27 +303,27 @@ def _gap(reader: _Reader, node: Node) -> int | None:
     names = [name for name, value in _GAPS.items() if origin is not None and abs(origin - value) < Fraction(1, 2**20)]
     if leaf != other or not names:
         return None
-    inner = _Reader(reader.operations, leaf)
+    inner = _GraphReader(reader.operations, leaf)
     inner.root = reader.source.index(node)
     inner.read(inner.root)
     if list(inner.numbers) != ["x"]:
         return None
-    own = Cone(reader.operations.precision, ("x",), tuple(inner.nodes), tuple(inner.conditions))
+    own = OutputGraph(reader.operations.precision, ("x",), tuple(inner.nodes), tuple(inner.conditions))
     return reader.put("gap", names[0], own, reader.read(leaf))
 
 
-_PATTERNS: tuple[Callable[[_Reader, Node], int | None], ...] = (_norm, _sinc, _arc_ratio, _gap)
+_PATTERNS: tuple[Callable[[_GraphReader, Node], int | None], ...] = (_norm, _sinc, _arc_ratio, _gap)
 
 
-def cone_of(operations: Operations, index: int) -> Cone:
-    """Return the computation of one node of a kernel.
+def output_graph(operations: Operations, index: int) -> OutputGraph:
+    """Return the graph of one node of a kernel.
 
     Raises
     ------
     CertificateError
-        For a function whose rounding is not modelled.
+        If the node depends on a function for which no error is known.
     """
-    reader = _Reader(operations)
+    reader = _GraphReader(operations)
     reader.read(index)
     places = tuple(sorted(reader.numbers, key=reader.numbers.__getitem__))
-    return Cone(operations.precision, places, tuple(reader.nodes), tuple(reader.conditions))
+    return OutputGraph(operations.precision, places, tuple(reader.nodes), tuple(reader.conditions))

@@ -1,7 +1,7 @@
-"""What holds in a box of inputs beyond its sides, and what that leaves of the box.
+"""Restrictions of the inputs in a box, such as a quaternion of unit norm, and the part of a box that satisfies them.
 
-A unit quaternion in a box: each component is at most what the least of the others leave of 1, and at least what the
-largest do. So halves in three components narrow the fourth.
+For a unit quaternion in a box, the ranges of three components limit the fourth, because the squares sum to 1.
+Halving a box in three components therefore narrows the fourth as well.
 """
 
 from collections.abc import Sequence
@@ -15,15 +15,15 @@ from symrot.certificates.rounding.intervals import Array
 
 __all__ = ["EVERYWHERE", "UNIT_NORM", "Region", "narrowed", "off_unit"]
 
-UNIT_NORM = 2.0**-20  # how far the squared norm of a unit quaternion may be from 1: rounded components are nearer
+UNIT_NORM = 2.0**-20  # tolerance of the squared norm of a unit quaternion; rounding the components stays well within
 
 
 @dataclass(frozen=True)
 class Region:
-    """What holds in a box beyond its sides.
+    """Restrictions of the inputs in a box.
 
-    ``unit`` are groups of places whose squares add up to 1, but for 2^-20; ``clearance`` is the least length of the
-    arguments (y, x) of every atan2, so that the angle is defined.
+    ``unit`` are groups of places whose squares add up to 1, within 2^-20; ``clearance`` is the least length of the
+    vector (y, x) of arguments of every atan2, so that the angle is defined.
     """
 
     unit: tuple[tuple[str, ...], ...] = ()
@@ -34,12 +34,12 @@ EVERYWHERE = Region()
 
 
 def _numbers(region: Region, places: Sequence[str]) -> list[list[int]]:
-    """Return the inputs, by number, of each group that are among some places."""
+    """Return for each unit group the numbers of its inputs, as far as they are among some places."""
     return [[places.index(place) for place in group if place in places] for group in region.unit]
 
 
 def off_unit(boxes: Array, region: Region, places: Sequence[str]) -> NDArray[np.bool_]:
-    """Tell which boxes, shape (2, inputs, n), hold no point of a region: squares that add up to too much or little."""
+    """Tell which boxes, shape (2, inputs, n), hold no point of a region because no squares in them sum to 1."""
     outside = np.zeros(boxes.shape[2], bool)
     for group, numbers in zip(region.unit, _numbers(region, places), strict=True):
         total = intervals.point(0.0, boxes.shape[2])
@@ -52,25 +52,25 @@ def off_unit(boxes: Array, region: Region, places: Sequence[str]) -> NDArray[np.
 
 
 def narrowed(boxes: Array, region: Region, places: Sequence[str]) -> Array:
-    """Return boxes within others that hold all their points of a region; empty ones stay as they are."""
-    found = boxes
+    """Return boxes shrunk to the points of a region in them; boxes without such a point are not changed."""
+    shrunk = boxes
     for group, numbers in zip(region.unit, _numbers(region, places), strict=True):
         for number in numbers:
-            rest = [found[:, other] for other in numbers if other != number]
+            rest = [shrunk[:, other] for other in numbers if other != number]
             least, most = _left_by(rest, boxes.shape[2])
-            if len(numbers) < len(group):  # others may have any size
+            if len(numbers) < len(group):  # the other inputs of the group are free
                 least = np.zeros_like(least)
-            low, high = np.maximum(found[0, number], -most), np.minimum(found[1, number], most)
-            positive, negative = low > -least, high < least  # too near to zero to be of the other sign
+            low, high = np.maximum(shrunk[0, number], -most), np.minimum(shrunk[1, number], most)
+            positive, negative = low > -least, high < least  # values of the other sign are too small
             low = np.where(positive, np.maximum(low, least), low)
             high = np.where(negative, np.minimum(high, -least), high)
-            found = found.copy()
-            found[:, number] = np.where(low <= high, np.stack([low, high]), found[:, number])
-    return found
+            shrunk = shrunk.copy()
+            shrunk[:, number] = np.where(low <= high, np.stack([low, high]), shrunk[:, number])
+    return shrunk
 
 
 def _left_by(others: Sequence[Array], count: int) -> tuple[Array, Array]:
-    """Return the least and largest size of a number whose square adds up to 1 with those of others."""
+    """Return the least and largest absolute value of a number whose square and those of others sum to 1."""
     rest = intervals.point(1.0, count) + np.array([[-UNIT_NORM], [UNIT_NORM]])
     for other in others:
         rest = intervals.add(rest, intervals.negative(intervals.square(other)))

@@ -1,9 +1,9 @@
-"""What was bounded once: in memory, in the table that comes with symrot, in the cache.
+"""The store of rounding bounds: in memory, in the table that comes with symrot, and in the user's cache.
 
-The table, ``rounding_bounds.json``, holds the bounds of the library on its boxes, so that kernels are emitted with
-them at once; ``python -m symrot.workshop.bound_table`` prints it anew. A bound is filed under what it is of: the
-operations behind an output, the box, the region, the budget, the error of libm
-(:class:`~symrot.certificates.rounding.bounds.Task`).
+The table, ``bounds.json``, holds the bounds of the library's kernels on their boxes, so that kernels are emitted with
+bounds at once; ``python -m symrot.workshop.bound_table`` prints it. The key of a bound covers everything on which the
+bound depends: the operations, the box, the region, the budget and the error of libm
+(:class:`~symrot.certificates.rounding.bounds.BoundTask`).
 """
 
 import hashlib
@@ -14,8 +14,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from symrot.build import cache as library
-from symrot.certificates.rounding.branch_and_bound import Search
+from symrot.build import cache as cache_files
+from symrot.certificates.rounding.branch_and_bound import SearchResult
 
 __all__ = ["TABLE", "Store", "method", "printed_table", "table"]
 
@@ -26,54 +26,54 @@ _NUMBERS = ("bound", "pointwise", "largest_value")
 
 @cache
 def method() -> str:
-    """Return the SHA-256 of the method's own sources: another method, other bounds."""
+    """Return the SHA-256 of the sources of the bounding method; bounds of another method are not used."""
     here = Path(__file__).parent
     return hashlib.sha256(b"".join((here / f"{name}.py").read_bytes() for name in _METHOD)).hexdigest()
 
 
 @cache
 def table() -> Mapping[str, Any]:
-    """Return the table that comes with symrot: the method it was found by, and key -> bound, both as plain data."""
+    """Return the table that comes with symrot: ``method``, the hash of its method, and ``bounds``, key -> bound."""
     try:
         return dict(json.loads(TABLE.read_text(encoding="utf-8")))
     except OSError:
         return {"method": "", "bounds": {}}
 
 
-def printed_table(found: Iterable[tuple[str, Search]]) -> str:
-    """Return the text of a table of bounds, one on a line, in the order of their keys."""
-    rows = [f'  "{key}": {json.dumps(_plain(search))}' for key, search in sorted(dict(found).items())]
+def printed_table(bounds: Iterable[tuple[str, SearchResult]]) -> str:
+    """Return the text of a table of bounds: one bound a line, in the order of their keys."""
+    rows = [f'  "{key}": {json.dumps(_to_json(bound))}' for key, bound in sorted(dict(bounds).items())]
     return f'{{\n "method": "{method()}",\n "bounds": {{\n' + ",\n".join(rows) + "\n }\n}\n"
 
 
-def _plain(found: Search) -> dict[str, Any]:
-    numbers = {name: getattr(found, name).hex() for name in _NUMBERS}
-    return asdict(found) | numbers | {"worst": [x.hex() for x in found.worst]}
+def _to_json(bound: SearchResult) -> dict[str, Any]:
+    numbers = {name: getattr(bound, name).hex() for name in _NUMBERS}
+    return asdict(bound) | numbers | {"worst": [x.hex() for x in bound.worst]}
 
 
-def _search(plain: Mapping[str, Any]) -> Search:
+def _from_json(plain: Mapping[str, Any]) -> SearchResult:
     numbers = {name: float.fromhex(plain[name]) for name in _NUMBERS}
-    return Search(**{**plain, **numbers, "worst": tuple(map(float.fromhex, plain["worst"]))})
+    return SearchResult(**{**plain, **numbers, "worst": tuple(map(float.fromhex, plain["worst"]))})
 
 
 class Store:
-    """Bounds by key."""
+    """Bounds by key, in memory, in the table and in the cache."""
 
     def __init__(self) -> None:
-        self.memory: dict[str, Search] = {}
+        self.memory: dict[str, SearchResult] = {}
 
-    def get(self, key: str, with_table: bool = True) -> Search | None:
-        """Return the bound of a key, or None; ``with_table``: also one that came with symrot."""
+    def get(self, key: str, with_table: bool = True) -> SearchResult | None:
+        """Return the bound of a key, or None; without ``with_table`` the table of symrot is not searched."""
         if with_table and key in table()["bounds"]:
-            return _search(table()["bounds"][key])
+            return _from_json(table()["bounds"][key])
         if key not in self.memory:
-            text = library.fetch(f"rounding {method()} {key}")
+            text = cache_files.fetch(f"rounding {method()} {key}")
             if text is None:
                 return None
-            self.memory[key] = _search(json.loads(text))
+            self.memory[key] = _from_json(json.loads(text))
         return self.memory[key]
 
-    def put(self, key: str, found: Search) -> None:
-        """Keep the bound of a key."""
-        self.memory[key] = found
-        library.store(f"rounding {method()} {key}", json.dumps(_plain(found)))
+    def put(self, key: str, bound: SearchResult) -> None:
+        """Store the bound of a key in memory and in the cache."""
+        self.memory[key] = bound
+        cache_files.store(f"rounding {method()} {key}", json.dumps(_to_json(bound)))

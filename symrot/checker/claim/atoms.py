@@ -1,4 +1,4 @@
-"""What formulas are about: symbols, functions of time and their derivatives."""
+"""The atoms of formulas: symbols, functions of time and their derivatives."""
 
 from collections.abc import Iterable
 
@@ -9,13 +9,13 @@ __all__ = ["atoms_of"]
 
 
 def atoms_of(formulas: Iterable[Expr]) -> set[Expr]:
-    """Return symbols, functions of time and their derivatives, the outermost of each."""
-    found: set[Expr] = set()
+    """Return symbols, functions of time and derivatives, but not the ``f(t)`` inside of ``diff(f(t), t)``."""
+    atoms: set[Expr] = set()
     stack = list(formulas)
     while stack:
         node = stack.pop()
         if node.is_Symbol or isinstance(node, AppliedUndef) or node.is_Derivative:
-            found.add(node)
+            atoms.add(node)
         else:
             stack.extend(node.args)
-    return found
+    return atoms

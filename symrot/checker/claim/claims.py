@@ -1,34 +1,78 @@
-"""Claims as they are written, in a text or in a TOML file, and read: trees first, then their meaning.
+"""Claims, read from a text or from a TOML file: first as trees, then as formulas of SymPy.
 
-A claim keeps its trees, since its diagnosis edits them. Nothing about verdicts is in a file of claims.
+A claim keeps its trees because its diagnosis edits them. A file of claims says nothing about verdicts.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from sympy import Symbol
+from sympy import Expr, Symbol
 
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.interpreter import CONSTANTS, Meaning, time
+from symrot.checker.claim.interpreter import CONSTANTS, Interpreter, time
 from symrot.checker.claim.reader import Relation, read_expression, read_relation
-from symrot.checker.claim.scope import is_matrix
+from symrot.checker.claim.scope import Divisor, is_matrix
 from symrot.checker.claim.tree import Node, text, walk
-from symrot.checker.decide.decision import Problem
+from symrot.checker.decide.decision import Equation
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.units.units import read_unit
 from symrot.errors import InputError
+from symrot.exact.decision import ShapeMismatch, matched_sides
 
-__all__ = ["Claim", "Refusal", "claim_of_text", "named_formula", "read_claims", "read_entries", "shown_relation"]
+__all__ = [
+    "Claim", "Definitions", "Refusal", "claim_of_text", "named_formula", "read_claims", "read_entries", "relation_text",
+]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Definitions:
+    """The names of a claim as SymPy values.
+
+    Attributes
+    ----------
+    values : mapping
+        Symbols and definitions by name.
+    functions : frozenset of str
+        Names of functions of time.
+    divisors, radicands : tuple
+        Formulas that the texts of the definitions divide by, or take even roots of.
+    """
+
+    values: Mapping[str, Any]
+    functions: frozenset[str]
+    divisors: tuple[Divisor, ...]
+    radicands: tuple[Expr, ...]
 
 
 @dataclass(frozen=True)
 class Claim:
-    """One claim with everything it needs.
+    """One claim: its trees, and its formulas in SymPy, each computed once.
 
-    ``relation`` is None for a worked number, which has ``value`` and ``printed`` instead. ``alternatives`` are other
-    readings of a document that lost characters.
+    Attributes
+    ----------
+    id, where : str
+        The name of the claim, and its place in a document.
+    symbols, functions : tuple of str
+        Declared names of real symbols and of functions of time.
+    define : tuple of (str, Node)
+        Definitions in order, each of which may use those before it.
+    hypotheses : tuple of Relation
+    relation : Relation or None
+        The equation; None for a worked number, which has ``value`` and ``printed`` instead.
+    value : Node or None
+    printed : str
+        The decimal number that a document prints for ``value``.
+    alternatives : tuple of Relation
+        Other readings of a document that lost characters.
+    implied : bool
+        Whether undeclared names become real symbols and functions of time.
+    sources : mapping
+        The texts that were read, by key, for error messages.
+    units : mapping
+        Units by name.
     """
 
     id: str = ""
@@ -36,7 +80,7 @@ class Claim:
     symbols: tuple[str, ...] = ()
     functions: tuple[str, ...] = ()
     define: tuple[tuple[str, Node], ...] = ()
-    given: tuple[Relation, ...] = ()
+    hypotheses: tuple[Relation, ...] = ()
     relation: Relation | None = None
     value: Node | None = None
     printed: str = ""
@@ -50,87 +94,110 @@ class Claim:
         """The claim as text."""
         if self.relation is None:
             return f"{self.sources['value']} == {self.printed}"
-        return self.sources.get("claim") or shown_relation(self.relation)
+        return self.sources.get("claim") or relation_text(self.relation)
 
     def label(self, key: str) -> str:
-        """Return the place of a text for complaints."""
+        """Return the place of a text for error messages."""
         return f"{self.id}: {key}" if self.id else ""
 
-    def meaning(self) -> Meaning:
-        """Return the names of the claim: symbols, those that hypotheses make positive, then definitions."""
-        meaning = Meaning(implied=self.implied, functions=set(self.functions))
-        positive = _assumed(self.given, ">")
-        nonnegative = _assumed(self.given, ">=")
-        names = [*self.symbols, *(positive | nonnegative if self.implied else ())]
-        for name in names:
-            if name in positive:
-                meaning.values[name] = Symbol(name, positive=True)
-            elif name in nonnegative:
-                meaning.values[name] = Symbol(name, nonnegative=True)
-            else:
-                meaning.values[name] = time if name == "t" else Symbol(name, real=True)
-        for number, (name, node) in enumerate(self.define):
-            source, place = self.sources.get(f"define.{number}", ""), self.label(f"define {name}")
-            meaning.values[name] = meaning.read(node, source, place)
-        return meaning
+    def with_relation(self, relation: Relation, **changes: Any) -> "Claim":
+        """Return the claim with another equation; ``changes`` are of fields on which its definitions do not depend."""
+        other = replace(self, relation=relation, **changes)
+        if "definitions" in self.__dict__:
+            other.__dict__["definitions"] = self.definitions
+        return other
 
-    def problem(self) -> Problem:
-        """Return the equation that is to be decided.
+    @cached_property
+    def definitions(self) -> Definitions:
+        """The symbols, positive where a hypothesis says so, and the definitions.
 
         Raises
         ------
         InputError
-            For a piece that has no meaning, with its place.
+            For a definition that has no value in SymPy, with its place.
+        """
+        interpreter = Interpreter(implied=self.implied, functions=set(self.functions))
+        values = interpreter.values
+        positive = _assumed(self.hypotheses, ">")
+        nonnegative = _assumed(self.hypotheses, ">=")
+        names = [*self.symbols, *(positive | nonnegative if self.implied else ())]
+        for name in names:
+            if name in positive:
+                values[name] = Symbol(name, positive=True)
+            elif name in nonnegative:
+                values[name] = Symbol(name, nonnegative=True)
+            else:
+                values[name] = time if name == "t" else Symbol(name, real=True)
+        for number, (name, node) in enumerate(self.define):
+            source, place = self.sources.get(f"define.{number}", ""), self.label(f"define {name}")
+            values[name] = interpreter.read(node, source, place)
+        return Definitions(
+            values, frozenset(interpreter.functions), tuple(interpreter.divisors), tuple(interpreter.radicands)
+        )
+
+    def interpreter(self) -> Interpreter:
+        """Return a new interpreter that knows the names of the claim, to read further trees."""
+        known = self.definitions
+        return Interpreter(
+            values=dict(known.values), functions=set(known.functions), implied=self.implied,
+            divisors=list(known.divisors), radicands=list(known.radicands),
+        )  # fmt: skip
+
+    @cached_property
+    def equation(self) -> Equation:
+        """The equation to be decided.
+
+        Raises
+        ------
+        InputError
+            For a piece that has no value in SymPy, with its place.
         """
         assert self.relation is not None
-        meaning = self.meaning()
+        interpreter = self.interpreter()
         hypotheses, nonzero = [], []
-        for number, relation in enumerate(self.given):
+        for number, relation in enumerate(self.hypotheses):
             sign, left, right = relation
             source = self.sources.get(f"given.{number}", "")
-            lhs, rhs = (meaning.read(side, source, self.label("given")) for side in (left, right))
+            lhs, rhs = (interpreter.read(side, source, self.label("given")) for side in (left, right))
             if sign == "==":
-                hypotheses.extend(_entries(lhs, rhs, self.label("given")))
+                hypotheses.extend(_differences(lhs, rhs, self.label("given")))
             elif sign == "!=":
-                nonzero.extend(_entries(lhs, rhs, self.label("given")))
+                nonzero.extend(_differences(lhs, rhs, self.label("given")))
         source = self.sources.get("claim", "")
         left, right = self.relation[1:]
-        lhs = meaning.read(left, source, self.label("claim"))
-        rhs = lhs if right is left else meaning.read(right, source, self.label("claim"))
-        divisors = tuple(dict.fromkeys(divisor.value for divisor in meaning.divisors))
-        radicands = tuple(dict.fromkeys(meaning.radicands))
-        return Problem(lhs, rhs, tuple(hypotheses), divisors, tuple(nonzero), radicands)
+        lhs = interpreter.read(left, source, self.label("claim"))
+        rhs = lhs if right is left else interpreter.read(right, source, self.label("claim"))
+        divisors = tuple(dict.fromkeys(divisor.value for divisor in interpreter.divisors))
+        radicands = tuple(dict.fromkeys(interpreter.radicands))
+        return Equation(lhs, rhs, tuple(hypotheses), divisors, tuple(nonzero), radicands)
 
 
-def shown_relation(relation: Relation) -> str:
+def relation_text(relation: Relation) -> str:
     """Return a relation as text."""
     sign, left, right = relation
     return f"{text(left)} {sign} {text(right)}"
 
 
-def _entries(left: Any, right: Any, where: str) -> list[Any]:
-    """Return the scalar equations of a hypothesis, each as an expression that is zero."""
-    from symrot.exact.decide import flatten
-
-    (lefts, shape), (rights, other) = flatten(left), flatten(right)
-    if shape is not None and other is None and rights == [0]:
-        rights, other = [rights[0]] * len(lefts), shape
-    if shape != other:
-        raise InputError(f"{where}: expected a hypothesis with two sides of one shape")
+def _differences(left: Any, right: Any, where: str) -> list[Expr]:
+    """Return left - right of a hypothesis, entry by entry."""
+    try:
+        lefts, rights, _ = matched_sides(left, right)
+    except ShapeMismatch:
+        raise InputError(f"{where}: expected a hypothesis with two sides of one shape") from None
     return [a - b for a, b in zip(lefts, rights, strict=True)]
 
 
-def _assumed(given: Sequence[Relation], sign: str) -> set[str]:
-    """Return the names x of hypotheses ``x > 0`` (or ``0 < x``)."""
+def _assumed(hypotheses: Sequence[Relation], sign: str) -> set[str]:
+    """Return the names x of hypotheses ``x > 0`` (or ``0 < x``); with the sign ``>=``, of hypotheses ``x >= 0``."""
     mirrored = {">": "<", ">=": "<="}[sign]
     zero = ("number", 0)
-    found = set()
-    for mark, left, right in given:
+    names = set()
+    for mark, left, right in hypotheses:
         if mark == mirrored:
             left, right = right, left
         if mark in (sign, mirrored) and left.kind == "name" and (right.kind, right.value) == zero:
-            found.add(left.value)
-    return found
+            names.add(left.value)
+    return names
 
 
 def _hypothesis(source: str, where: str) -> Relation:
@@ -140,22 +207,22 @@ def _hypothesis(source: str, where: str) -> Relation:
     raise InputError(f"{where}: expected a hypothesis like a == b, a != b, or x > 0 for a symbol x, got {source!r}")
 
 
-def claim_of_text(source: str, given: Sequence[str] = (), units: Mapping[str, str] | None = None) -> Claim:
-    """Return the claim of a text ``left == right`` or of LaTeX, text with a backslash, a brace or a dollar.
+def claim_of_text(source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None) -> Claim:
+    """Return the claim of a text ``left == right``; text with a backslash, a brace or a dollar sign is LaTeX.
 
-    Its names are real symbols, or functions of time where they are written ``f(t)``, in the hypotheses too.
+    Its names are real symbols, or functions of time if they are written ``f(t)``; so are the names in hypotheses.
     """
-    hypotheses = tuple(_hypothesis(text, "given") for text in given)
+    hypotheses = tuple(_hypothesis(text, "given") for text in assume)
     if isinstance(source, str) and _is_latex(source):
         source = read_latex(source, names=Names(functions=_functions_of_time(hypotheses))).text
     relation = read_relation(source)
     if relation[0] != "==":
         raise InputError(f"expected a claim with '==', got '{relation[0]}' in {source[:60]!r}")
-    sources = {"claim": source.strip(), **{f"given.{n}": text for n, text in enumerate(given)}}
+    sources = {"claim": source.strip(), **{f"given.{n}": text for n, text in enumerate(assume)}}
     used = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind in ("name", "call")}
     return Claim(
         relation=relation,
-        given=hypotheses,
+        hypotheses=hypotheses,
         implied=True,
         sources=sources,
         units=_units(dict(units or {}), used, "claim"),
@@ -163,13 +230,13 @@ def claim_of_text(source: str, given: Sequence[str] = (), units: Mapping[str, st
 
 
 def named_formula(claim: Claim) -> tuple[str, Node] | None:
-    """Return (name, formula) of a claim one side of which only gets a name; None for another claim.
+    """Return (name, formula) of a claim that only gives a formula a name; None for any other claim.
 
-    The name is a symbol, a function of time or its derivative; nothing else in the claim says what it stands for.
+    The name is a symbol, a function of time or its derivative, and occurs nowhere else in the claim.
     """
     assert claim.relation is not None
     _, left, right = claim.relation
-    others = [side for relation in claim.given for side in relation[1:]] + [tree for _, tree in claim.define]
+    others = [side for relation in claim.hypotheses for side in relation[1:]] + [tree for _, tree in claim.define]
     known = {"pi", "t", *(name for name, _ in claim.define)}
     for side, formula in ((left, right), (right, left)):
         inner = side.args[0] if side.kind == "call" and side.value == "diff" else side
@@ -186,22 +253,22 @@ def _is_name(tree: Node) -> bool:
 
 # -- TOML -------------------------------------------------------------------------------------------------------------
 
-TEXTS = ("id", "where", "source", "note", "printed", "kind", "claim", "latex", "value", "printed_value", "against")
-LISTS = ("symbols", "functions", "given", "alternatives", "lost")
-OTHERS = ("define", "units")
-"""Keys of a claim by the shape of their value."""
+TEXT_KEYS = ("id", "where", "source", "note", "printed", "kind", "claim", "latex", "value", "printed_value", "against")
+LIST_KEYS = ("symbols", "functions", "given", "alternatives", "lost")
+OTHER_KEYS = ("define", "units")
+"""The keys of a claim, by the type of their value."""
 
 FILE_KEYS = ("schema", "claim", "document", "title", "kind", "lost", "note")
-"""Keys of a file: the last five tell of a document whose claims it holds."""
+"""The keys of a file; the last five describe the document from which its claims come."""
 
 MOST_CLAIMS = 2000
 MOST_NAMES = 500
-"""Claims of a file, and names that one claim may declare or define."""
+"""The most claims of a file, and the most names that one claim may declare or define."""
 
 
 @dataclass(frozen=True)
 class Refusal:
-    """An entry of a file that is no claim: its id, place and text as given, and the sentence that says why."""
+    """An entry of a file that is no claim: its id, place and text as written, and the sentence that says why."""
 
     id: str
     where: str
@@ -210,27 +277,27 @@ class Refusal:
 
 
 def read_claims(path: str | Path) -> list[Claim]:
-    """Return the claims of a TOML file, all of which must be good.
+    """Return the claims of a TOML file, all of which must be readable.
 
     Raises
     ------
     InputError
-        Naming the file, the claim, the key, and what is expected there.
+        Naming the file, the claim, the key, and the expected value.
     """
-    found = read_entries(path)
-    for entry in found:
+    entries = read_entries(path)
+    for entry in entries:
         if isinstance(entry, Refusal):
             raise InputError(entry.reason)
-    return [entry for entry in found if isinstance(entry, Claim)]
+    return [entry for entry in entries if isinstance(entry, Claim)]
 
 
 def read_entries(path: str | Path) -> list[Claim | Refusal]:
-    """Return the claims of a TOML file; where one cannot be read, why.
+    """Return the claims of a TOML file, with a refusal in place of each claim that cannot be read.
 
     Raises
     ------
     InputError
-        If the file as a whole is not one of claims.
+        If the file as a whole is not a file of claims.
     """
     from symrot.scene.file import read_toml
 
@@ -241,14 +308,14 @@ def read_entries(path: str | Path) -> list[Claim | Refusal]:
     unknown = next((key for key in table if key not in FILE_KEYS), None)
     if unknown is not None:
         raise InputError(f"{label}: expected schema and [[claim]] tables, got the key {unknown[:40]!r}")
-    found = table.get("claim")
-    if not isinstance(found, list) or not found or not all(isinstance(entry, dict) for entry in found):
-        raise InputError(f"{label}: expected [[claim]] tables, got {'none' if not found else 'something else'}")
-    if len(found) > MOST_CLAIMS:
-        raise InputError(f"{label}: expected at most {MOST_CLAIMS} claims in a file, got {len(found)}")
+    tables = table.get("claim")
+    if not isinstance(tables, list) or not tables or not all(isinstance(entry, dict) for entry in tables):
+        raise InputError(f"{label}: expected [[claim]] tables, got {'none' if not tables else 'something else'}")
+    if len(tables) > MOST_CLAIMS:
+        raise InputError(f"{label}: expected at most {MOST_CLAIMS} claims in a file, got {len(tables)}")
     entries: list[Claim | Refusal] = []
     names: set[str] = set()
-    for number, entry in enumerate(found, start=1):
+    for number, entry in enumerate(tables, start=1):
         try:
             claim = _claim(entry, number, label)
             if claim.id in names:
@@ -256,10 +323,10 @@ def read_entries(path: str | Path) -> list[Claim | Refusal]:
             names.add(claim.id)
             entries.append(claim)
         except InputError as reason:
-            name, where, shown = (str(entry.get(key, other))[:80] for key, other in (
+            name, where, excerpt = (str(entry.get(key, other))[:80] for key, other in (
                 ("id", f"claim-{number}"), ("where", ""), ("claim", entry.get("latex", "")),
             ))  # fmt: skip
-            entries.append(Refusal(name, where, shown, str(reason)))
+            entries.append(Refusal(name, where, excerpt, str(reason)))
     return entries
 
 
@@ -280,16 +347,16 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
     for place_of, (defined, formula) in enumerate(entry.get("define", ())):
         _check_name(defined, "define", place)
         if defined in known:
-            raise InputError(f"{place}: define: expected a new name, got {defined!r}, which is taken")
+            raise InputError(f"{place}: define: expected a new name, got {defined!r}, which the claim has already")
         known.add(defined)
         define.append((defined, read_expression(formula, f"{place}: define {defined}")))
         sources[f"define.{place_of}"] = formula
-    given = tuple(_hypothesis(text, f"{place}: given") for text in entry.get("given", ()))
+    hypotheses = tuple(_hypothesis(text, f"{place}: given") for text in entry.get("given", ()))
     sources |= {f"given.{n}": text for n, text in enumerate(entry.get("given", ()))}
-    made = {
-        "id": name, "where": entry.get("where", ""), "symbols": symbols, "functions": functions,
-        "define": tuple(define), "given": given, "units": _units(entry.get("units", {}), known, place),
-    }  # fmt: skip
+    claim = Claim(
+        name, entry.get("where", ""), symbols, functions, tuple(define), hypotheses, sources=sources,
+        units=_units(entry.get("units", {}), known, place),
+    )  # fmt: skip
     others = list(entry.get("alternatives", ()))
     kinds = [key for key in ("claim", "latex", "value") if key in entry]
     if not kinds and others:
@@ -298,24 +365,26 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
         raise InputError(f"{place}: expected exactly one of claim, latex and value, got {', '.join(kinds) or 'none'}")
     if kinds == ["value"]:
         if "printed_value" not in entry:
-            raise InputError(f"{place}: expected printed_value beside value, the key is missing")
+            raise InputError(f"{place}: expected printed_value together with value, the key is missing")
         if others:
-            raise InputError(f"{place}: alternatives: expected other readings of a claim, got them beside a value")
+            raise InputError(
+                f"{place}: alternatives: expected other readings of a claim, got them together with a value"
+            )
         sources["value"] = entry["value"]
         value = read_expression(entry["value"], f"{place}: value")
-        return Claim(**made, value=value, printed=entry["printed_value"], sources=sources)
+        return replace(claim, value=value, printed=entry["printed_value"])
     (key,) = kinds
     names = None
     readings = []
     for number_of, (source, at) in enumerate([(entry[key], key), *((other, "alternatives") for other in others)]):
         if _is_latex(source) or (number_of == 0 and key == "latex"):
-            names = names or _names_for_latex(Claim(**made, sources=sources))
+            names = names or _names_for_latex(claim)
             reading = read_latex(source, f"{place}: {at}", names)
             readings.append((reading.relation, reading.text))
         else:
             readings.append((_equation(source, f"{place}: {at}"), source))
     (relation, sources["claim"]), *rest = readings
-    return Claim(**made, relation=relation, alternatives=tuple(found for found, _ in rest), sources=sources)
+    return claim.with_relation(relation, alternatives=tuple(other for other, _ in rest))
 
 
 def _is_latex(source: str) -> bool:
@@ -323,7 +392,7 @@ def _is_latex(source: str) -> bool:
 
 
 def _functions_of_time(relations: Sequence[Relation]) -> set[str]:
-    """Return the names f of pieces ``f(t)``."""
+    """Return the names f that occur as ``f(t)``."""
     return {
         node.value
         for relation in relations
@@ -333,20 +402,20 @@ def _functions_of_time(relations: Sequence[Relation]) -> set[str]:
     }
 
 
-def _units(given: dict[str, str], known: set[str], place: str) -> dict[str, str]:
-    """Return the units of a claim, each of a declared name and of a unit that is known."""
-    for name, unit in given.items():
+def _units(units: dict[str, str], known: set[str], place: str) -> dict[str, str]:
+    """Return the units of a claim; raise InputError for a name that it does not have, or an unknown unit."""
+    for name, unit in units.items():
         if name not in known:
             raise InputError(f"{place}: units: expected units of names that the claim has, got {str(name)[:40]!r}")
         if not isinstance(unit, str):
             raise InputError(f"{place}: units: expected the unit of {name} as text, got {unit!r}")
         read_unit(unit, f"{place}: units: {name}")
-    return given
+    return units
 
 
 def _names_for_latex(claim: Claim) -> Names:
-    """Return what is declared, with the definitions that are matrices, which LaTeX marks in its own ways."""
-    values = claim.meaning().values
+    """Return the names of a claim for the reader of LaTeX, which marks matrices and columns in its own ways."""
+    values = claim.definitions.values
     defined = [name for name, _ in claim.define]
     matrices = {name for name in defined if is_matrix(values[name])}
     columns = {name for name in matrices if values[name].cols == 1}
@@ -361,9 +430,9 @@ def _equation(source: str, where: str) -> Relation:
 
 
 def _check_key(key: str, value: Any, place: str) -> None:
-    if key in TEXTS:
+    if key in TEXT_KEYS:
         expected, fits = "text", isinstance(value, str)
-    elif key in LISTS:
+    elif key in LIST_KEYS:
         expected, fits = "a list of texts", isinstance(value, list) and all(isinstance(v, str) for v in value)
     elif key == "define":
         expected = 'a list of pairs ["name", "formula"]'
@@ -374,7 +443,8 @@ def _check_key(key: str, value: Any, place: str) -> None:
         expected = "a table of units by symbol"
         fits = isinstance(value, dict) and all(isinstance(v, str) for v in value.values())
     else:
-        raise InputError(f"{place}: expected one of the keys {', '.join((*TEXTS, *LISTS, *OTHERS))}, got {key!r}")
+        keys = ", ".join((*TEXT_KEYS, *LIST_KEYS, *OTHER_KEYS))
+        raise InputError(f"{place}: expected one of the keys {keys}, got {key!r}")
     if not fits:
         raise InputError(f"{place}: {key}: expected {expected}, got {str(value)[:60]!r}")
 

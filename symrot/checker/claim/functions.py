@@ -1,6 +1,6 @@
-"""The functions of a claim: each from its arguments' trees to SymPy, one table of names.
+"""The built-in functions of claims: a table of names, and a function each that turns the arguments' trees into SymPy.
 
-Every divisor and radicand is noted before SymPy can cancel it.
+Every divisor and radicand is recorded before SymPy can cancel it.
 """
 
 from collections.abc import Callable, Mapping
@@ -26,7 +26,7 @@ from symrot.checker.claim.tree import Node
 from symrot.errors import InputError
 from symrot.exact.intervals import enclosure
 from symrot.exact.size import pieces
-from symrot.kinematics.quaternion import dcm_of, qmul
+from symrot.kinematics.quaternion import quaternion_product, quaternion_to_dcm
 from symrot.kinematics.rotations import elementary_rotation, skew, vee
 
 __all__ = ["BUILT_IN", "inverted"]
@@ -35,39 +35,39 @@ LARGEST_MATRIX = 12
 
 
 def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] | None = None) -> Any:
-    """Return a function of one scalar, which divides by ``below`` of its argument."""
+    """Return the evaluation of a function of one scalar; ``below`` of the argument is a divisor of its value."""
 
     def call(scope: Scope, node: Node) -> Expr:
-        value = scope.scalar(node.args[0], f"as the argument of {node.value}")
+        value = scope.argument(node.args[0], f"as the argument of {node.value}")
         if terms_of_angle(value) > MOST_ANGLE_TERMS:
             raise scope.fail(node.args[0], f"an angle whose sine has at most {MOST_ANGLE_TERMS} terms")
         if below is not None:
             scope.divide_by(below(value), node)
         made = function(value)
         if value.is_number and not made.is_Rational and enclosure(made) is None:
-            raise scope.fail(node, "a number whose digits can be computed instead of a tower of functions")
+            raise scope.fail(node, "a number whose digits can be computed instead of deeply nested functions")
         return made
 
     return call
 
 
 def _sqrt(scope: Scope, node: Node) -> Expr:
-    value = scope.scalar(node.args[0], "under the root")
+    value = scope.argument(node.args[0], "under the root")
     scope.take_root(value, node.args[0])
     return sympy.sqrt(value)
 
 
 def _atan2(scope: Scope, node: Node) -> Expr:
-    y, x = (scope.scalar(argument, "as an argument of atan2") for argument in node.args)
+    y, x = (scope.argument(argument, "as an argument of atan2") for argument in node.args)
     scope.divide_by(x**2 + y**2, node)
     return sympy.atan2(y, x)
 
 
 def _arc(function: Callable[[Expr], Expr]) -> Any:
-    """Return asin or acos, of what lies between -1 and 1."""
+    """Return the evaluation of asin or acos, whose argument lies between -1 and 1."""
 
     def call(scope: Scope, node: Node) -> Expr:
-        value = scope.scalar(node.args[0], f"as the argument of {node.value}")
+        value = scope.argument(node.args[0], f"as the argument of {node.value}")
         if (1 - value**2).is_negative:
             raise scope.fail(node.args[0], f"a number from -1 to 1 in {node.value}")
         scope.take_root(1 - value**2, node.args[0])
@@ -77,7 +77,7 @@ def _arc(function: Callable[[Expr], Expr]) -> Any:
 
 
 def _log(scope: Scope, node: Node) -> Expr:
-    value = scope.scalar(node.args[0], "as the argument of log")
+    value = scope.argument(node.args[0], "as the argument of log")
     if value.is_nonpositive:
         raise scope.fail(node.args[0], "a positive number in log")
     scope.divide_by(value, node.args[0])
@@ -141,7 +141,7 @@ def _determinant(scope: Scope, matrix: ImmutableMatrix, node: Node, most_product
 
 
 def _by_cofactors(matrix: ImmutableMatrix) -> Expr:
-    """Return a determinant as products of entries, nothing multiplied out."""
+    """Return a determinant as a sum of products of entries, not multiplied out."""
     if matrix.rows == 1:
         return matrix[0, 0]
     rest = matrix[1:, :]
@@ -206,12 +206,14 @@ def _hstack(scope: Scope, node: Node) -> ImmutableMatrix:
 
 
 def _qmul(scope: Scope, node: Node) -> ImmutableMatrix:
-    return qmul(*(scope.matrix(argument, "as a quaternion in qmul", (4, 1)) for argument in node.args))
+    return quaternion_product(*(scope.matrix(argument, "as a quaternion in qmul", (4, 1)) for argument in node.args))
 
 
 def _dcm_of(scope: Scope, node: Node) -> ImmutableMatrix:
     components = dict(zip(symbols.quaternion, _components(scope, node, 4), strict=True))
-    return dcm_of(form="homogeneous").xreplace(components)  # nothing is multiplied out: components may be long
+    return quaternion_to_dcm(form="homogeneous").xreplace(
+        components
+    )  # nothing is multiplied out: components may be long
 
 
 def _diff(scope: Scope, node: Node) -> Any:
@@ -246,17 +248,17 @@ def _integrate(scope: Scope, node: Node) -> Expr:
         if not variable.is_Symbol or lower.has(variable) or upper.has(variable):
             raise scope.fail(place, "a symbol to integrate over, with limits free of it,")
         limits.append((variable, lower, upper))
-    divided, rooted = len(scope.divisors), len(scope.radicands)
+    divisors_before, radicands_before = len(scope.divisors), len(scope.radicands)
     total = scope.scalar(integrand, "to integrate")
-    needs = [d.value for d in scope.divisors[divided:] if not d.value.is_nonzero]
-    needs += [radicand for radicand in scope.radicands[rooted:] if not radicand.is_nonnegative]
+    needs = [d.value for d in scope.divisors[divisors_before:] if not d.value.is_nonzero]
+    needs += [radicand for radicand in scope.radicands[radicands_before:] if not radicand.is_nonnegative]
     if any(need.has(variable) for need in needs for variable, _, _ in limits):
         raise scope.fail(integrand, "an integrand without divisors and roots that hold the variable")
     for (variable, lower, upper), place in zip(limits, ranges, strict=True):
         try:
             total, divisors = definite_integral(total, variable, lower, upper)
         except InputError as reason:
-            raise scope.fail(place, f"an integral that can be found here ({reason})") from None
+            raise scope.fail(place, f"an integral that symrot can compute ({reason})") from None
         scope.divisors.extend(Divisor(value, place) for value in divisors)
     return total
 
@@ -299,4 +301,4 @@ BUILT_IN: Mapping[str, tuple[int, int, Callable[[Scope, Node], Any]]] = {
     "qmul": (2, 9, _qmul),
     "dcm_of": (1, 4, _dcm_of),
 }
-"""Name -> (fewest arguments, most arguments, meaning)."""
+"""Name -> (fewest arguments, most arguments, evaluation)."""

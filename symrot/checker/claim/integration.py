@@ -1,7 +1,7 @@
 """Definite integrals of polynomials times sines and cosines of linear angles: by parts, exactly.
 
 ``v^n exp(i (k v + c))`` has a closed antiderivative; every sine and cosine is a sum of two such exponentials. The
-integrand is real, so what carries an ``i`` in the end is zero and is left out.
+integrand is real, so the terms with ``i`` in the result cancel and are left out.
 """
 
 from functools import lru_cache
@@ -18,7 +18,7 @@ MOST_TERMS = 2000
 
 @lru_cache(maxsize=64)
 def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Expr) -> tuple[Expr, tuple[Expr, ...]]:
-    """Return the integral over an interval, and the coefficients by which it divides.
+    """Return the integral over an interval, and the coefficients that it divides by.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Exp
 
 
 def _rewritten(integrand: Expr, variable: Symbol) -> Expr:
-    """Return the integrand expanded, with exponentials for the sines and cosines that hold the variable."""
+    """Return the expanded integrand, in which sines and cosines of the variable have become exponentials."""
     angles = [node for node in integrand.atoms(sin, cos) if node.has(variable)]
     exponentials = {}
     for node in angles:
@@ -89,9 +89,9 @@ def _antiderivative(term: Expr, variable: Symbol, divisors: list[Expr]) -> Expr:
 
 def _value(primitive: Expr, variable: Symbol, limit: Expr) -> Expr:
     """Return the real value of an antiderivative at a limit."""
-    found = primitive.subs(variable, limit)
-    waves = {node: _wave(node.args[0]) for node in found.atoms(exp)}
-    terms = Add.make_args(found.xreplace(waves).expand())
+    value = primitive.subs(variable, limit)
+    waves = {node: _wave(node.args[0]) for node in value.atoms(exp)}
+    terms = Add.make_args(value.xreplace(waves).expand())
     return Add(*(term for term in terms if not term.has(I)))
 
 

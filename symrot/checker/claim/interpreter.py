@@ -1,7 +1,7 @@
-"""From the tree of a claim to SymPy, one table of kinds of node.
+"""The interpreter of claims: from trees to SymPy, by a table with one function for each kind of node.
 
-Scalars are SymPy expressions, matrices are immutable; a vector is a column. A piece that has no meaning (shapes that do
-not fit, an undefined name, a division by zero) is refused with its place in the text.
+Scalars become SymPy expressions, matrices become immutable; a vector is a column. A piece without a value (shapes that
+do not fit, an undefined name, a division by zero) is refused with its place in the text.
 """
 
 from collections.abc import Callable
@@ -17,7 +17,7 @@ from symrot.checker.claim.scope import Scope, described, is_matrix
 from symrot.checker.claim.tree import Node
 from symrot.checker.decide.unordered import is_unordered
 
-__all__ = ["CONSTANTS", "Meaning", "time"]
+__all__ = ["CONSTANTS", "Interpreter", "time"]
 
 LARGEST_EXPONENT = 64
 LARGEST_ROOT = 12
@@ -30,12 +30,12 @@ UNKNOWN_HERE = (
     "ln", "arcsin", "arccos", "arctan", "acot", "E", "I", "Rational", "nan", "NaN", "NAN", "inf", "Inf", "INF", "oo",
     "zoo", "infinity", "Infinity",
 )  # fmt: skip
-"""Names that become no symbol or function of the user's own by mere use: a reader takes them for something else."""
+"""Names that never become symbols or functions of the user by mere use, since most readers know them as others."""
 
 
 @dataclass
-class Meaning(Scope):
-    """The names of one claim, and the evaluation of its trees."""
+class Interpreter(Scope):
+    """The names of one claim, with the evaluation of trees in them."""
 
     def read(self, node: Node, source: str = "", where: str = "") -> Any:
         """Return the value of a tree: Expr or ImmutableMatrix.
@@ -43,7 +43,7 @@ class Meaning(Scope):
         Raises
         ------
         InputError
-            For a piece without meaning, with its position in ``source``.
+            For a piece without a value, with its position in ``source``.
         """
         self.source, self.where = source or self.source, where or self.where
         value = self.evaluate(node)
@@ -56,45 +56,45 @@ class Meaning(Scope):
             return _EVALUATE[node.kind](self, node)
         except (TypeError, AttributeError) as reason:
             if is_unordered(reason):
-                raise self.fail(node, "numbers of which can be told which is larger, by their digits") from None
+                raise self.fail(node, "numbers that can be ordered by their digits") from None
             raise
 
 
 # -- the kinds of node ------------------------------------------------------------------------------------------------
 
 
-def _number(meaning: Meaning, node: Node) -> Expr:
+def _number(interpreter: Interpreter, node: Node) -> Expr:
     return Rational(node.value.numerator, node.value.denominator)
 
 
-def _name(meaning: Meaning, node: Node) -> Any:
+def _name(interpreter: Interpreter, node: Node) -> Any:
     name = node.value
-    if name in meaning.values:
-        return meaning.values[name]
+    if name in interpreter.values:
+        return interpreter.values[name]
     if name in CONSTANTS:
         return CONSTANTS[name]
-    if name in meaning.functions:
-        raise meaning.fail(node, f"{name}(t), since {name} is a function of t,")
+    if name in interpreter.functions:
+        raise interpreter.fail(node, f"{name}(t), since {name} is a function of t,")
     if name in BUILT_IN:
-        raise meaning.fail(node, f"brackets after the function {name}")
-    if not meaning.implied:
-        raise meaning.fail(node, f"a name that is declared ({_nearest(name, meaning)}) instead of {name!r}")
+        raise interpreter.fail(node, f"brackets after the function {name}")
+    if not interpreter.implied:
+        raise interpreter.fail(node, f"a name that is declared ({_nearest(name, interpreter)}) instead of {name!r}")
     if name in UNKNOWN_HERE:
-        raise meaning.fail(node, f"a symbol of another name, since {name!r} means something else to most readers,")
-    made = meaning.values[name] = time if name == "t" else Symbol(name, real=True)
-    return made
+        raise interpreter.fail(node, f"a symbol of another name, since {name!r} means something else to most readers,")
+    symbol = interpreter.values[name] = time if name == "t" else Symbol(name, real=True)
+    return symbol
 
 
-def _nearest(name: str, meaning: Meaning) -> str:
-    known = [*meaning.values, *meaning.functions, *CONSTANTS, *BUILT_IN]
+def _nearest(name: str, interpreter: Interpreter) -> str:
+    known = [*interpreter.values, *interpreter.functions, *CONSTANTS, *BUILT_IN]
     close = get_close_matches(name, known, 1, 0.6)
-    declared = ", ".join([*meaning.values, *meaning.functions]) or "none is"
+    declared = ", ".join([*interpreter.values, *interpreter.functions]) or "none is"
     return f"did you mean {close[0]!r}?" if close else f"declared: {declared[:80]}"
 
 
-def _sum(meaning: Meaning, node: Node) -> Any:
-    values = [meaning.evaluate(term) for term in node.args]
-    shapes = {meaning.shape(value, term) for value, term in zip(values, node.args, strict=True)}
+def _sum(interpreter: Interpreter, node: Node) -> Any:
+    values = [interpreter.evaluate(term) for term in node.args]
+    shapes = {interpreter.shape(value, term) for value, term in zip(values, node.args, strict=True)}
     if len(shapes) == 1:
         if None in shapes:
             return sympy.Add(*values)
@@ -103,111 +103,113 @@ def _sum(meaning: Meaning, node: Node) -> Any:
             total = total + value
         return total
     first = described(values[0])
-    other, found = next((n, described(value)) for n, value in enumerate(values) if described(value) != first)
-    raise meaning.fail(node.args[other], f"{first}, as the first term of the sum is, instead of {found}")
+    other, actual = next((n, described(value)) for n, value in enumerate(values) if described(value) != first)
+    raise interpreter.fail(node.args[other], f"{first}, as the first term of the sum is, instead of {actual}")
 
 
-def _product(meaning: Meaning, node: Node) -> Any:
+def _product(interpreter: Interpreter, node: Node) -> Any:
     total: Any = None
     for factor in node.args:
-        value = meaning.evaluate(factor)
-        meaning.shape(value, factor)
+        value = interpreter.evaluate(factor)
+        interpreter.shape(value, factor)
         if total is None:
             total = value
         elif is_matrix(total) and is_matrix(value) and total.cols != value.rows:
-            raise meaning.fail(factor, f"a matrix with {total.cols} rows instead of {described(value)}")
+            raise interpreter.fail(factor, f"a matrix with {total.cols} rows instead of {described(value)}")
         else:
             large = is_matrix(total) and is_matrix(value)
-            total = meaning.bounded(total * value, factor) if large else total * value
+            total = interpreter.bounded(total * value, factor) if large else total * value
     return total
 
 
-def _negative(meaning: Meaning, node: Node) -> Any:
-    value = meaning.evaluate(node.args[0])
-    meaning.shape(value, node.args[0])
+def _negative(interpreter: Interpreter, node: Node) -> Any:
+    value = interpreter.evaluate(node.args[0])
+    interpreter.shape(value, node.args[0])
     return -value
 
 
-def _inverse(meaning: Meaning, node: Node) -> Any:
-    value = meaning.scalar(node.args[0], "to divide by")
-    meaning.divide_by(value, node.args[0])
+def _inverse(interpreter: Interpreter, node: Node) -> Any:
+    value = interpreter.scalar(node.args[0], "to divide by")
+    interpreter.divide_by(value, node.args[0])
     return 1 / value
 
 
-def _power(meaning: Meaning, node: Node) -> Any:
-    base, exponent = meaning.evaluate(node.args[0]), meaning.scalar(node.args[1], "as an exponent")
+def _power(interpreter: Interpreter, node: Node) -> Any:
+    base, exponent = interpreter.evaluate(node.args[0]), interpreter.scalar(node.args[1], "as an exponent")
     if not exponent.is_Rational:
-        raise meaning.fail(node.args[1], "a number as an exponent")
+        raise interpreter.fail(node.args[1], "a number as an exponent")
     if abs(exponent.p) > LARGEST_EXPONENT or exponent.q > LARGEST_ROOT:
-        raise meaning.fail(node.args[1], f"an exponent up to {LARGEST_EXPONENT} (roots up to the {LARGEST_ROOT}th)")
+        raise interpreter.fail(node.args[1], f"an exponent up to {LARGEST_EXPONENT} (roots up to the {LARGEST_ROOT}th)")
     if is_matrix(base):
         if base.rows != base.cols or exponent.q != 1:
-            raise meaning.fail(node, "a square matrix to a whole power")
+            raise interpreter.fail(node, "a square matrix to a whole power")
         if exponent < 0:
-            base = inverted(meaning, base, node.args[0])
+            base = inverted(interpreter, base, node.args[0])
         total = ImmutableMatrix(sympy.eye(base.rows))
         for _ in range(abs(int(exponent))):
-            total = meaning.bounded(total * base, node)
+            total = interpreter.bounded(total * base, node)
         return total
-    meaning.shape(base, node.args[0])
+    interpreter.shape(base, node.args[0])
     if exponent < 0:
-        meaning.divide_by(base, node.args[0])
+        interpreter.divide_by(base, node.args[0])
     if base.is_Rational and abs(exponent.p) * max(int(base.p).bit_length(), int(base.q).bit_length()) > MOST_BITS:
-        raise meaning.fail(node, f"a number of at most {MOST_BITS} bits")
-    if exponent.q > 1:  # of odd index too: the principal value is real for what is not negative only
-        meaning.take_root(base, node.args[0])
+        raise interpreter.fail(node, f"a number of at most {MOST_BITS} bits")
+    if exponent.q > 1:  # of odd index too: the principal value of a negative number is not real
+        interpreter.within_nesting(base, node.args[0])
+        interpreter.take_root(base, node.args[0])
     return base**exponent
 
 
-def _transpose(meaning: Meaning, node: Node) -> ImmutableMatrix:
-    return meaning.matrix(node.args[0], "before .T").T
+def _transpose(interpreter: Interpreter, node: Node) -> ImmutableMatrix:
+    return interpreter.matrix(node.args[0], "before .T").T
 
 
-def _index(meaning: Meaning, node: Node) -> Expr:
-    matrix = meaning.matrix(node.args[0], "before an index")
-    places = [meaning.scalar(index, "as an index") for index in node.args[1:]]
+def _index(interpreter: Interpreter, node: Node) -> Expr:
+    matrix = interpreter.matrix(node.args[0], "before an index")
+    places = [interpreter.scalar(index, "as an index") for index in node.args[1:]]
     if len(places) == 1 and 1 in matrix.shape:
         places = [places[0], Integer(0)] if matrix.cols == 1 else [Integer(0), places[0]]
     if len(places) != 2 or not all(
         place.is_Integer and 0 <= place < size for place, size in zip(places, matrix.shape, strict=True)
     ):
-        raise meaning.fail(node, f"indices from 0 into {described(matrix)}")
+        raise interpreter.fail(node, f"indices from 0 into {described(matrix)}")
     return matrix[int(places[0]), int(places[1])]
 
 
-def _list(meaning: Meaning, node: Node) -> tuple[Any, ...]:
-    return tuple(meaning.evaluate(member) for member in node.args)
+def _list(interpreter: Interpreter, node: Node) -> tuple[Any, ...]:
+    return tuple(interpreter.evaluate(member) for member in node.args)
 
 
-def _call(meaning: Meaning, node: Node) -> Any:
+def _call(interpreter: Interpreter, node: Node) -> Any:
     name, arguments = node.value, node.args
-    if name in meaning.functions:
-        return _function_of_time(meaning, node)
+    if name in interpreter.functions:
+        return _function_of_time(interpreter, node)
     if name in BUILT_IN:
         least, most, function = BUILT_IN[name]
         if not least <= len(arguments) <= most:
-            wanted = str(least) if least == most else f"{least} to {most}" if most < 99 else f"at least {least}"
-            raise meaning.fail(node, f"{wanted} argument(s) of {name} instead of {len(arguments)}")
-        return function(meaning, node)
-    if name in meaning.values:
-        raise meaning.fail(node, f"an operator between {name} and '(', since {name} is no function,")
+            count = str(least) if least == most else f"{least} to {most}" if most < 99 else f"at least {least}"
+            raise interpreter.fail(node, f"{count} argument(s) of {name} instead of {len(arguments)}")
+        return function(interpreter, node)
+    if name in interpreter.values:
+        raise interpreter.fail(node, f"an operator between {name} and '(', since {name} is no function,")
     close = get_close_matches(name, list(BUILT_IN), 1, 0.74)
-    if not meaning.implied or close or name in UNKNOWN_HERE or [a.value for a in arguments] != ["t"]:
+    if not interpreter.implied or close or name in UNKNOWN_HERE or [a.value for a in arguments] != ["t"]:
         known = f"did you mean {close[0]}?" if close else f"built in: {', '.join(BUILT_IN)}"
-        raise meaning.fail(node, f"a function that is built in or declared as one of t instead of {name!r} ({known})")
-    meaning.functions.add(name)
-    return _function_of_time(meaning, node)
+        expected = f"a function that is built in or declared as one of t instead of {name!r} ({known})"
+        raise interpreter.fail(node, expected)
+    interpreter.functions.add(name)
+    return _function_of_time(interpreter, node)
 
 
-def _function_of_time(meaning: Meaning, node: Node) -> Expr:
+def _function_of_time(interpreter: Interpreter, node: Node) -> Expr:
     if [(argument.kind, argument.value) for argument in node.args] != [("name", "t")]:
-        raise meaning.fail(node, f"{node.value}(t)")
-    if meaning.evaluate(node.args[0]) != time:
-        raise meaning.fail(node.args[0], "the symbol t")
+        raise interpreter.fail(node, f"{node.value}(t)")
+    if interpreter.evaluate(node.args[0]) != time:
+        raise interpreter.fail(node.args[0], "the symbol t")
     return Function(node.value, real=True)(time)
 
 
-_EVALUATE: dict[str, Callable[[Meaning, Node], Any]] = {
+_EVALUATE: dict[str, Callable[[Interpreter, Node], Any]] = {
     "number": _number, "name": _name, "sum": _sum, "product": _product, "neg": _negative, "inv": _inverse,
     "power": _power, "transpose": _transpose, "index": _index, "list": _list, "call": _call,
 }  # fmt: skip

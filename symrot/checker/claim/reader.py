@@ -1,7 +1,7 @@
-"""Reads the text of a claim into a tree: tokens, then precedence climbing. Never Python's evaluator, never SymPy.
+"""The reader of claims, from text to tree: tokens, then precedence climbing, without Python's evaluator or SymPy.
 
-``left == right`` with numbers, names, ``+ - * / **``, brackets, calls, ``Matrix([[..], [..]])``, ``.T``, ``M[0, 1]``.
-Whatever is not understood is refused with its position; nothing is dropped.
+It reads ``left == right`` with numbers, names, ``+ - * / **``, brackets, calls, ``Matrix([[..], [..]])``, ``.T`` and
+``M[0, 1]``. Any other text is refused with its position; nothing is dropped.
 """
 
 import re
@@ -35,11 +35,11 @@ Relation = tuple[str, Node, Node]
 
 
 def complaint(source: str, where: str, position: int, expected: str) -> InputError:
-    """Return the error that names what was expected and the place in the source, shown with what surrounds it."""
+    """Return the error that names the expected text and the position, with an excerpt of the source around it."""
     start = max(0, position - 25)
-    shown = ("..." if start else "") + source[start : start + 50] + ("..." if len(source) > start + 50 else "")
+    excerpt = ("..." if start else "") + source[start : start + 50] + ("..." if len(source) > start + 50 else "")
     prefix = f"{where}: " if where else ""
-    return InputError(f"{prefix}expected {expected} at position {position + 1}, near {shown!r}")
+    return InputError(f"{prefix}expected {expected} at position {position + 1}, near {excerpt!r}")
 
 
 class _Reader:
@@ -86,10 +86,10 @@ class _Reader:
         return token
 
     def take(self, mark: str) -> bool:
-        """Step over a mark if it is next."""
-        found = self.peek() == mark
-        self.index += found
-        return found
+        """Step over a mark if it is the next token, and return whether it was."""
+        is_next = self.peek() == mark
+        self.index += is_next
+        return is_next
 
     def expect(self, mark: str) -> None:
         if not self.take(mark):
@@ -180,37 +180,37 @@ class _Reader:
         return node
 
     def atom(self) -> Node:
-        kind, found, position = self.next()
+        kind, token, position = self.next()
         if kind == "number":
-            return Node("number", self.number(found, position), (), self.span(position))
+            return Node("number", self.number(token, position), (), self.span(position))
         if kind == "name":
             if not self.take("("):
-                return Node("name", found, (), self.span(position))
+                return Node("name", token, (), self.span(position))
             arguments = self.members(")")
-            return Node("call", found, tuple(arguments), self.span(position))
-        if found == "(":
+            return Node("call", token, tuple(arguments), self.span(position))
+        if token == "(":
             inner = self.members(")")
             if len(inner) == 1:
                 return inner[0]
             return Node("list", ("(", ")"), tuple(inner), self.span(position))
-        if found == "[":
+        if token == "[":
             return Node("list", ("[", "]"), tuple(self.members("]")), self.span(position))
         raise self.fail("a number, a name or a bracket", position)
 
     def members(self, closing: str) -> list[Node]:
-        found = [self.expression()]
+        members = [self.expression()]
         while self.take(","):
-            found.append(self.expression())
+            members.append(self.expression())
         self.expect(closing)
-        return found
+        return members
 
-    def number(self, found: str, position: int) -> Fraction:
-        exponent = re.split("[eE]", found)[1:]
-        if len(found) > LONGEST_NUMBER:
+    def number(self, token: str, position: int) -> Fraction:
+        exponent = re.split("[eE]", token)[1:]
+        if len(token) > LONGEST_NUMBER:
             raise self.fail(f"a number of at most {LONGEST_NUMBER} characters", position)
         if exponent and abs(int(exponent[0])) > LONGEST_NUMBER:
             raise self.fail(f"a power of ten within {LONGEST_NUMBER}", position)
-        return Fraction(found)
+        return Fraction(token)
 
 
 def read_expression(source: str, where: str = "") -> Node:
@@ -221,12 +221,12 @@ def read_expression(source: str, where: str = "") -> Node:
     source : str
         At most 20 000 characters, nested at most 60 deep.
     where : str
-        The place of the text, put in front of every complaint.
+        The place of the text, which begins every error message.
 
     Raises
     ------
     InputError
-        Naming the first position that is not understood.
+        Naming the first position that cannot be read.
 
     Examples
     --------
@@ -243,6 +243,6 @@ def read_relation(source: str, where: str = "") -> Relation:
     Raises
     ------
     InputError
-        As :func:`read_expression`, and when there is no sign or more than one.
+        As :func:`read_expression`, and if there is no relation sign or more than one.
     """
     return _Reader(source, where).relation()

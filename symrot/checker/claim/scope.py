@@ -1,4 +1,4 @@
-"""What is known while a claim is read: its names and divisors, and how a piece without meaning is refused."""
+"""The scope in which a claim is read: its names, its divisors and roots, and refusals of pieces without a value."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
@@ -8,7 +8,7 @@ import sympy
 from sympy import Expr, ImmutableMatrix, Mul
 
 from symrot.checker.claim.reader import complaint
-from symrot.checker.claim.size import MOST_PIECES
+from symrot.checker.claim.size import MOST_NESTED, MOST_PIECES, nesting
 from symrot.checker.claim.tree import Node
 from symrot.errors import InputError
 from symrot.exact.intervals import enclosure
@@ -21,14 +21,14 @@ MOST_BITS_FACTORED = 64
 
 @dataclass(frozen=True)
 class Divisor:
-    """What somebody divided by, as SymPy sees it."""
+    """A divisor in the text of a claim, as a SymPy expression."""
 
     value: Expr
     node: Node
 
 
 def is_matrix(value: Any) -> bool:
-    """Return whether a value is a matrix (a column is one)."""
+    """Return whether a value is a matrix; a column is one."""
     return isinstance(value, sympy.MatrixBase)
 
 
@@ -38,22 +38,22 @@ def described(value: Any) -> str:
 
 @dataclass
 class Scope(ABC):
-    """The names of one claim, what its text divides by, and the refusals of pieces without meaning.
+    """The names of one claim, the divisors and radicands of its text, and the refusals of pieces without a value.
 
     Attributes
     ----------
     source, where : str
-        The text being read and its place, for complaints.
+        The text being read and its place, for error messages.
     values : dict
         Symbols and definitions by name.
     functions : set of str
         Functions of time.
     implied : bool
-        Whether names that nobody declared become real symbols and functions of time.
+        Whether undeclared names become real symbols and functions of time.
     divisors : list of Divisor
-        What the text divides by; filled while evaluating.
+        Divisors of the text that may vanish; evaluation adds to them.
     radicands : list of Expr
-        What it takes even roots of; likewise.
+        Formulas under its even roots that may be negative; evaluation adds to them.
     """
 
     values: dict[str, Any] = field(default_factory=dict)
@@ -74,9 +74,20 @@ class Scope(ABC):
     def scalar(self, node: Node, of: str) -> Expr:
         value = self.evaluate(node)
         if is_matrix(value) or isinstance(value, tuple):
-            shown = "a list" if isinstance(value, tuple) else described(value)
-            raise self.fail(node, f"a scalar {of} instead of {shown}")
+            actual = "a list" if isinstance(value, tuple) else described(value)
+            raise self.fail(node, f"a scalar {of} instead of {actual}")
         return value
+
+    def argument(self, node: Node, of: str) -> Expr:
+        """Return the value of a tree as the argument of a function; refuse functions that are nested too deeply."""
+        value = self.scalar(node, of)
+        self.within_nesting(value, node)
+        return value
+
+    def within_nesting(self, value: Expr, node: Node) -> None:
+        """Refuse a value that a function or a root would nest too deeply."""
+        if nesting(value) >= MOST_NESTED:
+            raise self.fail(node, f"at most {MOST_NESTED} functions and roots inside each other")
 
     def matrix(self, node: Node, of: str, shape: tuple[int | None, int | None] = (None, None)) -> ImmutableMatrix:
         value = self.evaluate(node)
@@ -85,31 +96,31 @@ class Scope(ABC):
             value = ImmutableMatrix(value)  # a bare list of components is a column
         fits = is_matrix(value) and rows in (None, value.rows) and columns in (None, value.cols)
         if not fits:
-            wanted = "matrix" if shape == (None, None) else f"{rows or 'n'} x {columns or 'n'} matrix"
-            shown = "a list" if isinstance(value, tuple) else described(value)
-            raise self.fail(node, f"a {wanted} {of} instead of {shown}")
+            expected = "matrix" if shape == (None, None) else f"{rows or 'n'} x {columns or 'n'} matrix"
+            actual = "a list" if isinstance(value, tuple) else described(value)
+            raise self.fail(node, f"a {expected} {of} instead of {actual}")
         return value
 
     def shape(self, value: Any, node: Node) -> tuple[int, int] | None:
-        """Return the shape of a matrix, None for a scalar; refuse a list."""
+        """Return the shape of a matrix, or None for a scalar; refuse a list."""
         if isinstance(value, tuple):
             raise self.fail(node, "a formula instead of a list (write Matrix([..]))")
         return (value.rows, value.cols) if is_matrix(value) else None
 
     def bounded(self, value: Any, node: Node, most: int = MOST_PIECES) -> Any:
-        """Return a value that is not too large to be worked with; refuse it otherwise."""
+        """Return a value unchanged; refuse one that is too large to be worked with."""
         if pieces(value if is_matrix(value) else [value]) > most:
             raise self.fail(node, f"a formula of at most {most} symbols, numbers and operations, written out,")
         return value
 
     def divide_by(self, value: Expr, node: Node) -> None:
-        """Note a divisor; one that SymPy sees to be zero is refused here, others by the exact engine."""
+        """Record a divisor; refuse one that SymPy knows to be zero (the exact engine refuses the others)."""
         if value.is_zero:
             raise self.fail(node, "a divisor that is not zero")
         for factor in Mul.make_args(value):
             base = factor.as_base_exp()[0]
-            held = enclosure(base) if base.is_number else None
-            if held is None or 0 in held:
+            interval = enclosure(base) if base.is_number else None
+            if interval is None or 0 in interval:
                 self.divisors.append(Divisor(base, node))
 
     def factorable(self, value: Expr, node: Node) -> None:
@@ -118,10 +129,10 @@ class Scope(ABC):
             raise self.fail(node, f"a number of at most {MOST_BITS_FACTORED} bits under a root, since it is factored,")
 
     def take_root(self, value: Expr, node: Node) -> None:
-        """Note a radicand; one that is negative is refused."""
-        held = enclosure(value) if value.is_number else None
-        if (held is None and value.is_negative) or (held is not None and held.b < 0):
+        """Record a radicand; refuse a negative one."""
+        interval = enclosure(value) if value.is_number else None
+        if (interval is None and value.is_negative) or (interval is not None and interval.b < 0):
             raise self.fail(node, "a number that is not negative under a root")
         self.factorable(value, node)
-        if held is None or not held.a >= 0:
+        if interval is None or not interval.a >= 0:
             self.radicands.append(value)

@@ -1,4 +1,4 @@
-"""How large a formula would become, before it is built: counts that refuse what no machine can multiply out."""
+"""Bounds on the size of a formula, computed before it is built, so that one too large to expand is refused."""
 
 from typing import Any
 
@@ -9,47 +9,69 @@ __all__ = [
     "LARGE_MATRIX",
     "MOST_ANGLE_TERMS",
     "MOST_DIFFERENTIATED",
+    "MOST_NESTED",
     "MOST_PIECES",
     "MOST_PRODUCTS",
+    "nesting",
     "products_of_determinant",
     "terms_of_angle",
 ]
 
 MOST_PIECES = 200_000
-"""Symbols, numbers and operations that a value may be made of, those that occur twice counted twice."""
+"""The most symbols, numbers and operations of a value; those that occur twice are counted twice."""
 
 MOST_DIFFERENTIATED = 3_000
-"""The same of a formula that is differentiated once more."""
+"""The most symbols, numbers and operations of a formula that is differentiated."""
 
 MOST_PRODUCTS = 2_000
-"""Products of entries in a determinant that is still multiplied out; a full 6 x 6 matrix has 720, 7 x 7 has 5040."""
+"""The most products of entries in a determinant; a full 6 x 6 matrix has 720, a full 7 x 7 matrix 5040."""
 
 LARGEST_INVERSE = 200
-"""The same for a matrix that is inverted, whose minors are all needed; a full 5 x 5 matrix has 120."""
+"""The same for a matrix to be inverted, of which all minors are computed; a full 5 x 5 matrix has 120."""
 
 LARGE_MATRIX = 1_000
-"""Pieces of a matrix from which on its determinant is written by cofactors, without shortening."""
+"""The number of pieces from which on the determinant of a matrix is expanded by cofactors and not shortened."""
 
 MOST_ANGLE_TERMS = 2_000
-"""Terms of a sine, written in sines and cosines of the angles in its argument; a sum of eleven has 1024."""
+"""The most terms of a sine, expanded into sines and cosines of the angles in its argument; a sum of eleven has 1024."""
+
+MOST_NESTED = 16
+"""Functions and fractional powers inside each other. To make a function, SymPy examines its argument: at depth 16 this
+takes seconds, at depth 25 minutes."""
+
+
+def nesting(formula: Expr) -> int:
+    """Return how many functions and fractional powers are inside each other, at most, in a formula."""
+    depths: dict[Any, int] = {}
+
+    def depth(node: Any) -> int:
+        if node not in depths:
+            own = node.is_Function or (node.is_Pow and node.exp.is_Rational and node.exp.q > 1)
+            depths[node] = own + max(map(depth, node.args), default=0)
+        return depths[node]
+
+    return depth(formula)
 
 
 def products_of_determinant(matrix: Any) -> int:
-    """Return the number of products in the expansion of a determinant that have no zero factor, row by row."""
+    """Return the number of products without a zero factor in the expansion of a determinant.
+
+    The expansion goes row by row; ``ways`` maps each set of used columns, as bits, to the number of products so far.
+    """
     ways = {0: 1}
     for row in range(matrix.rows):
         after: dict[int, int] = {}
-        for taken, number in ways.items():
+        for used, number in ways.items():
             for column in range(matrix.cols):
-                if not taken >> column & 1 and matrix[row, column] != 0:
-                    key = taken | 1 << column
+                if not used >> column & 1 and matrix[row, column] != 0:
+                    key = used | 1 << column
                     after[key] = after.get(key, 0) + number
         ways = after
     return sum(ways.values())
 
 
 def terms_of_angle(angle: Expr) -> int:
-    """Return about how many terms the sine of an angle has in sines and cosines of the angles that it is a sum of."""
+    """Return about how many terms the sine of a sum of angles has in sines and cosines of the single angles."""
     terms, number = 1, 0
     for term in angle.as_ordered_terms() if angle.is_Add else [angle]:
         multiple, atom = term.as_coeff_Mul()

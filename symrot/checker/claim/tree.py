@@ -1,4 +1,4 @@
-"""The tree of a claim's text: what was written, with its place, before any mathematics touches it. No SymPy.
+"""The tree of a claim's text: the formula as it is written, with its place, before any simplification. No SymPy.
 
 Sums and products are flat and keep their order, since edits of a formula (a sign, a factor, the order of a product) are
 edits of their members. ``a - b`` is a sum whose second term is ``neg``; ``a/b`` is a product whose second factor is
@@ -32,7 +32,7 @@ Path = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """One piece of a formula; ``span`` is its place in the source text, which does not count in comparisons."""
+    """One piece of a formula; ``span`` is its place in the source text, which comparisons ignore."""
 
     kind: str
     value: Any = None
@@ -41,13 +41,13 @@ class Node:
 
 
 def number(value: int | Fraction) -> Node:
-    """Return a number; a negative one is ``neg`` of a positive one, as it is when it is read."""
+    """Return the tree of a number; a negative one is ``neg`` of a positive one, as the reader makes it."""
     value = Fraction(value)
     return Node("neg", None, (Node("number", -value),)) if value < 0 else Node("number", value)
 
 
 def sum_of(terms: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
-    """Return the sum of terms, flat; 0 of none."""
+    """Return the sum of terms, flat; 0 for an empty list."""
     flat: list[Node] = []
     for term in terms:
         flat.extend(term.args if term.kind == "sum" else (term,))
@@ -57,7 +57,7 @@ def sum_of(terms: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
 
 
 def product(factors: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
-    """Return the product of factors, flat, the sign in front; 1 of none."""
+    """Return the product of factors, flat, with the sign in front; 1 for an empty list."""
     flat: list[Node] = []
     negative = False
     for factor in factors:
@@ -81,7 +81,7 @@ def walk(node: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
 
 
 def replaced(node: Node, path: Path, edit: Callable[[Node], Node]) -> Node:
-    """Return the tree with the piece at a path edited."""
+    """Return the tree in which the piece at a path is edited."""
     if not path:
         return edit(node)
     place, *rest = path
@@ -95,29 +95,29 @@ _BINDING = {"sum": SUM, "neg": SUM, "product": PRODUCT, "inv": PRODUCT, "power":
 
 
 def text(node: Node, binding: int = 0) -> str:
-    """Return a tree as text with the fewest brackets that keep its meaning; the reader reads it back to itself."""
+    """Return the text of a tree, with as few brackets as its meaning allows; the reader reads the same tree from it."""
     own = _BINDING.get(node.kind, ATOM)
     if node.kind == "number" and node.value.denominator != 1:
         own = PRODUCT
-    shown = _SHOW[node.kind](node)
-    return f"({shown})" if own < binding else shown
+    written = _WRITE[node.kind](node)
+    return f"({written})" if own < binding else written
 
 
 def _sum(node: Node) -> str:
-    shown = text(node.args[0], SUM)
+    written = text(node.args[0], SUM)
     for term in node.args[1:]:
         negative = term.kind == "neg"
-        shown += (" - " if negative else " + ") + text(term.args[0] if negative else term, SUM + 1)
-    return shown
+        written += (" - " if negative else " + ") + text(term.args[0] if negative else term, SUM + 1)
+    return written
 
 
 def _product(node: Node) -> str:
     first, *rest = node.args
-    shown = _inverse(first) if first.kind == "inv" else text(first, PRODUCT)
+    written = _inverse(first) if first.kind == "inv" else text(first, PRODUCT)
     for factor in rest:
         inverse = factor.kind == "inv"
-        shown += ("/" if inverse else "*") + text(factor.args[0] if inverse else factor, PRODUCT + 1)
-    return shown
+        written += ("/" if inverse else "*") + text(factor.args[0] if inverse else factor, PRODUCT + 1)
+    return written
 
 
 def _inverse(node: Node) -> str:
@@ -129,7 +129,7 @@ def _list(node: Node) -> str:
     return f"{opening}{', '.join(map(text, node.args))}{closing}"
 
 
-_SHOW: dict[str, Callable[[Node], str]] = {
+_WRITE: dict[str, Callable[[Node], str]] = {
     "number": lambda node: str(node.value),
     "name": lambda node: str(node.value),
     "call": lambda node: f"{node.value}({', '.join(map(text, node.args))})",

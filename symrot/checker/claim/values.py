@@ -1,4 +1,4 @@
-"""Worked numbers: an exact value against the decimal that was printed for it."""
+"""Worked numbers: an exact value, compared with the decimal number that a document prints for it."""
 
 import re
 from fractions import Fraction
@@ -6,10 +6,12 @@ from fractions import Fraction
 from mpmath import iv
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.decide.decision import Decision, Problem, decide_problem, shown
-from symrot.checker.verdict import Counterexample
+from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.errors import InputError
+from symrot.exact.decision import Decision
+from symrot.exact.evidence import Counterexample
 from symrot.exact.intervals import enclosure
+from symrot.exact.printing import as_text
 
 __all__ = ["decide_value"]
 
@@ -17,7 +19,7 @@ _DECIMAL = re.compile(r"\s*([+-]?)(\d*)(?:\.(\d*))?(?:[eE]([+-]?\d{1,3}))?\s*", 
 
 
 def decide_value(claim: Claim) -> Decision:
-    """Return whether a value rounds to the printed decimal: it lies within half a unit of the last printed digit.
+    """Decide if a value lies within half a unit of the last digit of the decimal number printed for it.
 
     Raises
     ------
@@ -26,25 +28,25 @@ def decide_value(claim: Claim) -> Decision:
     """
     assert claim.value is not None
     where = claim.label("value")
-    meaning = claim.meaning()
-    value = meaning.read(claim.value, claim.sources.get("value", ""), where)
+    interpreter = claim.interpreter()
+    value = interpreter.read(claim.value, claim.sources.get("value", ""), where)
     if getattr(value, "free_symbols", {1}):
-        raise InputError(f"{where}: expected a number, got {shown(value)}")
+        raise InputError(f"{where}: expected a number, got {as_text(value)}")
     printed, unit = _printed(claim.printed, claim.label("printed_value"))
-    divisors = tuple(divisor.value for divisor in meaning.divisors)
-    if divisors or meaning.radicands:  # constants about which nothing is known so far
-        decision = decide_problem(Problem(value, value, (), divisors, (), tuple(meaning.radicands)))
+    divisors = tuple(divisor.value for divisor in interpreter.divisors)
+    if divisors or interpreter.radicands:  # constants whose signs are not known yet
+        decision = decide_equation(Equation(value, value, (), divisors, (), tuple(interpreter.radicands)))
         if decision.verdict != "true":
-            return Decision("undecided", reason=f"it is not known that {shown(value)} is a real number")
-    held = enclosure(value)
-    if held is None:
-        return Decision("undecided", reason=f"no enclosure of {shown(value)} is known here")
+            return Decision("undecided", reason=f"it is not known that {as_text(value)} is a real number")
+    interval = enclosure(value)
+    if interval is None:
+        return Decision("undecided", reason=f"no enclosure of {as_text(value)} is known here")
     low, high = (iv.mpf(int(n.numerator)) / int(n.denominator) for n in (printed - unit / 2, printed + unit / 2))
-    if low.b <= held.a and held.b <= high.a:
+    if low.b <= interval.a and interval.b <= high.a:
         return Decision("true")
-    if held.b < low.a or high.b < held.a:
-        exact = f"{shown(value)} = {float(held.mid):.12g}.."
-        return Decision("false", counterexample=Counterexample({}, exact, claim.printed.strip()))
+    if interval.b < low.a or high.b < interval.a:
+        exact = f"{as_text(value)} = {float(interval.mid):.12g}.."
+        return Decision("false", counterexample=Counterexample((), None, exact, claim.printed.strip()))
     return Decision("undecided", reason="the value lies on the edge of what rounds to the printed digits")
 
 

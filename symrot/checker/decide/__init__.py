@@ -1,1 +1,1 @@
-"""The decision on a claim: hypotheses, constraints, conditions, real points."""
+"""The decision on a claim: its stages, with hypotheses, conditions and real points."""

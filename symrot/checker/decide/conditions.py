@@ -1,13 +1,11 @@
-"""What a claim that is not true everywhere requires: a unit norm, equal moments, no product of inertia, a root's sign.
+"""Conditions under which a false claim is true: a unit norm, equal moments, no products of inertia, the sign of a root.
 
-A condition is read off the residuals: a factor that they all share is zero exactly where the condition holds, so the
-claim is true there, by proof. Only factors that people state as conditions count; any false claim is "true" where its
-residual happens to vanish.
+A condition is a common factor of all residuals: where it vanishes, the claim is true. Only conditions that textbooks
+state count, since every false claim is "true" where its residual happens to vanish.
 """
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import reduce
 
 import sympy
@@ -15,50 +13,40 @@ from sympy import Abs, Add, Expr, Mul, Pow
 from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
-from symrot.checker.claim.printed import shown
 from symrot.exact.decide import normal_form
+from symrot.exact.evidence import Requirement
+from symrot.exact.printing import as_text
 from symrot.exact.ring.ring import FormulaRing
 
-__all__ = ["Requirement", "branch_requirements", "requirements", "surely_nonnegative"]
+__all__ = ["branch_requirements", "requirements", "surely_nonnegative"]
 
 MOMENT = re.compile(r"[ABC]|[IJ]_?([xyz1-3]|([xyz1-3])\2|p|perp|par|parallel|t|s|a)?", re.ASCII)
 PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)", re.ASCII)
 """Names of moments of inertia, and of products of inertia."""
 
-
 MOST_TERMS, LARGEST_DEGREE = 400, 24
-"""Terms, and the degree, of a residual that is still factored."""
+"""The most terms, and the largest degree, of a residual that is factored."""
 
 MOST_TERMS_OF_SQUARE = 40
-"""Of a sum that is still factored to see whether it is a square."""
-
-
-@dataclass(frozen=True)
-class Requirement:
-    """A condition as text, its code, and the expressions that are zero, or not negative, under it."""
-
-    code: str
-    text: str
-    zeros: tuple[Expr, ...] = ()
-    signs: tuple[Expr, ...] = ()
+"""The most terms of a sum that is factored to see if it is a square."""
 
 
 def requirements(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]], entries: int
 ) -> list[Requirement]:
-    """Return the equations, any one of which makes all residuals vanish and which are conditions people state.
+    """Return the conditions, of the kinds that textbooks state, each of which makes all residuals vanish.
 
     Parameters
     ----------
     ring : FormulaRing
     numerators : sequence of PolyElement
-        The residuals that are not zero, reduced.
+        The reduced numerators of the residuals that are not zero.
     sides : sequence of (Expr, Expr)
-        The entries they come from.
+        Left and right side of the entries that they belong to.
     entries : int
-        How many entries the claim has.
+        The number of entries of the claim.
     """
-    found = []
+    conditions = []
     for factor in _shared_factors(ring, numerators):
         requirement = _classified(ring, factor)
         if requirement is None:
@@ -67,12 +55,12 @@ def requirements(
         if itself and (requirement.code != "requires_unit_norm" or any(side.is_number for side in sides[0])):
             continue
         if requirement.code == "requires_unit_norm" or _left_out(requirement, sides, ring.hypotheses):
-            found.append(requirement)
-    return found or _no_products(ring, numerators, sides)
+            conditions.append(requirement)
+    return conditions or _no_products(ring, numerators, sides)
 
 
 def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[PolyElement]:
-    """Return the irreducible factors common to all residuals; none where looking for them is costly."""
+    """Return the irreducible factors common to all residuals; an empty list if the residuals are too large."""
     smallest = min(numerators, key=len)
     if not ring.generators or len(smallest) > MOST_TERMS or max(map(sum, smallest)) > LARGEST_DEGREE:
         return []
@@ -81,18 +69,18 @@ def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> lis
 
 
 def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]], hypotheses: Sequence[Expr]) -> bool:
-    """Return whether some side of each wrong entry knows nothing of one of the symbols.
+    """Return whether in each wrong entry a side leaves out one of the symbols of a condition.
 
-    Whoever takes ``A = B`` for granted leaves one of them out. A text that has both, ``(A - B) w`` against
-    ``(B - A) w``, is wrong in another way. A side knows of what hypotheses say about its symbols.
+    An author who silently assumes ``A = B`` writes only one of them. A text with both, ``(A - B) w`` against
+    ``(B - A) w``, is wrong in another way. A hypothesis that ties a symbol to symbols of a side puts it into the side.
     """
     (formula,) = requirement.zeros
 
-    def knows(side: Expr, symbol: Expr) -> bool:
+    def involves(side: Expr, symbol: Expr) -> bool:
         own = side.free_symbols
         return symbol in own or any(symbol in h.free_symbols and own & h.free_symbols for h in hypotheses)
 
-    return all(any(not knows(side, symbol) for side in pair for symbol in formula.free_symbols) for pair in sides)
+    return all(any(not involves(side, symbol) for side in pair for symbol in formula.free_symbols) for pair in sides)
 
 
 def _associated(first: PolyElement, second: PolyElement) -> bool:
@@ -100,7 +88,7 @@ def _associated(first: PolyElement, second: PolyElement) -> bool:
 
 
 def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
-    """Return the condition ``factor = 0`` when it is one that people state."""
+    """Return the condition ``factor = 0`` if it is of a kind that textbooks state, else None."""
     places = [n for n, degree in enumerate(factor.degrees()) if degree > 0]
     leaves = {number: leaf for leaf, number in ring.symbols.items()}
     if not all(n in leaves and (leaves[n].is_Symbol or isinstance(leaves[n], AppliedUndef)) for n in places):
@@ -119,7 +107,7 @@ def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
 
 
 def _of_moments(factor: PolyElement, names: list[Expr], ring: FormulaRing, formula: Expr) -> Requirement | None:
-    """Return ``I1 == I2`` or ``I1 + I2 == I3``; sums of moments do not vanish."""
+    """Return the condition ``I1 == I2`` or ``I1 + I2 == I3``; None for a sum of moments, which does not vanish."""
     coefficients = [int(factor[ring.ring.gens[ring.symbols[name]].leading_expv()]) for name in names]
     sides = [[str(n) for n, c in zip(names, coefficients, strict=True) if c * sign > 0] for sign in (1, -1)]
     if not all(sides):
@@ -143,7 +131,7 @@ def _is_unit_norm(factor: PolyElement, variables: int) -> bool:
 def _no_products(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]]
 ) -> list[Requirement]:
-    """Return the condition that all products of inertia vanish, when it suffices."""
+    """Return the condition that all products of inertia vanish, if it suffices."""
     products = [(leaf, n) for leaf, n in ring.symbols.items() if _matches(PRODUCT_OF_INERTIA, leaf)]
     if not products or not all(any(mono[n] for _, n in products) for poly in numerators for mono in poly):
         return []
@@ -161,10 +149,11 @@ def _matches(pattern: re.Pattern[str], leaf: Expr) -> bool:
 
 
 def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[Requirement] | None:
-    """Return the sign conditions under which residuals with a square root vanish; None if no sign makes them vanish.
+    """Return the conditions on signs under which residuals with a square root vanish; None if no sign suffices.
 
-    With ``r = a + b g`` and ``g^2 = P``: when ``a^2 - b^2 P`` is zero, ``g = a/b`` or ``g = -a/b`` everywhere, and the
-    claim, which says the latter, holds exactly where ``-a/b >= 0``. An empty list: that is so wherever it is defined.
+    Let the residual be ``a + b g`` with the root ``g``, ``g^2 = P``. If ``a^2 - b^2 P`` is zero, g is ``a/b`` or
+    ``-a/b`` everywhere. The claim says ``g = -a/b``, which holds exactly where ``-a/b >= 0``. The list is empty if that
+    is so wherever the claim is defined.
     """
     for root, place in ring.roots.items():
         if root.index != 2 or root.expression.is_number:
@@ -178,7 +167,7 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
                 break
             value = normal_form(-without.as_expr(*ring.generators) / rest.as_expr(*ring.generators), ring.hypotheses)
             if not surely_nonnegative(value):
-                signs[f"{shown(value)} >= 0"] = value
+                signs[f"{as_text(value)} >= 0"] = value
         else:
             stated = tuple(signs[text] for text in sorted(signs))
             return [Requirement("sign_branch", " and ".join(sorted(signs)), signs=stated)] if signs else []
@@ -192,7 +181,7 @@ def _split(poly: PolyElement, place: int, generator: PolyElement) -> tuple[PolyE
 
 
 def surely_nonnegative(value: Expr) -> bool:
-    """Return whether a real value cannot be negative by its form alone; roots are real where the claim is defined."""
+    """Return whether the form of a real value shows that it is not negative; its roots are taken to be real."""
     if value.is_nonnegative or isinstance(value, Abs | sympy.exp):
         return True
     if isinstance(value, Pow) and value.exp.is_Rational:

@@ -1,8 +1,8 @@
-"""What a claim takes for granted, as polynomials in the generators of its ring: the set over which it is decided.
+"""The set of real points over which a claim is decided, as polynomials in the generators of its ring.
 
-Hypotheses, the circles of sines and cosines and the relations of roots vanish; what is divided by does not; symbols,
-and roots by their nature, have signs. Generators whose values follow from others in ways that polynomials do not say
-(a function of a symbol, an angle that is tied to one) are not ``free``: nothing is asked of them here.
+Three kinds of polynomials vanish: hypotheses, ``sin^2 + cos^2 - 1`` of each angle, and the relations of roots. Divisors
+do not vanish. Symbols and even roots have signs. A generator is ``free`` if these polynomials say everything that is
+known of its value; a function of a symbol is not, nor is an angle that depends on a symbol, and they are left alone.
 """
 
 from collections.abc import Iterator, Sequence
@@ -20,28 +20,28 @@ from symrot.exact.ring.ring import FormulaRing
 __all__ = ["Constraints", "constraints_of", "distinct_factors", "occurring"]
 
 MOST_TERMS, MOST_UNKNOWNS, LARGEST_DEGREE = 40, 4, 12
-"""Of a polynomial that is still factored; from a larger one only unknowns are taken out that divide every term."""
+"""Bounds on a polynomial that is factored; of a larger one only unknowns that divide every term are split off."""
 
 
 @dataclass(frozen=True)
 class Constraints:
-    """A set of real points: where ``zeros`` vanish, ``nonzero`` do not, and signs are as they are assumed.
+    """A set of real points: ``zeros`` vanish, ``nonzero`` do not, and generators have the assumed signs.
 
     Attributes
     ----------
     ring : PolyRing
-        Over the rationals; its generators are those of the claim's ring.
+        A ring over the rationals with the generators of the claim's ring.
     zeros, nonzero : tuple of PolyElement
     positive, nonnegative, negative, whole : frozenset of int
         Generators > 0, >= 0, < 0, and integer.
     products : tuple of PolyElement
-        Further polynomials that are >= 0: a root over its denominator, what the text takes roots of.
+        Further polynomials that are >= 0: a root times the divisor under it, radicands of the text.
     free : frozenset of int
-        Generators that can have any values which all this allows.
+        Generators that may have any value that these polynomials and signs allow.
     complete : bool
-        Whether ``zeros`` say all that is known: False where a hypothesis speaks of something that is not free.
+        False if a hypothesis involves a generator that is not free, so that ``zeros`` leave something out.
     real : bool
-        Whether all of this is about real numbers.
+        False if i occurs.
     """
 
     ring: PolyRing
@@ -58,7 +58,7 @@ class Constraints:
 
     @cached_property
     def involved(self) -> tuple[int, ...]:
-        """The free generators that some constraint speaks of, in order."""
+        """The free generators that occur in a constraint, in order."""
         return tuple(sorted(self.free & occurring([*self.zeros, *self.nonzero, *self.products])))
 
 
@@ -68,18 +68,21 @@ def occurring(polynomials: Sequence[PolyElement]) -> set[int]:
 
 
 def distinct_factors(poly: PolyElement) -> list[PolyElement]:
-    """Return the factors of a polynomial that is not constant, each once and monic; of a large one the plain ones."""
+    """Return the different factors of a polynomial that is not constant, each monic.
+
+    A large polynomial is not factored; only unknowns that divide every term are split off.
+    """
     if len(poly) <= MOST_TERMS and len(occurring([poly])) <= MOST_UNKNOWNS and max(map(sum, poly)) <= LARGEST_DEGREE:
         return [factor.monic() for factor, _ in poly.factor_list()[1]]
     shared = [min(column) for column in zip(*poly, strict=True)]
-    found = [poly.ring.gens[place] for place, power in enumerate(shared) if power]
-    if found:
+    unknowns = [poly.ring.gens[place] for place, power in enumerate(shared) if power]
+    if unknowns:
         poly = poly.new({tuple(m - s for m, s in zip(mono, shared, strict=True)): c for mono, c in poly.items()})
-    return found if poly.is_ground else [*found, poly.monic()]
+    return unknowns if poly.is_ground else [*unknowns, poly.monic()]
 
 
 def constraints_of(ring: FormulaRing) -> Constraints:
-    """Return what a ring takes for granted, everything that was divided by in it so far included."""
+    """Return the constraints that a ring contains, all divisors that were read into it so far included."""
     target = PolyRing(ring.ring.symbols, QQ, grevlex)
     symbols = {leaf: n for leaf, n in ring.symbols.items() if ring.leaves[leaf]}
     free = {*symbols.values(), *_free_angles(ring)}
@@ -91,7 +94,7 @@ def constraints_of(ring: FormulaRing) -> Constraints:
     even = set()
     loose = {root for radical in ring.radicals.values() if radical.loose for root in radical.roots}
     for root, place in sorted(ring.roots.items(), key=lambda item: -item[1]):  # inner roots first
-        square = ring.ratio(root.power_expression)  # as it is written: reduced by hypotheses it would say less
+        square = ring.ratio(root.power_expression)  # not reduced by hypotheses, which would say less
         relation = ring.ring.gens[place] ** root.index * ring.ratios.denominator(square) - square.numerator
         relation = relation.set_ring(target)
         if occurring([relation]) <= free | {place} and root.expression is not I and root not in loose:
@@ -103,7 +106,7 @@ def constraints_of(ring: FormulaRing) -> Constraints:
             else:
                 products.append(target.gens[place] * ring.ratio(below).numerator.set_ring(target))
     hypotheses = [poly.set_ring(target) for poly in ring.hypothesis_numerators if poly]
-    kept = [poly for poly in hypotheses if occurring([poly]) <= free]
+    stated = [poly for poly in hypotheses if occurring([poly]) <= free]
     for formula in ring.domain:
         value = ring.ratio(formula)
         signed = (value.numerator * ring.ratios.denominator(value)).set_ring(target)
@@ -115,19 +118,19 @@ def constraints_of(ring: FormulaRing) -> Constraints:
         return frozenset(n for leaf, n in symbols.items() if getattr(leaf, assumption))
 
     return Constraints(
-        target, (*zeros, *kept), tuple(poly for poly in factors if occurring([poly]) <= free),
+        target, (*zeros, *stated), tuple(poly for poly in factors if occurring([poly]) <= free),
         positive=having("is_positive"), nonnegative=having("is_nonnegative") | frozenset(even),
         negative=having("is_negative"), whole=having("is_integer"), products=tuple(products),
-        free=frozenset(free), complete=len(kept) == len(hypotheses),
+        free=frozenset(free), complete=len(stated) == len(hypotheses),
         real=not any(root.expression is I for root in ring.roots),
     )  # fmt: skip
 
 
 def _free_angles(ring: FormulaRing) -> Iterator[int]:
-    """Yield the sines and cosines of angles that can have any value whatever the symbols are.
+    """Yield the sines and cosines of angles that can have any value, whatever the values of the symbols.
 
-    Such an angle is proportional to a symbol or a function of time of its own. Derivatives in time at one instant can
-    have any values whatever the function's own value is.
+    Such an angle is proportional to a symbol, or a function of time, that occurs nowhere else. Its time derivatives may
+    occur, since at one instant they are independent of the value of the function.
     """
     holders: list[Expr] = [*ring.bases, *(leaf for leaf in ring.symbols if not leaf.is_Derivative)]
     for atom in ring.bases:

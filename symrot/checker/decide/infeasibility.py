@@ -1,9 +1,10 @@
 """Proofs that constraints hold at no real point, and that a formula vanishes wherever they hold.
 
-Polynomials that vanish are taken apart: into factors (a case for each), into the squares whose sum they are, into a
-Groebner basis. A case is impossible when 1 = 0 follows, when a polynomial keeps its sign because of its form, of the
-range of its unknowns or of its lack of real roots. Formulas vanish where ``z f = 1`` makes all cases impossible
-(Rabinowitsch), which covers what follows only for real numbers, only for positive symbols, or only up to a power.
+Polynomials that vanish are split into factors (a case for each), into the squares whose sum they are, into a Groebner
+basis. A case is impossible if 1 = 0 follows, or if a polynomial keeps its sign: by its form, by the ranges of its
+unknowns, or because it has no real roots. A formula f vanishes on the constraints if adding ``z f = 1`` makes all cases
+impossible (Rabinowitsch). This also proves formulas that vanish for real numbers or positive symbols only, or of which
+only a power is a combination of the constraints.
 """
 
 from collections.abc import Sequence
@@ -20,36 +21,36 @@ from symrot.checker.decide.constraints import Constraints, distinct_factors, occ
 from symrot.exact.ring.groebner import groebner_basis
 from symrot.exact.ring.ratio import TooLarge
 
-__all__ = ["Emptiness", "vanishes_on", "why_empty"]
+__all__ = ["Infeasibility", "infeasibility_proof", "vanishes_on"]
 
 MOST_CASES = 40
 MOST_ROUNDS = 6
-"""Cases looked at, and rounds of taking apart in one case."""
+"""The most cases of a proof, and the most rounds of splitting in one case."""
 
 MOST_PRODUCTS = 150_000
-"""Products of terms in all Groebner bases of one proof."""
+"""The most products of terms in all Groebner bases of one proof."""
 
 
 class _Undecided(Exception):
-    """A case that could not be shown to be impossible."""
+    """Raised for a case that could not be proven impossible."""
 
 
 @dataclass(frozen=True)
-class Emptiness:
-    """Why there is no point: the polynomial that cannot vanish, or None where 1 = 0 follows."""
+class Infeasibility:
+    """The reason why constraints hold nowhere, and the polynomial that cannot vanish; None if 1 = 0 follows."""
 
     reason: str
     polynomial: PolyElement | None = None
 
 
-def why_empty(constraints: Constraints) -> Emptiness | None:
-    """Return why no real point obeys the constraints, proven; None if no proof was found."""
+def infeasibility_proof(constraints: Constraints) -> Infeasibility | None:
+    """Return the proven reason why no real point obeys the constraints; None without a proof."""
     if not constraints.real:
         return None
     zeros = list(constraints.zeros)
     for poly in constraints.nonzero:
         if not poly:
-            return Emptiness("what is divided by is zero wherever they hold")
+            return Infeasibility("a divisor is zero wherever they hold")
     ring = constraints.ring
     nonzero = [poly for poly in constraints.nonzero if not poly.is_ground]
     if nonzero:
@@ -64,8 +65,8 @@ def why_empty(constraints: Constraints) -> Emptiness | None:
 
 
 def vanishes_on(constraints: Constraints, formula: PolyElement) -> bool:
-    """Return whether a polynomial of the same ring is proven to vanish at all real points of the constraints."""
-    return why_empty(replace(constraints, nonzero=(*constraints.nonzero, formula))) is not None
+    """Return whether a polynomial of the same ring provably vanishes at all real points of the constraints."""
+    return infeasibility_proof(replace(constraints, nonzero=(*constraints.nonzero, formula))) is not None
 
 
 def _with_one_more(constraints: Constraints) -> tuple[PolyRing, Constraints]:
@@ -85,8 +86,8 @@ class _Prover:
         self.signed = constraints.positive | constraints.negative
         self.forbidden = {poly.monic() for poly in constraints.nonzero if poly and not poly.is_ground}
 
-    def impossible(self, zeros: Sequence[PolyElement], rounds: int = MOST_ROUNDS) -> Emptiness:
-        """Return why polynomials cannot vanish together; raises when no reason is found."""
+    def impossible(self, zeros: Sequence[PolyElement], rounds: int = MOST_ROUNDS) -> Infeasibility:
+        """Return why polynomials cannot vanish together; raise ``_Undecided`` if no reason is known."""
         self.cases += 1
         if self.cases > MOST_CASES or rounds == 0:
             raise _Undecided
@@ -94,21 +95,22 @@ class _Prover:
         for number, poly in enumerate(zeros):
             factors = self.factors(poly)
             if not factors and poly:
-                return Emptiness(*self.why(poly))
+                return Infeasibility(*self.why(poly))
             if len(factors) > 1:
                 rest = [*simple, *zeros[number + 1 :]]
-                found = [self.impossible([factor, *rest], rounds) for factor in factors]
-                return found[0] if len({item.reason for item in found}) == 1 else Emptiness("every case is impossible")
+                cases = [self.impossible([factor, *rest], rounds) for factor in factors]
+                same = len({case.reason for case in cases}) == 1
+                return cases[0] if same else Infeasibility("every case is impossible")
             simple.extend(self.parts(factors[0]) if factors else ())
         for poly in simple:
             if self.keeps_its_sign(poly, simple):
-                return Emptiness(*self.why(poly))
+                return Infeasibility(*self.why(poly))
         basis = groebner_basis(simple, self.ring, MOST_PRODUCTS, self.spent)
         if any(poly.is_ground for poly in basis):
-            return Emptiness("they contradict each other")
+            return Infeasibility("they contradict each other")
         for poly in basis:
             if self.keeps_its_sign(poly, simple):
-                return Emptiness(*self.why(poly))
+                return Infeasibility(*self.why(poly))
         if {poly.monic() for poly in simple} == set(basis) and all(self.parts(p) == [p] for p in basis):
             raise _Undecided
         return self.impossible(basis, rounds - 1)
@@ -117,14 +119,17 @@ class _Prover:
         return "a polynomial that would have to vanish keeps its sign", poly
 
     def factors(self, poly: PolyElement) -> list[PolyElement]:
-        """Return the factors that may vanish, each once; none if the polynomial cannot (or is zero)."""
+        """Return the factors that may vanish, each once; an empty list if none of them may, or for zero."""
         if not poly or poly.is_ground:
             return []
-        found = distinct_factors(poly)
-        return [f for f in found if f not in self.forbidden and not self.one_signed(f) and not self.rootless(f)]
+        return [
+            f
+            for f in distinct_factors(poly)
+            if f not in self.forbidden and not self.one_signed(f) and not self.rootless(f)
+        ]
 
     def parts(self, poly: PolyElement) -> list[PolyElement]:
-        """Return what must vanish when a sum of terms of one sign does: each of them; else the polynomial itself."""
+        """Return the polynomials that vanish if ``poly`` does: each term if all have one sign, else itself."""
         signs = {self.sign_of_term(mono, coefficient) for mono, coefficient in poly.items()}
         if len(poly) > 1 and (signs <= {1} or signs <= {-1}):
             radicals = [tuple(min(power, 1) for power in mono) for mono in poly]
@@ -135,7 +140,7 @@ class _Prover:
     # -- signs --------------------------------------------------------------------------------------------------------
 
     def sign_of_term(self, mono: tuple[int, ...], coefficient: Any) -> int:
-        """Return +1 or -1 for a term that is never of the other sign, else 0."""
+        """Return +1 for a term that is nowhere negative, -1 for one that is nowhere positive, else 0."""
         sign = 1 if coefficient > 0 else -1
         for place, power in enumerate(mono):
             if power % 2 and place in self.constraints.negative:
@@ -145,7 +150,10 @@ class _Prover:
         return sign
 
     def one_signed(self, poly: PolyElement) -> bool:
-        """Return whether the terms have one sign and one of them never vanishes, or squares with a positive number."""
+        """Return whether a polynomial is nowhere zero by its form.
+
+        All terms have one sign and one of them never vanishes, or it is a sum of squares and a positive number.
+        """
         signs = {self.sign_of_term(mono, coefficient) for mono, coefficient in poly.items()}
         strict = any(all(place in self.signed for place, power in enumerate(mono) if power) for mono in poly)
         if strict and (signs == {1} or signs == {-1}):
@@ -172,18 +180,18 @@ class _Prover:
         return roots == int(at_zero)
 
     def squares(self, poly: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Return [(d, l)] with the polynomial = +-sum of d*l^2, d > 0, l of degree <= 1; empty if there is none."""
+        """Return pairs (d, l) with the polynomial = +-sum of d*l^2, d > 0, l of degree <= 1; else an empty list."""
         if max(map(sum, poly)) != 2:
             return []
         for sign in (1, -1):
-            found = self._completed(poly * sign)
-            if found:
-                return found
+            squares = self._completed(poly * sign)
+            if squares:
+                return squares
         return []
 
     def _completed(self, rest: PolyElement) -> list[tuple[Any, PolyElement]]:
         """Complete squares, one unknown after the other."""
-        found = []
+        squares = []
         for place in sorted(occurring([rest])):
             x = self.ring.gens[place]
             leading = rest.coeff(x**2)
@@ -194,16 +202,16 @@ class _Prover:
                     return []
                 continue
             form = rest.diff(place).quo_ground(2 * leading)
-            found.append((leading, form))
+            squares.append((leading, form))
             rest = rest - form**2 * leading
         if rest and not (rest.is_ground and rest.coeff(1) > 0):
             return []
-        return [*found, (rest.coeff(1), self.ring.one)] if rest else found
+        return [*squares, (rest.coeff(1), self.ring.one)] if rest else squares
 
     # -- ranges -------------------------------------------------------------------------------------------------------
 
     def out_of_range(self, poly: PolyElement, zeros: Sequence[PolyElement]) -> bool:
-        """Return whether a polynomial is nonzero for all values of its unknowns between their bounds."""
+        """Return whether a polynomial is nonzero for all values of its unknowns within their bounds."""
         bounds = self.bounds(zeros)
         low, high = Fraction(0), Fraction(0)
         for mono, coefficient in poly.items():
@@ -213,7 +221,7 @@ class _Prover:
 
     def bounds(self, zeros: Sequence[PolyElement]) -> dict[int, tuple[Any, Any]]:
         """Return the least and largest values of unknowns, from their signs and from ``sum of d*x^2 = constant``."""
-        found: dict[int, tuple[Any, Any]] = {}
+        bounds: dict[int, tuple[Any, Any]] = {}
         for poly in (*self.constraints.zeros, *zeros):
             constant = poly.coeff(1)
             squares = [mono for mono in poly if any(mono)]
@@ -222,12 +230,12 @@ class _Prover:
                     if max(mono) == sum(mono):
                         place = mono.index(max(mono))
                         size = _root_above(_fraction(-constant) / _fraction(poly[mono]), max(mono))
-                        found[place] = (-size, size)
+                        bounds[place] = (-size, size)
         for place in self.nonnegative:
-            found[place] = (Fraction(0), found.get(place, (0, inf))[1])
+            bounds[place] = (Fraction(0), bounds.get(place, (0, inf))[1])
         for place in self.constraints.negative:
-            found[place] = (found.get(place, (-inf, 0))[0], Fraction(0))
-        return found
+            bounds[place] = (bounds.get(place, (-inf, 0))[0], Fraction(0))
+        return bounds
 
 
 def _fraction(value: Any) -> Fraction:
@@ -235,7 +243,7 @@ def _fraction(value: Any) -> Fraction:
 
 
 def _root_above(value: Fraction, power: int) -> Fraction:
-    """Return a rational not smaller than a root of a positive number, equal to it where it is a whole number."""
+    """Return a rational upper bound of the root of a positive number; the root itself if it is an integer."""
     size = Fraction(1)
     while size**power < value:
         size *= 2

@@ -1,4 +1,4 @@
-"""Rational points of quadrics: one found among simple points, all others by lines through it."""
+"""Rational points of quadrics: a first one with simple coordinates, all others on lines through it."""
 
 from collections.abc import Sequence
 from math import isqrt
@@ -17,14 +17,14 @@ SIMPLE = tuple(
         (-1, 2), (-2, 3), (4, 1), (5, 1), (5, 13), (12, 13),
     )
 )  # fmt: skip
-"""Values tried for coordinates, the simplest first."""
+"""Values that coordinates may have, the simplest first."""
 
 TRIES = 60
-"""Simple points tried on one quadric, and lines tried through one point of it."""
+"""The most simple points tried on one quadric, and the most lines tried through one point of it."""
 
 
 def rational_square_root(value: Any) -> Any:
-    """Return the square root of a rational if that is rational, else None."""
+    """Return the square root of a rational number if it is rational, else None."""
     if value < 0:
         return None
     above, below = isqrt(int(value.numerator)), isqrt(int(value.denominator))
@@ -32,12 +32,12 @@ def rational_square_root(value: Any) -> Any:
 
 
 def point_of_quadric(poly: PolyElement, places: Sequence[int], source: Random) -> dict[int, Any] | None:
-    """Return a rational point of a quadric, any of them with some chance; None if no simple one was found.
+    """Return a random rational point of a quadric; None if it has no simple one.
 
     Parameters
     ----------
     poly : PolyElement
-        Of degree 2, over the rationals.
+        A polynomial of degree 2 over the rationals.
     places : sequence of int
         The generators that occur in it, at least two.
     source : Random
@@ -56,7 +56,7 @@ def point_of_quadric(poly: PolyElement, places: Sequence[int], source: Random) -
 
 
 def _simple_point(poly: PolyElement, places: Sequence[int], source: Random) -> dict[int, Any] | None:
-    """Return a point with all coordinates but one simple."""
+    """Return a rational point all of whose coordinates but one are simple, or None."""
     for attempt in range(TRIES):
         last = source.choice(places)
         pool = SIMPLE[: 3 + attempt // 4]

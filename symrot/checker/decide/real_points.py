@@ -1,8 +1,9 @@
-"""Exact real points of a set of constraints: rational ones where they are found, else algebraic ones.
+"""Exact real points that obey constraints: rational points first, then points with algebraic coordinates.
 
-A point is drawn equation by equation: what is linear is solved for, a quadric is met along lines through one of its
-rational points, a polynomial in one unknown has roots, a product vanishes with one of its factors, and when nothing of
-this applies an unknown gets a simple value. Every point is checked exactly before it is given away.
+A point is drawn at random, equation by equation. An equation that is linear in an unknown is solved for it. A quadric
+gives points on lines through one of its rational points. A polynomial in one unknown gives its roots. A product
+vanishes with one of its factors. If nothing of this applies, an unknown gets a simple value. Every point is checked
+exactly before it is returned.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -21,28 +22,28 @@ __all__ = ["ATTEMPTS", "RealPoint", "real_points", "value_at"]
 
 ATTEMPTS = 120
 RATIONAL = 60
-"""Points drawn at most; after the first so many, roots that are not rational are taken too."""
+"""The most points that are drawn; after the first ``RATIONAL`` of them irrational roots are allowed too."""
 
 MOST_STEPS = 60
 MOST_TERMS = 300
-"""Of one drawing: steps, and terms of an equation."""
+"""The most steps of one drawing, and the most terms of its equations."""
 
 MOST_BARREN = 3
-"""Times that a quadric may fail to give a point before it is left alone."""
+"""The number of times that a quadric may fail to give a point before it is no longer tried."""
 
 LARGEST_EXTENSION = 8
-"""Degree of the largest field of algebraic numbers that is worked in."""
+"""The largest degree of a field of algebraic numbers."""
 
 LARGEST_NORM, MOST_NORMS = 24, 400
-"""Degree of a polynomial over such a field, times that of the field, that is still factored; and their sum in a search.
+"""The largest norm of a polynomial that is factored over such a field, and the largest sum of norms in a search.
 
-Factoring goes by a norm of that degree over the rationals: one of degree 24 takes a fifth of a second, one of 64 six
-seconds.
+The norm is the degree of the polynomial times the degree of the field. Factoring one of norm 24 takes a fifth of a
+second, one of norm 64 six seconds.
 """
 
 
 class _DeadEnd(Exception):
-    """The choices made so far lead to no point."""
+    """Raised if the choices so far lead to no point."""
 
 
 @dataclass(frozen=True)
@@ -59,12 +60,12 @@ class RealPoint:
 
     def number(self, value: Any) -> Expr:
         """Return an element of the field as an exact number of SymPy."""
-        found: Expr = self.field.to_sympy(value)
-        return found if self.rational else found.expand()
+        number: Expr = self.field.to_sympy(value)
+        return number if self.rational else number.expand()
 
     @property
     def size(self) -> tuple[int, int]:
-        """How much there is to read."""
+        """The length of the point as text, rational points before others."""
         return (not self.rational, sum(len(str(value)) for value in self.values.values() if value))
 
 
@@ -95,7 +96,7 @@ def _sign(value: Any, field: Any) -> int:
 
 
 def real_points(constraints: Constraints, attempts: int = ATTEMPTS) -> Iterator[RealPoint | None]:
-    """Yield for each attempt a point that obeys all constraints, exactly, or None; the same on every machine."""
+    """Yield for each attempt a point that exactly obeys all constraints, or None; the same on every machine."""
     source = Random(1)
     known: dict[Any, Any] = {}
     for attempt in range(attempts if constraints.real else 0):
@@ -108,7 +109,7 @@ def real_points(constraints: Constraints, attempts: int = ATTEMPTS) -> Iterator[
 
 
 def obeys(constraints: Constraints, point: RealPoint) -> bool:
-    """Return whether a point that has a value for everything involved obeys all constraints."""
+    """Return whether a point, with values for all generators involved, obeys all constraints."""
     return (
         not any(value_at(poly, point) for poly in constraints.zeros)
         and all(value_at(poly, point) for poly in constraints.nonzero)
@@ -129,7 +130,7 @@ def _allowed(constraints: Constraints, place: int, value: Any, field: Any) -> bo
 
 
 class _Drawing:
-    """One attempt: equations left, values found, and unknowns that are fractions of others."""
+    """One attempt: equations that are left, values so far, and unknowns that are solved as fractions of others."""
 
     def __init__(self, constraints: Constraints, source: Random, algebraic: bool, known: dict[Any, Any]) -> None:
         self.constraints, self.source, self.algebraic, self.known = constraints, source, algebraic, known
@@ -153,7 +154,7 @@ class _Drawing:
         raise _DeadEnd
 
     def completed(self) -> RealPoint:
-        """Give values to what nothing speaks of any more, then to the unknowns that were solved for."""
+        """Give values to the unknowns that no equation restricts, then to those that were solved for."""
         later = {place for place, _, _ in self.solved}
         for place in sorted(self.constraints.free - later - self.values.keys()):
             self.values[place] = self.field.convert(self.drawn(place), QQ)
@@ -166,7 +167,7 @@ class _Drawing:
         return RealPoint(self.values, self.field)
 
     def drawn(self, place: int) -> Any:
-        """Return a rational that a generator may be."""
+        """Return a random rational value that the signs of a generator allow."""
         source = self.source
         for _ in range(20):
             value = (
@@ -185,7 +186,7 @@ class _Drawing:
         pairs = list(values.items())
         self.zeros = [poly.subs(pairs) for poly in self.zeros]
 
-    # -- steps: each returns whether there was something to do --------------------------------------------------------
+    # -- steps: each returns whether it applied -----------------------------------------------------------------------
 
     def factor(self) -> bool:
         """Let a product vanish with one of its factors."""
@@ -209,17 +210,17 @@ class _Drawing:
         return self._solve(lambda slope: True)
 
     def _solve(self, fits: Callable[[PolyElement], bool]) -> bool:
-        found = []
+        solvable = []
         for poly in self.zeros:
             for place in sorted(occurring([poly])):
                 if poly.degrees()[place] == 1 and place not in self.constraints.whole:
                     slope = poly.diff(place)
                     if fits(slope):
-                        found.append((len(poly), place, poly, slope))
-        if not found:
+                        solvable.append((len(poly), place, poly, slope))
+        if not solvable:
             return False
-        smallest = min(item[0] for item in found)
-        _, place, poly, slope = self.source.choice([item for item in found if item[0] == smallest])
+        smallest = min(item[0] for item in solvable)
+        _, place, poly, slope = self.source.choice([item for item in solvable if item[0] == smallest])
         above = -(poly - slope * self.ring.gens[place])
         self.solved.append((place, above, slope))
         self.zeros = [_eliminated(p, place, above, slope) for p in self.zeros if p is not poly]
@@ -264,7 +265,7 @@ class _Drawing:
     # -- roots --------------------------------------------------------------------------------------------------------
 
     def root(self, poly: PolyElement, place: int) -> Any:
-        """Return a root in the field, or in a larger one."""
+        """Return a root of a polynomial in one unknown, in the field or in an extension of it."""
         generator = self.ring.gens[place]
         key = (poly, self.field)
         if key not in self.known:
@@ -280,7 +281,7 @@ class _Drawing:
         return self.adjoined(self.source.choice(factors), place)
 
     def spend(self, degree: int) -> None:
-        """Count a polynomial of this degree that is to be factored; only fields of algebraic numbers are costly."""
+        """Charge the factoring of a polynomial of this degree; over the rationals it costs nothing."""
         if self.field != QQ:
             norm = degree * self.field.mod.degree()
             self.known["norms"] = self.known.get("norms", 0) + norm
@@ -288,7 +289,7 @@ class _Drawing:
                 raise _DeadEnd
 
     def adjoined(self, factor: PolyElement, place: int) -> Any:
-        """Return an irrational root, after everything was carried into the field that has it."""
+        """Return an irrational root of a factor, after extending the field and moving all values into it."""
         degree = factor.degrees()[place]
         numbers = [
             _as_rational(factor.coeff(self.ring.gens[place] ** n if n else 1), self.field) for n in range(degree + 1)
@@ -299,10 +300,10 @@ class _Drawing:
         if key not in self.known:
             self.known[key] = Poly([QQ.to_sympy(c) for c in reversed(numbers)], Symbol("x")).real_roots()
         signs = (place in self.constraints.positive | self.constraints.nonnegative, place in self.constraints.negative)
-        wanted = [r for r in self.known[key] if not (signs[0] and r < 0) and not (signs[1] and r > 0)]
-        if not wanted:
+        roots = [r for r in self.known[key] if not (signs[0] and r < 0) and not (signs[1] and r > 0)]
+        if not roots:
             raise _DeadEnd
-        root = self.source.choice(wanted)
+        root = self.source.choice(roots)
         old, self.roots = self.field, [*self.roots, root]
         field = self.known.setdefault(("field", *self.roots), None) or QQ.algebraic_field(*self.roots)
         self.known["field", *self.roots] = field
@@ -315,7 +316,7 @@ class _Drawing:
 
 
 def _as_rational(value: Any, field: Any) -> Any:
-    """Return an element of a field as a rational, or None."""
+    """Return an element of a field as a rational number, or None if it is irrational."""
     if field == QQ:
         return value
     coefficients = value.to_list() if value else [QQ(0)]
@@ -323,7 +324,7 @@ def _as_rational(value: Any, field: Any) -> Any:
 
 
 def _eliminated(poly: PolyElement, place: int, above: PolyElement, below: PolyElement) -> PolyElement:
-    """Return a polynomial with ``above/below`` put in for a generator, times a power of ``below``."""
+    """Return a polynomial in which ``above/below`` replaces a generator, times a power of ``below``."""
     degree = poly.degrees()[place]
     if not degree:
         return poly
@@ -346,4 +347,4 @@ _ORDERS: tuple[Sequence[_Step], ...] = (
     (_Drawing.factor, _Drawing.univariate, _Drawing.quadric, _Drawing.substitution, _Drawing.guess),
     (_Drawing.factor, _Drawing.univariate, _Drawing.guess),
 )
-"""What is tried first: with one order or another most systems fall apart."""
+"""Orders in which steps are tried, one for each attempt: most systems can be solved in one of them."""

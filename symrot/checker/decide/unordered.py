@@ -1,12 +1,12 @@
-"""Numbers that SymPy compares while it builds a formula, and cannot tell apart: ``acos(cos(c))``, c being pi unseen."""
+"""Numbers that SymPy cannot order while it builds a formula, such as ``acos(cos(c))`` with an unrecognised pi in c."""
 
 __all__ = ["is_unordered"]
 
 
 def is_unordered(reason: BaseException | None) -> bool:
-    """Return whether an error of SymPy comes from two numbers whose order it could not tell.
+    """Return whether an error of SymPy comes from two numbers that it could not order.
 
-    SymPy raises a TypeError, out of which the wrapper of its cache makes an AttributeError.
+    SymPy raises a TypeError, which the wrapper of its cache turns into an AttributeError.
     """
     while reason is not None:
         if isinstance(reason, TypeError) and "truth value of Relational" in str(reason):

@@ -9,20 +9,20 @@ from symrot.checker.latex.tokens import GREEK, Token
 __all__ = ["DOTS", "FUNCTIONS", "CalculusPart"]
 
 FUNCTIONS = {
-    f"\\{spelled}": name
-    for spelled, name in (
+    f"\\{command}": name
+    for command, name in (
         *((name, name) for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp")),
         *(("arcsin", "asin"), ("arccos", "acos"), ("arctan", "atan"), ("ln", "log")),
     )
     if name in BUILT_IN
 }
-"""Command -> function; ``\\log`` may be to several bases, and is refused."""
+"""Command -> function; ``\\log``, whose base differs from book to book, is refused."""
 
 DOTS = {"\\dot": 1, "\\ddot": 2, "\\dddot": 3}
 
 
 class CalculusPart(NamesPart):
-    """Reads functions and calculus."""
+    """The part of the reader for functions and calculus."""
 
     def trigonometric(self, token: Token) -> Node:
         power = None
@@ -40,7 +40,7 @@ class CalculusPart(NamesPart):
         return node if power is None else Node("power", None, (node, power))
 
     def loose_argument(self, function: Token) -> Node:
-        """Read ``2\\theta``, ``\\omega t`` or ``\\frac{\\theta}{2}`` after a sine, nothing that reads in two ways."""
+        """Read ``2\\theta``, ``\\omega t`` or ``\\frac{\\theta}{2}`` after a sine; refuse an ambiguous argument."""
         factors = [self.factor()] if not self.at("-") else []
         if not factors or factors[0].kind == "power":
             raise self.fail(f"brackets around the argument of {function.text}")
@@ -81,7 +81,7 @@ class CalculusPart(NamesPart):
         return product([above, Node("inv", None, (below,))])
 
     def is_d(self, ahead: int = 0) -> int:
-        """Return how many tokens a sign of differentiation takes here: d, \\partial, \\mathrm{d}, \\mathrm d; or 0."""
+        """Return the number of tokens of the d, \\partial, \\mathrm{d} or \\mathrm d at the cursor, or 0."""
         texts = [self.peek(ahead + n).text for n in range(4)]
         if texts[0] in ("d", "\\partial"):
             return 1
@@ -90,13 +90,13 @@ class CalculusPart(NamesPart):
         return 0
 
     def differential(self) -> bool:
-        """Return whether ``dx`` stands here."""
-        taken = self.is_d()
-        token = self.peek(taken)
-        return bool(taken) and (token.kind == "letter" or token.text[1:] in GREEK)
+        """Return whether a ``dx`` is at the cursor."""
+        length = self.is_d()
+        token = self.peek(length)
+        return bool(length) and (token.kind == "letter" or token.text[1:] in GREEK)
 
     def derivative_fraction(self, token: Token) -> Node | None:
-        """Read ``\\frac{d^n X}{d x^n}`` or ``\\frac{d}{dx} X``; None if the fraction is another one."""
+        """Read ``\\frac{d^n X}{d x^n}`` or ``\\frac{d}{dx} X``; None for any other fraction."""
         start = self.index
         if not self.take("{") or not self.is_d():
             self.index = start
@@ -109,7 +109,7 @@ class CalculusPart(NamesPart):
             self.index = start
             return None
         if "d" in self.names:
-            raise self.fail("another name for the symbol d, which differentiates here", token)
+            raise self.fail("another name for the symbol d, since d means a derivative here", token)
         self.next()
         variables: list[Node] = []
         while not self.at("}"):
@@ -120,11 +120,11 @@ class CalculusPart(NamesPart):
             variables += [variable] * self.order()
         self.expect("}")
         if len(variables) != order:
-            raise self.fail(f"a derivative of order {order} above and below", token)
+            raise self.fail(f"a derivative of order {order} both above and below the line", token)
         if operand is None:
             operand = self.factor()
             if self.starts_factor() or self.at("/"):
-                raise self.fail("brackets around what is differentiated")
+                raise self.fail("brackets around the formula to differentiate")
         for variable in variables:
             in_time = variable == TIME
             operand = self.derivative(operand, 1, token) if in_time else _appended(operand, variable)
@@ -143,13 +143,13 @@ class CalculusPart(NamesPart):
         node = self.argument() if self.at("{") else self.base(script=False)
         if node.kind == "name" and self.at("_", "'"):
             node = self.named(str(node.value), start)
-        found = self.derivative(node, DOTS[token.text], token)
+        derivative = self.derivative(node, DOTS[token.text], token)
         if self.called_with_time() and node.kind == "name":
             self.index += 3
-        return found
+        return derivative
 
     def derivative(self, node: Node, times: int, token: Token) -> Node:
-        """Return a derivative in time; a name by itself becomes a function of time."""
+        """Return a time derivative; an undeclared name becomes a function of time."""
         if node.kind == "name" and node.value not in (*self.names.functions, *self.names.matrices, *self.names.others):
             name = str(node.value)
             forms = ["d" * times + name, name + "dot", name + "d" * times]
@@ -184,7 +184,7 @@ class CalculusPart(NamesPart):
 
 
 def _appended(node: Node, variable: Node) -> Node:
-    """Return the derivative of a tree by one more variable."""
+    """Return the derivative of a tree with respect to one more variable."""
     if node.kind == "call" and node.value == "diff" and node.args[-1] == variable == TIME:
         return Node("call", "diff", (*node.args, variable))
     return Node("call", "diff", (node, variable))

@@ -1,4 +1,4 @@
-"""The tokens of a LaTeX formula being read, with what every part of its grammar needs of the others."""
+"""The cursor of the LaTeX reader: the tokens of a formula, and the methods that parts of its grammar call in others."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection
@@ -17,9 +17,9 @@ TIME = Node("name", "t")
 
 @dataclass(frozen=True)
 class Names:
-    """What is declared: symbols, functions of time, definitions that are matrices or columns, other definitions.
+    """The declared names: symbols, functions of time, definitions that are matrices or columns, other definitions.
 
-    With ``implied`` nothing needs to be declared.
+    With ``implied`` undeclared names are allowed.
     """
 
     symbols: Collection[str] = ()
@@ -35,7 +35,7 @@ class Names:
 
 @dataclass
 class Cursor(ABC):
-    """Where reading stands in the tokens of a formula, and what is open there."""
+    """The position in the tokens of a formula, with the integrals and bars that are open there."""
 
     source: str
     where: str
@@ -61,9 +61,9 @@ class Cursor(ABC):
         return token
 
     def take(self, text: str) -> bool:
-        found = self.at(text)
-        self.index += found
-        return found
+        is_next = self.at(text)
+        self.index += is_next
+        return is_next
 
     def expect(self, text: str) -> None:
         if not self.take(text):
@@ -72,7 +72,7 @@ class Cursor(ABC):
     def fail(self, expected: str, token: Token | None = None) -> InputError:
         return complaint(self.source, self.where, (token or self.peek()).position, expected)
 
-    # -- what the parts of the grammar ask of each other --------------------------------------------------------------
+    # -- methods that parts of the grammar call in other parts --------------------------------------------------------
 
     open_bars: tuple[str, ...] = ()
 
@@ -94,12 +94,12 @@ class Cursor(ABC):
 
     @abstractmethod
     def bracket(self, token: Token) -> Node:
-        """Read what stands in brackets that have been opened."""
+        """Read an expression and its closing bracket, after the opening one."""
 
     @abstractmethod
     def starts_factor(self) -> bool:
-        """Return whether a factor may start here."""
+        """Return whether a factor may start at the cursor."""
 
     @abstractmethod
     def derivative(self, node: Node, times: int, token: Token) -> Node:
-        """Return a derivative in time."""
+        """Return a time derivative."""

@@ -1,4 +1,4 @@
-"""Matrices in LaTeX, and which trees are matrices or columns: products and bars mean other things beside them."""
+"""Matrices in LaTeX, and the test whether a tree is a matrix or a column, on which products and bars depend."""
 
 from symrot.checker.claim.tree import Node
 from symrot.checker.latex.calculus import CalculusPart
@@ -24,7 +24,7 @@ MATRIX_CALLS = ("Matrix", "cross", "skew", "vee", "Rx", "Ry", "Rz", "inverse", "
 
 
 class MatricesPart(CalculusPart):
-    """Reads matrices, and bars around them."""
+    """The part of the reader for matrices, and for bars around them."""
 
     def bars(self, token: Token) -> Node:
         outside = self.open_bars
@@ -75,7 +75,7 @@ class MatricesPart(CalculusPart):
         return name
 
     def is_matrix(self, node: Node) -> bool:
-        """Return whether a tree stands for a vector or matrix."""
+        """Return whether a tree is a vector or a matrix."""
         if node.kind == "name":
             return node.value in self.names.matrices
         if node.kind == "call":
@@ -88,7 +88,7 @@ class MatricesPart(CalculusPart):
         return any(kinds)
 
     def is_column(self, node: Node) -> bool:
-        """Return whether a matrix is a column: bars around it mean its length, around others the determinant."""
+        """Return whether a matrix is a column: bars mean the length of a column, the determinant of other matrices."""
         if node.kind == "name":
             return node.value in self.names.columns
         if node.kind == "call" and node.value == "Matrix":

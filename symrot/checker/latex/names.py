@@ -14,7 +14,7 @@ NAME_MARKS = {"\\bar": "_bar", "\\tilde": "_tilde", "\\overline": "_bar", "\\wid
 
 
 class NamesPart(Cursor):
-    """Reads names, and functions that are called by a name."""
+    """The part of the reader for names, and for functions that are called by name."""
 
     def named(self, name: str, token: Token, script: bool = True) -> Node:
         """Read the rest of a name, its subscript, primes and ``(t)``; return its node."""
@@ -30,7 +30,7 @@ class NamesPart(Cursor):
             if self.take("'"):
                 primes += 1
             elif subscript:
-                raise self.fail("one subscript")
+                raise self.fail("only one subscript")
             else:
                 self.next()
                 subscript = self.subscript()
@@ -48,7 +48,7 @@ class NamesPart(Cursor):
         return Node("name", known)
 
     def subscript_first(self) -> None:
-        """Put the power of one digit, which stands here before a subscript, behind it."""
+        """Swap a one-digit power at the cursor with the subscript that follows it: ``x^2_1`` becomes ``x_1^2``."""
         end = self.index + 4
         if self.peek(3).text == "{":
             while self.tokens[end - 1].text not in ("}", ""):
@@ -57,14 +57,14 @@ class NamesPart(Cursor):
         self.tokens[self.index : end] = [*self.tokens[self.index + 2 : end], *power]
 
     def refuse_call(self) -> None:
-        """Refuse ``f(x)`` and ``f(0)``, which may be a product or a value of a function."""
+        """Refuse ``f(x)`` and ``f(0)``, which may be products or values of a function."""
         inner = self.peek(1)
         alone = inner.kind in ("letter", "number") or inner.text[1:] in GREEK
         if self.at("(") and alone and self.peek(2).text == ")":
             raise self.fail("a function that is declared, or \\cdot before the bracket of a product,")
 
     def primes_raised(self) -> int:
-        """Return how many primes stand in ``^'`` or ``^{''}``."""
+        """Return the number of primes in ``^'`` or ``^{''}``."""
         if self.peek(1).text == "'":
             return 1
         count = 0
@@ -98,7 +98,7 @@ class NamesPart(Cursor):
         return "".join(piece.text.removeprefix("\\") for piece in pieces)
 
     def depth_of_subscript(self, pieces: list[Token]) -> bool:
-        """Return whether a brace closes an upright part inside the subscript."""
+        """Return whether a brace closes an upright group inside the subscript."""
         opened = closed = 0
         place = self.index - 1
         while self.tokens[place].text != "_":
@@ -108,7 +108,7 @@ class NamesPart(Cursor):
         return opened - closed > 1
 
     def resolved(self, name: str, subscript: str, others: tuple[str, ...] = ()) -> str:
-        """Return the declared name that is meant, ``I_1`` or ``I1`` for a subscript; the first form if none is."""
+        """Return the declared name with a subscript, ``I_1`` or ``I1``; ``I_1`` if neither is declared."""
         forms = [f"{name}_{subscript}", f"{name}{subscript}"] if subscript else [name]
         return next((form for form in [*forms, *others] if form in self.names), forms[0])
 
@@ -142,7 +142,7 @@ class NamesPart(Cursor):
         return self.marked_name(node, token)
 
     def marked_name(self, node: Node, token: Token) -> Node:
-        """Return a name that is marked as a vector or matrix, if it is defined as one."""
+        """Return a name that is marked as a vector or matrix; refuse it unless it is defined as one."""
         subscript_follows = self.at("}") and self.peek(1).text == "_"  # \\dot{\\mathbf{H}}_G
         if node.value not in self.names.matrices and (self.names.implied or not subscript_follows):
             raise self.fail(f"a vector or matrix that is defined under the name {node.value!r}", token)
@@ -157,7 +157,7 @@ class NamesPart(Cursor):
         return self.named(str(node.value), inner) if self.at("_", "'") else node
 
     def spelled(self, token: Token) -> Node:
-        """Read ``\\operatorname{tr}(..)`` or ``\\mathrm{abc}``: a function that is built in, or a name of letters."""
+        """Read ``\\operatorname{tr}(..)`` or ``\\mathrm{abc}``: a built-in function, or a name of several letters."""
         if not self.take("{"):
             inner = self.next()
             return self.named(inner.text.removeprefix("\\"), inner)

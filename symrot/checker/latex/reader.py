@@ -1,7 +1,7 @@
-"""Reads an equation in LaTeX into the tree of claims: every token is used or refused with its place.
+"""The LaTeX reader: from an equation to the tree of a claim. Every token is used, or refused with its position.
 
-Where usage is not unique (``\\sin\\theta/2``, ``\\sin^{-1}``, ``a/bc``, ``x_12``, ``a \\times b \\times c``) the reader
-asks for brackets and does not choose. What was understood is shown as the text of the claim.
+Where usage is ambiguous (``\\sin\\theta/2``, ``\\sin^{-1}``, ``a/bc``, ``x_12``, ``a \\times b \\times c``) the reader
+asks for brackets and does not choose. The text of the claim shows how the LaTeX was read.
 """
 
 from collections.abc import Collection
@@ -19,12 +19,12 @@ from symrot.checker.latex.tokens import GREEK, Token
 __all__ = ["MATRIX_CALLS", "TIME", "Names", "Reading", "read_latex", "read_latex_formula"]
 
 ENDS = ("+", "-", "=", ")", "]", "\\}", "}", "&", "\\\\", ",", "\\end", "\\cdot", "\\times", "*", "/", "^", "_", "'")
-"""What cannot start a factor."""
+"""Tokens that cannot start a factor."""
 
 
 @dataclass(frozen=True)
 class Reading:
-    """The equation, and its text in the language of claims."""
+    """An equation with its text in the language of claims."""
 
     relation: Relation
     text: str
@@ -38,15 +38,15 @@ def read_latex(source: str, where: str = "", names: Names | None = None) -> Read
     source : str
         One equation, with or without ``$`` around it.
     where : str
-        Its place, for complaints.
+        Its place, for error messages.
     names : Names, optional
-        What is declared; by default every name is a real symbol, or a function of time if it is differentiated or
+        The declared names; by default every name is a real symbol, or a function of time if it is differentiated or
         written ``f(t)``.
 
     Raises
     ------
     InputError
-        With the position of the first token that is not understood.
+        With the position of the first token that cannot be read.
 
     Examples
     --------
@@ -60,8 +60,8 @@ def read_latex(source: str, where: str = "", names: Names | None = None) -> Read
     right = reader.expression()
     if reader.peek().kind != "end":
         raise reader.fail("one '=' in a claim, not a chain of them" if reader.at("=") else "an operator or the end")
-    shown = " == ".join(text(_timed(side, reader.timed)) for side in (left, right))
-    return Reading(read_relation(shown, where), shown)
+    claim = " == ".join(text(_timed(side, reader.timed)) for side in (left, right))
+    return Reading(read_relation(claim, where), claim)
 
 
 def read_latex_formula(source: str, where: str = "") -> str:
@@ -73,14 +73,14 @@ def read_latex_formula(source: str, where: str = "") -> str:
         As :func:`read_latex`.
     """
     reader = _Reader(source, where, Names())
-    found = reader.expression()
+    formula = reader.expression()
     if reader.peek().kind != "end":
         raise reader.fail("one formula without '='" if reader.at("=") else "an operator or the end")
-    return text(_timed(found, reader.timed))
+    return text(_timed(formula, reader.timed))
 
 
 def _timed(node: Node, names: Collection[str]) -> Node:
-    """Return a tree in which the names that depend on time are written ``f(t)``."""
+    """Return a tree in which names that depend on time are written ``f(t)``."""
     if node.kind == "name" and node.value in names:
         return Node("call", node.value, (TIME,))
     if node.kind == "call" and node.value in names:
@@ -89,7 +89,7 @@ def _timed(node: Node, names: Collection[str]) -> Node:
 
 
 class _Reader(MatricesPart):
-    """Reads sums, products and factors."""
+    """The whole reader: sums, products and factors, with the parts for names, calculus and matrices."""
 
     def expression(self) -> Node:
         self.depth += 1
@@ -116,7 +116,7 @@ class _Reader(MatricesPart):
             if operator.text == "*" or not any(kinds) or (operator.text == "\\cdot" and not all(kinds)):
                 left = product([left, right])
             elif not all(kinds):
-                raise self.fail("two vectors or two scalars beside \\times", operator)
+                raise self.fail("two vectors or two scalars around \\times", operator)
             elif crossed:
                 raise self.fail("brackets that say which product of vectors comes first", operator)
             else:
@@ -132,7 +132,7 @@ class _Reader(MatricesPart):
             if token.text == "/":
                 self.next()
                 if divided:
-                    raise self.fail("brackets around what is divided", token)
+                    raise self.fail("brackets, since a second slash is ambiguous", token)
                 if factors[-1].kind == "call" and factors[-1].value in FUNCTIONS.values():
                     raise self.fail("brackets, since the slash may belong to the argument", token)
                 factors.append(Node("inv", None, (self.factor(),)))
@@ -141,7 +141,7 @@ class _Reader(MatricesPart):
             elif not self.starts_factor():
                 return product(factors)
             elif divided:
-                raise self.fail("brackets, since it is not clear what stands under the slash", divided)
+                raise self.fail("brackets, since it is not clear how much the slash divides by", divided)
             elif token.kind == "number":
                 raise self.fail("brackets or a product sign before a number")
             else:
@@ -168,7 +168,7 @@ class _Reader(MatricesPart):
         return node
 
     def raised(self, node: Node) -> Node:
-        """Read what stands after ``^``: a transpose or an exponent."""
+        """Read a transpose, a cross-product matrix or an exponent after ``^``."""
         group = self.at("{")
         start = self.index
         if group:
@@ -187,7 +187,7 @@ class _Reader(MatricesPart):
             return Node("call", "skew", (node,))
         self.index = start
         if [self.peek(n).text for n in range(2)] == ["{", "("] and self.peek(3).text == ")":
-            raise self.fail("a power without brackets of its own")
+            raise self.fail("a power like x^2 instead of x^{(2)}")
         exponent = self.argument()
         if exponent == number(2) and self.is_column(node):
             return Node("call", "dot", (node, node))

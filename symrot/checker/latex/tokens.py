@@ -1,4 +1,4 @@
-"""LaTeX as tokens with their place: what spaces and sizes is left out, what is not known is refused."""
+"""The tokens of LaTeX with their positions; commands for space and size are dropped, unknown ones refused."""
 
 import re
 from typing import NamedTuple
@@ -35,7 +35,7 @@ _WRAPPERS = (
 
 
 class Token(NamedTuple):
-    """``kind`` is command, number, letter, mark or end; ``spaced`` says whether ``\\,`` or a like space came before."""
+    """A token of ``kind`` command, number, letter, mark or end; ``spaced`` if a space such as ``\\,`` precedes it."""
 
     kind: str
     text: str
@@ -44,12 +44,12 @@ class Token(NamedTuple):
 
 
 def tokens(source: str, where: str) -> list[Token]:
-    """Return the tokens of a formula, the last one of kind ``end``; ``InputError`` where none fits."""
+    """Return the tokens of a formula, the last one of kind ``end``; raise InputError at text that is no token."""
     place = f"{where}: " if where else ""
     if len(source) > LONGEST_TEXT:
         raise InputError(f"{place}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
     start, end = _inside(source)
-    found: list[Token] = []
+    pieces: list[Token] = []
     spaced = False
     while start < end:
         match = _TOKEN.match(source, start, end)
@@ -63,16 +63,16 @@ def tokens(source: str, where: str) -> list[Token]:
         elif text[1:] not in SIZES:
             known = SYNONYMS.get(text, text)
             kind = kind if known == text else "command" if known.startswith("\\") else "mark"
-            found.append(Token(kind, known, start, spaced))
+            pieces.append(Token(kind, known, start, spaced))
             spaced = False
         start = match.end()
-    if len(found) > MOST_PIECES:
-        raise InputError(f"{place}expected a formula of at most {MOST_PIECES} pieces, got {len(found)}")
-    return [*found, Token("end", "", end)]
+    if len(pieces) > MOST_PIECES:
+        raise InputError(f"{place}expected a formula of at most {MOST_PIECES} pieces, got {len(pieces)}")
+    return [*pieces, Token("end", "", end)]
 
 
 def _inside(source: str) -> tuple[int, int]:
-    """Return where the formula starts and ends, without what marks it as mathematics and a full stop after it."""
+    """Return where the formula starts and ends, without dollar signs around it and a full stop after it."""
     start, end = 0, len(source)
 
     def strip() -> None:

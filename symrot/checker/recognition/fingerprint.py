@@ -1,8 +1,9 @@
-"""Values of formulas at points of the field of 2^61 - 1 elements, and what of them does not depend on names.
+"""Fingerprints of formulas: hashes that do not depend on the names of symbols.
 
-Exact arithmetic with remainders: equal functions have equal values, unequal ones differ but by chance of 1e-18. An
-angle is a rational point of the circle. Raising one symbol above all others gives each symbol a signature: the sorted
-signatures are the fingerprint of a formula up to the names of its symbols, equal signatures pair the symbols of two.
+Formulas are evaluated in the field of 2^61 - 1 elements. Its arithmetic is exact: equal functions have equal values,
+and different ones agree with a probability of 1e-18. An angle becomes a rational point of the circle. The signature of
+a symbol is the value of the formula with that symbol raised above all others. The sorted signatures are the
+fingerprint; symbols of two formulas with equal signatures are paired.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,21 +15,22 @@ from sympy import Expr, Rational, S
 
 from symrot.checker.claim.atoms import atoms_of
 
-__all__ = ["PRIME", "Outside", "Print", "fingerprint", "values_at"]
+__all__ = ["PRIME", "Fingerprint", "NotInField", "fingerprint", "values_at"]
 
 PRIME = 2**61 - 1
-"""Three modulo four: a circle without points at infinity, and roots by one power."""
+"""A prime that is 3 modulo 4: the circle then has no points at infinity, and one power gives a square root."""
 DRAWS = tuple((pow(3, 101 + 2 * n, PRIME), pow(3, 102 + 2 * n, PRIME)) for n in range(48))
-"""(value of the raised symbol, value of the others), tried in turn until all is defined."""
+"""(value of the raised symbol, value of the others), tried in turn until the formula is defined."""
 PARTS = 4
-"""Angles are counted in quarters: halves and quarters of an angle are multiples."""
+"""Angles are multiples of a quarter of the symbol, so that halves and quarters of an angle can be read."""
 LARGEST_MULTIPLE = 400
+"""The largest multiple of such a quarter, and the largest exponent, that is evaluated."""
 
 Values = tuple[int, ...]
 
 
-class Outside(Exception):
-    """A formula, or a point, at which there is no value."""
+class NotInField(Exception):
+    """Raised if a formula has no value in the field, at a point or at all."""
 
 
 def values_at(entries: Sequence[Expr], point: Mapping[Expr, int]) -> Values:
@@ -36,8 +38,8 @@ def values_at(entries: Sequence[Expr], point: Mapping[Expr, int]) -> Values:
 
     Raises
     ------
-    Outside
-        For division by zero, roots of what is no square, and functions that have no values here.
+    NotInField
+        For divisions by zero, roots of numbers that are no squares, and functions that the field does not have.
     """
     known: dict[Expr, int] = dict(point)
     return tuple(_value(entry, known) for entry in entries)
@@ -67,9 +69,9 @@ def _computed(node: Expr, known: dict[Expr, int]) -> int:
         return _mixed(227)
     if type(node) in _CIRCULAR:
         above, below = _CIRCULAR[type(node)]
-        point = _turned(node.args[0], known)
+        point = _circle_point(node.args[0], known)
         return (point[above] if above is not None else 1) * (_inverse(point[below]) if below is not None else 1)
-    raise Outside
+    raise NotInField
 
 
 _CIRCULAR = {
@@ -80,7 +82,7 @@ _CIRCULAR = {
 
 def _inverse(value: int) -> int:
     if not value % PRIME:
-        raise Outside
+        raise NotInField
     return pow(value, -1, PRIME)
 
 
@@ -88,33 +90,33 @@ def _root(value: int) -> int:
     """Return the smaller root of a square, so that equal radicands have equal roots."""
     root = pow(value % PRIME, (PRIME + 1) // 4, PRIME)
     if (root * root - value) % PRIME:
-        raise Outside
+        raise NotInField
     return min(root, PRIME - root)
 
 
 def _power(base: int, exponent: Rational) -> int:
     if exponent.q not in (1, 2) or abs(exponent.p) > LARGEST_MULTIPLE:
-        raise Outside
+        raise NotInField
     base = _root(base) if exponent.q == 2 else base
     power = int(exponent.p)
     return pow(base, power, PRIME) if power >= 0 else pow(_inverse(base), -power, PRIME)
 
 
 def _mixed(value: int) -> int:
-    """Return the parameter of a circle point for an angle, unlike any polynomial that a formula may hold."""
+    """Return the parameter of the circle point of an angle, scrambled to be unrelated to other values of a formula."""
     return pow(value + 1_000_003, 65_537, PRIME)
 
 
-def _turned(argument: Expr, known: dict[Expr, int]) -> tuple[int, int]:
+def _circle_point(argument: Expr, known: dict[Expr, int]) -> tuple[int, int]:
     """Return (cosine, sine) of a sum of multiples of angles."""
     total = (1, 0)
     for term in sympy.Add.make_args(sympy.expand(argument)):
         coefficient, angle = term.as_coeff_Mul()
         if not coefficient.is_Rational or angle is S.One:
-            raise Outside
+            raise NotInField
         parts = coefficient * (2 if angle is S.Pi else PARTS)
         if not parts.is_Integer or abs(parts) > LARGEST_MULTIPLE:
-            raise Outside
+            raise NotInField
         if angle is S.Pi:
             point = (0, 1)
         else:
@@ -134,54 +136,54 @@ def _added(first: tuple[int, int], second: tuple[int, int]) -> tuple[int, int]:
 
 
 @dataclass(frozen=True)
-class Print:
-    """The atoms of a formula and their signatures: the values of its entries with that atom raised above the rest."""
+class Fingerprint:
+    """The atoms of a formula with their signatures: the values of its entries with that atom raised above the rest."""
 
     atoms: tuple[Expr, ...]
     signatures: tuple[Values, ...]
-    idle: tuple[Expr, ...] = ()  # atoms that the formula holds and does not depend on
+    idle: tuple[Expr, ...] = ()  # atoms that occur in the formula, which does not depend on them
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return the signatures of the entries in another order, free of a constant factor of all entries."""
+        """Return the signatures of the entries in another order, divided by a constant factor of all entries."""
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
         below = _inverse(next((total[n] for n in order if total[n]), 1))
         return [tuple(values[n] * below % PRIME for n in order) for values in self.signatures]
 
     def key(self, shape: tuple[int, int] | None, order: Sequence[int]) -> str:
-        """Return the fingerprint of the entries in another order, up to names and a constant factor."""
+        """Return the hash of the entries in another order; it ignores names and a constant factor."""
         return sha256(repr((shape, sorted(self.rows(order)))).encode()).hexdigest()[:16]
 
 
-def fingerprint(entries: Sequence[Expr]) -> Print:
+def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
     """Return the signatures of a formula at the first draw where it is defined.
 
     Raises
     ------
-    Outside
-        For a formula without values here, or without symbols.
+    NotInField
+        For a formula without symbols, or without values in the field.
     """
-    held = sorted(atoms_of(entries), key=str)
-    atoms = _active(entries, held)
+    written = sorted(atoms_of(entries), key=str)
+    atoms = _active(entries, written)
     if not atoms:
-        raise Outside
+        raise NotInField
     for raised, others in DRAWS:
         try:
-            rows = [values_at(entries, {a: raised if a == atom else others for a in held}) for atom in atoms]
-        except Outside:
+            rows = [values_at(entries, {a: raised if a == atom else others for a in written}) for atom in atoms]
+        except NotInField:
             continue
-        return Print(tuple(atoms), tuple(rows), tuple(atom for atom in held if atom not in atoms))
-    raise Outside
+        return Fingerprint(tuple(atoms), tuple(rows), tuple(atom for atom in written if atom not in atoms))
+    raise NotInField
 
 
 def _active(entries: Sequence[Expr], atoms: Sequence[Expr]) -> list[Expr]:
-    """Return the atoms that a formula depends on, by its values beside a point."""
+    """Return the atoms that change the values of a formula when they move away from a point."""
     for first, _ in DRAWS:
         point = {atom: pow(first, n + 2, PRIME) for n, atom in enumerate(atoms)}
         here = _defined(entries, point)
         if here is not None:
             break
     else:
-        raise Outside
+        raise NotInField
     return [atom for atom in atoms if _moves(entries, point, atom, here)]
 
 
@@ -193,5 +195,5 @@ def _moves(entries: Sequence[Expr], point: Mapping[Expr, int], atom: Expr, here:
 def _defined(entries: Sequence[Expr], point: Mapping[Expr, int]) -> Values | None:
     try:
         return values_at(entries, point)
-    except Outside:
+    except NotInField:
         return None

@@ -1,7 +1,7 @@
-"""What a formula is: looked up by its fingerprint among what symrot derives, then proven, then named.
+"""Identification of a formula: a look-up by fingerprint among the formulas that symrot derives, then a proof.
 
-Names of symbols do not count, nor do a transposition (active or passive), a sign, and the order in which a
-quaternion's components are stored. Whatever is named has been proven equal by the exact engine.
+A formula is recognised whatever its symbols are called, transposed or not (active or passive), with either sign, and
+for either order of a quaternion's components. Every name that is returned has been proven by the exact engine.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,44 +14,54 @@ from sympy import Expr, Function, ImmutableMatrix, Rational, Symbol
 from sympy.matrices import MatrixBase
 
 from symrot.checker.claim.claims import Claim, claim_of_text, named_formula
-from symrot.checker.claim.interpreter import Meaning, time
+from symrot.checker.claim.interpreter import Interpreter, time
 from symrot.checker.claim.reader import complaint, read_expression
 from symrot.checker.claim.tree import walk
-from symrot.checker.decide.decision import shown
 from symrot.checker.latex.reader import read_latex_formula
-from symrot.checker.recognition.fingerprint import PRIME, Outside, Print, Values, fingerprint, values_at
+from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, Values, fingerprint, values_at
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
 from symrot.errors import InputError
-from symrot.exact.decide import decide, flatten
+from symrot.exact.decide import decide
+from symrot.exact.decision import flatten
+from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import TooLarge
 
 __all__ = ["Identification", "identified", "identify", "named_parts"]
 
 MOST = 8
+"""The most names that are returned by default."""
 MOST_TRIES = 720
-"""Ways of pairing symbols of equal signatures that are tried."""
+"""The most ways of pairing symbols of equal signatures that are tried."""
 MOST_DRAWS = 24
+"""The most points at which the constant factor between two formulas is sought."""
 FACTORS = tuple(Rational(*pair) for pair in ((1, 1), (-1, 1)))
 SCALES = (*FACTORS, *(Rational(*pair) for pair in ((2, 1), (-2, 1), (1, 2), (-1, 2), (4, 1), (1, 4))))
 LAST_FIRST = (3, 0, 1, 2)
-"""The order of the rows of a scalar-last quaternion when the scalar is to stand first."""
+"""The order of the rows of a scalar-last quaternion that puts the scalar first."""
 
 
 @dataclass(frozen=True)
 class Identification:
-    """What a formula is.
+    """A known formula to which a formula has been proven equal.
 
     Attributes
     ----------
     name : str
     how : str
-        What was done to the formula to make it that: ``""`` for nothing, ``"transposed"``, ``"with the other sign"``.
+        The change of the formula under which it is equal: ``""`` for none, ``"transposed"``,
+        ``"with the other sign"``.
     mapping : dict
-        Symbol of the known formula -> what stands for it in the formula; only those of another name.
+        Symbol of the known formula -> symbol of the formula, where their names differ.
     source : str
-        Where symrot has it: a call, or a page with its step.
+        The place of the formula in symrot: a call, or a page with its step.
     proven : bool
-        Always true: what is not proven is not returned.
+        Always true: names without a proof are not returned.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.identify("(A*p**2 + B*q**2 + C*r**2)/2")[0].name
+    'kinetic energy of rotation, principal axes'
     """
 
     name: str
@@ -61,13 +71,13 @@ class Identification:
     proven: bool = True
 
     @property
-    def renamed(self) -> str:
-        """``"with a for dphi"``: what stands for which symbol of the known formula; empty where no name differs."""
+    def renaming(self) -> str:
+        """The symbols that differ as text, ``"with a for dphi"``; empty if none differs."""
         pairs = ", ".join(f"{other} for {own}" for own, other in self.mapping.items())
         return f"with {pairs}" if pairs else ""
 
     def __str__(self) -> str:
-        return "; ".join(part for part in (self.name, self.how, self.renamed) if part)
+        return "; ".join(part for part in (self.name, self.how, self.renaming) if part)
 
     def to_json(self) -> dict[str, Any]:
         """Return the identification as JSON data."""
@@ -76,7 +86,7 @@ class Identification:
 
 @dataclass(frozen=True)
 class View:
-    """A formula with its entries in another order: what was done, the shape, the places of its entries."""
+    """A formula with its entries in another order: the change in words, the shape, and the places of its entries."""
 
     how: str
     shape: tuple[int, int] | None
@@ -84,7 +94,7 @@ class View:
 
 
 def identify(formula: Any, *, most: int = MOST) -> list[Identification]:
-    """Return what a formula is, nearest names first; an empty list for one that is not known.
+    """Return the known formulas to which a formula is equal, nearest names first; an empty list if there is none.
 
     Parameters
     ----------
@@ -93,10 +103,19 @@ def identify(formula: Any, *, most: int = MOST) -> list[Identification]:
     most : int
         How many names to return at most.
 
+    Returns
+    -------
+    list of Identification
+        Each is proven; empty for a formula that symrot does not know.
+
     Raises
     ------
     InputError
         For text that is not understood, with the position.
+
+    Notes
+    -----
+    Source: ``.source`` of each identification names the call or page that derives it.
 
     Examples
     --------
@@ -115,15 +134,15 @@ def _value(formula: Any) -> Any:
         raise InputError(f"expected a formula as text or a SymPy value to identify, got {type(formula).__name__}")
     latex = "\\" in formula or "$" in formula
     if "=" in formula and (named := named_formula(claim_of_text(formula))) is not None:
-        return Meaning(implied=True).read(named[1], formula)
+        return Interpreter(implied=True).read(named[1], formula)
     if not latex and "=" in formula:
         raise complaint(formula, "", formula.index("="), "one formula without '=' to identify")
     text = read_latex_formula(formula) if latex else formula
-    return Meaning(implied=True).read(read_expression(text), text)
+    return Interpreter(implied=True).read(read_expression(text), text)
 
 
 def named_parts(claim: Claim) -> tuple[str, ...]:
-    """Return sentences that say what the matrices of a claim are: its sides, and what it defines and uses."""
+    """Return notes that name the matrices of a claim: its sides, and the definitions that it uses."""
     return tuple(
         f"{place} is the {identification}"
         for place, value in _parts(claim)
@@ -133,37 +152,38 @@ def named_parts(claim: Claim) -> tuple[str, ...]:
 
 
 def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
-    meaning = claim.meaning()
+    """Yield the sides of a claim and the definitions that it uses, each with a word for its place."""
     assert claim.relation is not None
     sides = claim.relation[1:]
-    for place, side in zip(("the left side", "the right side"), sides, strict=True):
+    values = (claim.equation.left, claim.equation.right)
+    for place, side, value in zip(("the left side", "the right side"), sides, values, strict=True):
         if side.kind != "name":
-            yield place, meaning.read(side, claim.sources.get("claim", ""), claim.label("claim"))
+            yield place, value
     used = {node.value for side in sides for _, node in walk(side) if node.kind == "name"}
     for name, _ in claim.define:
         if name in used:
-            yield name, meaning.values[name]
+            yield name, claim.definitions.values[name]
 
 
 def identified(value: Any, steps: bool = True) -> Iterator[Identification]:
-    """Yield what a SymPy value is, nearest names first; steps of derivations only where asked for."""
+    """Yield the identifications of a SymPy value, nearest names first; steps of derivations only if ``steps``."""
     entries, shape = flatten(value)
     try:
         own = fingerprint(entries)
-    except Outside:
+    except NotInField:
         return
-    for views in (_views(shape, len(entries)), _turned(entries, shape)):
-        found = [
+    for views in (_views(shape, len(entries)), _permuted(entries, shape)):
+        matches = [
             match
             for view in views
             for known in by_fingerprint().get(own.key(view.shape, view.order), ())
             if (steps or not known.is_step) and (match := _matched(known, own, entries, view)) is not None
         ]
-        if found:
+        if matches:
             break
-    found.sort(key=lambda match: (len(match.how.split(" and ")) if match.how else 0, len(match.mapping)))
+    matches.sort(key=lambda match: (len(match.how.split(" and ")) if match.how else 0, len(match.mapping)))
     named = set()
-    for identification in found:
+    for identification in matches:
         if identification.name not in named:
             named.add(identification.name)
             yield identification
@@ -176,20 +196,20 @@ def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
     if shape is None or shape == (1, 1):
         return
     rows, columns = shape
-    turned = tuple(i * columns + j for j in range(columns) for i in range(rows))
+    transposed = tuple(i * columns + j for j in range(columns) for i in range(rows))
     how = "transposed" if min(shape) > 1 else "as a row" if columns == 1 else "as a column"
-    yield View(how, (columns, rows), turned)
+    yield View(how, (columns, rows), transposed)
     if 4 not in shape:
         return
     row = LAST_FIRST if rows == 4 else range(rows)
     column = LAST_FIRST if columns == 4 else range(columns)
     stored = tuple(i * columns + j for i in row for j in column)
     yield View("with the scalar part of the quaternion stored last", shape, stored)
-    again = tuple(i * columns + j for j in column for i in row)
-    yield View("transposed and with the scalar part of the quaternion stored last", (columns, rows), again)
+    both = tuple(i * columns + j for j in column for i in row)
+    yield View("transposed and with the scalar part of the quaternion stored last", (columns, rows), both)
 
 
-def _turned(entries: Sequence[Expr], shape: tuple[int, int] | None) -> Iterator[View]:
+def _permuted(entries: Sequence[Expr], shape: tuple[int, int] | None) -> Iterator[View]:
     """Yield a symmetric tensor with its axes in another order."""
     if shape != (3, 3) or any(entries[3 * i + j] != entries[3 * j + i] for i in range(3) for j in range(i)):
         return
@@ -200,15 +220,15 @@ def _turned(entries: Sequence[Expr], shape: tuple[int, int] | None) -> Iterator[
 
 
 @cache
-def _known_value(text: str) -> tuple[tuple[Expr, ...], Print]:
+def _known_value(text: str) -> tuple[tuple[Expr, ...], Fingerprint]:
     tree = read_expression(text)
     names = {str(node.value) for _, node in walk(tree) if node.kind == "name" and node.value != "pi"}
-    meaning = Meaning(values={name: Symbol(name, real=True) for name in names}, implied=True)
-    entries, _ = flatten(meaning.read(tree, text))
+    interpreter = Interpreter(values={name: Symbol(name, real=True) for name in names}, implied=True)
+    entries, _ = flatten(interpreter.read(tree, text))
     return tuple(entries), fingerprint(entries)
 
 
-def _matched(known: Known, own: Print, entries: Sequence[Expr], view: View) -> Identification | None:
+def _matched(known: Known, own: Fingerprint, entries: Sequence[Expr], view: View) -> Identification | None:
     """Return the identification if the formula is proven to be the known one."""
     theirs, print_of = _known_value(known.text)
     ordered = [entries[n] for n in view.order]
@@ -222,11 +242,10 @@ def _matched(known: Known, own: Print, entries: Sequence[Expr], view: View) -> I
                 continue
         except (InputError, TooLarge):
             continue
-        renamed = {
-            shown(mine): shown(other) for mine, other in pairing.items() if not _alike(shown(mine), shown(other))
-        }
-        said = [part for part in (view.how, _said(factor)) if part]
-        return Identification(known.name, " and ".join(said), dict(sorted(renamed.items())), known.source)
+        names = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
+        renaming = {mine: other for mine, other in names if not _alike(mine, other)}
+        changes = [part for part in (view.how, _factor_text(factor)) if part]
+        return Identification(known.name, " and ".join(changes), dict(sorted(renaming.items())), known.source)
     return None
 
 
@@ -235,11 +254,11 @@ def _alike(mine: str, other: str) -> bool:
     return other in (mine, f"{mine}(t)") or (mine.startswith("d") and other == f"diff({mine[1:]}(t), t)")
 
 
-def _said(factor: Rational) -> str:
+def _factor_text(factor: Rational) -> str:
     return {1: "", -1: "with the other sign"}.get(factor, f"{factor} times")
 
 
-def _pairings(theirs: Print, own: Print, order: Sequence[int]) -> Iterator[dict[Expr, Expr]]:
+def _pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Iterator[dict[Expr, Expr]]:
     """Yield the ways of pairing symbols whose signatures agree, equal names first."""
     mine: dict[Values, list[Expr]] = {}
     for atom, row in zip(own.atoms, own.rows(order), strict=True):
@@ -251,8 +270,8 @@ def _pairings(theirs: Print, own: Print, order: Sequence[int]) -> Iterator[dict[
         return
     choices = []
     for row, atoms in groups.items():
-        names = {shown(atom) for atom in atoms}
-        ordered = sorted(mine[row], key=lambda atom: (shown(atom) not in names, shown(atom)))
+        names = {as_text(atom) for atom in atoms}
+        ordered = sorted(mine[row], key=lambda atom: (as_text(atom) not in names, as_text(atom)))
         choices.append([(atoms, chosen) for chosen in _nearest(atoms, ordered)])
     for chosen in product(*choices):
         yield {a: b for atoms, others in chosen for a, b in zip(atoms, others, strict=True)}
@@ -261,7 +280,7 @@ def _pairings(theirs: Print, own: Print, order: Sequence[int]) -> Iterator[dict[
 def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, ...]]:
     """Return the orders of some symbols, those with the most equal names first."""
     orders = list(islice(permutations(others), MOST_TRIES))
-    orders.sort(key=lambda order: sum(shown(a) != shown(b) for a, b in zip(atoms, order, strict=True)))
+    orders.sort(key=lambda order: sum(as_text(a) != as_text(b) for a, b in zip(atoms, order, strict=True)))
     return orders
 
 
@@ -272,14 +291,14 @@ def _factor(
     idle: Sequence[Expr],
     factors: Sequence[Rational],
 ) -> Rational | None:
-    """Return the constant by which two formulas differ at points of their own for each symbol; None if they do more."""
+    """Return the constant factor between two formulas by their values at a point; None if no constant fits."""
     for draw in range(MOST_DRAWS):
         point = {mine: pow(7 + 2 * draw, 40 + 3 * n, PRIME) for n, mine in enumerate(pairing)}
         try:
             left = values_at(theirs, point)
             placed = {pairing[mine]: value for mine, value in point.items()}
             right = values_at(own, placed | dict.fromkeys(idle, draw + 11))
-        except Outside:
+        except NotInField:
             continue
         for factor in factors:
             scale = int(factor.p) * pow(int(factor.q), -1, PRIME)

@@ -1,6 +1,6 @@
-"""The formulas that symrot derives, by name, with their fingerprints: printed to ``known_formulas.toml``.
+"""The formulas that symrot derives, with names and fingerprints: the program that prints ``known_formulas.toml``.
 
-``python -m symrot.checker.recognition.known_formulas`` prints the file anew; nothing in it is typed.
+``python -m symrot.checker.recognition.known_formulas`` prints the file again; none of its formulas is typed by hand.
 """
 
 import tomllib
@@ -13,13 +13,13 @@ from typing import Any
 from sympy import Expr, ImmutableMatrix, Matrix, diag
 
 from symrot import catalogue, symbols
-from symrot.checker.decide.decision import shown
-from symrot.checker.recognition.fingerprint import Outside, fingerprint
+from symrot.checker.recognition.fingerprint import NotInField, fingerprint
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.equations import euler_equations
 from symrot.dynamics.structure import FieldPattern, FieldTorque, Pattern
 from symrot.dynamics.torques import Motion, torque_law
-from symrot.exact.decide import flatten
+from symrot.exact.decision import flatten
+from symrot.exact.printing import as_text
 from symrot.inertia import tensor
 from symrot.inertia.shapes import SHAPES
 from symrot.inertia.solids import solid
@@ -31,14 +31,14 @@ __all__ = ["FILE", "Known", "Named", "by_fingerprint", "derived", "page", "state
 FILE = Path(__file__).with_name("known_formulas.toml")
 LONGEST = 6000
 LONGEST_DERIVED = 900
-"""Letters of a formula that is still kept: one that has a name of its own, or a side of a step."""
+"""The most letters of a formula in the file: of a formula with a name of its own, and of a side of a step."""
 
 FRAMES = ("body", "space")
 
 
 @dataclass(frozen=True)
 class Known:
-    """A formula: what it is, where it comes from, its text; ``scaled`` if it is still that with a constant factor."""
+    """A formula of the file: its name, source and text; ``scaled`` if a constant factor does not change what it is."""
 
     name: str
     source: str
@@ -47,12 +47,12 @@ class Known:
 
     @property
     def is_step(self) -> bool:
-        """Whether it is a side of a step of a derivation, without a name of its own."""
+        """Whether the formula is a side of a step of a derivation, without a name of its own."""
         return ", step " in self.source
 
 
 Named = tuple[str, str, Any]
-"""What it is, where it comes from, the formula."""
+"""Name, source and value of a formula."""
 
 
 def _sequences() -> Iterator[Named]:
@@ -74,44 +74,56 @@ def _sequences() -> Iterator[Named]:
 
 def _axes() -> Iterator[Named]:
     for axis in "xyz":
-        turn = elementary_rotation(axis.upper(), symbols.phi)
-        yield f"rotation about the {axis} axis, body to space", f"R{axis}(phi)", turn
+        rotation = elementary_rotation(axis.upper(), symbols.phi)
+        yield f"rotation about the {axis} axis, body to space", f"R{axis}(phi)", rotation
 
 
 def _quaternions() -> Iterator[Named]:
     q, p = symbols.quaternion, symbols.second_quaternion
     page_of = "derivations/quaternion_rates.md"
-    yield "rotation matrix of a unit quaternion, body to space", "symrot.dcm_of()", quaternion.dcm_of(q)
+    yield (
+        "rotation matrix of a unit quaternion, body to space",
+        "symrot.quaternion_to_dcm()",
+        quaternion.quaternion_to_dcm(q),
+    )
     for form in ("homogeneous", "normalised"):
-        matrix = quaternion.dcm_of(q, form)
-        yield f"rotation matrix of a quaternion, {form}, body to space", f'symrot.dcm_of(q, "{form}")', matrix
-    yield "quaternion product q p", "symrot.qmul(q, p)", quaternion.qmul(q, p)
-    yield "matrix of the product with a quaternion on the left", "symrot.qmul", quaternion.left_matrix(q)
-    yield "matrix of the product with a quaternion on the right", "symrot.qmul", quaternion.right_matrix(q)
+        matrix = quaternion.quaternion_to_dcm(q, form)
+        yield (
+            f"rotation matrix of a quaternion, {form}, body to space",
+            f'symrot.quaternion_to_dcm(q, "{form}")',
+            matrix,
+        )
+    yield "quaternion product q p", "symrot.quaternion_product(q, p)", quaternion.quaternion_product(q, p)
+    yield "matrix of the product with a quaternion on the left", "symrot.quaternion_product", quaternion.left_matrix(q)
+    yield (
+        "matrix of the product with a quaternion on the right",
+        "symrot.quaternion_product",
+        quaternion.right_matrix(q),
+    )
     for frame in FRAMES:
         rates, jacobian = quaternion.quaternion_rates(frame), quaternion.quaternion_rate_jacobian(frame)
         omega = Matrix(symbols.omega_b if frame == "body" else symbols.omega_s)
         yield f"quaternion rate matrix, {frame} frame, dq/dt = E omega", f'symrot.quaternion_rates("{frame}")', rates
         yield f"quaternion rates from omega in the {frame} frame", page_of, rates * omega
         yield f"quaternion rate Jacobian, {frame} frame, omega = B dq/dt", page_of, jacobian.as_immutable()
-        turned = jacobian.as_immutable() * Matrix(symbols.quaternion_rates)
-        yield f"angular velocity of a quaternion in the {frame} frame", page_of, turned
+        omega_of_rates = jacobian.as_immutable() * Matrix(symbols.quaternion_rates)
+        yield f"angular velocity of a quaternion in the {frame} frame", page_of, omega_of_rates
 
 
 def _vectors() -> Iterator[Named]:
     yield "skew matrix of a vector, [v] w = v x w", "skew(v1, v2, v3)", skew(symbols.rotation_vector)
     pair = Matrix(symbols.rotation_vector), Matrix(symbols.axis)
     yield "cross product v x n", "cross(v, n)", pair[0].cross(pair[1])
-    for name, spoken in (("rotation_vector", "rotation vector"), ("rodrigues", "Rodrigues parameters"),
-                         ("mrp", "modified Rodrigues parameters")):  # fmt: skip
-        found = attitude.chart(name)
+    for name, title in (("rotation_vector", "rotation vector"), ("rodrigues", "Rodrigues parameters"),
+                        ("mrp", "modified Rodrigues parameters")):  # fmt: skip
+        chart = attitude.chart(name)
         page_of = f"derivations/{'rotation_vector' if name == 'rotation_vector' else 'rodrigues'}.md"
-        yield f"rotation matrix of the {spoken}, body to space", page_of, found.dcm
-        yield f"quaternion of the {spoken}", page_of, found.quaternion
+        yield f"rotation matrix of the {title}, body to space", page_of, chart.dcm
+        yield f"quaternion of the {title}", page_of, chart.quaternion
         for frame in FRAMES:
-            matrix = found.rate_matrix(frame)
-            yield f"{frame}-frame rate Jacobian of the {spoken}", page_of, matrix.as_immutable()
-            yield f"inverse {frame}-frame rate Jacobian of the {spoken}", page_of, matrix.inverse
+            matrix = chart.rate_matrix(frame)
+            yield f"{frame}-frame rate Jacobian of the {title}", page_of, matrix.as_immutable()
+            yield f"inverse {frame}-frame rate Jacobian of the {title}", page_of, matrix.inverse
     page_of = "derivations/axis_and_angle.md"
     yield "rotation matrix of axis and angle (Rodrigues' formula)", page_of, rotation_vector.dcm_of_axis_angle()
     yield "quaternion of axis and angle", page_of, rotation_vector.quaternion_of_axis_angle()
@@ -127,23 +139,23 @@ PLACES = {
     "box": (("a corner", ("a/2", "b/2", "c/2")),),
     "plate": (("a corner", ("a/2", "b/2", "0")), ("the middle of a side", ("a/2", "0", "0"))),
 }
-"""Shape -> points with a name, in the axes and symbols of the shape."""
+"""Shape -> (name, position) of special points, in the axes and symbols of the shape."""
 
 
 def _solids() -> Iterator[Named]:
     for name, shape in SHAPES.items():
         if shape.kind == "points":
             continue
-        body, spoken = solid(name), name.replace("_", " ")
+        body, title = solid(name), name.replace("_", " ")
         places = [("its centre of mass", tuple(body.center_of_mass))]
         if any(body.center_of_mass):
             places.append((shape.axes.split(",")[0].removeprefix("origin at ").removeprefix("corners "), (0, 0, 0)))
         for where, point in [*places, *PLACES.get(name, ())]:
             matrix = body.inertia_about(point)
             source = f'symrot.solid("{name}").inertia_about(({", ".join(map(str, point))}))'
-            yield f"inertia tensor of a {spoken} about {where}", source, matrix
+            yield f"inertia tensor of a {title} about {where}", source, matrix
             for place, axis in enumerate("xyz"):
-                yield f"moment of inertia of a {spoken} about {where}, {axis} axis", source, matrix[place, place]
+                yield f"moment of inertia of a {title} about {where}, {axis} axis", source, matrix[place, place]
 
 
 def _mechanics() -> Iterator[Named]:
@@ -155,14 +167,14 @@ def _mechanics() -> Iterator[Named]:
     page_of = "derivations/euler_equations.md"
     yield "Euler's equations of a free body, solved for the rates", page_of, euler_equations(moments, None)
     yield "Euler's equations, solved for the rates", page_of, euler_equations(moments)
-    for inertia, spoken in ((principal, "principal axes"), (full, "any body axes")):
+    for inertia, axes in ((principal, "principal axes"), (full, "any body axes")):
         momentum = inertia * omega
         needed = inertia * rates + omega.cross(momentum)
-        yield f"torque by Euler's equations, {spoken}", page_of, needed
-        yield f"Euler's equations as torque minus its need, {spoken}", page_of, torque - needed
-        yield f"gyroscopic torque omega x I omega, {spoken}", page_of, omega.cross(momentum)
-        yield f"angular momentum I omega, {spoken}", "derivations/angular_momentum.md", momentum
-        yield f"kinetic energy of rotation, {spoken}", "derivations/kinetic_energy.md", omega.dot(momentum) / 2
+        yield f"torque by Euler's equations, {axes}", page_of, needed
+        yield f"Euler's equations as torque minus its need, {axes}", page_of, torque - needed
+        yield f"gyroscopic torque omega x I omega, {axes}", page_of, omega.cross(momentum)
+        yield f"angular momentum I omega, {axes}", "derivations/angular_momentum.md", momentum
+        yield f"kinetic energy of rotation, {axes}", "derivations/kinetic_energy.md", omega.dot(momentum) / 2
     point = Matrix(tensor.inertia_of_point(symbols.m, symbols.position))
     page_of = "derivations/parallel_axis.md"
     yield "inertia tensor of a point mass, which is what the parallel-axis theorem adds", page_of, point
@@ -179,21 +191,21 @@ ACTING: tuple[tuple[str, str, dict[str, FieldPattern]], ...] = (
     ("damping", "linear damping", {"linear": VECTOR, "quadratic": ZERO}),
     ("spring", "torsional spring", {"stiffness": FREE, "attitude": (FREE,) * 4}),
 )  # fmt: skip
-"""Kind of torque, what it is, and which of its values are symbols."""
+"""Kind of a torque, its name, and the pattern of each of its values: FREE stands for a symbol."""
 
 
 def _torques() -> Iterator[Named]:
     motion = Motion(Matrix(symbols.omega_b), symbols.quaternion, diag(*symbols.principal))
-    for kind, spoken, fields in ACTING:
+    for kind, title, fields in ACTING:
         law = torque_law(FieldTorque(kind, "", tuple(fields.items())), motion)
         source = f'symrot.dynamics.torques, kind "{kind}"'
-        yield f"torque of {spoken}, body components", source, law.torque
+        yield f"torque of {title}, body components", source, law.torque
         if law.potential is not None:
-            yield f"potential of {spoken}", source, law.potential
+            yield f"potential of {title}", source, law.potential
 
 
 def stated() -> Iterator[Named]:
-    """Yield the formulas of kinematics, inertia and dynamics, in a fixed order, the components of columns last."""
+    """Yield the formulas of kinematics, inertia and dynamics in a fixed order, then the components of columns."""
     columns: list[Named] = []
     for group in (_axes, _sequences, _quaternions, _vectors, _solids, _mechanics, _torques):
         for name, source, value in group():
@@ -207,57 +219,57 @@ def stated() -> Iterator[Named]:
 
 
 COMPONENTS = {(3, 1): ("first", "second", "third"), (4, 1): ("scalar", "first", "second", "third")}
-"""Shape of a column -> how its components are called; those of a quaternion begin with the scalar one."""
+"""Shape of a column -> the names of its components; a quaternion begins with the scalar."""
 LEAST_OF_COMPONENT = 3
-"""Symbols of a component that is looked up by itself: one of fewer is too many things."""
+"""The fewest symbols of a component that is looked up by itself: one with fewer symbols could be too many formulas."""
 
 
 def derived() -> Iterator[Named]:
     """Yield both sides of the steps of all derivations."""
     for name in catalogue.names():
-        found = catalogue.derivation(name)
-        for number, step in enumerate(found.steps, start=1):
+        derivation = catalogue.derivation(name)
+        for number, step in enumerate(derivation.steps, start=1):
             claim = " ".join(step.claim.split()).rstrip(".:")
             between = (side for _, before, after in step.via for side in (before, after))
             for side in (step.left, step.right, *between):
-                yield f"{found.title}: {claim}", f"derivations/{name}.md, step {number}", side
+                yield f"{derivation.title}: {claim}", f"derivations/{name}.md, step {number}", side
 
 
-def _kept(formulas: Iterator[Named], least: int, longest: int) -> Iterator[tuple[str, Known]]:
-    """Yield fingerprints and formulas: each formula once, of at least so many symbols, of a length people write."""
+def _selected(formulas: Iterator[Named], least: int, longest: int) -> Iterator[tuple[str, Known]]:
+    """Yield (fingerprint, formula), each once, of at least ``least`` symbols and at most ``longest`` letters."""
     seen = set()
     for name, source, value in formulas:
         entries, shape = flatten(value)
         if sum(entry.count_ops() for entry in entries) > longest // 3:
             continue
-        text = " ".join(shown(ImmutableMatrix(value) if shape else value).split())
+        text = " ".join(as_text(ImmutableMatrix(value) if shape else value).split())
         try:
-            found = fingerprint(entries)
-        except Outside:
+            own = fingerprint(entries)
+        except NotInField:
             continue
-        if _is_general(entries) or len(found.atoms) < least or len(text) > longest or (name, text) in seen:
+        if _is_general(entries) or len(own.atoms) < least or len(text) > longest or (name, text) in seen:
             continue
         seen.add((name, text))
         scaled = "quaternion rate" in name
-        yield found.key(shape, range(len(entries))), Known(name, source, text, scaled)
+        yield own.key(shape, range(len(entries))), Known(name, source, text, scaled)
 
 
 def _is_general(entries: Sequence[Expr]) -> bool:
-    """Return whether the entries are symbols of their own and nothing else: any vector, any diagonal matrix."""
-    held = [entry for entry in entries if entry != 0]
-    return all(entry.is_Symbol for entry in held) and len(set(held)) == len(held)
+    """Return whether the nonzero entries are different symbols: any vector or diagonal matrix has this form."""
+    nonzero = [entry for entry in entries if entry != 0]
+    return all(entry.is_Symbol for entry in nonzero) and len(set(nonzero)) == len(nonzero)
 
 
 def page(*groups: Iterator[Named]) -> str:
-    """Return ``known_formulas.toml``, or its beginning: of some groups of formulas."""
+    """Return the text of ``known_formulas.toml``, or, for a test, the text for some groups of formulas."""
     lines = [
         "# What symrot derives, by fingerprint (checker/recognition/fingerprint.py), up to the names of symbols.",
         "# Printed by `python -m symrot.checker.recognition.known_formulas`; do not edit.",
     ]
     texts: set[str] = set()
-    kept = ((1, LONGEST), (3, LONGEST_DERIVED))
-    for (least, longest), formulas in zip(kept, groups or (stated(), derived()), strict=False):
-        for key, known in _kept(formulas, least, longest):
+    bounds = ((1, LONGEST), (3, LONGEST_DERIVED))
+    for (least, longest), formulas in zip(bounds, groups or (stated(), derived()), strict=False):
+        for key, known in _selected(formulas, least, longest):
             if least > 1 and known.text in texts:
                 continue
             texts.add(known.text)
@@ -274,10 +286,10 @@ def _quoted(text: str) -> str:
 @cache
 def by_fingerprint() -> dict[str, list[Known]]:
     """Return the formulas of the file by their fingerprint."""
-    found: dict[str, list[Known]] = {}
+    formulas: dict[str, list[Known]] = {}
     for entry in tomllib.loads(FILE.read_text(encoding="utf-8"))["formula"]:
-        found.setdefault(entry.pop("key"), []).append(Known(**entry))
-    return found
+        formulas.setdefault(entry.pop("key"), []).append(Known(**entry))
+    return formulas
 
 
 if __name__ == "__main__":

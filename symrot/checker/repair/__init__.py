@@ -1,1 +1,1 @@
-"""Find what is wrong with a false claim, and the nearest formulas that are true."""
+"""The diagnosis of a false claim, and the nearest true formulas."""

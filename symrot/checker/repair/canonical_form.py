@@ -1,23 +1,23 @@
-"""One way of writing for formulas that differ only in the order of terms and factors, and in where numbers stand."""
+"""The canonical form of a tree: equal for formulas that differ only in the order of terms, factors and numbers."""
 
 from collections.abc import Callable
 from fractions import Fraction
 
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text
 
-__all__ = ["settled"]
+__all__ = ["canonical"]
 
 
-def settled(node: Node, is_matrix: Callable[[Node], bool]) -> Node:
-    """Return a tree with terms and scalar factors in order, numbers in front, signs outside.
+def canonical(node: Node, is_matrix: Callable[[Node], bool]) -> Node:
+    """Return a tree with sorted terms and scalar factors, numbers in front, and signs outside.
 
     Parameters
     ----------
     node : Node
     is_matrix : function
-        Whether a piece is a matrix: the order of those in a product is kept.
+        Whether a piece is a matrix; matrices in a product stay in their order.
     """
-    args = [settled(child, is_matrix) for child in node.args]
+    args = [canonical(child, is_matrix) for child in node.args]
     if node.kind == "sum":
         return sum_of(sorted(sum_of(args).args or args, key=text))
     if node.kind == "neg":

@@ -1,6 +1,6 @@
 """Dual numbers, and elementary functions of numbers, arrays and dual numbers.
 
-To differentiate is to evaluate again with every value lifted to ``x + x' e``, where ``e^2 = 0``.
+A formula is differentiated by evaluating it at dual numbers ``x + x' e`` with ``e^2 = 0``.
 """
 
 import math
@@ -10,18 +10,18 @@ from typing import Any
 import numpy as np
 
 __all__ = [
-    "Dual", "Meaningless", "absolute", "arctangent", "as_dual", "cosine", "exponential", "inverse", "logarithm",
+    "Dual", "UndefinedValue", "absolute", "arctangent", "as_dual", "cosine", "exponential", "inverse", "logarithm",
     "minus", "plain", "power", "sine", "square_root",
 ]  # fmt: skip
 
 
-class Meaningless(ValueError):
-    """A tree without a value at a point: shapes that do not fit, a root of a negative number, an unknown name."""
+class UndefinedValue(ValueError):
+    """Raised for a tree without a value: shapes that do not fit, a root of a negative number, an unknown name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Dual:
-    """``value + slope e`` with ``e^2 = 0``; both parts may be dual again."""
+    """The dual number ``value + slope e`` with ``e^2 = 0``; both parts may be dual numbers themselves."""
 
     value: Any
     slope: Any
@@ -42,7 +42,7 @@ class Dual:
 
 
 def as_dual(value: Any) -> Dual:
-    """Return a number as a dual number without slope."""
+    """Return a number as a dual number with slope 0."""
     return value if isinstance(value, Dual) else Dual(value, 0)
 
 
@@ -60,7 +60,7 @@ def minus(x: Any) -> Any:
 
 
 def _plainly(function: Any, x: Any) -> Any:
-    """Return a function of a number, or of the numbers of a grid."""
+    """Return the value of a function at a number, or at each number of a grid."""
     return function(x) if isinstance(x, np.ndarray) else getattr(math, function.__name__)(x)
 
 
@@ -75,7 +75,7 @@ def cosine(x: Any) -> Any:
 
 
 def square_root(x: Any) -> Any:
-    """Return the root of a number that is not negative."""
+    """Return the square root of a number that is not negative."""
     if isinstance(x, Dual):
         root = square_root(x.value)
         return Dual(root, inverse(2.0 * root) * x.slope)
@@ -90,7 +90,7 @@ def absolute(x: Any) -> Any:
 
 
 def plain(x: Any) -> float:
-    """Return the value of a number, however often it was lifted."""
+    """Return the real number in a dual number of any depth."""
     while isinstance(x, Dual):
         x = x.value
     return float(x)
@@ -119,7 +119,7 @@ def logarithm(x: Any) -> Any:
 
 
 def power(x: Any, exponent: float) -> Any:
-    """Return x to a rational power; ``Meaningless`` for a fractional power of a negative number."""
+    """Return x to a rational power; raise UndefinedValue for a fractional power of a negative number."""
     if exponent == int(exponent) and abs(exponent) <= 64:
         whole = int(exponent)
         result: Any = 1.0
@@ -129,5 +129,5 @@ def power(x: Any, exponent: float) -> Any:
     if isinstance(x, Dual):
         return Dual(power(x.value, exponent), exponent * power(x.value, exponent - 1) * x.slope)
     if np.any(x < 0):
-        raise Meaningless("a fractional power of a negative number")
+        raise UndefinedValue("a fractional power of a negative number")
     return x**exponent

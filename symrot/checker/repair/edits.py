@@ -1,7 +1,7 @@
-"""The faults that occur in practice, as edits of a tree: each with its code and its cost, the nearest first.
+"""The faults that occur in practice as edits of a tree, each with a code and a cost.
 
-An edit changes one piece. ``single_edits`` yields all edits of a tree; what they mean together, and whether the result
-is true, is for :mod:`symrot.checker.repair.diagnose` to find out.
+An edit changes one piece; the smaller its cost, the more likely its fault. ``single_edits`` yields all edits of a tree;
+:mod:`symrot.checker.repair.diagnose` combines them and finds out which results are true.
 """
 
 import re
@@ -11,22 +11,22 @@ from fractions import Fraction
 
 from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
 
-__all__ = ["OPPOSITE", "TEXTS", "Edit", "neat", "neighbours", "single_edits"]
+__all__ = ["COST", "FAULT_DESCRIPTIONS", "OPPOSITE", "Edit", "neighbours", "normalise_factors", "single_edits"]
 
-TEXTS = {
+FAULT_DESCRIPTIONS = {
     "none": "",
     "frame_body_space": "the body frame and the space frame are exchanged",
-    "active_passive_transpose": "a rotation stands for its inverse: active for passive, or a transpose",
+    "active_passive_transpose": "a rotation is used in place of its inverse: active for passive, or a transpose",
     "quaternion_product_order": "the factors of a quaternion product are exchanged",
     "quaternion_storage_order": "the components of a quaternion are stored in another order",
     "sign_of_term": "a term has the wrong sign",
     "overall_sign": "a whole side has the wrong sign",
     "commutator_order": "the factors of a matrix product are exchanged",
     "factor": "a factor is wrong, missing or too many",
-    "half_angle": "an angle stands where half of it belongs",
-    "double_half_angle": "an angle stands where twice of it belongs",
+    "half_angle": "an angle is used in place of its half",
+    "double_half_angle": "an angle is used in place of its double",
     "sin_cos_swap": "sine and cosine are exchanged",
-    "wrong_symbol": "a symbol stands where another one belongs",
+    "wrong_symbol": "a symbol is used in place of another one",
     "missing_term": "a term is missing",
     "extra_term": "there is a term too many",
     "inertia_product_sign": "the products of inertia have the other sign",
@@ -38,7 +38,7 @@ TEXTS = {
     "sign_branch": "it holds on one branch of a root only",
     "principal_value": "it holds for principal values of the inverse function only",
 }
-"""Code of a diagnosis -> what it says."""
+"""Code of a diagnosis -> its sentence."""
 
 COST = {
     "frame_body_space": 0.55, "active_passive_transpose": 0.6, "quaternion_product_order": 0.6,
@@ -46,12 +46,31 @@ COST = {
     "inertia_product_sign": 0.65, "sign_of_term": 0.8, "overall_sign": 0.75,
     "sin_cos_swap": 1.0, "wrong_symbol": 1.0, "half_angle": 1.05, "double_half_angle": 1.05, "factor": 1.1,
     "wrong_sequence_type": 1.2, "extra_term": 1.5, "missing_term": 1.6,
+    # added to the cost of the code
+    "in_definition": 0.4, "number_off_by_one": 0.15, "square_left_out": 0.15, "name_transposed": 0.02,
+    "rows_as_columns": 0.01, "cross_product_order": 0.02, "factor_removed": 0.1, "product_doubled_or_halved": 0.05,
+    "quotient_inverted": 0.1, "quaternion_conjugated": 0.05, "sequence_reversed": -0.3, "three_axes_changed": 0.2,
+    # one fault everywhere in a tree
+    "angle_everywhere": 0.9, "angle_everywhere_often": 1.07, "sin_cos_swap_everywhere": 0.95,
+    "transpose_everywhere": 0.58,
+    # several wrong entries of a matrix, each with its own edit: times the sum of the costs of these edits
+    "share_of_entries": 0.6,
+    # additions to a tree
+    "missing_term_of_entry": 1.75, "missing_term_in_bracket": 1.8, "missing_matrix": 1.4, "other_definition": 1.3,
+    # a piece replaced by the value that it needs
+    "solved_sign": 0.85, "solved_factor_2": 1.16, "solved_rational_factor": 1.3, "solved_number": 1.25,
+    "solved_factor": 1.22, "solved_factor_of_number": 0.5, "solved_term_of_sum": 1.5, "solved_term": 1.65,
+    "solved_swap": 1.0, "solved_neighbour": 1.0, "solved_symbol": 1.2, "solved_matrix_term": 0.04,
+    # growth with the size of the inserted formula, and with the depth of the piece
+    "per_piece_added": 0.02, "rational_in_front": 0.04, "per_level": 0.01, "per_level_of_matrix": 0.05,
 }  # fmt: skip
+"""Costs of edits, by code or by kind of edit: the order in which repairs are tried and offered."""
 
 MOST_NEIGHBOURS = 12
+"""The most names that are tried in place of one name."""
 
 FEW = 3
-"""Occurrences of an angle that are as easily wrong together as one of them alone."""
+"""The number of occurrences of an angle up to which all of them are as easily wrong together as one alone."""
 
 OPPOSITE = {"sin": "cos", "cos": "sin", "tan": "cot", "cot": "tan", "sec": "csc", "csc": "sec"}
 ROTATIONS = ("Rx", "Ry", "Rz")
@@ -71,14 +90,15 @@ class Edit:
 
 
 def neighbours(name: str, names: Collection[str]) -> list[str]:
-    """Return the names that are easily written for a name: other indices of the same letter, its family, its case."""
+    """Return the names that are easily confused with a name: other indices, other case, the same family."""
     family = next((set(members) for members in FAMILIES if name in members), set())
     match = _STEM.fullmatch(name)
     stem = match and match[1]
     near = []
     for other in names:
-        found = _STEM.fullmatch(other)
-        same = other in family or other.lower() == name.lower() or (stem and found and found[1] == stem)
+        other_match = _STEM.fullmatch(other)
+        same_stem = stem and other_match and other_match[1] == stem
+        same = other in family or other.lower() == name.lower() or same_stem
         if other != name and same:
             near.append(other)
     return sorted(near)[:MOST_NEIGHBOURS]
@@ -92,17 +112,17 @@ def single_edits(
     moving: bool,
     opened: Callable[[Path], bool] = lambda path: True,
 ) -> Iterator[Edit]:
-    """Yield every single edit of a tree, those of many pieces at once first.
+    """Yield every single edit of a tree; edits that change a thing everywhere come first.
 
     Parameters
     ----------
     tree : Node
     names, functions : collection of str
-        Symbols and definitions, and functions of time, that may stand for each other.
+        Symbols and definitions, and functions of time, that may have been confused with each other.
     matrices : function
         Whether a piece is a matrix.
     moving : bool
-        Whether the claim differentiates: an exchanged order is then one of frames.
+        Whether the claim contains a derivative: an exchanged order of factors then means exchanged frames.
     opened : function
         Whether the piece at a path may be changed.
     """
@@ -117,7 +137,7 @@ def single_edits(
 
 
 def _put(tree: Node, path: Path, made: Node) -> Node:
-    """Return a tree with another piece: a sign comes in front of a product, terms join the sum that holds them."""
+    """Return a tree with a piece replaced; signs move in front of products, terms join the sum around them."""
     if path and made.kind in ("neg", "sum", "product"):
         *above, place = path
         return replaced(tree, tuple(above), lambda node: _regrouped(node, place, made))
@@ -134,13 +154,14 @@ def _regrouped(node: Node, place: int, made: Node) -> Node:
 
 
 Change = tuple[str, Node, float]
+"""The code of an edit, the new piece, and the cost beyond that of the code."""
 
 
 def _changes(
     node: Node, path: Path, names: Collection[str], functions: Collection[str],
     matrices: Callable[[Node], bool], order: str, lone: bool,
 ) -> Iterator[Change]:  # fmt: skip
-    """Yield (code, piece, extra cost) for one piece; a lone one is an entry of a matrix."""
+    """Yield the edits of one piece; ``lone`` says that it is an entry of a matrix or a list."""
     if node.kind == "sum":
         yield from _of_sum(node, matrices)
     elif node.kind == "product":
@@ -153,9 +174,10 @@ def _changes(
     elif node.kind == "number":
         for value in (node.value * 2, node.value / 2, node.value + 1, node.value - 1):
             if value > 0 or (value == 0 and (not path or lone)):
-                yield "factor", number(value), 0.0 if value in (node.value * 2, node.value / 2) else 0.15
+                doubled = value in (node.value * 2, node.value / 2)
+                yield "factor", number(value), 0.0 if doubled else COST["number_off_by_one"]
     elif node.kind == "power" and node.args[0].kind == "call" and node.args[1].value == 2:
-        yield "factor", node.args[0], 0.15
+        yield "factor", node.args[0], COST["square_left_out"]
     elif node.kind == "transpose":
         yield "active_passive_transpose", node.args[0], 0.0
     if node.kind == "call" and node.value == "Matrix" and node.args[0].kind == "list":
@@ -168,23 +190,24 @@ def _changes(
                 made = (*node.args[:place], negated(member), *node.args[place + 1 :])
                 yield "sign_of_term", replace(node, args=made), 0.0
     if node.kind in ("name", "call") and matrices(node) and not _is_own_transpose(node):
-        yield "active_passive_transpose", Node("transpose", None, (node,)), 0.02
+        yield "active_passive_transpose", Node("transpose", None, (node,)), COST["name_transposed"]
     if node.kind != "number" and node.kind != "list" and (not path or node.kind == "neg"):
         yield "overall_sign" if not path else "sign_of_term", negated(node), 0.0
 
 
 def _of_rows(node: Node) -> Iterator[Change]:
-    """Yield a square matrix that is written out with its rows as columns."""
+    """Yield the transpose of a square matrix that is written out."""
     (written,) = node.args
     size = len(written.args)
     if size > 1 and all(row.kind == "list" and len(row.args) == size for row in written.args):
         columns = zip(*(row.args for row in written.args), strict=True)
-        turned = [replace(row, args=tuple(column)) for row, column in zip(written.args, columns, strict=True)]
-        yield "active_passive_transpose", replace(node, args=(replace(written, args=tuple(turned)),)), 0.01
+        rows = tuple(replace(row, args=tuple(column)) for row, column in zip(written.args, columns, strict=True))
+        transposed = replace(node, args=(replace(written, args=rows),))
+        yield "active_passive_transpose", transposed, COST["rows_as_columns"]
 
 
 def _is_own_transpose(node: Node) -> bool:
-    """Return whether a transpose changes nothing, or only the shape, or is the same as another edit."""
+    """Return whether a transpose changes nothing or only the shape, or equals another edit."""
     return node.kind == "call" and node.value in ("vee", "qmul", "Matrix", "eye", "diag", "cross", *ROTATIONS)
 
 
@@ -209,18 +232,17 @@ def _of_product(node: Node, matrices: Callable[[Node], bool], order: str) -> Ite
         first, second = factors[place : place + 2]
         if matrices(first) and matrices(second) and first != second:
             yield order, product([*factors[:place], second, first, *factors[place + 2 :]]), 0.0
-    turns = [place for place, factor in enumerate(factors) if factor.kind == "call" and factor.value in ROTATIONS]
-    if len(turns) == len(factors) > 1:
+    if len(factors) > 1 and all(factor.kind == "call" and factor.value in ROTATIONS for factor in factors):
         yield from _of_sequence(factors)
     for place in range(len(factors)):
         rest = [*factors[:place], *factors[place + 1 :]]
         if all(factor.kind == "inv" for factor in rest):
             rest = [number(1), *rest]
-        yield "factor", product(rest), 0.1
+        yield "factor", product(rest), COST["factor_removed"]
     yield from _of_quotients(factors)
     if not any(map(matrices, factors)):
-        yield "factor", product([number(2), node]), 0.05
-        yield "factor", product([number(Fraction(1, 2)), node]), 0.05
+        yield "factor", product([number(2), node]), COST["product_doubled_or_halved"]
+        yield "factor", product([number(Fraction(1, 2)), node]), COST["product_doubled_or_halved"]
 
 
 def _of_quotients(factors: list[Node]) -> Iterator[Change]:
@@ -232,12 +254,12 @@ def _of_quotients(factors: list[Node]) -> Iterator[Change]:
             if factor.kind == "name":
                 made = list(factors)
                 made[above], made[below] = divisor.args[0], Node("inv", None, (factor,))
-                yield "wrong_symbol", product(made), 0.1
+                yield "wrong_symbol", product(made), COST["quotient_inverted"]
 
 
 def _of_sequence(factors: list[Node]) -> Iterator[Change]:
     """Yield the product of elementary rotations in the other order, and about other axes."""
-    yield "wrong_sequence_type", product(factors[::-1]), -0.3
+    yield "wrong_sequence_type", product(factors[::-1]), COST["sequence_reversed"]
     angles = [factor.args for factor in factors]
     for place, factor in enumerate(factors):
         for axis in ROTATIONS:
@@ -249,8 +271,9 @@ def _of_sequence(factors: list[Node]) -> Iterator[Change]:
             for second in ROTATIONS:
                 for third in ROTATIONS:
                     if first != second != third:
-                        turned = [Node("call", a, args) for a, args in zip((first, second, third), angles, strict=True)]
-                        yield "wrong_sequence_type", product(turned), 0.2
+                        axes = (first, second, third)
+                        made = [Node("call", axis, args) for axis, args in zip(axes, angles, strict=True)]
+                        yield "wrong_sequence_type", product(made), COST["three_axes_changed"]
 
 
 def _of_call(node: Node, functions: Collection[str]) -> Iterator[Change]:
@@ -268,7 +291,7 @@ def _of_call(node: Node, functions: Collection[str]) -> Iterator[Change]:
     elif name == "qmul":
         yield "quaternion_product_order", replace(node, args=arguments[::-1]), 0.0
     elif name == "cross":
-        yield "sign_of_term", replace(node, args=arguments[::-1]), 0.02
+        yield "sign_of_term", replace(node, args=arguments[::-1]), COST["cross_product_order"]
     elif name in functions:
         for other in neighbours(name, functions):
             yield "wrong_symbol", replace(node, value=other), 0.0
@@ -281,33 +304,34 @@ def _of_quaternion(node: Node) -> Iterator[Change]:
     first, *vector = node.args
     yield "quaternion_storage_order", replace(node, args=(*vector, first)), 0.0
     yield "quaternion_storage_order", replace(node, args=(node.args[3], *node.args[:3])), 0.0
-    if not all(member.kind == "list" for member in node.args):
-        yield "active_passive_transpose", replace(node, args=(first, *map(negated, vector))), 0.05
-        return
-    turned = [replace(member, args=tuple(map(negated, member.args))) for member in vector]
-    yield "active_passive_transpose", replace(node, args=(first, *turned)), 0.05
+    if all(member.kind == "list" for member in node.args):
+        conjugate = [replace(member, args=tuple(map(negated, member.args))) for member in vector]
+    else:
+        conjugate = [negated(member) for member in vector]
+    yield "active_passive_transpose", replace(node, args=(first, *conjugate)), COST["quaternion_conjugated"]
 
 
 def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
-    """Yield changes of one thing wherever it occurs: an angle, a matrix by name, all products of inertia."""
-    found = [node for _, node in walk(tree)]
-    angles = {node.args[0] for node in found if node.kind == "call" and node.value in OPPOSITE}
-    arguments = [node.args[0] for node in found if node.kind == "call" and node.value in OPPOSITE]
+    """Yield edits that change a thing wherever it occurs: an angle, a matrix by name, all products of inertia."""
+    nodes = [node for _, node in walk(tree)]
+    angles = {node.args[0] for node in nodes if node.kind == "call" and node.value in OPPOSITE}
+    arguments = [node.args[0] for node in nodes if node.kind == "call" and node.value in OPPOSITE]
     repeated = [angle for angle in angles if arguments.count(angle) > 1]
     for angle in sorted(repeated, key=str):
         for code, made in (
             ("half_angle", product([angle, Node("inv", None, (number(2),))])),
             ("double_half_angle", product([number(2), angle])),
         ):
-            cost = 0.9 if arguments.count(angle) <= FEW else 1.07
+            cost = COST["angle_everywhere" if arguments.count(angle) <= FEW else "angle_everywhere_often"]
             yield Edit(code, cost, (), _substituted(tree, angle, made, inside=OPPOSITE))
         swapped = _swapped_functions(tree, angle)
-        yield Edit("sin_cos_swap", 0.95, (), swapped)
-    names = sorted({node.value for node in found if node.kind == "name"})
+        yield Edit("sin_cos_swap", COST["sin_cos_swap_everywhere"], (), swapped)
+    names = sorted({node.value for node in nodes if node.kind == "name"})
     for name in names:
         node = Node("name", name)
-        if sum(other == node for other in found) > 1 and matrices(node):
-            yield Edit("active_passive_transpose", 0.58, (), _substituted(tree, node, Node("transpose", None, (node,))))
+        if sum(other == node for other in nodes) > 1 and matrices(node):
+            transposed = _substituted(tree, node, Node("transpose", None, (node,)))
+            yield Edit("active_passive_transpose", COST["transpose_everywhere"], (), transposed)
     products = [name for name in names if PRODUCT_OF_INERTIA.fullmatch(name)]
     if products:
         made = tree
@@ -317,7 +341,7 @@ def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
 
 
 def _substituted(tree: Node, old: Node, new: Node, inside: Collection[str] | None = None) -> Node:
-    """Return a tree with a piece replaced everywhere (only as the argument of certain functions, if they are given)."""
+    """Return a tree with a piece replaced everywhere; with ``inside``, only as the argument of these functions."""
     if tree == old and inside is None:
         return new
     direct = inside is not None and tree.kind == "call" and tree.value in inside and tree.args[0] == old
@@ -328,7 +352,7 @@ def _substituted(tree: Node, old: Node, new: Node, inside: Collection[str] | Non
 
 
 def _rebuilt(node: Node) -> Node:
-    """Return a node with its signs in front again, as the reader makes them."""
+    """Return a node with signs in front, as the reader makes it."""
     if node.kind == "product":
         return product(list(node.args), node.span)
     if node.kind == "neg":
@@ -342,9 +366,9 @@ def _swapped_functions(tree: Node, angle: Node) -> Node:
     return replace(tree, args=tuple(_swapped_functions(child, angle) for child in tree.args))
 
 
-def neat(node: Node) -> Node:
-    """Return a tree without factors 1 and without fractions under a fraction bar, which edits of numbers leave."""
-    args = tuple(map(neat, node.args))
+def normalise_factors(node: Node) -> Node:
+    """Return a tree without factors 1 and nested fractions, which edits of numbers leave behind."""
+    args = tuple(map(normalise_factors, node.args))
     if node.kind == "power" and args[1] == number(1):
         return args[0]
     if node.kind != "product":

@@ -1,28 +1,28 @@
-"""Several wrong entries of a matrix that is written out, each with its own edit."""
+"""Repairs of a matrix that is written out and has several wrong entries: an edit for each of them."""
 
 from collections.abc import Callable, Sequence
 from itertools import combinations
 
 from symrot.checker.claim.tree import Node, Path, replaced
-from symrot.checker.repair.edits import Edit, single_edits
-from symrot.checker.repair.filter import Change, Found, Sieve, at, cells_of
-from symrot.checker.repair.points import Meaningless, agree, entries_of
+from symrot.checker.repair.edits import COST, Edit, single_edits
+from symrot.checker.repair.filter import Candidate, Change, NumericFilter, at, matrix_entries
+from symrot.checker.repair.points import UndefinedValue, agree, entries_of
 
-__all__ = ["always", "by_entries", "merged"]
+__all__ = ["by_entries", "merged", "replacement"]
 
 MOST_PAIRS_OF = 60
-"""Cheapest edits of an entry that are tried in pairs."""
+"""The number of edits of an entry, the cheapest ones, that are tried in pairs."""
 
 
-def by_entries(sieve: Sieve) -> list[Found]:
-    """Return the repair of a matrix written out: each wrong entry by its own edit."""
-    found: list[Found] = []
-    for place, other in (("right", sieve.left), ("left", sieve.right)):
-        tree = sieve.tree_at(place)
-        cells = cells_of(tree)
+def by_entries(numeric: NumericFilter) -> list[Candidate]:
+    """Return the repairs of a written-out matrix in which each wrong entry has its own edit."""
+    candidates: list[Candidate] = []
+    for place, other in (("right", numeric.left), ("left", numeric.right)):
+        tree = numeric.tree_at(place)
+        cells = matrix_entries(tree)
         try:
-            values = [entries_of(point.value(other)) for point in sieve.points]
-        except Meaningless:
+            values = [entries_of(point.value(other)) for point in numeric.points]
+        except UndefinedValue:
             continue
         if not cells or any(len(value) <= max(cells) for value in values):
             continue
@@ -30,7 +30,7 @@ def by_entries(sieve: Sieve) -> list[Found]:
         for place_of, path in cells.items():
             targets = [value[place_of] for value in values]
             cell = at(tree, path)
-            edit = None if cell is None else _entry_edit(sieve, cell, targets)
+            edit = None if cell is None else _entry_edit(numeric, cell, targets)
             if edit is None:
                 break
             if edit.code != "none":
@@ -39,55 +39,55 @@ def by_entries(sieve: Sieve) -> list[Found]:
             if len(edits) > 1 or any(edit.code == "two_faults" for _, edit in edits):
                 made = tree
                 for path, edit in edits:
-                    made = replaced(made, path, always(edit.tree))
+                    made = replaced(made, path, replacement(edit.tree))
                 codes = {edit.code for _, edit in edits}
                 code = codes.pop() if len(codes) == 1 else "two_faults"
-                cost = 0.6 * sum(edit.cost for _, edit in edits)
-                found.append((cost, code, (Change(place, Edit(code, cost, (), made)),)))
-    return found
+                cost = COST["share_of_entries"] * sum(edit.cost for _, edit in edits)
+                candidates.append(Candidate(cost, code, (Change(place, Edit(code, cost, (), made)),)))
+    return candidates
 
 
-def _entry_edit(sieve: Sieve, cell: Node, targets: Sequence[float]) -> Edit | None:
-    """Return the cheapest edit that gives an entry its values; code ``none`` if it has them."""
+def _entry_edit(numeric: NumericFilter, cell: Node, targets: Sequence[float]) -> Edit | None:
+    """Return the cheapest edit that gives an entry its target values; its code is ``none`` if it has them already."""
 
     def fits(tree: Node) -> bool:
         try:
-            values = [point.value(tree) for point in sieve.points]
+            values = [point.value(tree) for point in numeric.points]
             return all(agree(value, target) == [True] for value, target in zip(values, targets, strict=True))
-        except Meaningless:
+        except UndefinedValue:
             return False
 
     if fits(cell):
         return Edit("none", 0.0, (), cell)
-    found = single_edits(cell, sieve.names, sieve.functions, sieve.is_matrix, sieve.moving)
-    edits = sorted(found, key=lambda edit: edit.cost)
+    single = single_edits(cell, numeric.names, numeric.functions, numeric.is_matrix, numeric.moving)
+    edits = sorted(single, key=lambda edit: edit.cost)
     for edit in edits:
-        if sieve.affordable() and fits(edit.tree):
+        if numeric.affordable() and fits(edit.tree):
             return edit
     both = combinations(edits[:MOST_PAIRS_OF], 2)
     for first, second in sorted(both, key=lambda pair: pair[0].cost + pair[1].cost):
         tree = merged(cell, first, second)
-        if tree is not None and sieve.affordable() and fits(tree):
+        if tree is not None and numeric.affordable() and fits(tree):
             return Edit("two_faults", first.cost + second.cost, (), tree)
     return None
 
 
-def always(made: Node) -> Callable[[Node], Node]:
-    """Return the edit that puts a piece in the place of any other."""
+def replacement(made: Node) -> Callable[[Node], Node]:
+    """Return a function that returns a piece whatever its argument, for :func:`replaced`."""
     return lambda _: made
 
 
 def merged(tree: Node, first: Edit, second: Edit) -> Node | None:
-    """Return a tree with two edits of pieces that are not inside each other; None if they are."""
+    """Return a tree with two edits in different pieces; None if one piece lies inside the other."""
     a, b = first.path, second.path
     if not a or not b or a[: len(b)] == b or b[: len(a)] == a:
         return None
     piece = at(second.tree, b) if _same_shape(tree, first.tree, b) else None
-    return None if piece is None else replaced(first.tree, b, always(piece))
+    return None if piece is None else replaced(first.tree, b, replacement(piece))
 
 
 def _same_shape(tree: Node, edited: Node, path: Path) -> bool:
-    """Return whether a path leads to the same piece after an edit elsewhere."""
+    """Return whether a path leads to the same piece in an edited tree."""
     for place in path:
         if place >= len(edited.args) or edited.kind != tree.kind or len(edited.args) != len(tree.args):
             return False

@@ -1,25 +1,25 @@
-"""Values of a claim with changed trees at two points, in double precision: what cannot be true is thrown out here.
+"""The numeric filter: a claim with changed trees, evaluated at two points in double precision to rule out repairs.
 
-Pieces that a change leaves alone are evaluated once. The work is bounded by a count of evaluated pieces, so that all
-runs find the same.
+Pieces that a change leaves alone are evaluated once. The work is bounded by a count of evaluated pieces, so that every
+run gives the same repairs.
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, Path, text, walk
 from symrot.checker.latex.cursor import TIME
 from symrot.checker.latex.matrices import MATRIX_CALLS
-from symrot.checker.repair.edits import Edit
-from symrot.checker.repair.points import Meaningless, Point, agree, entries_of, points
+from symrot.checker.repair.edits import COST, Edit
+from symrot.checker.repair.points import Point, UndefinedValue, agree, entries_of, points
 
-__all__ = ["SIDES", "Change", "Found", "Sieve", "at", "cells_of", "speaks"]
+__all__ = ["SIDES", "Candidate", "Change", "NumericFilter", "at", "is_nontrivial", "matrix_entries"]
 
 MOST_PIECES = 500_000
-"""Pieces of trees that the search may evaluate: some seconds."""
+"""The most pieces of trees that the search may evaluate, which takes some seconds."""
 
 SIDES = ("right", "left")
 
@@ -33,15 +33,19 @@ class Change:
 
     @property
     def cost(self) -> float:
-        return self.edit.cost + (0.0 if self.place in SIDES else 0.4)
+        return self.edit.cost + (0.0 if self.place in SIDES else COST["in_definition"])
 
 
-Found = tuple[float, str, tuple[Change, ...]]
-"""Cost, code, and the changes that make a repair."""
+class Candidate(NamedTuple):
+    """A possible repair: its cost, its code, and its changes."""
+
+    cost: float
+    code: str
+    changes: tuple[Change, ...]
 
 
-class Sieve:
-    """A claim at points that obey its hypotheses, and what becomes of its sides when trees are changed."""
+class NumericFilter:
+    """A claim at points that obey its hypotheses, with the values of its sides after changes of its trees."""
 
     def __init__(self, claim: Claim) -> None:
         assert claim.relation is not None
@@ -49,18 +53,17 @@ class Sieve:
         _, self.left, self.right = claim.relation
         self.definitions = dict(claim.define)
         trees = [self.left, self.right, *self.definitions.values()]
-        meaning = claim.meaning()
-        claim.problem()
-        kept = frozenset(id(node) for tree in trees for _, node in walk(tree))
-        found = _named(trees)
-        self.functions = sorted({*claim.functions, *(name for name, called in found if called)})
-        loose = {name for name, called in found if not called and claim.implied and name != "pi"}
+        own_pieces = frozenset(id(node) for tree in trees for _, node in walk(tree))
+        names = _named(trees)
+        self.functions = sorted({*claim.functions, *(name for name, called in names if called)})
+        loose = {name for name, called in names if not called and claim.implied and name != "pi"}
         self.symbols = sorted({*claim.symbols, *loose, "t"} - {*self.functions})
-        hypotheses = [relation[1:] for relation in claim.given if relation[0] == "=="]
+        hypotheses = [relation[1:] for relation in claim.hypotheses if relation[0] == "=="]
         narrow = any(node.value in ("asin", "acos") for tree in trees for _, node in walk(tree))
         most = 0.9 if narrow else 1.7
-        self.points = points(self.symbols, self.functions, self.definitions, hypotheses, kept, most=most)
-        self.matrix_names = {name for name, value in meaning.values.items() if getattr(value, "is_Matrix", False)}
+        self.points = points(self.symbols, self.functions, self.definitions, hypotheses, own_pieces, most=most)
+        values = claim.definitions.values
+        self.matrix_names = {name for name, value in values.items() if getattr(value, "is_Matrix", False)}
         self.moving = any(node.kind == "call" and node.value == "diff" for tree in trees for _, node in walk(tree))
         self.used = self._used_definitions()
         self.dependent: dict[str, set[int | str]] = {}
@@ -101,22 +104,24 @@ class Sieve:
         return node.kind not in ("index", "list", "number") and any(map(self.is_matrix, node.args))
 
     def sensible(self, place: str, tree: Node) -> bool:
-        """Return whether an edited side still speaks of something, and a definition does not refer to itself."""
+        """Return whether an edited side is not a bare number, and an edited definition does not refer to itself."""
         if place in SIDES:
-            return speaks(tree) or not speaks(self.tree_at(place))
+            return is_nontrivial(tree) or not is_nontrivial(self.tree_at(place))
         order = list(self.definitions)
         later = set(order[order.index(place) :])
-        return speaks(tree) and not any(node.kind == "name" and node.value in later for _, node in walk(tree))
+        return is_nontrivial(tree) and not any(node.kind == "name" and node.value in later for _, node in walk(tree))
 
     def edited(self, changes: Sequence[Change]) -> Claim:
         """Return the claim with its trees changed."""
         trees = {change.place: change.edit.tree for change in changes}
         relation = ("==", trees.get("left", self.left), trees.get("right", self.right))
+        if not trees.keys() & self.definitions.keys():
+            return self.claim.with_relation(relation)
         define = tuple((name, trees.get(name, tree)) for name, tree in self.claim.define)
         return replace(self.claim, relation=relation, define=define)
 
     def text(self, changes: Sequence[Change]) -> str:
-        """Return a repair as text: the claim, and the definitions that change."""
+        """Return a repair as text: the claim, and the changed definitions."""
         edited = self.edited(changes)
         assert edited.relation is not None
         claim = f"{text(edited.relation[1])} == {text(edited.relation[2])}"
@@ -124,26 +129,26 @@ class Sieve:
         changed = [f"{change.place} = {text(change.edit.tree)}" for change in within]
         return f"{claim} with {', '.join(changed)}" if changed else claim
 
-    # -- where it is wrong ------------------------------------------------------------------------------------------
+    # -- wrong entries ----------------------------------------------------------------------------------------------
 
     def _wrong_entries(self) -> set[int]:
-        """Return the numbers of the entries in which the sides differ, row by row."""
+        """Return the numbers of the entries in which the sides differ, counted row by row."""
         wrong: set[int] = set()
         for point in self.points:
             try:
-                same = agree(*self.sides(point, ()))
-            except Meaningless:
+                agreement = agree(*self.sides(point, ()))
+            except UndefinedValue:
                 continue
-            wrong |= {place for place, held in enumerate(same or ()) if not held}
+            wrong |= {place for place, equal in enumerate(agreement or ()) if not equal}
         return wrong
 
-    def open_paths(self, place: str, tree: Node) -> "Open":
-        """Return which pieces one edit may change: of entries that are written out, only one that alone is wrong."""
-        cells = cells_of(tree) if place in SIDES else {}
+    def open_paths(self, place: str, tree: Node) -> "OpenEntries":
+        """Return which pieces a single edit may change; in a written-out matrix, only a wrong entry that is alone."""
+        cells = matrix_entries(tree) if place in SIDES else {}
         alone = [cells[number] for number in self.wrong if number in cells] if len(self.wrong) == 1 else []
-        return Open(tuple(cells.values()), tuple(alone))
+        return OpenEntries(tuple(cells.values()), tuple(alone))
 
-    # -- the sieve --------------------------------------------------------------------------------------------------
+    # -- values -----------------------------------------------------------------------------------------------------
 
     def affordable(self) -> bool:
         return sum(point.spent[0] for point in self.points) < MOST_PIECES
@@ -160,70 +165,70 @@ class Sieve:
         return point.value(left), point.value(right)
 
     def redefined(self, point: Point, name: str, tree: Node) -> Point:
-        """Return a point with another definition; what does not depend on it keeps its value."""
+        """Return a point with one definition replaced; pieces that do not depend on it keep their values."""
         if name not in self.dependent:
             self.dependent[name] = self._dependent_on(name)
-        forgotten = self.dependent[name]
-        known = {key: value for key, value in point.known.items() if key not in forgotten}
+        stale = self.dependent[name]
+        known = {key: value for key, value in point.known.items() if key not in stale}
         return replace(point, definitions={**point.definitions, name: tree}, known=known, lifted={})
 
     def _dependent_on(self, name: str) -> set[int | str]:
-        """Return the definitions, by name, and the pieces, by identity, whose values change with a definition."""
+        """Return the definitions, by name, and the pieces, by identity, whose values depend on a definition."""
         names = {name}
         for other, tree in self.definitions.items():
             if any(node.kind == "name" and node.value in names for _, node in walk(tree)):
                 names.add(other)
-        found: set[int | str] = {*names}
+        dependents: set[int | str] = {*names}
 
         def depends(node: Node) -> bool:
             inside = [depends(child) for child in node.args]
             if any(inside) or (node.kind == "name" and node.value in names):
-                found.add(id(node))
+                dependents.add(id(node))
                 return True
             return False
 
         for place in (*SIDES, *self.definitions):
             depends(self.tree_at(place))
-        return found
+        return dependents
 
     def holds(self, changes: Sequence[Change]) -> bool:
-        """Return whether an edited claim holds at the points, and not because a side has become zero."""
+        """Return whether an edited claim is true at the points, and not only because both sides became zero."""
         if not self.affordable():
             return False
         for point in self.points:
             try:
                 left, right = self.sides(point, changes)
                 same = agree(left, right)
-            except Meaningless:
+            except UndefinedValue:
                 return False
             if same is None or not all(same):
                 return False
-        return any(entries_of(left)) or not (speaks(self.left) and speaks(self.right))
+        return any(entries_of(left)) or not (is_nontrivial(self.left) and is_nontrivial(self.right))
 
     def differences(self, point: Point, changes: Sequence[Change]) -> list[float]:
         """Return left minus right entry by entry.
 
         Raises
         ------
-        Meaningless
-            Where a side has no value, or the shapes differ.
+        UndefinedValue
+            If a side has no value, or the shapes differ.
         """
         left, right = (entries_of(value) for value in self.sides(point, changes))
         size = max(len(left), len(right))
         left, right = (side * size if side == [0.0] else side for side in (left, right))
         if len(left) != len(right):
-            raise Meaningless("sides of two shapes")
+            raise UndefinedValue("sides of different shapes")
         return [a - b for a, b in zip(left, right, strict=True)]
 
     def fingerprint(self, changes: Sequence[Change]) -> tuple[float, ...]:
-        """Return the values of both sides at a point, the same for two ways of writing one repair."""
+        """Return the values of both sides at a point, rounded: equal for one repair written in two ways."""
         left, right = self.sides(self.points[0], changes)
         return tuple(float(f"{value:.9g}") for value in (*entries_of(left), *entries_of(right)))
 
 
 @dataclass(frozen=True)
-class Open:
-    """The entries of a matrix that is written out, and those of them in which one edit may be the repair."""
+class OpenEntries:
+    """The entries of a matrix that is written out, and those among them that a single edit may change."""
 
     cells: tuple[Path, ...]
     alone: tuple[Path, ...]
@@ -235,24 +240,24 @@ class Open:
 
 
 def _named(trees: Sequence[Node]) -> set[tuple[str, bool]]:
-    """Return (name, whether it is called with t) for every name that is no function of the language."""
-    found = set()
+    """Return (name, whether it is called with t) for every name that is not built in."""
+    names = set()
     for tree in trees:
         for _, node in walk(tree):
             if node.kind == "name":
-                found.add((node.value, False))
+                names.add((node.value, False))
             elif node.kind == "call" and node.args == (TIME,):
-                found.add((node.value, True))
-    return {(name, called) for name, called in found if name not in BUILT_IN}
+                names.add((node.value, True))
+    return {(name, called) for name, called in names if name not in BUILT_IN}
 
 
-def speaks(tree: Node) -> bool:
-    """Return whether a tree holds a symbol or is a matrix: a bare number says nothing."""
+def is_nontrivial(tree: Node) -> bool:
+    """Return whether a tree contains a symbol or a matrix, and is not just a number."""
     return any(node.kind in ("name", "call") and node.value != "pi" for _, node in walk(tree))
 
 
 def at(tree: Node, path: Sequence[int]) -> Node | None:
-    """Return the piece at a path; None where the path leads nowhere."""
+    """Return the piece at a path, or None if the path leaves the tree."""
     for place in path:
         if place >= len(tree.args):
             return None
@@ -260,8 +265,8 @@ def at(tree: Node, path: Sequence[int]) -> Node | None:
     return tree
 
 
-def cells_of(tree: Node) -> dict[int, Path]:
-    """Return the paths of the entries of a matrix that is written out, by their number row by row."""
+def matrix_entries(tree: Node) -> dict[int, Path]:
+    """Return the paths of the entries of a matrix that is written out, by number, counted row by row."""
     if tree.kind == "call" and tree.value == "diag":
         return {place * (len(tree.args) + 1): (place,) for place in range(len(tree.args))}
     if tree.kind != "call" or tree.value != "Matrix" or tree.args[0].kind != "list":
@@ -273,7 +278,7 @@ def cells_of(tree: Node) -> dict[int, Path]:
 
 
 def pieces(tree: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
-    """Yield the pieces that may lack something: no exponents, no variables of derivatives and integrals."""
+    """Yield the pieces that may be extended: all but exponents, and variables of derivatives and integrals."""
     if tree.kind not in ("list", "inv"):
         yield path, tree
     for place, child in enumerate(tree.args):

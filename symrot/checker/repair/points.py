@@ -1,7 +1,7 @@
-"""The value of a tree at a point in double precision, in milliseconds: a sieve for repairs, which are proven elsewhere.
+"""Values of trees at points in double precision, which take milliseconds and rule out most wrong repairs.
 
-Derivatives are taken by dual numbers. A function of time is given by its value and its first derivatives, all
-independent.
+Derivatives are computed with dual numbers. A function of time is represented by its value and its first derivatives,
+all independent.
 """
 
 import math
@@ -16,7 +16,7 @@ import numpy as np
 from symrot.checker.claim.tree import Node
 from symrot.checker.repair.dual import (
     Dual,
-    Meaningless,
+    UndefinedValue,
     absolute,
     arctangent,
     cosine,
@@ -43,22 +43,22 @@ from symrot.checker.repair.rows import (
     needed,
     plus,
     rotation,
+    rotation_of_quaternion,
     skew,
     times,
     transposed,
-    turning,
 )
 
-__all__ = ["Meaningless", "Point", "agree", "entries_of", "points"]
+__all__ = ["Point", "UndefinedValue", "agree", "entries_of", "points"]
 
 DERIVATIVES = 6
-"""Derivatives of each function of time that a point holds, the value included."""
+"""The number of derivatives of each function of time in a point, the value included."""
 
 HEAVIEST = 3**5
-"""Products of numbers in one product of values that is still lifted: derivatives up to the sixth."""
+"""The weight of a point above which it is not lifted again; this allows derivatives up to the sixth."""
 
 GAUSS = {1: 20, 2: 18, 3: 16}
-"""Nodes of Gauss and Legendre's rule in each direction, by the number of nested integrals."""
+"""The number of nodes of Gauss-Legendre quadrature in each direction, by the number of nested integrals."""
 
 
 # -- trees ------------------------------------------------------------------------------------------------------------
@@ -66,17 +66,34 @@ GAUSS = {1: 20, 2: 18, 3: 16}
 
 @dataclass
 class Point:
-    """Values of symbols (``t`` too), of functions of time with their derivatives, and the trees of definitions.
+    """A point at which trees are evaluated.
 
-    Values of the trees in ``kept`` (by identity: they live as long as the point) are remembered.
+    Attributes
+    ----------
+    symbols : dict
+        Values of symbols, ``t`` included.
+    functions : dict
+        Values of functions of time, each with its derivatives.
+    definitions : mapping
+        Trees of definitions.
+    remembered : frozenset of int
+        Identities of the trees whose values are stored; these trees must live as long as the point.
+    spent : list of int
+        The number of products of numbers so far, shared by all points made from this one.
+    weight : int
+        The number of products of numbers in one product of values: times three for each lift to dual numbers.
+    known : dict
+        Stored values.
+    lifted : dict
+        Points lifted to dual numbers, by variable.
     """
 
     symbols: dict[str, Any]
     functions: dict[str, tuple[Any, ...]]
     definitions: Mapping[str, Node]
-    kept: frozenset[int] = frozenset()
-    spent: list[int] = field(default_factory=lambda: [0])  # products of numbers, shared by all points made of this one
-    weight: int = 1  # products in one product of values: three for each lift to dual numbers
+    remembered: frozenset[int] = frozenset()
+    spent: list[int] = field(default_factory=lambda: [0])
+    weight: int = 1
     known: dict[Any, Any] = field(default_factory=dict)
     lifted: dict[Any, "Point"] = field(default_factory=dict)
 
@@ -85,13 +102,13 @@ class Point:
 
         Raises
         ------
-        Meaningless
-            Where there is no value.
+        UndefinedValue
+            If there is none.
         """
         try:
             return self._value(node)
         except (ZeroDivisionError, OverflowError, TypeError, ValueError, IndexError, KeyError) as reason:
-            raise Meaningless(str(reason)) from None
+            raise UndefinedValue(str(reason)) from None
 
     def _value(self, node: Node) -> Any:
         key = id(node)
@@ -99,7 +116,7 @@ class Point:
             return self.known[key]
         self.spent[0] += self.weight * (1 + len(node.args) // 4)  # long sums and products cost more
         value = _VALUE[node.kind](self, node)
-        if key in self.kept:
+        if key in self.remembered:
             self.known[key] = value
         return value
 
@@ -117,11 +134,11 @@ class Point:
         name = inner.value
         key = (name, order)
         if self.weight > HEAVIEST:
-            raise Meaningless("derivatives of too high an order")
+            raise UndefinedValue("derivatives of too high an order")
         if key not in self.lifted:
             in_time = name == "t" and not order
             if not in_time and name not in self.symbols and name not in self.functions:
-                raise Meaningless("a variable to differentiate by")
+                raise UndefinedValue("a variable to differentiate by")
             self.lifted[key] = Point(
                 {s: Dual(v, float(s == name)) for s, v in self.symbols.items()},
                 {
@@ -130,7 +147,7 @@ class Point:
                     for f, jet in self.functions.items()
                 },
                 self.definitions,
-                self.kept,
+                self.remembered,
                 self.spent,
                 3 * self.weight,
             )  # fmt: skip
@@ -147,7 +164,7 @@ def _name(point: Point, node: Node) -> Any:
         return point.known[name]
     if name == "pi":
         return math.pi
-    raise Meaningless(name)
+    raise UndefinedValue(name)
 
 
 def _sum(point: Point, node: Node) -> Any:
@@ -186,7 +203,7 @@ def _list(point: Point, node: Node) -> Any:
     rows = [point._value(member) for member in node.args]
     if all(isinstance(row, list) for row in rows):
         if len({len(row) for row in rows}) > 1:
-            raise Meaningless("rows of unequal length")
+            raise UndefinedValue("rows of unequal length")
         return tuple(map(tuple, rows))
     if node.value == ("(", ")"):
         return column(rows)
@@ -222,7 +239,7 @@ def _differentiated(point: Point, formula: Node, variables: Sequence[Node]) -> A
 
 
 def _integrated(point: Point, integrand: Node, ranges: Sequence[Node]) -> Any:
-    """Return an integral over a box by Gauss and Legendre's rule, on the whole grid of points at once, outer first."""
+    """Return an integral over a box by Gauss-Legendre quadrature, on all nodes at once; outer variables come first."""
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS[min(len(ranges), 3)])
     inner, total = point, np.ones((1,) * len(ranges))
     for axis, part in enumerate(ranges):
@@ -246,8 +263,8 @@ def _matrix(rows: Any) -> Rows:
 
 def _cross(left: Any, right: Any) -> Rows:
     (a,), (b,), (c,) = needed(left, (3, 1))
-    found: Rows = times(skew(a, b, c), needed(right, (3, 1)))
-    return found
+    product: Rows = times(skew(a, b, c), needed(right, (3, 1)))
+    return product
 
 
 def _hstack(*parts: Any) -> Rows:
@@ -267,11 +284,11 @@ def _other_leg(x: Any) -> Any:
 
 def _hyperbolic(x: Any) -> tuple[Any, Any]:
     """Return (sinh x, cosh x)."""
-    grown, shrunk = exponential(x), exponential(-x)
-    return (grown + -shrunk) * 0.5, (grown + shrunk) * 0.5
+    growing, decaying = exponential(x), exponential(-x)
+    return (growing + -decaying) * 0.5, (growing + decaying) * 0.5
 
 
-_SPREAD: dict[str, Callable[..., Any]] = {"skew": skew, "dcm_of": turning}
+_SPREAD: dict[str, Callable[..., Any]] = {"skew": skew, "dcm_of": rotation_of_quaternion}
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "sin": sine, "cos": cosine, "sqrt": square_root, "abs": absolute, "atan2": arctangent, "Matrix": _matrix,
     "cross": _cross,
@@ -302,31 +319,32 @@ _VALUE: dict[str, Callable[[Point, Node], Any]] = {
 
 def points(
     symbols: Sequence[str], functions: Sequence[str], definitions: Mapping[str, Node],
-    hypotheses: Sequence[tuple[Node, Node]], kept: frozenset[int], count: int = 2, most: float = 1.7,
+    hypotheses: Sequence[tuple[Node, Node]], remembered: frozenset[int], count: int = 2, most: float = 1.7,
 ) -> list[Point]:  # fmt: skip
-    """Return seeded points, symbols between 0.3 and ``most``, that obey the hypotheses to double precision.
+    """Return random points, the same in every run, that obey the hypotheses to double precision.
 
-    They are fewer where Newton's method fails.
+    Symbols lie between 0.3 and ``most`` before Newton's method moves them onto the hypotheses. There are fewer than
+    ``count`` points if it fails. Values of the trees in ``remembered``, by identity, are stored.
     """
-    found = []
+    accepted = []
     for seed in range(3 * count):
         source = Random(seed)
         point = Point(
             {name: source.uniform(0.3, most) for name in symbols},
             {name: tuple(source.uniform(0.3, 1.3) for _ in range(DERIVATIVES)) for name in functions},
             definitions,
-            kept,
+            remembered,
         )
-        settled = _settled(point, hypotheses)
-        if settled is not None:
-            found.append(settled)
-        if len(found) == count:
+        moved = _onto_hypotheses(point, hypotheses)
+        if moved is not None:
+            accepted.append(moved)
+        if len(accepted) == count:
             break
-    return found
+    return accepted
 
 
-def _settled(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> Point | None:
-    """Move a point onto its hypotheses by Newton's method with the shortest steps."""
+def _onto_hypotheses(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> Point | None:
+    """Return a point moved onto the hypotheses by Newton's method with least-squares steps; None if it fails."""
     variables = [Node("name", name) for name in point.symbols]
     variables += [Node("call", name, (Node("name", "t"),)) for name in point.functions]
     for _ in range(30 if hypotheses else 0):
@@ -341,7 +359,7 @@ def _settled(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> Point | N
                     change = plus(lifted.value(left), mapped(minus, lifted.value(right)))
                     columns.append(entries_of(mapped(lambda x: x.slope if isinstance(x, Dual) else 0.0, change)))
                 slopes += list(zip(*columns, strict=True))
-        except Meaningless:
+        except UndefinedValue:
             return None
         if max(map(abs, residuals)) < 1e-14:
             return point
@@ -351,7 +369,7 @@ def _settled(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> Point | N
             {name: value + moves[name] for name, value in point.symbols.items()},
             {name: (jet[0] + moves[name], *jet[1:]) for name, jet in point.functions.items()},
             point.definitions,
-            point.kept,
+            point.remembered,
             point.spent,
         )
     return None if hypotheses and max(map(abs, residuals)) > 1e-12 else point

@@ -1,18 +1,33 @@
-"""Small matrices as tuples of rows, over any kind of number: sums, products, rotations, quaternions."""
+"""Small matrices as tuples of rows of any kind of number: sums, products, rotations, quaternions."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from symrot.checker.repair.dual import Meaningless, cosine, inverse, plain, sine
+from symrot.checker.repair.dual import UndefinedValue, cosine, inverse, plain, sine
 
 __all__ = [
-    "Rows", "agree", "column", "determinant", "dot", "entries_of", "hamilton", "inverted", "is_matrix", "mapped",
-    "needed", "plus", "rotation", "shape_of", "skew", "times", "transposed", "turning",
+    "Rows",
+    "agree",
+    "column",
+    "determinant",
+    "dot",
+    "entries_of",
+    "hamilton",
+    "inverted",
+    "is_matrix",
+    "mapped",
+    "needed",
+    "plus",
+    "rotation",
+    "rotation_of_quaternion",
+    "shape_of",
+    "skew",
+    "times",
+    "transposed",
 ]  # fmt: skip
 
 CLOSE = 1e-8
-"""Relative difference up to which two values in double precision agree."""
-
+"""The largest relative difference between two values in double precision that agree."""
 
 Rows = tuple[tuple[Any, ...], ...]
 
@@ -33,14 +48,14 @@ def shape_of(value: Any) -> tuple[int, int] | None:
 
 
 def mapped(function: Callable[[Any], Any], value: Any) -> Any:
-    """Return a function of every entry."""
+    """Return a value with a function applied to every entry."""
     return tuple(tuple(function(entry) for entry in row) for row in value) if is_matrix(value) else function(value)
 
 
 def plus(left: Any, right: Any) -> Any:
-    """Return the sum; ``Meaningless`` for shapes that differ."""
+    """Return the sum; raise UndefinedValue if the shapes differ."""
     if shape_of(left) != shape_of(right):
-        raise Meaningless("shapes in a sum")
+        raise UndefinedValue("shapes in a sum")
     if is_matrix(left):
         return tuple(tuple(a + b for a, b in zip(x, y, strict=True)) for x, y in zip(left, right, strict=True))
     return left + right
@@ -53,7 +68,7 @@ def times(left: Any, right: Any) -> Any:
     if not is_matrix(right):
         return mapped(lambda entry: entry * right, left)
     if len(left[0]) != len(right):
-        raise Meaningless("shapes in a product")
+        raise UndefinedValue("shapes in a product")
     columns = tuple(zip(*right, strict=True))
     return tuple(tuple(dot(row, column) for column in columns) for row in left)
 
@@ -72,10 +87,10 @@ def transposed(value: Any) -> Rows:
 
 
 def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> Rows:
-    """Return a matrix; ``Meaningless`` if it is none, or of another shape."""
-    found = shape_of(value)
-    if found is None or any(want not in (None, got) for want, got in zip(shape, found, strict=True)):
-        raise Meaningless("a matrix of another shape")
+    """Return a matrix unchanged; raise UndefinedValue for a scalar or a matrix of another shape."""
+    actual = shape_of(value)
+    if actual is None or any(size not in (None, got) for size, got in zip(shape, actual, strict=True)):
+        raise UndefinedValue("a matrix of another shape")
     rows: Rows = value
     return rows
 
@@ -83,7 +98,7 @@ def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> R
 def determinant(rows: Rows) -> Any:
     """Return the determinant of a matrix of at most 6 rows, by minors."""
     if len(rows) != len(rows[0]) or len(rows) > 6:
-        raise Meaningless("a determinant")
+        raise UndefinedValue("a determinant")
     if len(rows) == 1:
         return rows[0][0]
     total: Any = 0.0
@@ -121,14 +136,14 @@ def skew(a: Any, b: Any, c: Any) -> Rows:
 def rotation(axis: int) -> Callable[[Any], Rows]:
     """Return the active rotation about axis 0, 1 or 2, as a function of the angle, rad."""
 
-    def turn(angle: Any) -> Rows:
+    def matrix(angle: Any) -> Rows:
         c, s = cosine(angle), sine(angle)
         rows = [[0.0] * 3 for _ in range(3)]
         i, j = (axis + 1) % 3, (axis + 2) % 3
         rows[axis][axis], rows[i][i], rows[j][j], rows[i][j], rows[j][i] = 1.0, c, c, -s, s
         return tuple(map(tuple, rows))
 
-    return turn
+    return matrix
 
 
 def hamilton(p: Sequence[Any], q: Sequence[Any]) -> list[Any]:
@@ -141,8 +156,8 @@ def hamilton(p: Sequence[Any], q: Sequence[Any]) -> list[Any]:
     ]  # fmt: skip
 
 
-def turning(*q: Any) -> Rows:
-    """Return the matrix of v -> q v q*, not divided by the square of the norm."""
+def rotation_of_quaternion(*q: Any) -> Rows:
+    """Return the matrix of v -> q v q*, which is a rotation matrix times the square of the norm of q."""
     a, b, c, d = q
     conjugate = [a, -b, -c, -d]
     columns = [hamilton(hamilton(q, [0.0, *(float(i == j) for j in range(3))]), conjugate)[1:] for i in range(3)]
@@ -150,7 +165,7 @@ def turning(*q: Any) -> Rows:
 
 
 def agree(left: Any, right: Any) -> list[bool] | None:
-    """Return entry by entry whether two values agree to double precision; None if their shapes differ."""
+    """Return for each entry whether two values agree to double precision; None if their shapes differ."""
     lefts, rights = entries_of(left), entries_of(right)
     if shape_of(left) != shape_of(right):
         if not is_matrix(left) and lefts == [0.0]:

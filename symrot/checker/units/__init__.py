@@ -1,1 +1,1 @@
-"""Units of the quantities of a claim, and the check that its terms agree in them."""
+"""Units of the quantities in a claim, and the check that its terms have the same units."""

@@ -1,8 +1,7 @@
-"""The dimensional check: do terms that are added, and sides that are compared, have one unit?
+"""The check of units: terms of a sum, and the two sides of an equation, must have one unit.
 
-Units come from a claim's own table, then from custom (:data:`symrot.checker.units.units.CUSTOM`); what is left is
-inferred: only a contradiction is an error. A matrix may mix units: it is followed entry by entry. The outcome stands
-beside the verdict and never changes it.
+Units are stated in the claim, or conventional (:data:`symrot.checker.units.units.CONVENTIONAL_UNITS`), or inferred;
+only a contradiction is an error. The entries of a matrix may have different units. The verdict does not depend on it.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,12 +9,12 @@ from typing import Any
 
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, walk
-from symrot.checker.decide.decision import shown
 from symrot.checker.units.functions import CALLS
-from symrot.checker.units.inference import Unreadable, Walker, angles_of
+from symrot.checker.units.inference import UnitInference, Unreadable, angles_of
 from symrot.checker.units.units import read_unit
 from symrot.checker.verdict import Dimensions
 from symrot.errors import InputError
+from symrot.exact.printing import as_text
 from symrot.symbols import UNIT
 
 __all__ = ["check_dimensions", "dimensions_of_formulas"]
@@ -24,7 +23,7 @@ __all__ = ["check_dimensions", "dimensions_of_formulas"]
 def check_dimensions(
     sides: tuple[Node, Node],
     define: Sequence[tuple[str, Node]] = (),
-    given: Sequence[tuple[Node, Node]] = (),
+    hypotheses: Sequence[tuple[Node, Node]] = (),
     units: Mapping[str, str] | None = None,
 ) -> Dimensions:
     """Return whether the units of an equation fit together.
@@ -35,48 +34,48 @@ def check_dimensions(
         The claim, left and right.
     define : sequence of (str, Node)
         Its definitions, in order.
-    given : sequence of (Node, Node)
+    hypotheses : sequence of (Node, Node)
         Its hypotheses, left and right.
     units : mapping of str to str, optional
-        Units by symbol: ``{"x": "m"}``; they go before custom.
+        Units by symbol, ``{"x": "m"}``; they overrule conventional units.
 
     Returns
     -------
     Dimensions
-        ``status`` is ``"consistent"``, ``"inconsistent"`` (``text`` says where and what meets), or ``"unknown"`` when
-        no name in it has a known unit, or numbers were given without theirs.
+        ``status`` is ``"consistent"``, ``"inconsistent"`` (``text`` says where, and which units differ), or
+        ``"unknown"`` if no name has a known unit, or if numbers stand for quantities whose units were left out.
 
     Raises
     ------
     InputError
-        For a unit that is not known.
+        For an unknown unit.
     """
-    trees = [*sides, *(tree for _, tree in define), *(side for pair in given for side in pair)]
+    trees = [*sides, *(tree for _, tree in define), *(side for pair in hypotheses for side in pair)]
     names = {str(node.value) for tree in trees for _, node in walk(tree) if node.kind in ("name", "call")}
     own = {name: read_unit(unit, f"units: {name}") for name, unit in (units or {}).items()}
-    walker = Walker(own, CALLS, names, {name for tree in trees for name in angles_of(tree)})
+    inference = UnitInference(own, CALLS, names, {name for tree in trees for name in angles_of(tree)})
     try:
         for name, tree in define:
-            walker.define(name, tree)
-        for left, right in given:
-            walker.relation(left, right, "a hypothesis")
-        walker.relation(*sides, "")
+            inference.define(name, tree)
+        for left, right in hypotheses:
+            inference.relation(left, right, "a hypothesis")
+        inference.relation(*sides, "")
     except Unreadable:
         return Dimensions("unknown")
-    if walker.faults and walker.unitless:
+    if inference.faults and inference.unitless:
         return Dimensions("unknown")
-    if walker.faults:
-        assumed = ", ".join(f"{name} in {unit}" for name, unit in walker.assumed.items())
-        return Dimensions("inconsistent", walker.faults[0] + (f" (by custom {assumed})" if assumed else ""))
-    return Dimensions("consistent" if walker.known else "unknown", "", walker.inferred())
+    if inference.faults:
+        assumed = ", ".join(f"{name} in {unit}" for name, unit in inference.assumed.items())
+        return Dimensions("inconsistent", inference.faults[0] + (f" (assuming {assumed})" if assumed else ""))
+    return Dimensions("consistent" if inference.known else "unknown", "", inference.inferred())
 
 
 def dimensions_of_formulas(left: Any, right: Any, units: Mapping[str, str] | None = None) -> Dimensions:
-    """Return whether the units of an equation between SymPy values fit; symbols of symrot bring their own units."""
+    """Return the check of an equation between SymPy values; symbols of :mod:`symrot.symbols` have their own units."""
     symbols = {symbol for side in (left, right) for symbol in getattr(side, "free_symbols", ())}
     own = {symbol.name: UNIT[symbol] for symbol in symbols if UNIT.get(symbol)} | dict(units or {})
     try:
-        sides = read_expression(shown(left)), read_expression(shown(right))
+        sides = read_expression(as_text(left)), read_expression(as_text(right))
     except InputError:
         return Dimensions("unknown")
     return check_dimensions(sides, units=own)

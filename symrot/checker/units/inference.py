@@ -1,4 +1,4 @@
-"""Units through the tree of a formula: names, sums, products, powers, matrices, and where they contradict."""
+"""The units of the pieces of a formula (names, sums, products, powers, matrices), and where they contradict."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -7,47 +7,84 @@ from functools import reduce
 from typing import Any
 
 from symrot.checker.claim.tree import Node, text, walk
-from symrot.checker.units.units import NOTHING, Dimension, UnitSystem, customary, raised, read_unit, shown_unit, times
+from symrot.checker.units.units import (
+    NOTHING,
+    Dimension,
+    UnitSystem,
+    conventional_unit,
+    raised,
+    read_unit,
+    times,
+    unit_text,
+)
 
-__all__ = ["ZERO", "Rows", "Unreadable", "Value", "Walker", "angles_of", "number_of", "shape_of", "shown_piece"]
+__all__ = ["ZERO", "Rows", "UnitInference", "Unreadable", "Value", "angles_of", "number_of", "piece_text", "shape_of"]
 
-LONGEST_SHOWN = 60
+LONGEST_EXCERPT = 60
 LARGEST_DETERMINANT = 4
 
-TURNS = ("sin", "cos", "tan", "cot", "sec", "csc", "Rx", "Ry", "Rz")
+ANGLE_FUNCTIONS = ("sin", "cos", "tan", "cot", "sec", "csc", "Rx", "Ry", "Rz")
 
 Value = Any
-"""A dimension, None for what is zero and goes with every unit, or the rows of a matrix of these."""
+"""A dimension, None for zero (which may have any unit), or the rows of a matrix of these."""
 
 ZERO = None
 Rows = tuple[tuple[Any, ...], ...]
 
 
 class Unreadable(Exception):
-    """Shapes that do not fit, or something that has no dimension here."""
+    """Raised for shapes that do not fit, or for a piece without a known dimension."""
 
 
 @dataclass
-class Walker:
-    """Follows units through trees; ``calls`` says what functions do."""
+class UnitInference:
+    """The units of one claim: it follows them through trees and collects contradictions.
+
+    Attributes
+    ----------
+    units : dict
+        Stated units by name.
+    calls : mapping
+        Name of a function -> its rule for units.
+    names : set of str
+        All names of the claim.
+    angles : set of str
+        Letters that must be angles.
+    system : UnitSystem
+        The equations between units so far.
+    values : dict
+        Dimensions of definitions.
+    assumed : dict
+        Conventional units that were assumed.
+    known : bool
+        Whether any unit is known.
+    unitless : bool
+        Whether a definition is a number without its unit, which others may lack as well.
+    fresh : int
+        The number of unknown units so far.
+    faults : list of str
+        Contradictions, as sentences.
+    place : str
+        The tree that is being followed, in words.
+    """
 
     units: dict[str, Dimension]
-    calls: Mapping[str, Callable[["Walker", Node], Value]]
+    calls: Mapping[str, Callable[["UnitInference", Node], Value]]
     names: set[str]
     angles: set[str]
     system: UnitSystem = field(default_factory=UnitSystem)
     values: dict[str, Value] = field(default_factory=dict)
     assumed: dict[str, str] = field(default_factory=dict)
     known: bool = False
-    unitless: bool = False  # whether a definition is a number without its unit, which others may lack as well
+    unitless: bool = False
     fresh: int = 0
     faults: list[str] = field(default_factory=list)
     place: str = ""
 
-    # -- what is stated ---------------------------------------------------------------------------------------------
+    # -- definitions and equations ----------------------------------------------------------------------------------
 
     def define(self, name: str, tree: Node) -> None:
-        """Give a name the dimension of its definition; a bare number is a value whose unit was not written."""
+        """Give a name the dimension of its definition; a bare number is taken as a quantity whose unit was left out."""
         self.place = f"in the definition of {name}"
         value = self.value(tree)
         if _bare(tree):
@@ -58,7 +95,7 @@ class Walker:
         self.values[name] = value
 
     def relation(self, left: Node, right: Node, what: str) -> None:
-        """Compare two sides."""
+        """Demand that two sides have one dimension."""
         values: list[Value] = []
         for node, side in ((left, "left"), (right, "right")):
             self.place = f"in {what}" if what else f"on the {side} side"
@@ -73,13 +110,13 @@ class Walker:
         self.same(values[0], values[1], f"{prefix}the left side is {{0}}, the right side is {{1}}")
 
     def inferred(self) -> dict[str, str]:
-        """Return the units of the names that had none, where they follow."""
-        found = {}
+        """Return the units that follow for names without a stated or conventional unit."""
+        units = {}
         for name in sorted(self.names & self.system.solved.keys()):
             unit = self.system.reduced({name: Fraction(1)})
             if all(base.startswith("[") for base in unit):
-                found[name] = shown_unit(unit)
-        return found
+                units[name] = unit_text(unit)
+        return units
 
     # -- units of names ---------------------------------------------------------------------------------------------
 
@@ -88,13 +125,13 @@ class Walker:
         return {f"?{self.fresh}": Fraction(1)}
 
     def unit_of(self, name: str) -> Dimension:
-        """Return the unit of a symbol or function of time: its own, that of custom, or an unknown one."""
+        """Return the unit of a symbol or function of time: stated, conventional, or unknown."""
         if name in self.units:
             self.known = True
             return self.units[name]
         quaternion = {f"{name[:-1]}{n}" for n in range(4)}
         plain = name in self.angles or (name[:-1] in ("q", "q_") and quaternion <= self.names)
-        unit = "1" if plain else customary(name) if len(name) > 1 or self.physical() else None
+        unit = "1" if plain else conventional_unit(name) if len(name) > 1 or self.physical() else None
         if unit is None:
             return {name: Fraction(1)}
         self.known = True
@@ -104,11 +141,12 @@ class Walker:
         return dimension
 
     def physical(self) -> bool:
-        """Return whether letters such as m and t are quantities here: units are given, or longer names have one."""
-        return bool(self.units) or any(len(name) > 1 and customary(name) not in (None, "rad") for name in self.names)
+        """Return whether letters such as m and t are quantities: if units are stated, or longer names have one."""
+        units = (conventional_unit(name) for name in self.names if len(name) > 1)
+        return bool(self.units) or any(unit not in (None, "rad") for unit in units)
 
     def values_of(self, rows: Rows, node: Node) -> Rows:
-        """Return the dimensions of a matrix of numbers: of none for unit vectors, else whatever they stand for."""
+        """Return the dimensions of a matrix of numbers: none for unit vectors, else unknown ones."""
         if _is_unit(node):
             return rows
         return tuple(tuple(ZERO if entry is ZERO else self.unknown() for entry in row) for row in rows)
@@ -123,11 +161,11 @@ class Walker:
             return second if first is ZERO else first
         if not self.system.equate(first, second):
             place = f"{self.place} " if self.place else ""
-            self.faults.append(place + words.format(*map(self.said, (first, second))))
+            self.faults.append(place + words.format(*map(self.in_words, (first, second))))
         return first
 
-    def said(self, dimension: Dimension) -> str:
-        unit = shown_unit(self.system.reduced(dimension))
+    def in_words(self, dimension: Dimension) -> str:
+        unit = unit_text(self.system.reduced(dimension))
         return "dimensionless" if unit == "1" else unit
 
     def same_matrices(self, first: Value, second: Value, words: str) -> Value:
@@ -176,11 +214,11 @@ class Walker:
         return value
 
     def total(self, values: Sequence[Value], what: str) -> Value:
-        """Return the dimension of a sum."""
-        found = values[0]
+        """Return the dimension of a sum, after demanding that all its terms have it."""
+        dimension = values[0]
         for number, value in enumerate(values[1:], start=2):
-            found = self.same(found, value, f"term 1 of {what} is {{0}}, term {number} is {{1}}")
-        return found
+            dimension = self.same(dimension, value, f"term 1 of {what} is {{0}}, term {number} is {{1}}")
+        return dimension
 
     def times(self, first: Value, second: Value) -> Value:
         if not isinstance(first, tuple) and not isinstance(second, tuple):
@@ -230,9 +268,9 @@ class Walker:
 
 
 def angles_of(tree: Node) -> Iterator[str]:
-    """Yield the letters that a formula itself makes angles: ``g`` in ``sin(2*g)``, not ``t`` in ``sin(w*t)``."""
+    """Yield single letters that must be angles in a formula: ``g`` in ``sin(2*g)``, but not ``t`` in ``sin(w*t)``."""
     for _, node in walk(tree):
-        if node.kind == "call" and node.value in TURNS:
+        if node.kind == "call" and node.value in ANGLE_FUNCTIONS:
             for argument in node.args:
                 for term in argument.args if argument.kind == "sum" else (argument,):
                     named = [piece for _, piece in walk(term) if piece.kind in ("name", "call")]
@@ -253,7 +291,7 @@ def _minor(rows: Rows, row: int, column: int) -> Rows:
 
 
 def _bare(tree: Node) -> bool:
-    """Return whether a tree holds numbers and no name."""
+    """Return whether a tree is made of numbers, without a symbol."""
     loose = (node for _, node in walk(tree) if node.kind in ("name", "call"))
     return all(node.value in ("pi", "Matrix", "sqrt", "diag", "transpose") for node in loose)
 
@@ -265,13 +303,13 @@ def _is_unit(tree: Node) -> bool:
     )
 
 
-def shown_piece(node: Node) -> str:
-    shown = text(node)
-    return shown if len(shown) <= LONGEST_SHOWN else shown[: LONGEST_SHOWN - 2] + ".."
+def piece_text(node: Node) -> str:
+    whole = text(node)
+    return whole if len(whole) <= LONGEST_EXCERPT else whole[: LONGEST_EXCERPT - 2] + ".."
 
 
 def number_of(node: Node) -> Fraction | None:
-    """Return the number that a tree of numbers stands for, as exponents are written."""
+    """Return the value of a tree of numbers, such as an exponent; None for any other tree."""
     if node.kind == "number":
         return Fraction(node.value)
     inner = [number_of(child) for child in node.args]
@@ -288,41 +326,43 @@ def number_of(node: Node) -> Fraction | None:
 # -- the kinds of node ------------------------------------------------------------------------------------------------
 
 
-def _number(walker: Walker, node: Node) -> Value:
+def _number(inference: UnitInference, node: Node) -> Value:
     return NOTHING if node.value else ZERO
 
 
-def _name(walker: Walker, node: Node) -> Value:
-    if node.value in walker.values:
-        return walker.values[node.value]
-    return NOTHING if node.value == "pi" else walker.unit_of(node.value)
+def _name(inference: UnitInference, node: Node) -> Value:
+    if node.value in inference.values:
+        return inference.values[node.value]
+    return NOTHING if node.value == "pi" else inference.unit_of(node.value)
 
 
-def _sum(walker: Walker, node: Node) -> Value:
-    return walker.total([walker.value(term) for term in node.args], f"the sum {shown_piece(node)}")
+def _sum(inference: UnitInference, node: Node) -> Value:
+    return inference.total([inference.value(term) for term in node.args], f"the sum {piece_text(node)}")
 
 
-def _product(walker: Walker, node: Node) -> Value:
-    return reduce(walker.times, [walker.value(factor) for factor in node.args])
+def _product(inference: UnitInference, node: Node) -> Value:
+    return reduce(inference.times, [inference.value(factor) for factor in node.args])
 
 
-def _inverse(walker: Walker, node: Node) -> Value:
-    below = walker.value(node.args[0])
+def _inverse(inference: UnitInference, node: Node) -> Value:
+    below = inference.value(node.args[0])
     if below is ZERO:
         raise Unreadable
-    return walker.power(below, Fraction(-1))
+    return inference.power(below, Fraction(-1))
 
 
-def _power(walker: Walker, node: Node) -> Value:
-    base, exponent = walker.value(node.args[0]), number_of(node.args[1])
+def _power(inference: UnitInference, node: Node) -> Value:
+    base, exponent = inference.value(node.args[0]), number_of(node.args[1])
     if exponent is not None:
-        return walker.power(base, exponent) if exponent else NOTHING
-    walker.plain(walker.value(node.args[1]), f"the exponent {shown_piece(node.args[1])} is {{0}} instead of a number")
-    return walker.plain(base, f"{shown_piece(node.args[0])}, under a symbolic exponent, is {{0}} instead of a number")
+        return inference.power(base, exponent) if exponent else NOTHING
+    inference.plain(
+        inference.value(node.args[1]), f"the exponent {piece_text(node.args[1])} is {{0}} instead of a number"
+    )
+    return inference.plain(base, f"{piece_text(node.args[0])}, under a symbolic exponent, is {{0}} instead of a number")
 
 
-def _index(walker: Walker, node: Node) -> Value:
-    rows = walker.matrix(node.args[0])
+def _index(inference: UnitInference, node: Node) -> Value:
+    rows = inference.matrix(node.args[0])
     places = [number_of(index) for index in node.args[1:]]
     if len(places) == 1:
         places = [places[0], Fraction(0)] if len(rows[0]) == 1 else [Fraction(0), places[0]]
@@ -335,20 +375,20 @@ def _index(walker: Walker, node: Node) -> Value:
     return entry
 
 
-def _list(walker: Walker, node: Node) -> Any:
-    return [walker.value(member) for member in node.args]
+def _list(inference: UnitInference, node: Node) -> Any:
+    return [inference.value(member) for member in node.args]
 
 
-def _call(walker: Walker, node: Node) -> Value:
-    if node.value in walker.calls:
-        return walker.calls[node.value](walker, node)
+def _call(inference: UnitInference, node: Node) -> Value:
+    if node.value in inference.calls:
+        return inference.calls[node.value](inference, node)
     if node.args and all(argument.kind == "name" for argument in node.args):
-        return walker.unit_of(node.value)
+        return inference.unit_of(node.value)
     raise Unreadable
 
 
-_VALUE: dict[str, Callable[[Walker, Node], Any]] = {
+_VALUE: dict[str, Callable[[UnitInference, Node], Any]] = {
     "number": _number, "name": _name, "sum": _sum, "product": _product, "inv": _inverse, "power": _power,
-    "neg": lambda walker, node: walker.value(node.args[0]), "index": _index, "list": _list, "call": _call,
-    "transpose": lambda walker, node: tuple(zip(*walker.matrix(node.args[0]), strict=True)),
+    "neg": lambda inference, node: inference.value(node.args[0]), "index": _index, "list": _list, "call": _call,
+    "transpose": lambda inference, node: tuple(zip(*inference.matrix(node.args[0]), strict=True)),
 }  # fmt: skip

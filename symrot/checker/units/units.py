@@ -1,7 +1,7 @@
-"""Units as products of powers, read and printed, and equations between them, solved over the rationals.
+"""Units as products of powers: reading, printing, and equations between them, solved over the rationals.
 
-A dimension is a mapping of bases (kg, m, s, A, K, mol, cd) and of symbols of unknown unit to rational exponents; an
-angle has none. Scales do not count: mm and m are the same here.
+A dimension maps bases (kg, m, s, A, K, mol, cd), and symbols of unknown unit, to rational exponents; an angle has no
+dimension. Scales are ignored: mm and m have one dimension.
 """
 
 import re
@@ -11,10 +11,12 @@ from fractions import Fraction
 
 from symrot.errors import InputError
 
-__all__ = ["NOTHING", "Dimension", "UnitSystem", "customary", "over", "raised", "read_unit", "shown_unit", "times"]
+__all__ = [
+    "NOTHING", "Dimension", "UnitSystem", "conventional_unit", "over", "raised", "read_unit", "times", "unit_text",
+]  # fmt: skip
 
 Dimension = Mapping[str, Fraction]
-"""Exponents that are not zero: of bases, written ``"[m]"``, and of symbols of unknown unit, by name."""
+"""Nonzero exponents of bases, written ``"[m]"``, and of symbols of unknown unit, by name."""
 
 NOTHING: Dimension = {}
 BASES = ("kg", "m", "s", "A", "K", "mol", "cd")
@@ -32,12 +34,12 @@ DERIVED = {
     "kg s^-2 A^-1": ("T",),
     "A": ("A",), "K": ("K",), "mol": ("mol",), "cd": ("cd",),
 }  # fmt: skip
-"""Dimension -> the units of it that a reader may write."""
+"""Dimension -> the units in which it may be written."""
 
 _PIECE = re.compile(r"\s*(?P<divide>[/*·])?\s*(?P<name>[A-Za-z]+|1)(?:(?:\^|\*\*)\(?(?P<power>-?\d+(?:/\d+)?)\)?)?")
 _BRACKET = re.compile(r"\s*/\s*\((?P<inside>[^()]+)\)")
 
-CUSTOM = (
+CONVENTIONAL_UNITS = (
     (r"t", "s"),
     (r"m|m_?[1-9]|m[ab]", "kg"),
     (r"g", "m/s^2"),
@@ -49,16 +51,19 @@ CUSTOM = (
     (r"I(_?[0-3xyz]|_?([1-3]{2}|[xyz]{2}))?", "kg m^2"),
     (r"tau(_?[xyz1-3])?", "N m"),
 )
-"""Names that nearly every book uses for one quantity -> its unit. All others are inferred, and single letters too in
-a claim without any longer name of the table or a unit of its own: it may be mathematics."""
+"""Patterns of names that nearly every book uses for one quantity, with its unit.
+
+All other units are inferred. Single letters of the table count only in a claim that has a longer name of the table, or
+a stated unit; other claims may be pure mathematics.
+"""
 
 
 def times(first: Dimension, second: Dimension) -> Dimension:
     """Return the dimension of a product."""
-    found = dict(first)
+    powers = dict(first)
     for name, power in second.items():
-        found[name] = found.get(name, Fraction(0)) + power
-    return {name: power for name, power in found.items() if power}
+        powers[name] = powers.get(name, Fraction(0)) + power
+    return {name: power for name, power in powers.items() if power}
 
 
 def raised(base: Dimension, exponent: Fraction) -> Dimension:
@@ -71,28 +76,28 @@ def over(first: Dimension, second: Dimension) -> Dimension:
     return times(first, raised(second, Fraction(-1)))
 
 
-def customary(name: str) -> str | None:
-    """Return the unit that books give a quantity of this name, or None where they differ."""
-    return next((unit for pattern, unit in CUSTOM if re.fullmatch(pattern, name)), None)
+def conventional_unit(name: str) -> str | None:
+    """Return the unit that books agree on for a quantity of this name, or None if they differ."""
+    return next((unit for pattern, unit in CONVENTIONAL_UNITS if re.fullmatch(pattern, name)), None)
 
 
 def read_unit(text: str, where: str = "") -> Dimension:
     """Return the dimension of a unit such as ``kg m^2/s``, ``N m s/rad``, ``1/s`` or ``m^(1/2)``.
 
-    A slash divides by the one unit after it, or by those in brackets.
+    A slash divides by the next unit only, or by all units in brackets.
 
     Raises
     ------
     InputError
-        Naming the unit that is not known.
+        For an unknown unit, with its name.
     """
     place = f"{where}: " if where else ""
-    found: Dimension = NOTHING
+    dimension: Dimension = NOTHING
     position = 0
     while position < len(text.rstrip()):
         bracket = _BRACKET.match(text, position)
         if bracket:
-            found = over(found, read_unit(bracket["inside"], where))
+            dimension = over(dimension, read_unit(bracket["inside"], where))
             position = bracket.end()
             continue
         match = _PIECE.match(text, position)
@@ -100,15 +105,15 @@ def read_unit(text: str, where: str = "") -> Dimension:
         if match is None or name not in _KNOWN or (not position and match["divide"]):
             raise InputError(f"{place}expected a unit like kg m^2/s, N m or 1/s, got {text[:40]!r} with {name!r}")
         power = Fraction(match["power"] or 1)
-        found = times(found, raised(_KNOWN[name], -power if match["divide"] == "/" else power))
+        dimension = times(dimension, raised(_KNOWN[name], -power if match["divide"] == "/" else power))
         position = match.end()
     if not text.strip():
         raise InputError(f"{place}expected a unit like kg m^2/s, or 1, got empty text")
-    return found
+    return dimension
 
 
-def shown_unit(dimension: Dimension) -> str:
-    """Return a dimension as text: ``kg m^2/s^2``; ``1`` for none; an unknown unit as ``[x]``."""
+def unit_text(dimension: Dimension) -> str:
+    """Return a dimension as text: ``kg m^2/s^2``; ``1`` for a number; an unknown unit as ``[x]``."""
     order = [*(f"[{base}]" for base in BASES), *sorted(dimension)]
     names = [name for name in dict.fromkeys(order) if name in dimension]
     above = [_shown_power(name, dimension[name]) for name in names if dimension[name] > 0]
@@ -125,7 +130,7 @@ def _shown_power(name: str, power: Fraction) -> str:
 
 
 def _plain(text: str) -> Dimension:
-    """Return the dimension of a text of bases and whole powers."""
+    """Return the dimension of a text such as ``kg m^2 s^-2``, of bases with integer powers."""
     pairs = [(piece.partition("^")[0], piece.partition("^")[2] or "1") for piece in text.split()]
     return {f"[{base}]": Fraction(power) for base, power in pairs}
 
@@ -135,19 +140,19 @@ _KNOWN = {name: _plain(text) for text, names in DERIVED.items() for name in name
 
 @dataclass
 class UnitSystem:
-    """Equations between dimensions, in the exponents of unknown units; what follows from them so far."""
+    """Equations between dimensions, and the unknown units that follow from them so far (``solved``)."""
 
     solved: dict[str, Dimension] = field(default_factory=dict)
 
     def reduced(self, dimension: Dimension) -> Dimension:
-        """Return a dimension with everything put in that is known of its symbols."""
-        found: Dimension = NOTHING
+        """Return a dimension in which solved units are replaced by their values."""
+        result: Dimension = NOTHING
         for name, power in dimension.items():
-            found = times(found, raised(self.solved.get(name, {name: Fraction(1)}), power))
-        return found
+            result = times(result, raised(self.solved.get(name, {name: Fraction(1)}), power))
+        return result
 
     def equate(self, first: Dimension, second: Dimension) -> bool:
-        """Demand that two dimensions are equal; return False, changing nothing, if they cannot be."""
+        """Demand that two dimensions are equal; return False and change nothing if that is impossible."""
         quotient = self.reduced(over(first, second))
         unknown = [name for name in quotient if not name.startswith("[")]
         if not unknown:
@@ -155,10 +160,10 @@ class UnitSystem:
         name = unknown[-1]
         rest = {other: power for other, power in quotient.items() if other != name}
         value = raised(rest, -1 / quotient[name])
-        for other, held in self.solved.items():
-            if name in held:
-                power = held[name]
-                without = {n: p for n, p in held.items() if n != name}
+        for other, dimension in self.solved.items():
+            if name in dimension:
+                power = dimension[name]
+                without = {n: p for n, p in dimension.items() if n != name}
                 self.solved[other] = times(without, raised(value, power))
         self.solved[name] = value
         return True

@@ -117,5 +117,5 @@ def exponential(x: Pair) -> Pair:
     grown = add(r, multiply(multiply(r, r), second(r)))
     octave, index = np.divmod(j.astype(np.int64), _PARTS)
     power = high[index], low[index]
-    found = add(power, multiply(power, grown))
-    return np.ldexp(found[0], octave), np.ldexp(found[1], octave)
+    scaled = add(power, multiply(power, grown))
+    return np.ldexp(scaled[0], octave), np.ldexp(scaled[1], octave)

@@ -10,7 +10,7 @@ typedef struct {
     void *record;          /* room for the constants of one motion */
     double *table;         /* room for the polynomials of a spin-up */
     ptrdiff_t arguments;   /* of prepare, before the record: 5 or 6 */
-    const double *given[6];
+    const double *constants[6];
     ptrdiff_t strides[6];
     const double *times;   /* s, from the start */
     ptrdiff_t times_stride, samples;

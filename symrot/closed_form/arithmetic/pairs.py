@@ -91,19 +91,24 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
     InputError
         If there is another count of them, or one is no real number, beyond :data:`LARGEST`, or below ``least``.
     """
-    found = _listed(what, values, length)
-    if {*map(type, found)} == {float} and all(map(isfinite, found)) and max(found) <= LARGEST and min(found) >= least:
-        return found
-    for index, value in enumerate(found):
+    entries = _listed(what, values, length)
+    if (
+        {*map(type, entries)} == {float}
+        and all(map(isfinite, entries))
+        and max(entries) <= LARGEST
+        and min(entries) >= least
+    ):
+        return entries
+    for index, value in enumerate(entries):
         if type(value) is Fraction and _moderate(value, least):
             continue
         if isinstance(value, bool) or not isinstance(value, float | int | Fraction):
-            found[index] = value = _double(what, value)
+            entries[index] = value = _double(what, value)
         if not abs(value) <= LARGEST:
             raise InputError(f"{what}: expected finite numbers of a magnitude up to {LARGEST:g}, got {show(value)}")
         if value < least:
             raise InputError(f"{what}: expected positive numbers, {least:g} at least, got {show(value)}")
-    return found
+    return entries
 
 
 def _moderate(value: Fraction, least: float) -> bool:
@@ -115,12 +120,12 @@ def _moderate(value: Fraction, least: float) -> bool:
 
 def _listed(what: str, values: Sequence[Number], length: int) -> list[Any]:
     try:
-        found = list(values)
+        entries = list(values)
     except TypeError:
         raise InputError(f"{what}: expected {length} numbers, got {show(values)}") from None
-    if len(found) != length:
-        raise InputError(f"{what}: expected {length} numbers, got {len(found)}")
-    return found
+    if len(entries) != length:
+        raise InputError(f"{what}: expected {length} numbers, got {len(entries)}")
+    return entries
 
 
 def _double(what: str, value: Any) -> float:

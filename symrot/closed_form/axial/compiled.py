@@ -39,7 +39,7 @@ def parts(top: int, bottom: int, count: int) -> list[float]:
     """Return top/bottom as so many doubles, each the rounded rest of those before it; of equal ratios the same."""
     sign, top = (-1, -top) if top < 0 else (1, top)
     size = top.bit_length() - bottom.bit_length()
-    shift, found = _BITS - size, []
+    shift, doubles = _BITS - size, []
     left = (top << shift) // bottom if shift > 0 else top // (bottom << -shift)
     if left >> _BITS:  # one bit more: for other integers of the same ratio it may not be there
         left, shift = left >> 1, shift - 1
@@ -49,8 +49,8 @@ def parts(top: int, bottom: int, count: int) -> list[float]:
     for _ in range(count):
         high = float(left)
         left -= int(high)
-        found.append(math.ldexp(high, -shift))
-    return found
+        doubles.append(math.ldexp(high, -shift))
+    return doubles
 
 
 class Loops(NamedTuple):

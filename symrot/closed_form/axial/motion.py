@@ -77,9 +77,9 @@ class AxialMotion:
         if status == axial_compiled.EARLY:
             self._refuse(times)
         if status == axial_compiled.LOST:
-            for found, way in ((rates, self._rates), (attitudes, self._quaternions)):
-                if found is not None and (lost := np.isnan(found).any(axis=1)).any():
-                    found[lost] = way(times[lost])
+            for values, way in ((rates, self._rates), (attitudes, self._quaternions)):
+                if values is not None and (lost := np.isnan(values).any(axis=1)).any():
+                    values[lost] = way(times[lost])
         return rates, attitudes
 
     def _refuse(self, times: Floats) -> NoReturn:
@@ -111,17 +111,17 @@ class AxialMotion:
     def _axial(self, t: Floats) -> Floats:
         """Return the angular velocity about the axis."""
         rate, push, (high, low) = float(self._rate), float(self._push), pair(-self._decay)
-        found: Floats = rate + push * t
+        spin: Floats = rate + push * t
         if not high:
-            return found
+            return spin
         x, error = two_product(t, high)
         left, lost = fallen(x, error + t * low)
-        found = rate * left + push * (lost / high)
+        spin = rate * left + push * (lost / high)
         early = x > 1.0
         if early.any():  # where rate and push would all but cancel
             final = self._push / self._decay
-            found[early] = float(final) + float(self._rate - final) * left[early]
-        return found
+            spin[early] = float(final) + float(self._rate - final) * left[early]
+        return spin
 
     def _quaternions(self, t: Floats) -> Floats:
         sine, cosine = self._angle(t, Fraction(1, 2))
@@ -179,8 +179,8 @@ class Driven:
         self, inertia: Sequence[Number], axis: int, torque: Number, damping: Number, damping_across: Number
     ) -> None:
         self._moments = moments = [Fraction(x) for x in numbers("inertia", inertia, 3, SMALLEST)]
-        given = numbers("torque and damping", [torque, damping, damping_across], 3)
-        push, drag, slowing = (Fraction(x) for x in given)
+        coefficients = numbers("torque and damping", [torque, damping, damping_across], 3)
+        push, drag, slowing = (Fraction(x) for x in coefficients)
         if not isinstance(axis, int) or axis not in (0, 1, 2):
             raise InputError(f"expected an axis 0, 1 or 2, got {number.show(axis)}")
         self.axis = axis
@@ -200,15 +200,15 @@ class Driven:
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> AxialMotion:
         """Return the motion from an initial state."""
         axis, rates = self.axis, [Fraction(x) for x in numbers("omega", omega0, 3)]
-        given = numbers("quaternion", quaternion0, 4)
-        if not any(given):
+        components = numbers("quaternion", quaternion0, 4)
+        if not any(components):
             raise InputError(f"expected a quaternion that is not zero, got {list(quaternion0)}")
         if (rates[axis - 2] or rates[axis - 1]) and not self._symmetric:
             raise InputError(
                 "a body that turns across the driven axis must be symmetric about it, got moments "
                 f"{[float(x) for x in self._moments]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
             )
-        return self.moving(rates, [float(x) for x in number.unit([Fraction(x) for x in given])])
+        return self.moving(rates, [float(x) for x in number.unit([Fraction(x) for x in components])])
 
     def moving(self, rates: Sequence[Number], attitude: list[float]) -> AxialMotion:
         """Return the motion from an initial state that the body can have, with a unit quaternion."""
@@ -218,7 +218,7 @@ class Driven:
 
 def turned_about(axis: int, q: Sequence[Any]) -> list[Any]:
     """Return the product of a quaternion and an axis of the body."""
-    found: list[Any] = [None] * 4
-    found[0], found[axis + 1] = -q[axis + 1], q[0]
-    found[(axis + 1) % 3 + 1], found[(axis + 2) % 3 + 1] = q[(axis + 2) % 3 + 1], -q[(axis + 1) % 3 + 1]
-    return found
+    product: list[Any] = [None] * 4
+    product[0], product[axis + 1] = -q[axis + 1], q[0]
+    product[(axis + 1) % 3 + 1], product[(axis + 2) % 3 + 1] = q[(axis + 2) % 3 + 1], -q[(axis + 1) % 3 + 1]
+    return product

@@ -29,7 +29,7 @@ class _Tensors(Structure):
     """``tensors`` of bodies_at.c."""
 
     _fields_ = (
-        ("given", c_void_p * 6), ("strides", c_ssize_t * 6), ("terms", c_ssize_t), ("exact", c_int32 * 6)
+        ("entries", c_void_p * 6), ("strides", c_ssize_t * 6), ("terms", c_ssize_t), ("exact", c_int32 * 6)
     )  # fmt: skip
 
 
@@ -40,10 +40,10 @@ def _functions() -> tuple[Any, Any, Any]:
     arguments = (
         (c_ssize_t, *[c_void_p] * 5), (c_ssize_t, *[c_void_p] * 4), (c_ssize_t, *[c_void_p] * 7)
     )  # fmt: skip
-    found = [getattr(library, name) for name in names]
-    for function, types in zip(found, arguments, strict=True):
+    functions = [getattr(library, name) for name in names]
+    for function, types in zip(functions, arguments, strict=True):
         function.argtypes, function.restype = types, None
-    rates, defect, principal = found
+    rates, defect, principal = functions
     return rates, defect, principal
 
 
@@ -100,7 +100,7 @@ def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodie
         else:
             values, tensors.exact[k], tensors.strides[k] = np.ascontiguousarray(entry), 1, 1
         arrays.append(values)
-        tensors.given[k] = address(values)
+        tensors.entries[k] = address(values)
     room = [np.empty((n, length)) for length in (6, 6, 8, 26)]
     omega, doubtful = np.ascontiguousarray(omega), np.empty(n, np.uint8)
     places = [address(values) for values in room]

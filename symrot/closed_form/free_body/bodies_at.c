@@ -279,7 +279,7 @@ static int quaternion_of(fixed m[3][3], fixed q[4])
 
 /* A tensor: of each body its entries xx, yy, zz, xy, xz, yz, kg m^2, by place, stride 1; or of all, as sums of `terms`. */
 typedef struct {
-    const double *given[6];
+    const double *entries[6];
     ptrdiff_t strides[6], terms;
     int32_t exact[6]; /* whether a sum is the number itself */
 } tensors;
@@ -290,13 +290,13 @@ static int principal(const tensors *t, ptrdiff_t n, fixed moments[3], int known[
     static const int rows[6] = {0, 1, 2, 0, 0, 1}, columns[6] = {0, 1, 2, 1, 2, 2};
     double first[3];
     for (int k = 0; k < 3; ++k)
-        first[k] = t->given[k][n*t->strides[k]];
+        first[k] = t->entries[k][n*t->strides[k]];
     *scale = scale_of(first);
     if (*scale == 0.0)
         return 0;
     fixed a[3][3];
     for (int k = 0; k < 6; ++k) {
-        const double *x = t->given[k] + n*t->strides[k];
+        const double *x = t->entries[k] + n*t->strides[k];
         fixed sum = FIXED_ZERO;
         int held = t->exact[k];
         for (ptrdiff_t m = 0; m < (t->strides[k] ? 1 : t->terms); ++m) {

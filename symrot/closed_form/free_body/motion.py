@@ -113,8 +113,8 @@ class Body:
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
         """Return the motion from an initial state along the given axes."""
-        given, omega, exact = self._rates
-        if omega0 is not given:
+        omega_before, omega, exact = self._rates
+        if omega0 is not omega_before:
             rates, shared = self.along(numbers("omega", omega0, 3))
             omega = [part for x in rates for part in quotient(x, shared)]
             exact = [*self.gaps, *self.defect(rates)]
@@ -134,13 +134,13 @@ def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[flo
 
 def gaps(i: list[int], shared: int) -> list[float]:
     """Return I2 - I3, I3 - I1, I1 - I2 of moments as integers over one denominator, as hi, lo."""
-    found: list[float] = []
+    differences: list[float] = []
     for k in range(3):
         difference = i[(k + 1) % 3] - i[(k + 2) % 3]
         if abs(difference) << NEGLIGIBLE < max(i[(k + 1) % 3], i[(k + 2) % 3]):
             difference = 0
-        found += quotient(difference, shared)
-    return found
+        differences += quotient(difference, shared)
+    return differences
 
 
 class Defect:

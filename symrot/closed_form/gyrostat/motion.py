@@ -50,7 +50,7 @@ class Gyrostat:
     """A gyrostat with what its motions share."""
 
     def __init__(self, inertia: Sequence[Number], rotor: Sequence[Number]) -> None:
-        self._given = moments = numbers("inertia", inertia, 3, SMALLEST)
+        self._inertia = moments = numbers("inertia", inertia, 3, SMALLEST)
         momentum = numbers("rotor", rotor, 3)
         symmetric = [k for k in range(3) if same(moments[k - 2], moments[k - 1])]
         fitting = [k for k in symmetric if not momentum[k - 2] and not momentum[k - 1]]
@@ -72,6 +72,6 @@ class Gyrostat:
             (self.moments, self.rotor, named, start, [*map(float, self.named), 0.0]),
             lambda: (
                 "a gyrostat has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
-                f"not zero, got moments {[float(x) for x in self._given]}, omega {[float(x) for x in rates]}"
+                f"not zero, got moments {[float(x) for x in self._inertia]}, omega {[float(x) for x in rates]}"
             ),
         )

@@ -78,7 +78,7 @@ class Top:
     def __init__(
         self, inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number]
     ) -> None:
-        self._given = moments = numbers("inertia", inertia, 3, SMALLEST)
+        self._inertia = moments = numbers("inertia", inertia, 3, SMALLEST)
         center = numbers("center_of_mass", center_of_mass, 3)
         force = numbers("weight", [weight], 1)[0]
         down = numbers("direction", direction, 3)
@@ -101,17 +101,17 @@ class Top:
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
         """Return the motion from an initial state."""
-        rates, given = numbers("omega", omega0, 3), numbers("quaternion", quaternion0, 4)
+        rates, attitude = numbers("omega", omega0, 3), numbers("quaternion", quaternion0, 4)
         if self.free:
-            return free_body.motion(self._given, rates, given)
+            return free_body.motion(self._inertia, rates, attitude)
         frame = self.frame
         named = [rates[k] for k in frame.named]
         return prepared(
             "heavy_top",
-            (self.moments, self.pull, spread(named), frame.start(given), frame.space, frame.axes),
+            (self.moments, self.pull, spread(named), frame.start(attitude), frame.space, frame.axes),
             lambda: (
                 "a heavy top has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
-                f"not zero, got moments {[float(x) for x in self._given]}, omega {[float(x) for x in named]}"
+                f"not zero, got moments {[float(x) for x in self._inertia]}, omega {[float(x) for x in named]}"
             ),
         )
 
@@ -145,13 +145,13 @@ class Frame:
         """Whether these axes are the given ones, so that no attitude need be turned."""
         return self._before is self._after is None
 
-    def start(self, given: Sequence[Number]) -> list[float]:
+    def start(self, quaternion: Sequence[Number]) -> list[float]:
         """Return an attitude between these axes, as :func:`symrot.closed_form.arithmetic.pairs.attitude` has it."""
         if self.plain:
-            return attitude(given)
-        found, shared = common(given)
+            return attitude(quaternion)
+        integers, shared = common(quaternion)
         if self._before is not None:
-            found, shared = list(product(self._before[0], found)), shared * self._before[1]
+            integers, shared = list(product(self._before[0], integers)), shared * self._before[1]
         if self._after is not None:
-            found, shared = list(product(found, self._after[0])), shared * self._after[1]
-        return on_grid([(x, shared) for x in found])
+            integers, shared = list(product(integers, self._after[0])), shared * self._after[1]
+        return on_grid([(x, shared) for x in integers])

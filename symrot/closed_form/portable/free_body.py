@@ -231,7 +231,7 @@ def _differences(inertia: list[float], omega: list[float], w: list[Any]) -> tupl
     moments = [Fraction(high) + Fraction(low) for high, low in zip(inertia[::2], inertia[1::2], strict=True)]
     rates = [Fraction(high) + Fraction(low) for high, low in zip(omega[::2], omega[1::2], strict=True)]
     middle = sorted(moments)[1]
-    shares = (i * (i - middle) * x * x for i, x, kept in zip(moments, rates, w, strict=True) if kept)
+    shares = (i * (i - middle) * x * x for i, x, component in zip(moments, rates, w, strict=True) if component)
     differences = [moments[i - 2] - moments[i - 1] for i in range(3)]
     return [_rounded(x) for x in differences], _rounded(sum(shares, Fraction(0)))
 

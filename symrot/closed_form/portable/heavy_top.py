@@ -198,8 +198,8 @@ class HeavyTop:
             slope = mpc(mp.fdot(re, df), mp.fdot(im, dg))
             moving = slope * speed + mpc(0, kappas[i]) * value - inner * value
             by_rate = abs(value) < mpf(10) ** -3 * abs(moving)
-            found = initial_rates[i] / moving if by_rate else start[i] / value
-            constants.append(found * mp.expjpi(-2 * leads[i]))
+            constant = initial_rates[i] / moving if by_rate else start[i] / value
+            constants.append(constant * mp.expjpi(-2 * leads[i]))
         sizes = [abs(x) for x in constants]
         total = mp.hypot(*sizes)
         self.terms = [
@@ -279,10 +279,10 @@ def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
     """Return the roots S1 >= S2 >= S3 of 2 (E - M + M s) s (2 - s) - (D + l s)^2, equal ones exactly so."""
     # -2M s^3 + (4M - 2(E - M) - l^2) s^2 + (4 (E - M) - 2 D l) s - D^2
     cubic = [-2 * pull, 4 * pull - twice - spin**2, 2 * twice - 2 * d * spin, -(d**2)]
-    found = sorted((mp.re(x) for x in mp.polyroots(cubic, maxsteps=400, extraprec=800)), reverse=True)
-    s1, s2, s3 = found
+    roots = sorted((mp.re(x) for x in mp.polyroots(cubic, maxsteps=400, extraprec=800)), reverse=True)
+    s1, s2, s3 = roots
     s3, s2, s1 = min(s3, mpf(0)), max(s2, mpf(0)), min(s1, mpf(2))
-    size = max(abs(x) for x in found)
+    size = max(abs(x) for x in roots)
     if s1 - s2 < EQUAL * size:
         s2 = s1
     if s2 - s3 < EQUAL * size:

@@ -49,30 +49,30 @@ class Phase(NamedTuple):
         small = error + t * self.rate[1]
         small = (small - np.rint(small)) + self.start[1] + more
         high, low = two_sum(product - np.rint(product), self.start[0])
-        taken = np.rint(parts * (high + small))
-        return (high - taken / parts) + (low + small), taken
+        steps = np.rint(parts * (high + small))
+        return (high - steps / parts) + (low + small), steps
 
     def whole(self, t: Floats) -> Floats:
         """Return the phase itself, of what is not periodic."""
         product, error = two_product(t, self.rate[0])
         high, low = two_sum(product, self.start[0])
-        found: Floats = high + (low + (error + t * self.rate[1] + self.start[1]))
-        return found
+        phase: Floats = high + (low + (error + t * self.rate[1] + self.start[1]))
+        return phase
 
     def circle(self, t: Floats, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
         """Return sine and cosine of the phase."""
-        rest, taken = self.rest(t, 4, more)
+        rest, quarters = self.rest(t, 4, more)
         sine, cosine = np.sin(2.0 * np.pi * rest), np.cos(2.0 * np.pi * rest)
-        quarter = taken.astype(np.int64) & 3
+        quarter = quarters.astype(np.int64) & 3
         sign = np.where(quarter < 2, 1.0, -1.0)
         odd = (quarter & 1) == 1
         return sign * np.where(odd, cosine, sine), sign * np.where(odd, -sine, cosine)
 
     def argument(self, t: Floats, stretch: float) -> tuple[Floats, Floats, Floats]:
         """Return the phase in half turns from -1/2 to 1/2, the sign that changes with each, and the argument."""
-        rest, taken = self.rest(t, 2)
+        rest, halves = self.rest(t, 2)
         whole = 2.0 * rest
-        flip: Floats = np.where(taken.astype(np.int64) & 1, -1.0, 1.0)
+        flip: Floats = np.where(halves.astype(np.int64) & 1, -1.0, 1.0)
         return whole, flip, np.clip(stretch * whole, -LARGEST, LARGEST)
 
     def argument_once(self, t: Floats) -> tuple[Floats, Floats, Floats]:
@@ -87,8 +87,8 @@ def turned_by(real: Floats, imaginary: Floats, sine: Floats, cosine: Floats) -> 
 
 def multiples(sine: Floats, cosine: Floats) -> list[tuple[Floats, Floats]]:
     """Return sine and cosine of 0, 1, 2 .. times an angle, twice as many as a series has terms."""
-    found = [(np.zeros_like(sine), np.ones_like(sine))]
+    pairs = [(np.zeros_like(sine), np.ones_like(sine))]
     for _ in range(2 * TERMS - 1):
-        s, c = found[-1]
-        found.append((s * cosine + c * sine, c * cosine - s * sine))
-    return found
+        s, c = pairs[-1]
+        pairs.append((s * cosine + c * sine, c * cosine - s * sine))
+    return pairs

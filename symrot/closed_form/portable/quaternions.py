@@ -50,8 +50,8 @@ def matrix_quaternion(r: Sequence[Sequence[Any]]) -> list[Any]:
 class Axes:
     """From the axes of a motion to those in which it is returned: v_given = matrix*v, from 26 numbers or None."""
 
-    def __init__(self, given: list[float] | None) -> None:
-        values = vector(given) if given else [mpf(int(i % 4 == 0)) for i in range(9)] + UNIT
+    def __init__(self, axes: list[float] | None) -> None:
+        values = vector(axes) if axes else [mpf(int(i % 4 == 0)) for i in range(9)] + UNIT
         self.matrix, self.quaternion = [values[3 * i : 3 * i + 3] for i in range(3)], values[9:]
 
 

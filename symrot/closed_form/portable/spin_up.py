@@ -37,8 +37,8 @@ def _root(a: dd.Pair) -> dd.Pair:
     for _ in range(2):
         pair = (root, 0.0) if isinstance(root, np.ndarray) else root
         root = dd.add(pair, (_less(a, dd.multiply(pair, pair))[0] / (2.0 * pair[0]), 0.0))
-    found: dd.Pair = root
-    return found
+    refined: dd.Pair = root
+    return refined
 
 
 def _atanh_ratio(x: dd.Pair) -> dd.Pair:
@@ -61,8 +61,8 @@ def _asinh_ratio(z: dd.Pair, root: dd.Pair) -> dd.Pair:
     tau = _over(small, above)
     whole = dd.multiply((2.0 * times, 0.0), _over(_atanh_ratio(tau), above))
     shrunk = _over(small, (np.where(size[0] == 0.0, 1.0, size[0]), size[1]))
-    found = dd.multiply(whole, shrunk)
-    return np.where(times == 1.0, whole[0], found[0]), np.where(times == 1.0, whole[1], found[1])
+    ratio = dd.multiply(whole, shrunk)
+    return np.where(times == 1.0, whole[0], ratio[0]), np.where(times == 1.0, whole[1], ratio[1])
 
 
 def _circle(turns: dd.Pair) -> tuple[Floats, Floats]:

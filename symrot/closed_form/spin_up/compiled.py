@@ -95,10 +95,10 @@ class Compiled:
 
     def fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> bool:
         """Write samples where an array is given; return whether some are beyond :attr:`longest`, which are wrong."""
-        given = len(times), address(times), address(omega), address(quaternion)
+        samples = len(times), address(times), address(omega), address(quaternion)
         _, place, table = self._known
-        status: int = self._evaluate(place, address(table), *given)
+        status: int = self._evaluate(place, address(table), *samples)
         if status & _LACKING:
             self._known = _, place, table = self._prepared(np.empty(TABLE))
-            status = self._evaluate(place, address(table), *given)
+            status = self._evaluate(place, address(table), *samples)
         return bool(status & _LOST)

@@ -88,7 +88,7 @@ class Integers:
         self._sweep = Sweep(rounded(width / scale), rounded(s / scale**2), series(kappa2, inverse))
         self._edge = Fraction(0) if self._sweep.series.wide else rounded(Fraction(NEAR) * self._root / scale)
         self._axes = self._body_axes(axis, sign, first / width, second / width)
-        self._given = product(fixed(number.unit(attitude)), self._axes)
+        self._attitude = product(fixed(number.unit(attitude)), self._axes)
         self._rates = [[0.0, 0.0] for _ in range(3)]
         self._rates[axis - 2] = [float(first), -sign * float(second)]
         self._rates[axis - 1] = [float(second), sign * float(first)]
@@ -155,8 +155,8 @@ class Integers:
                 continue
             time, omega, rotation = self._begin(1 if wide else side)
             values += [*pair(time), *pair(omega), sweep.delta(omega)]
-            values += _map(product(self._given, rotation, sweep.axes(omega)), back)
-        return values + (_map(product(self._given, self._resonance), back) if near else [0.0] * 16)
+            values += _map(product(self._attitude, rotation, sweep.axes(omega)), back)
+        return values + (_map(product(self._attitude, self._resonance), back) if near else [0.0] * 16)
 
     @cached_property
     def longest(self) -> float:
@@ -202,5 +202,5 @@ class Integers:
             turned = product(rotation, self._sweep.rotation(place, t - begun))
         else:
             turned = product(self._resonance, self._near.quaternion(self._x(omega)))
-        found = product(self._given, turned, about_third(-angle), conjugate(self._axes))
-        attitudes[i] = [x / ONE[0] for x in found]
+        attitude = product(self._attitude, turned, about_third(-angle), conjugate(self._axes))
+        attitudes[i] = [x / ONE[0] for x in attitude]

@@ -49,7 +49,7 @@ class SpinUp:
     regime = "circular"
 
     def __init__(self, body: "Body", rates: Sequence[Number], attitude: Sequence[Number]) -> None:
-        self._given, axis = (body, rates, attitude), body.axis
+        self._initial_state, axis = (body, rates, attitude), body.axis
         turned = rates[axis - 2], rates[axis - 1], rates[axis]
         self._source = (
             Compiled(axis, [*body.shared, *spread(turned), *pairs_of(attitude)])
@@ -62,7 +62,7 @@ class SpinUp:
         """The same motion in integers."""
         from symrot.closed_form.spin_up.integers import Integers
 
-        body, rates, attitude = self._given
+        body, rates, attitude = self._initial_state
         across, own = body.moments
         exact = [Fraction(x) for x in rates], [Fraction(x) for x in attitude]
         return Integers((Fraction(across), Fraction(own)), body.axis, Fraction(body.torque), *exact)
@@ -131,11 +131,11 @@ class Body:
     """A symmetric body and its torque, as what its motions share."""
 
     def __init__(self, inertia: Sequence[Number], axis: int, torque: Number) -> None:
-        self._given, (self.torque,) = numbers("inertia", inertia, 3, SMALLEST), numbers("torque", [torque], 1)
+        self._inertia, (self.torque,) = numbers("inertia", inertia, 3, SMALLEST), numbers("torque", [torque], 1)
         if not isinstance(axis, int) or axis not in (0, 1, 2):
             raise InputError(f"expected an axis 0, 1 or 2, got {show(axis)}")
-        self.axis, self.moments = axis, (self._given[axis - 2], self._given[axis])
-        self._symmetric = same(self._given[axis - 2], self._given[axis - 1])
+        self.axis, self.moments = axis, (self._inertia[axis - 2], self._inertia[axis])
+        self._symmetric = same(self._inertia[axis - 2], self._inertia[axis - 1])
         self.shared = spread([*self.moments, self.torque])
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> SpinUp:
@@ -146,6 +146,6 @@ class Body:
         if not self._symmetric or not (rates[axis - 2] or rates[axis - 1]):
             raise InputError(
                 "expected a body that is symmetric about the driven axis and turns across it too, got moments "
-                f"{[float(x) for x in self._given]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
+                f"{[float(x) for x in self._inertia]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
             )
         return SpinUp(self, rates, attitude)

@@ -51,12 +51,12 @@ class Near:
     def _coefficients(self, spinor: _Spinor, place: Fraction) -> list[_Spinor]:
         """Return the series about a place, whose denominator is a power of two."""
         top, shift, kappa = place.numerator, place.denominator.bit_length() - 1, self._kappa
-        found: list[_Spinor] = [spinor]
+        coefficients: list[_Spinor] = [spinor]
         before: _Spinor = (0, 0, 0, 0)
         for n in range(1, _TERMS):
-            q0, q3, q1, q2 = now = found[-1]
+            q0, q3, q1, q2 = now = coefficients[-1]
             p0, p3, p1, p2 = before
-            found.append(
+            coefficients.append(
                 (
                     (-(q3 * top >> shift) - p3 - (kappa * q1 >> FIXED)) // (2 * n),
                     ((q0 * top >> shift) + p0 - (kappa * q2 >> FIXED)) // (2 * n),
@@ -65,7 +65,7 @@ class Near:
                 )
             )
             before = now
-        return found
+        return coefficients
 
     def _sum(self, series: list[_Spinor], step: Fraction) -> _Spinor:
         x, total = self._fixed(step), [0, 0, 0, 0]

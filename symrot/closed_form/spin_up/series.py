@@ -67,15 +67,15 @@ def _first(share: float, v: float) -> Floats:
     order, total = {0: 1.0}, [0.0] * (3 * _ORDERS + 1)
     total[0] = 1.0
     for _ in range(_ORDERS):
-        found: dict[int, float] = {}
+        next_order: dict[int, float] = {}
         for power, value in order.items():
             j = power + 2
             gap = (2 * j - 1) * (2 * j - 3) * v * v * value  # b_j - a_j
-            found[j] = found.get(j, 0.0) - gap
-            found[j + 1] = found.get(j + 1, 0.0) + share * (2 * j + 1) * gap / (2 * j + 2)
-        for power, value in found.items():
+            next_order[j] = next_order.get(j, 0.0) - gap
+            next_order[j + 1] = next_order.get(j + 1, 0.0) + share * (2 * j + 1) * gap / (2 * j + 2)
+        for power, value in next_order.items():
             total[power] += value
-        order = found
+        order = next_order
     return np.array(total)
 
 
@@ -107,5 +107,5 @@ def series(kappa2: float, inverse: float) -> Series:
     second2 = share * y * (v * y) ** 2 * c * c
     h = np.asarray(np.linalg.solve(square, -c / (1.0 + np.sqrt(1.0 - first2 - second2))), np.float64)
     e = _angle(share, v, h)
-    kept = np.asarray(np.linalg.solve(square, np.stack([v * v * g, v * c, e], axis=1)), np.float64)
-    return Series(wide, kept[:, 0], kept[:, 1], kept[:, 2])
+    coefficients = np.asarray(np.linalg.solve(square, np.stack([v * v * g, v * c, e], axis=1)), np.float64)
+    return Series(wide, coefficients[:, 0], coefficients[:, 1], coefficients[:, 2])

@@ -49,7 +49,7 @@ static int passes(const spin_up *f, double first, double last)
 static void follow_together(const symrot_many_motions *m, int count, const ptrdiff_t which[LANES], const half_way h[LANES],
     spin_up records[LANES])
 {
-    const int pieces = (int)(m->given[1][1]*SPIN_UP_PIECES);
+    const int pieces = (int)(m->constants[1][1]*SPIN_UP_PIECES);
     near_motion near[LANES];
     for (int lane = 0; lane < LANES; ++lane)
         near[lane] = near_motion_of(h + (lane < count ? lane : 0), m->table + lane*pieces*TABLE);
@@ -85,7 +85,7 @@ ptrdiff_t symrot_many_spin_ups(const symrot_many_motions *m, ptrdiff_t first, pt
                 latest = k == 0 || t > latest ? t : latest;
             }
         spin_up *own = records + count;
-        prepare_first((int)m->given[1][0], m->given[0] + i*m->strides[0], m->given[1] + 1, h + count, own);
+        prepare_first((int)m->constants[1][0], m->constants[0] + i*m->strides[0], m->constants[1] + 1, h + count, own);
         if ((m->quaternion == NULL || !passes(own, earliest, latest)) && !sampled(m, i, own, NULL))
             continue;
         waiting[count++] = i;

@@ -27,12 +27,12 @@ def enclosure_source(program: Program, order: int, edges: Sequence[int]) -> str:
         return enclosure_definitions(None, order, edges)
 
 
-def enclosure_definitions(found: Enclosure | None, order: int, edges: Sequence[int]) -> str:
+def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequence[int]) -> str:
     """Return the C text of an enclosure: the function ``symrot_deviations`` and its tables.
 
     Parameters
     ----------
-    found : Enclosure or None
+    enclosure : Enclosure or None
         None for a right-hand side that needs no enclosure.
     order : int
         Order N of the polynomials that follow the states, which the table of radii is for: a step of size h misses at
@@ -40,20 +40,20 @@ def enclosure_definitions(found: Enclosure | None, order: int, edges: Sequence[i
     edges : sequence of int
         Edges of the blocks of states whose errors are judged apart, from 0 to the number of states.
     """
-    if found is None:
+    if enclosure is None:
         return "#define SYMROT_ENCLOSED 0\n#define SYMROT_DEPENDS 0\n"
-    system = found.system
+    system = enclosure.system
     places = {name: f"p[{i}]" for i, name in enumerate(system.parameters)}
-    lines = [f"const symrot_disc d{i} = {_disc(system, i, places)};" for i in found.series]
-    for state, own in enumerate(found.terms):
+    lines = [f"const symrot_disc d{i} = {_disc(system, i, places)};" for i in enclosure.series]
+    for state, own in enumerate(enclosure.terms):
         parts = [f"{_size(weight, places)}d{operand}.r" for weight, operand in own]
         lines.append(f"deviation[{state}] = {' + '.join(parts) or '0.0'};")
-    used = ", ".join("1" if state in found.states else "0" for state in range(len(system.states)))
+    used = ", ".join("1" if state in enclosure.states else "0" for state in range(len(system.states)))
     radii = REACHES[order < LOW_ORDER]
     reaches = ", ".join(f"{{{r!r}, {r**-order / ((order + 1) * (1 - 1 / r))!r}}}" for r in radii)
     return "\n".join([
         "#define SYMROT_ENCLOSED 1",
-        f"#define SYMROT_DEPENDS {int(bool(found.states))}",
+        f"#define SYMROT_DEPENDS {int(bool(enclosure.states))}",
         f"#define SYMROT_ENCLOSED_ORDER {order}",
         f"#define SYMROT_REACHES {len(radii)}",
         f"#define SYMROT_BORDERS {len(edges) - 1}",

@@ -42,13 +42,13 @@ class Enclosure(NamedTuple):
 
 
 def value_operands(series: Series) -> tuple[int, ...]:
-    """Return the series whose values give the value of a series: not those that only drive its coefficients."""
+    """Return the operands that the value of a series depends on, without those that only drive its coefficients."""
     first = {"driven": 2, "primitive": 3}.get(series.rule, 0)
     return () if series.rule == "clock" else series.operands[first:]
 
 
 def enclosure(system: Recurrences) -> Enclosure | None:
-    """Return what must be enclosed of the rates of a system, or None if nothing must."""
+    """Return the series of the rates that need an enclosure, or None if no series does."""
     degrees: list[int] = []
     for series in system.series:
         degrees.append(min(_degree(series, degrees), BEYOND))
@@ -74,7 +74,7 @@ def enclosure(system: Recurrences) -> Enclosure | None:
 
 
 def _degree(series: Series, degrees: list[int]) -> int:
-    """Return the degree of a series as a polynomial, BEYOND for what is none."""
+    """Return the degree of a series as a polynomial in time; BEYOND if it is not a polynomial."""
     if series.rule in ("state", "time"):
         return 1
     if series.rule == "clock":

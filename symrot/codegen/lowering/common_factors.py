@@ -37,7 +37,7 @@ class Share:
         return self.intern(("add", tuple(sorted(((self.add(item), sign) for sign, item in tree[1])))))
 
     def extract(self) -> None:
-        """Replace the most frequent pair by a node of its own until none occurs twice."""
+        """Replace the most frequent pair by a node of its own until every pair is unique."""
         for kind, pairs, swap in (
             ("mul", self._quotient_pairs, self._swap_quotient),
             ("mul", self._reciprocals, self._swap_reciprocal),
@@ -76,7 +76,7 @@ class Share:
         return pair[0] == "add" or not any(self.nodes[i][0] == "num" for part in pair[1:] for i in part)
 
     def _replace(self, kind: str, pair: tuple[Any, ...], swap: Callable[..., tuple[Any, ...]]) -> None:
-        """Give the pair an identity of its own, an existing one if there is, and put it wherever the pair stands."""
+        """Replace the pair in every node by one identity, which is new unless the pair already has one."""
         if pair not in self.nodes:
             self.nodes.append(pair)
         new = self.nodes.index(pair)
@@ -100,14 +100,14 @@ class Share:
 
     @staticmethod
     def _swap_product(node: tuple[Any, ...], pair: tuple[Any, ...], new: int) -> tuple[Any, ...]:
-        wanted = Counter(pair[1])
+        factors = Counter(pair[1])
         parts = []
         for part in node[1:]:
-            held = Counter(part)
-            while all(held[i] >= n for i, n in wanted.items()):
-                held = held - wanted
-                held[new] += 1
-            parts.append(tuple(sorted(held.elements())))
+            rest = Counter(part)
+            while all(rest[i] >= n for i, n in factors.items()):
+                rest = rest - factors
+                rest[new] += 1
+            parts.append(tuple(sorted(rest.elements())))
         return "mul", *parts
 
     @staticmethod

@@ -23,7 +23,7 @@ ONE: Tree = ("num", Fraction(1))
 
 
 class Gather:
-    """Splits every expression into constant times core, hoisting what does not depend on the variables.
+    """Splits expressions into constant times core; constants are hoisted and computed when parameters are bound.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ class Gather:
         return tree if sign > 0 else ("add", ((-1, tree),))
 
     def _distributed(self, ordered: Sequence[Expr]) -> list[Expr]:
-        """Return the terms of a constant times one sum, which are cheaper: c*(a + b*x) is c*a + (c*b)*x; else none.
+        """Return the terms of a constant times a sum, multiplied out: c*(a + b*x) is c*a + (c*b)*x, one operation less.
 
         A sum that may stay at zero, such as 1 + tanh(u), is left alone: its terms would leave the rounding of c there.
         """
@@ -99,7 +99,7 @@ class Gather:
         return [outer * term for term in sums[0].args]
 
     def _flattened(self, terms: Iterable[Expr]) -> Iterable[Expr]:
-        """Yield the terms of a sum, and those of sums in it, so that constants and equal terms meet."""
+        """Yield the terms of a sum and of the sums inside it, so that constants and equal terms can be combined."""
         for term in terms:
             inner = list(term.args) if term.is_Add else []
             if term.is_Mul:
@@ -191,7 +191,7 @@ def _oriented(value: Expr) -> tuple[int, Expr]:
 
 
 def _signed_sum(terms: Sequence[tuple[int, Tree]]) -> tuple[int, Tree]:
-    """Return the sum with its first term positive, and the sign taken out for that."""
+    """Return the sign and the sum without it, so that the first term of the sum is positive."""
     if len(terms) == 1:
         return terms[0]
     sign = 1 if any(s > 0 for s, _ in terms) else -1

@@ -1,4 +1,4 @@
-"""SymPy expressions as formula trees, term by term as they stand."""
+"""Translate SymPy expressions into formula trees, term by term, without any rewriting."""
 
 from collections.abc import Sequence
 from fractions import Fraction

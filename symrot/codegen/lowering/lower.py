@@ -2,13 +2,14 @@
 
 Three steps, each exact: constants are gathered and hoisted (whatever does not depend on time or state is computed
 once, when parameters are bound: :mod:`symrot.codegen.lowering.constants`), common factors and sums are shared
-(:mod:`symrot.codegen.lowering.common_factors`), and names are given. The result depends on the expressions alone, never
+(:mod:`symrot.codegen.lowering.common_factors`), and temporaries are named
+(:mod:`symrot.codegen.lowering.temporary_names`). The result depends on the expressions alone, never
 on the order of a hash table.
 """
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from sympy import Expr, Number, Symbol
@@ -17,11 +18,15 @@ from symrot.codegen.lowering.common_factors import Share
 from symrot.codegen.lowering.constants import HOISTED, Gather, Tree
 from symrot.codegen.lowering.formulas import chain, to_node
 from symrot.codegen.lowering.sums import negative, summed
+from symrot.codegen.lowering.temporary_names import with_names
 from symrot.errors import InputError
 from symrot.formula.program import Argument, Program, Signature
-from symrot.formula.tree import Node, children, rename, text
+from symrot.formula.tree import Node, children, names, rename, text
 
 __all__ = ["Lowered", "lower"]
+
+ANONYMOUS = "#"
+"""First letter of a temporary that has no name yet."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +38,11 @@ class Lowered:
 
 
 class _Writer:
-    """Gives names to shared nodes and writes formulas in the order they are needed."""
+    """Writes formulas in the order in which they are needed, each shared node as a temporary."""
 
-    def __init__(self, share: Share, roots: Sequence[int], taken: Iterable[str], named: dict[int, str]) -> None:
-        self.nodes, self.named, self.taken = share.nodes, dict(named), set(taken) | set(named.values())
+    def __init__(self, share: Share, roots: Sequence[int], named: dict[int, str]) -> None:
+        self.nodes, self.named = share.nodes, dict(named)
+        self.anonymous: list[str] = []  # temporaries that get their names once the program is complete
         self.uses: Counter[int] = Counter()
         seen: set[int] = set()
         for root in roots:
@@ -70,21 +76,12 @@ class _Writer:
             return self._formula(index)
         if index not in self.written:
             formula = self._formula(index)
-            self.named.setdefault(index, self._name(index))
+            if index not in self.named:
+                self.named[index] = f"{ANONYMOUS}{len(self.anonymous)}"
+                self.anonymous.append(self.named[index])
             self.written.add(index)
             self.temporaries.append((self.named[index], formula))
         return ("symbol", self.named[index])
-
-    def _name(self, index: int) -> str:
-        kind, *rest = self.nodes[index]
-        if kind == "call" and len(rest[1]) == 1 and self.nodes[rest[1][0]][0] == "sym":
-            name = f"{rest[0]}_{self.nodes[rest[1][0]][1]}"
-        else:
-            count = 0
-            while (name := f"x{count}") in self.taken:
-                count += 1
-        self.taken.add(name)
-        return name
 
     def _is_constant(self, index: int) -> bool:
         kind, first, *_ = self.nodes[index]
@@ -139,14 +136,16 @@ def lower(
         For a function or a power that kernels do not hold.
     """
     ways = [_lowered(signature, outputs, definitions, parameter_argument, flat) for flat in (False, True)]
-    return min(ways, key=lambda way: way.program.operations().total())
+    lowered, anonymous = min(ways, key=lambda way: way[0].program.operations().total())
+    numbers = {} if parameter_argument == "p" else _numbers(lowered.parameters)
+    return replace(lowered, program=with_names(lowered.program, anonymous, numbers))
 
 
 def _lowered(
     signature: Signature, outputs: Sequence[tuple[str, Expr]], definitions: Sequence[tuple[Symbol, Expr]],
     parameter_argument: str, flat: bool,
-) -> Lowered:  # fmt: skip
-    """Return the program with sums as they stand, whose parts may be shared, or with ``flat`` ones."""
+) -> tuple[Lowered, list[str]]:  # fmt: skip
+    """Return the program and its temporaries without a name; ``flat`` merges nested sums before parts are shared."""
     inputs = [name for a in signature.arguments if a.role == "in" for name, *_ in a.components]
     held = {symbol for _, expr in [*outputs, *definitions] for symbol in expr.free_symbols}
     defined = [symbol for symbol, _ in definitions]
@@ -161,11 +160,17 @@ def _lowered(
     signed = [gather.scaled(*gather.split(_exact(expr))) for _, expr in outputs]
     roots = [share.add(_substitute(tree, alias)) for _, tree in signed]
     share.extract()
-    writer = _Writer(share, roots, inputs, named)
+    writer = _Writer(share, roots, named)
     formulas = [writer.node(root) for root in roots]
     formulas = [node if sign > 0 else negative(node) for (sign, _), node in zip(signed, formulas, strict=True)]
     targets = [name for name, _ in outputs]
-    return _numbered(signature, gather.hoisted, writer.temporaries, targets, formulas, parameter_argument)
+    lowered = _numbered(signature, gather.hoisted, writer.temporaries, targets, formulas, parameter_argument)
+    return lowered, writer.anonymous
+
+
+def _numbers(parameters: Iterable[tuple[str, Node]]) -> dict[str, Node]:
+    """Return the parameters that are numbers printed in their place: pi and its multiples, roots of integers."""
+    return {name: formula for name, formula in parameters if names(formula) <= {"pi"}}
 
 
 def _numbered(

@@ -28,13 +28,13 @@ def negative(node: Node) -> Node:
 
 
 def _turned(sign: int, node: Node) -> tuple[int, Node]:
-    """Return a term and its sign, minus a product with a difference as plus the product with the difference turned."""
+    """Return a term and its sign; a minus moves into a factor that is a difference: -(a - b)*c is (b - a)*c."""
     turned = _with_difference_turned(node) if sign < 0 else None
     return (sign, node) if turned is None else (1, turned)
 
 
 def _with_difference_turned(node: Node) -> Node | None:
-    """Return minus a product that has a difference among its factors, or None for what has none."""
+    """Return minus a product by negating a factor that is a difference, or None if no factor is."""
     if node[0] == "-":
         return negative(node)
     if node[0] != "*":
@@ -53,7 +53,7 @@ def _terms(node: Node) -> list[tuple[int, Node]]:
 
 
 def summed(first: Node, terms: Sequence[tuple[int, Node]]) -> Node:
-    """Return first plus terms, those with a plus before the others."""
+    """Return the sum of ``first`` and the terms; positive terms come before negative ones."""
     for sign, term in sorted((_turned(*each) for each in terms), key=lambda item: item[0] < 0):
         first = ("+" if sign > 0 else "-", first, term)
     return first

@@ -24,7 +24,7 @@ class Operation(NamedTuple):
 
 
 class Tape(NamedTuple):
-    """Operations in an order in which they can be computed, and where the outputs stand."""
+    """Operations in an order of computation, and the index of the operation of each output."""
 
     operations: tuple[Operation, ...]
     outputs: tuple[int, ...]
@@ -84,9 +84,9 @@ def tape_of(program: Program, outputs: Sequence[str], more: Sequence[Node] = ())
 
 def _trimmed(tape: Tape) -> Tape:
     """Return a tape without the operations that no output needs."""
-    kept = sorted({index for output in range(len(tape.outputs)) for index in tape.of(output)})
-    place = {old: new for new, old in enumerate(kept)}
-    operations = (tape.operations[old] for old in kept)
+    used = sorted({index for output in range(len(tape.outputs)) for index in tape.of(output)})
+    place = {old: new for new, old in enumerate(used)}
+    operations = (tape.operations[old] for old in used)
     return Tape(
         tuple(op._replace(operands=tuple(place[i] for i in op.operands)) for op in operations),
         tuple(place[old] for old in tape.outputs),

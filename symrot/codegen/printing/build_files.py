@@ -62,7 +62,7 @@ Libs: -L${libdir} -lsymrot -lm
 
 
 def build_files() -> dict[str, str]:
-    """Return file name -> text of what stands beside the kernels in C."""
+    """Return the build files of the folder of C kernels, as file name -> text."""
     clang = " ".join(flag for flag in FLAGS if "tree" not in flag)
     cmake = _CMAKE.replace("@GNU@", " ".join(FLAGS)).replace("@CLANG@", clang)
     return {"CMakeLists.txt": cmake, "symrot.pc.in": _PKG_CONFIG}

@@ -1,6 +1,6 @@
 """Print a program as C99 that is also valid C++: one sample, and a batch over structure-of-arrays."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -13,7 +13,7 @@ from symrot.formula.program import Argument, Program
 from symrot.formula.tree import FUNCTIONS, Node, names, rename, text
 from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
 
-__all__ = ["DOUBLE", "FLOAT", "MATH_HEADER", "Real", "c_expression", "c_function", "c_header", "c_source"]
+__all__ = ["DOUBLE", "FLOAT", "MATH_HEADER", "Real", "c_expression", "c_function", "c_header", "c_name", "c_source"]
 
 MATH_HEADER = "symrot_math.h"
 INDEPENDENT = "SYMROT_INDEPENDENT"  # in front of a loop over samples: none of them reads what another one writes
@@ -34,15 +34,15 @@ class Real:
 
     def literal(self, value: Fraction) -> str:
         """Return the number of this type nearest to an exact one, as the shortest text that reads back to it."""
-        shown = _shortest_float(value) if self.suffix else repr(float(value))
-        return (shown if "." in shown or "e" in shown or "n" in shown else f"{shown}.0") + self.suffix
+        digits = _shortest_float(value) if self.suffix else repr(float(value))
+        return (digits if "." in digits or "e" in digits or "n" in digits else f"{digits}.0") + self.suffix
 
     @cached_property
     def functions(self) -> dict[str, str]:
         """Return the names in C of the functions that kernels call."""
         own = {name: f"symrot_{name}" for name in OWN_FUNCTIONS}
-        found = {name: name for name in FUNCTIONS} | own | {"abs": "fabs", "copysign": "copysign"}
-        return {name: f"{called}{self.suffix}" for name, called in found.items()}
+        in_c = {name: name for name in FUNCTIONS} | own | {"abs": "fabs", "copysign": "copysign"}
+        return {name: f"{called}{self.suffix}" for name, called in in_c.items()}
 
     @cached_property
     def near_functions(self) -> dict[str, str]:
@@ -63,10 +63,10 @@ FLOAT = Real("float", "f", "binary32")
 
 def _shortest_float(value: Fraction) -> str:
     for digits in range(1, 10):
-        shown = f"{float(value):.{digits}g}"
-        if _as_float(float(shown)) == _as_float(float(value)):
+        literal = f"{float(value):.{digits}g}"
+        if _as_float(float(literal)) == _as_float(float(value)):
             break
-    return shown
+    return literal
 
 
 def _as_float(value: float) -> float:
@@ -111,24 +111,34 @@ def _statement(head: str, formula: str, indent: str, mark: str = "=") -> list[st
     return wrap(line, WIDTH + 10, subsequent_indent=f"{indent}    ", break_long_words=False, break_on_hyphens=False)
 
 
-def _body(
-    program: Program, element: str, indent: str, real: Real, near: bool = False, late: bool = False
-) -> list[str]:  # fmt: skip
-    """Return the statements, each value before the first output argument that needs it: few are kept at a time.
+def _index_of_one(index: int) -> str:
+    """Return the index of a component in the array of one sample."""
+    return str(index)
 
-    ``element`` is the index of a component in its array, with {i} for its number. With ``late`` nothing is computed
-    after the first store: results have names until then, and are computed in an order of their own.
+
+def _index_in_batch(index: int) -> str:
+    """Return the index of a component of sample k in the array of a batch of n samples."""
+    return ("k", "n + k")[index] if index < 2 else f"{index}*n + k"
+
+
+def _body(
+    program: Program, index_of: Callable[[int], str], indent: str, real: Real, near: bool = False, late: bool = False
+) -> list[str]:  # fmt: skip
+    """Return the statements, each value before the first output argument that needs it, so that few values are live.
+
+    ``index_of`` prints the index of a component in its array. With ``late``, all values are computed before the first
+    store: results have names until then, and are computed in an order of their own.
     """
     results = dict(program.outputs)
     lines: list[str] = []
     stores: dict[str, list[str]] = {a.name: [] for a in program.signature.arguments}
-    taken = _taken(program, real)
+    reserved = _reserved(program, real)
     waiting: dict[str, tuple[set[str], list[str]]] = {}  # name -> names that it needs, its statement
     for argument in program.signature.arguments:
         if argument.role == "in" and not argument.is_scalar:
-            place = "{i}" if argument.name == "p" else element
+            own_index = _index_of_one if argument.name == "p" else index_of
             for index, (name, *_) in enumerate(argument.components):
-                statement = f"{indent}const {real.type} {name} = {argument.name}[{place.format(i=index)}];"
+                statement = f"{indent}const {real.type} {name} = {argument.name}[{own_index(index)}];"
                 waiting[name] = (set(), [statement])
     angles = [node[1] for node in turning_arguments(program) if node[1] in waiting]
     waiting = {name: waiting[name] for name in (*angles, *waiting)}  # gcc calls sincos where the angle is loaded
@@ -140,14 +150,14 @@ def _body(
         due = _due(set().union(*(names(results[name]) for name, *_ in argument.components)), waiting)
         lines += [*([""] if due and lines else []), *due, *([""] if due else [])]
         for index, (name, *_) in enumerate(argument.components):
-            place, value = f"{argument.name}[{element.format(i=index)}]", c_expression(results[name], real, near)
+            target, value = f"{argument.name}[{index_of(index)}]", c_expression(results[name], real, near)
             if late and results[name][0] not in ("symbol", "number"):
-                while name in taken:
+                while name in reserved:
                     name += "_"
-                taken.add(name)
+                reserved.add(name)
                 lines += _statement(f"const {real.type} {name}", value, indent)
                 value = name
-            (stores[argument.name] if late else lines).extend(_statement(place, value, indent))
+            (stores[argument.name] if late else lines).extend(_statement(target, value, indent))
     return [*lines, "", *(line for a in outputs for line in stores[a.name])] if late else lines
 
 
@@ -165,8 +175,8 @@ def _computed_in_turn(program: Program) -> list[Argument]:
     return sorted(outputs, key=lambda a: _streams(_part(program, a)) - a.size)
 
 
-def _taken(program: Program, real: Real) -> set[str]:
-    """Return the names that a result in a batch cannot have."""
+def _reserved(program: Program, real: Real) -> set[str]:
+    """Return the names that a result in a batch must not have."""
     arguments = program.signature.arguments
     inputs = {name for a in arguments if a.role == "in" for name, *_ in a.components}
     functions = {*real.functions.values(), *real.near_functions.values()}
@@ -175,7 +185,7 @@ def _taken(program: Program, real: Real) -> set[str]:
 
 
 def _due(needed: set[str], waiting: dict[str, tuple[set[str], list[str]]]) -> list[str]:
-    """Return the statements that some names need, in their order, and take them off the list."""
+    """Remove the statements that some names need from the waiting list and return them in order."""
     for name, (of, _) in reversed(waiting.items()):
         if name in needed:
             needed = needed | of
@@ -193,8 +203,9 @@ def _silenced(program: Program, indent: str) -> list[str]:
     return [f"{indent}(void){name};" for name in idle]
 
 
-def _name(program: Program, real: Real) -> str:
-    return f"{program.signature.name}{real.suffix}"
+def c_name(kernel: str, real: Real = DOUBLE) -> str:
+    """Return the name of a kernel's function in C: every global name begins with ``symrot_``."""
+    return f"symrot_{kernel}{real.suffix}"
 
 
 def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> str:
@@ -207,15 +218,15 @@ def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> st
     qualifier : str
         In front of the definition, e.g. ``"static inline "``.
     real : Real
-        ``DOUBLE`` or ``FLOAT``, whose function has an ``f`` behind its name.
+        ``DOUBLE`` or ``FLOAT``; the name of the function for floats ends in ``f``.
     """
-    head = _head(_name(program, real), c_arguments(program, real), qualifier)
-    lines = [head, "{", *_silenced(program, "    "), *_body(program, "{i}", "    ", real), "}"]
+    head = _head(c_name(program.signature.name, real), c_arguments(program, real), qualifier)
+    lines = [head, "{", *_silenced(program, "    "), *_body(program, _index_of_one, "    ", real), "}"]
     return "\n".join(lines) + "\n"
 
 
 def _own_function(name: str, real: Real) -> list[str]:
-    """Return a function that kernels call beyond those of the mathematical library."""
+    """Return the definition of a function that kernels call and <math.h> does not have."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
     lines = [_head(real.functions[name], arguments, "static inline ", real.type), "{"]
@@ -232,8 +243,8 @@ def _near_function(name: str, real: Real) -> list[str]:
     lines = [_head(real.near_functions[name], arguments, "static inline ", real.type), "{"]
     for temporary, node in temporaries:
         lines += _statement(f"const {real.type} {temporary}", c_expression(node, real, True), "    ")
-    taken = ", ".join(c_expression(node, real, True) for node in (left, right, then, other))
-    return [*lines, f"    return symrot_select_{RELATIONS[relation]}{real.suffix}({taken});", "}", ""]
+    operands = ", ".join(c_expression(node, real, True) for node in (left, right, then, other))
+    return [*lines, f"    return symrot_select_{RELATIONS[relation]}{real.suffix}({operands});", "}", ""]
 
 
 def _batch_arguments(program: Program, real: Real) -> str:
@@ -248,8 +259,12 @@ def _batch_arguments(program: Program, real: Real) -> str:
 
 
 def _batch(program: Program, real: Real, near: bool) -> list[str]:
-    """Return the function that computes n samples, those of a block with angles out of range a second time."""
-    head = [_head(f"{_name(program, real)}_batch", _batch_arguments(program, real)), "{", *_silenced(program, "    ")]
+    """Return the function that computes n samples; a block with an angle out of range is computed again by <math.h>."""
+    head = [
+        _head(f"{c_name(program.signature.name, real)}_batch", _batch_arguments(program, real)),
+        "{",
+        *_silenced(program, "    "),
+    ]
     scalars = [a for a in program.signature.arguments if a.is_scalar and a.role == "in"]
     each = {a.name: f"{a.name}_k" for a in scalars}  # a scalar of one sample is an array in a batch
     used = _used(program)
@@ -305,21 +320,21 @@ def _split(program: Program) -> list[Program]:
 
 
 def _part(program: Program, output: Argument) -> Program:
-    """Return what computes one output argument alone."""
+    """Return the part of a program that computes one output argument."""
     own = {name for name, *_ in output.components}
     outputs = tuple((name, node) for name, node in program.outputs if name in own)
     needed = set().union(*(names(node) for _, node in outputs))
-    kept = []
+    temporaries = []
     for name, node in reversed(program.temporaries):
         if name in needed:
             needed |= names(node)
-            kept.append((name, node))
+            temporaries.append((name, node))
     arguments = tuple(a for a in program.signature.arguments if a.role == "in" or a is output)
-    return Program(replace(program.signature, arguments=arguments), tuple(reversed(kept)), outputs)
+    return Program(replace(program.signature, arguments=arguments), tuple(reversed(temporaries)), outputs)
 
 
 def _streams(program: Program) -> int:
-    """Return how many arrays a loop over samples walks along."""
+    """Return the number of arrays that a loop over samples reads or writes."""
     used = _used(program)
     moved = [a for a in program.signature.arguments if a.name != "p"]
     return sum(a.role == "out" or name in used for a in moved for name, *_ in a.components)
@@ -346,13 +361,13 @@ def _loop(
         *([f"{indent}{pragma}"] if pragma else []),
         f"{indent}for (size_t k = {start}; k < {end}; ++k) {{",
         *(f"{inner}{line}" for line in loaded),
-        *_body(program, "{i}*n + k", inner, real, near, late),
+        *_body(program, _index_in_batch, inner, real, near, late),
         f"{indent}}}",
     ]
 
 
 def _with_names(program: Program, names: dict[str, str]) -> Program:
-    """Return the program with some inputs called differently."""
+    """Return the program with some inputs renamed."""
     signature = program.signature
     arguments = tuple(
         replace(a, components=tuple((names.get(c[0], c[0]), *c[1:]) for c in a.components)) for a in signature.arguments
@@ -370,7 +385,7 @@ def _includes(program: Program, near: bool) -> list[str]:
 
 
 def _prototypes(program: Program, real: Real) -> list[str]:
-    name = _name(program, real)
+    name = c_name(program.signature.name, real)
     return [
         f"{_head(name, c_arguments(program, real))};",
         f"{_head(f'{name}_batch', _batch_arguments(program, real))};",
@@ -384,7 +399,7 @@ def c_header(program: Program, description: Description, reals: Sequence[Real] =
     """Return the header text: contract, include guard, prototypes, usable from C and C++."""
     guard = f"SYMROT_{program.signature.name.upper()}_H"
     ones, batches = zip(*(_prototypes(program, real) for real in reals), strict=True)
-    shapes = ["/* one sample */", *ones, "", "/* n samples; component i of sample k stands at [i*n + k] */", *batches]
+    shapes = ["/* one sample */", *ones, "", "/* n samples; component i of sample k is at [i*n + k] */", *batches]
     return "\n".join([
         *banner(program, description, "/*", " *", " */"), f"#ifndef {guard}", f"#define {guard}", "",
         "#include <stddef.h>", "", "#ifndef SYMROT_RESTRICT", "#ifdef __cplusplus",

@@ -99,7 +99,7 @@ def _switch(
     ends: Sequence[str],
     kind: str = "double",
 ) -> list[str]:
-    """Return the body of a function of all events, up to what is returned for none."""
+    """Return the body of a function with one case per event, without the return statement for an unknown event."""
     lines = ["{", "    (void)t;", "    (void)y;", "    (void)p;", *head, "    switch (which) {"]
     for number, (tape, statements) in enumerate(zip(tapes, texts, strict=True)):
         lines += [f"    case {number}: {{", *(f"        const {kind} {text};" for text in statements)]
@@ -108,7 +108,7 @@ def _switch(
 
 
 def _span(tape: Tape, states: Sequence[str], edges: Sequence[int]) -> tuple[int, int]:
-    """Return the first state that a formula depends on, and the one behind the last, whole blocks at a time."""
+    """Return the range (first, last + 1) of the states that a formula depends on, widened to whole blocks."""
     used = {op.value for op in tape.operations if op.kind == "symbol"}
     places = [i for i, name in enumerate(states) if name in used]
     if not places:

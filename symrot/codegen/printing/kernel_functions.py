@@ -1,4 +1,4 @@
-"""Text of the functions that kernels call beyond those of <math.h> (:mod:`symrot.kernels.removable`)."""
+"""Functions that kernels call and <math.h> does not have, as formulas (:mod:`symrot.kernels.removable`)."""
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
@@ -38,17 +38,17 @@ def _calls(program: Program) -> Iterator[tuple[str, tuple[Node, ...]]]:
 
 
 def turning_arguments(program: Program) -> list[Node]:
-    """Return the angles of which a program takes a sine or cosine, itself or in a function of its own, once each."""
-    return list(dict.fromkeys(taken[0] for name, taken in _calls(program) if name in ("sin", "cos", *TURNING)))
+    """Return the distinct angles of which a program takes a sine or cosine, directly or inside another function."""
+    return list(dict.fromkeys(arguments[0] for name, arguments in _calls(program) if name in ("sin", "cos", *TURNING)))
 
 
 def without_branches(program: Program) -> bool:
-    """Tell whether a program calls what batches take from ``symrot_math.h``."""
+    """Tell whether a program calls a function for which ``symrot_math.h`` has a form without branches."""
     return any(name in ("sin", "cos", "atan2", "select_ge", *NEAR) for name, _ in _calls(program))
 
 
 def called(program: Program) -> list[str]:
-    """Return the own functions that a program calls, but for those that C has itself, in the order of the table."""
+    """Return the functions a program calls that C does not have, in the order of the table."""
     used = {name for name, _ in _calls(program)}
     return [name for name in FUNCTIONS if name in used and (name in _CHOICES or name in REMOVABLE)]
 

@@ -109,7 +109,7 @@ def _wrapped(head: str, formula: str) -> list[str]:
 
 
 def _reduction(real: Real) -> list[str]:
-    """Return the statements from x to the rest ``high + low``, its square t and the number of quarter turns."""
+    """Return the statements that reduce x: remainder ``high + low``, its square t, number of quarter rotations."""
     parts = [real.literal(part) for part in quarter_turn_parts(real.precision)]
     digits = _DIGITS[real.precision]
     lines = [
@@ -147,13 +147,13 @@ def _functions(real: Real) -> list[str]:
         "}",
         "",
     ]
-    for name, relation, found in (
+    for name, relation, comparison in (
         ("less", "<", f"symrot_bits{s}(a - b) >> {top + 1}"),
         ("same", "==", f"(symrot_bits{s}(fabs{s}(a - b)) - 1) >> {top + 1}"),
     ):
         lines += [
             f"/* 1 where a {relation} b, else 0; for finite numbers: by bits, since not all vectors compare */",
-            f"SYMROT_INLINE {bits} symrot_{name}{s}({kind} a, {kind} b) {{ return {found}; }}",
+            f"SYMROT_INLINE {bits} symrot_{name}{s}({kind} a, {kind} b) {{ return {comparison}; }}",
             "",
         ]
     for name, relation, chosen in (

@@ -41,7 +41,7 @@ class _Term(NamedTuple):
 
 
 def with_companions(system: Recurrences) -> Recurrences:
-    """Return a system with companions in the place of what holds the attitude alone, or the system as it is.
+    """Return a system in which expressions of the attitude alone are replaced by auxiliary states, if there are any.
 
     Companions are states beyond those of the program: ``seeds`` of the result has a formula for coefficient 0 of each,
     in the states and t, and ``rates`` their rates.
@@ -55,24 +55,24 @@ def with_companions(system: Recurrences) -> Recurrences:
 
 
 def _times(a: Polynomial, b: Polynomial) -> Polynomial:
-    found: Polynomial = {}
+    product: Polynomial = {}
     for left, x in a.items():
         for right, y in b.items():
             powers = dict(left)
             for variable, power in right:
                 powers[variable] = powers.get(variable, 0) + power
             monomial = tuple(sorted(powers.items()))
-            found[monomial] = found.get(monomial, Fraction(0)) + x * y
-    if len(found) > MOST_TERMS:
+            product[monomial] = product.get(monomial, Fraction(0)) + x * y
+    if len(product) > MOST_TERMS:
         raise _Open
-    return {monomial: x for monomial, x in found.items() if x}
+    return {monomial: x for monomial, x in product.items() if x}
 
 
 def _plus(a: Polynomial, b: Polynomial) -> Polynomial:
-    found = dict(a)
+    total = dict(a)
     for monomial, x in b.items():
-        found[monomial] = found.get(monomial, Fraction(0)) + x
-    return {monomial: x for monomial, x in found.items() if x}
+        total[monomial] = total.get(monomial, Fraction(0)) + x
+    return {monomial: x for monomial, x in total.items() if x}
 
 
 class _Closure:
@@ -101,7 +101,7 @@ class _Closure:
         return {((self.variable(kind, what), 1),): Fraction(1)}
 
     def constant(self, node: Node) -> Polynomial:
-        """Return a constant formula; what is no polynomial is one of a new variable."""
+        """Return a constant formula as a polynomial; a subformula that is not a polynomial becomes a new variable."""
         if node[0] == "number":
             return {(): node[1]} if node[1] else {}
         if node[0] not in ("neg", "*", "+", "-"):
@@ -117,17 +117,17 @@ class _Closure:
         """Return a series as a polynomial of states, clocks and constants, or None."""
         if i not in self.polynomials:
             s = self.series[i]
-            found: Polynomial | None = None
+            result: Polynomial | None = None
             if s.rule == "state":
-                found = self.single("state", s.number)
+                result = self.single("state", s.number)
             elif s.rule == "clock":
-                found = self.single("clock", i)
+                result = self.single("clock", i)
             elif s.rule == "sum":
-                found = self.sum(s)
+                result = self.sum(s)
             elif s.rule == "product":
                 a, b = map(self.polynomial, s.operands)
-                found = None if a is None or b is None else _times(a, b)
-            self.polynomials[i] = found
+                result = None if a is None or b is None else _times(a, b)
+            self.polynomials[i] = result
         return self.polynomials[i]
 
     def sum(self, s: Series, only: Iterable[int] | None = None) -> Polynomial | None:
@@ -152,10 +152,10 @@ class _Closure:
             assert s.weights[0] is not None
             partner = _times(self.single("clock", s.operands[0]), self.constant(s.weights[0]))
             return _times(partner, {(): Fraction(s.sign)})
-        found = self.sum(self.system.rates[what])
-        if found is None:
+        polynomial = self.sum(self.system.rates[what])
+        if polynomial is None:
             raise _Open
-        return found
+        return polynomial
 
     def derivative(self, form: Polynomial) -> Polynomial:
         total: Polynomial = {}
@@ -185,7 +185,7 @@ class _Closure:
         for monomial, x in form.items():
             outer = tuple((v, p) for v, p in monomial if not self.is_inner(v))
             groups.setdefault(outer, {})[tuple((v, p) for v, p in monomial if self.is_inner(v))] = x
-        found = []
+        parts = []
         for outer, inner in groups.items():
             constant, state = ONE, None
             for variable, power in outer:
@@ -196,8 +196,8 @@ class _Closure:
                     state = what
                 for _ in range(power if kind == "constant" else 0):
                     constant = what if constant == ONE else ("*", constant, what)
-            found.append((constant, state, inner))
-        return found
+            parts.append((constant, state, inner))
+        return parts
 
     # -------------------------------------------------------------------------------------------- closing
 
@@ -234,14 +234,14 @@ class _Closure:
         return index, lead / own, spare
 
     def terms(self, form: Polynomial) -> list[_Term]:
-        found = []
+        result = []
         for constant, state, inner in self.split(form):
             index, number, spare = self.adjoin(inner)
-            found += [_Term(one, x, constant, state) for one, x in ((index, number), (None, spare)) if x]
-        return found
+            result += [_Term(one, x, constant, state) for one, x in ((index, number), (None, spare)) if x]
+        return result
 
     def seek(self, i: int) -> None:
-        """Replace what holds the attitude alone in a series and in all it is made of."""
+        """Replace expressions of the attitude alone in a series and in its operands."""
         s = self.series[i]
         if i in self.replaced or s.rule not in ("sum", "product"):
             return
@@ -307,18 +307,18 @@ class _Closure:
 
 
 def _product(factors: Iterable[Node]) -> Node:
-    found = ONE
+    product = ONE
     for factor in factors:
-        found = factor if found == ONE else found if factor == ONE else ("*", found, factor)
-    return found
+        product = factor if product == ONE else product if factor == ONE else ("*", product, factor)
+    return product
 
 
 def _total(terms: list[Node]) -> Node:
     first = next((i for i, term in enumerate(terms) if term[0] != "neg"), 0)
-    found, *rest = [terms[first], *terms[:first], *terms[first + 1 :]]
+    total, *rest = [terms[first], *terms[:first], *terms[first + 1 :]]
     for term in rest:
-        found = ("-", found, term[1]) if term[0] == "neg" else ("+", found, term)
-    return found
+        total = ("-", total, term[1]) if term[0] == "neg" else ("+", total, term)
+    return total
 
 
 def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
@@ -343,8 +343,8 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
             waiting += [] if i in closure.replaced else left(old[i])
     place = {i: s.number for i, s in enumerate(old) if s.rule == "state"}
     place |= {i: count + companion for i, companion in alias.items()}
-    kept = [i for i in sorted(needed) if i not in place]
-    place |= {i: count + len(rates) + k for k, i in enumerate(kept)}
+    carried = [i for i in sorted(needed) if i not in place]
+    place |= {i: count + len(rates) + k for k, i in enumerate(carried)}
     series = [Series("state", number=number) for number in range(count + len(rates))]
 
     def weight(term: _Term) -> Node:
@@ -369,9 +369,9 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
         pairs = [(place[i], w) for i, w in zip(s.operands, s.weights, strict=False) if i not in gone]
         return summed(terms, pairs, s.weights[-1])
 
-    for i in kept:
+    for i in carried:
         series.append(summed(closure.replaced[i]) if i in closure.replaced else moved(old[i]))
-    found = [moved(rate) for rate in system.rates]
+    rates_in_place = [moved(rate) for rate in system.rates]
     products: dict[tuple[int, int], int] = {}
     for terms in rates:
         operands = []
@@ -384,6 +384,6 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
                 products[(pair[0], pair[1])] = len(series)
                 series.append(Series("product", tuple(pair)))
             operands.append(products[(pair[0], pair[1])] if len(pair) == 2 else pair[0])
-        found.append(Series("sum", tuple(operands), (*map(weight, terms), None)))
+        rates_in_place.append(Series("sum", tuple(operands), (*map(weight, terms), None)))
     seeds = tuple(map(closure.seed, closure.companions))
-    return Recurrences(system.states, system.parameters, tuple(series), tuple(found), seeds)
+    return Recurrences(system.states, system.parameters, tuple(series), tuple(rates_in_place), seeds)

@@ -119,7 +119,7 @@ class _Jet:
                     uses.setdefault(operand, []).append((place, size, sign))
             else:
                 own |= set(s.operands)
-        found: dict[object, list[tuple[int, Convolution, int]]] = {}
+        groups: dict[object, list[tuple[int, Convolution, int]]] = {}
         for i, s in enumerate(self.series):
             if s.rule not in CONVOLUTIONS:
                 continue
@@ -129,8 +129,8 @@ class _Jet:
                 sign = uses[i][0][2]
                 key = (c.square, tuple((place, size, sign * other) for place, size, other in uses[i]))
                 self.shared.add(i)
-            found.setdefault(key, []).append((sign, c, i))
-        for members in sorted(found.values(), key=lambda one: (one[0][1].square, -len(one))):
+            groups.setdefault(key, []).append((sign, c, i))
+        for members in sorted(groups.values(), key=lambda one: (one[0][1].square, -len(one))):
             lead = members[0][0]
             self.slot_of |= {i: (sign * lead, len(self.slots)) for sign, _, i in members}
             self.slots.append(Slot(tuple((sign * lead, c) for sign, c, _ in members)))
@@ -146,7 +146,7 @@ class _Jet:
         return f"x[{self.state[series]}][{n}]" if series in self.state else f"u{series}[{n}]"
 
     def weight(self, node: Node) -> str:
-        """Return a positive constant: a number as it stands, what holds parameters from its place in each lane."""
+        """Return a positive constant as C: a literal, or for a formula of parameters an element of a table."""
         if not names(node) and node[0] == "number":
             return f"V_ALL({c_expression(node)})"
         return f"c[{self.constants.setdefault(node, len(self.constants))}]"
@@ -313,7 +313,7 @@ class _Jet:
         return [line for group in self._groups() for line in self._loop(group)]
 
     def _groups(self) -> list[list[int]]:
-        """Return the slots of each loop: those that share factors together, as far as registers go."""
+        """Return the slots of each loop; slots with common factors share a loop while registers suffice."""
         left = list(range(len(self.slots)))
         groups: list[list[int]] = []
         while left:

@@ -1,4 +1,4 @@
-"""Print what a motion keeps as C: values in pairs of doubles, about 32 digits, and gradients in doubles.
+"""Print the invariants of a motion as C: values in pairs of doubles (about 32 digits), gradients in doubles.
 
 The values say how far a motion has left its invariants long before a double could; the gradients say which small change
 of the states takes it back. Gradients are accumulated backwards along the tape, one pass for each invariant.
@@ -21,7 +21,7 @@ IN_PAIRS = {"+", "-", "*", "/", "neg", "sqrt", "number", "symbol"}  # operations
 
 
 def projectable(program: Program, outputs: Sequence[str]) -> list[str]:
-    """Return those outputs that can be computed in pairs of doubles: all but those with sin, exp and the like."""
+    """Return the outputs that can be computed in pairs of doubles: outputs without sin, exp and similar functions."""
     return [name for name in outputs if {op.kind for op in tape_of(program, [name]).operations} <= IN_PAIRS]
 
 
@@ -93,21 +93,21 @@ def _gradient(tape: Tape, output: int, states: Sequence[str]) -> list[str]:
         for operand, share in zip(op.operands, _shares(op, index, own), strict=True):
             if operand in varying:
                 terms.setdefault(operand, []).append(share)
-    found = {tape.operations[index].value: " + ".join(parts) for index, parts in terms.items()}
-    return lines + [f"gradient[{output}][{i}] = {found.get(name, '0.0')};" for i, name in enumerate(states)]
+    derivatives = {tape.operations[index].value: " + ".join(parts) for index, parts in terms.items()}
+    return lines + [f"gradient[{output}][{i}] = {derivatives.get(name, '0.0')};" for i, name in enumerate(states)]
 
 
 def _varying(tape: Tape, needed: Sequence[int], states: set[str]) -> set[int]:
-    found: set[int] = set()
+    varying: set[int] = set()
     for index in needed:
         op = tape.operations[index]
-        if (op.kind == "symbol" and op.value in states) or found.intersection(op.operands):
-            found.add(index)
-    return found
+        if (op.kind == "symbol" and op.value in states) or varying.intersection(op.operands):
+            varying.add(index)
+    return varying
 
 
 def _shares(op: Operation, index: int, own: str) -> list[str]:
-    """Return what an operation passes on to each of its operands, from its own adjoint."""
+    """Return the adjoint that an operation adds to each of its operands, as C."""
     values = [f"v{i}.high" for i in op.operands]
     if op.kind == "+":
         return [own, own]

@@ -104,7 +104,7 @@ def cost(layout: Layout) -> int:
 
 
 def _with_bundles(system: Recurrences) -> Recurrences:
-    """Give products that always stand together in several sums a sum of their own, computed once."""
+    """Collect products that occur together in several sums into one sum, which is computed once."""
     series = list(system.series)
     sums = [(i, s) for i, s in enumerate(series) if s.rule == "sum"]
     sums += [(-1 - i, rate) for i, rate in enumerate(system.rates)]
@@ -138,8 +138,8 @@ def _with_bundles(system: Recurrences) -> Recurrences:
                 weights.append(weight if sign > 0 else ("neg", weight))
         return s._replace(operands=tuple(operands), weights=(*weights, s.weights[-1]))
 
-    found = [bundled(s) if s.rule == "sum" and i < len(system.series) else s for i, s in enumerate(series)]
-    return system._replace(series=tuple(found), rates=tuple(map(bundled, system.rates)))
+    series_in_place = [bundled(s) if s.rule == "sum" and i < len(system.series) else s for i, s in enumerate(series)]
+    return system._replace(series=tuple(series_in_place), rates=tuple(map(bundled, system.rates)))
 
 
 class _Placer:
@@ -169,7 +169,7 @@ class _Placer:
         self.rows.append(row._replace(lanes=lanes))
 
     def _inlined(self, most_uses: int) -> set[int]:
-        """Return the products that stand in so few sums and nowhere else: they need no coefficients of their own."""
+        """Return the products that occur only in a few sums: they are expanded there, without stored coefficients."""
         count: dict[int, int] = {}
         for s in (*self.series, *self.system.rates):
             for operand in s.operands:
@@ -178,7 +178,7 @@ class _Placer:
         return {operand for operand, uses in count.items() if uses <= most_uses}
 
     def level(self, i: int) -> int:
-        """Return in which round of one order a series can be computed: the states are there before the first."""
+        """Return the round of an order in which a series can be computed; states are known before the first."""
         if i not in self.levels:
             s = self.series[i]
             older = {"driven": (1,), "primitive": (1,), "clock": (0,)}.get(s.rule, ())  # used below coefficient n alone
@@ -212,7 +212,7 @@ class _Placer:
         return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds)
 
     def _shape(self, i: int) -> tuple[int, ...]:
-        """Return what series are sorted by within a level: pairs first, then sums with many products."""
+        """Return the sorting key of a series within a level: pairs first, then sums with many products."""
         s = self.series[i]
         products = sum(operand in self.inlined for operand in s.operands)
         return (s.function == "exp", -products)
@@ -221,14 +221,17 @@ class _Placer:
 
     def pack(self, items: Sequence[tuple[int, int] | None]) -> Pack:
         """Return the addresses of signed series; a lane of no use takes what costs nothing."""
-        found = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
-        first = next(address for address in found if address is not None)
-        if len({address for address in found if address is not None}) == 1 and len(found) - found.count(None) > 1:
+        addresses = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
+        first = next(address for address in addresses if address is not None)
+        if (
+            len({address for address in addresses if address is not None}) == 1
+            and len(addresses) - addresses.count(None) > 1
+        ):
             return (first,) * LANES
-        return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(found))
+        return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(addresses))
 
     def address(self, sign: int, series: int, lane: int) -> Address:
-        """Return where a series stands, in that lane if it stands there too."""
+        """Return the address of a series, in the preferred lane if a copy is there."""
         first = self.place[series]
         return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
 
@@ -329,7 +332,7 @@ class _Placer:
             yield self.column(picked, "both", needed)
 
     def _shared(self, lanes: list[list[tuple[int, int, int]]]) -> int | None:
-        """Return a series that stands in a product of every lane, the first one, if there are several lanes."""
+        """Return the first series that is a factor in every lane, or None; a single lane has no such series."""
         if len(lanes) < 2:
             return None
         common = set.intersection(*({u for _, *pair in lane for u in pair} for lane in lanes))

@@ -40,7 +40,7 @@ TANGENTS = {"tan": 1, "tanh": -1}  # function -> sign in t w' = (1 + sign w^2) t
 
 
 class Series(NamedTuple):
-    """One series: its rule, the series it is made of, and what else the rule needs.
+    """One series: its rule, its operands, and the constants of the rule.
 
     ``weights`` holds the constants of a sum, one per operand, and then the constant that is added to coefficient 0 (or
     None); for a clock, a and b. ``function`` gives coefficient 0 where the rule does not, from coefficient 0 of
@@ -401,7 +401,7 @@ def split_sign(node: Node) -> tuple[int, Node]:
 
 
 def _number_and_rest(weight: Node) -> tuple[Fraction, Node]:
-    """Return a constant as a number times what has none."""
+    """Return a constant formula as a number times the remaining factors."""
     sign, size = split_sign(weight)
     if size[0] == "number":
         return (sign * size[1], ONE) if size[1] else (Fraction(1), size)

@@ -174,7 +174,7 @@ class _Jet:
         return value or "V_ALL(0.0)"
 
     def _rest_of_time(self, row: Row) -> str:
-        """Return the weights of the time in a row of sums, or nothing: ``t`` lacks what ``t_low`` has of the time."""
+        """Return the weights of ``t_low``, the low part of the time, in a row of sums, or nothing without time."""
         weights: list[Node] = []
         for number in row.lanes:
             series = None if number is None else self.layout.series[number]

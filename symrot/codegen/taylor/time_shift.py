@@ -36,7 +36,8 @@ def from_epoch(kernel: SceneKernel) -> SceneKernel:
     """
     rates, parameters = moved(kernel.rates, kernel.rate_parameters)
     timeless = [
-        item._replace(kept=item.kept and not kernel.quantities.uses(TIME, (item.output,))) for item in kernel.conserved
+        item._replace(holds=item.holds and not kernel.quantities.uses(TIME, (item.output,)))
+        for item in kernel.conserved
     ]
     source = c_function(rates, "static inline ")
     return SceneKernel.of(rates, parameters, kernel.quantities, kernel.quantity_parameters, tuple(timeless), source)
@@ -215,30 +216,32 @@ def _is_shifted(form: _Form) -> bool:
 
 
 def _terms(node: Node, parts: list[tuple[Node, ...] | None]) -> tuple[Node, ...] | None:
-    """Return the terms of a polynomial of t from those of its operands, or None if it is none."""
+    """Return the coefficients of a polynomial in t from those of its operands; None if it is no polynomial."""
     if any(part is None for part in parts):
         return None
-    kind, found = node[0], [part for part in parts if part is not None]
-    constant = all(len(part) == 1 for part in found)
+    kind, polynomials = node[0], [part for part in parts if part is not None]
+    constant = all(len(part) == 1 for part in polynomials)
     if kind == "call":
-        return (("call", node[1], tuple(part[0] for part in found)),) if constant and node[1] in CONSTANT else None
+        return (
+            (("call", node[1], tuple(part[0] for part in polynomials)),) if constant and node[1] in CONSTANT else None
+        )
     if constant:
-        return ((kind, found[0][0], node[2]) if kind == "**" else (kind, *(part[0] for part in found)),)
+        return ((kind, polynomials[0][0], node[2]) if kind == "**" else (kind, *(part[0] for part in polynomials)),)
     if kind == "neg":
-        return tuple(_negative(term) for term in found[0])
+        return tuple(_negative(term) for term in polynomials[0])
     if kind in "+-":
-        size = max(map(len, found))
-        left, right = (part + (ZERO,) * (size - len(part)) for part in found)
+        size = max(map(len, polynomials))
+        left, right = (part + (ZERO,) * (size - len(part)) for part in polynomials)
         return _trimmed([_plus(a, b if kind == "+" else _negative(b)) for a, b in zip(left, right, strict=True)])
     if kind == "*":
-        return _product(*found)
+        return _product(*polynomials)
     if kind == "/":
-        return tuple(_over(term, found[1][0]) for term in found[0]) if len(found[1]) == 1 else None
+        return tuple(_over(term, polynomials[1][0]) for term in polynomials[0]) if len(polynomials[1]) == 1 else None
     if not 0 < node[2] <= HIGHEST:
         return None
     power: tuple[Node, ...] | None = (ONE,)
     for _ in range(node[2]):
-        power = power and _product(power, found[0])
+        power = power and _product(power, polynomials[0])
     return power
 
 

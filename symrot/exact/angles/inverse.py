@@ -66,11 +66,11 @@ def range_of(angle: Expr) -> Range:
     closed = not isinstance(angle, atan)
     if isinstance(angle, acos):
         return Fraction(0), _QUARTER if first.is_nonnegative else Fraction(1), True, True
-    low, high, taken = -_QUARTER, _QUARTER, closed
+    low, high, attains_low = -_QUARTER, _QUARTER, closed
     if isinstance(angle, atan2) and not second.is_nonnegative:
-        low, high, taken = Fraction(-1), Fraction(1), False
+        low, high, attains_low = Fraction(-1), Fraction(1), False
     if first.is_nonnegative:
         return Fraction(0), high, True, closed
     if first.is_nonpositive and isinstance(angle, asin | atan):
-        return low, Fraction(0), taken, True
-    return low, high, taken, closed
+        return low, Fraction(0), attains_low, True
+    return low, high, attains_low, closed

@@ -17,16 +17,16 @@ def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr
     A root is shown by what stands under it.
     """
     roots = {place: root for root, place in ring.roots.items()}
-    found: list[tuple[Expr, Expr]] = []
+    pairs: list[tuple[Expr, Expr]] = []
     for number, (source, factor) in enumerate(zip(ring.ratios.sources, ring.ratios.factors, strict=True)):
         if number in granted:
             continue
         places = [n for n, power in enumerate(factor.leading_expv()) if power] if len(factor) == 1 else []
         root = roots.get(places[0]) if len(places) == 1 else None
         inside = _inside(root) if root else factor.as_expr(*ring.generators)
-        found.append((source, inside))
-    found += [(formula, formula) for leaf in _leaves(ring) for formula in _nonzero(leaf)]
-    return [pair for pair in dict.fromkeys(found) if not any(form.is_nonzero or form.is_number for form in pair)]
+        pairs.append((source, inside))
+    pairs += [(formula, formula) for leaf in _leaves(ring) for formula in _nonzero(leaf)]
+    return [pair for pair in dict.fromkeys(pairs) if not any(form.is_nonzero or form.is_number for form in pair)]
 
 
 def _inside(root: Root) -> Expr:
@@ -36,10 +36,10 @@ def _inside(root: Root) -> Expr:
 def radicands(ring: FormulaRing) -> list[Expr]:
     """Return what must not be negative: under roots, in logarithms, 1 - x^2 for asin(x) and acos(x)."""
     bases = [radical.base for node, radical in ring.radicals.items() if isinstance(node, Pow)]
-    found = [base for base in bases if not _is_square(base)]
-    found += [formula for leaf in _leaves(ring) for formula in _nonnegative(leaf)]
-    found += split_radicands(ring)
-    return [formula for formula in dict.fromkeys(found) if not (formula.is_nonnegative or formula.is_number)]
+    formulas = [base for base in bases if not _is_square(base)]
+    formulas += [formula for leaf in _leaves(ring) for formula in _nonnegative(leaf)]
+    formulas += split_radicands(ring)
+    return [formula for formula in dict.fromkeys(formulas) if not (formula.is_nonnegative or formula.is_number)]
 
 
 def split_radicands(ring: FormulaRing) -> list[Expr]:

@@ -56,8 +56,8 @@ def is_leaf(node: Expr) -> bool:
 
 def leaves_of(formulas: Iterable[Expr]) -> list[Expr]:
     """Return symbols, functions of time and derivatives that occur, each once, in an order free of hashing."""
-    found = {node for node in _pieces(formulas) if is_leaf(node)}
-    return sorted(found, key=lambda leaf: (str(leaf), type(leaf).__name__))
+    leaves = {node for node in _pieces(formulas) if is_leaf(node)}
+    return sorted(leaves, key=lambda leaf: (str(leaf), type(leaf).__name__))
 
 
 def assumptions_of(leaf: Expr) -> list[Need]:
@@ -69,12 +69,12 @@ def assumptions_of(leaf: Expr) -> list[Need]:
 
 def needs_of(formulas: Iterable[Expr]) -> list[Need]:
     """Return what formulas need to be real numbers, the needs of needs included, less what their form alone grants."""
-    found: dict[Need, None] = {}
+    needs: dict[Need, None] = {}
     for node in _pieces(formulas):
         for need in _needs(node):
             if not _granted(need):
-                found[need] = None
-    return list(found)
+                needs[need] = None
+    return list(needs)
 
 
 def _needs(node: Expr) -> Iterator[Need]:

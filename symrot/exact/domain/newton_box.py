@@ -82,9 +82,9 @@ class Equations:
             return None
         fixed = {name: Fraction(values[name]) for n, name in enumerate(names) if n not in chosen}
         for radius in RADII:
-            found = self._proven([names[n] for n in chosen], inverse, fixed, values, radius)
-            if found is not None:
-                return {leaf: found[name] for leaf, name in self.names.items()}
+            box = self._proven([names[n] for n in chosen], inverse, fixed, values, radius)
+            if box is not None:
+                return {leaf: box[name] for leaf, name in self.names.items()}
         return None
 
     def _proven(

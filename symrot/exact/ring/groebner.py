@@ -133,13 +133,13 @@ class _Basis:
         return left
 
     def reduced(self) -> tuple[PolyElement, ...]:
-        kept: list[Terms] = []
+        minimal: list[Terms] = []
         for place, (member, lead) in enumerate(zip(self.members, self.leads, strict=True)):
             others = [o for n, o in enumerate(self.leads) if n != place and (o != lead or n < place)]
             if not any(_divides(other, lead) for other in others):
-                kept.append(member)
-        found = [self.normal(dict(member), [o for o in kept if o is not member]) for member in kept]
-        ordered = sorted(found, key=lambda terms: self.key(max(terms, key=self.key)), reverse=True)
+                minimal.append(member)
+        members = [self.normal(dict(member), [o for o in minimal if o is not member]) for member in minimal]
+        ordered = sorted(members, key=lambda terms: self.key(max(terms, key=self.key)), reverse=True)
         return tuple(self.ring.from_dict(terms) for terms in ordered)
 
 

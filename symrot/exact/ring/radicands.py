@@ -36,9 +36,9 @@ def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Ex
     squares += [(factor, -times) for factor, times in inverse]
     outside: list[tuple[Root | Expr, int]] = []
     if not divisor.is_ground:
-        shown, sign = divisor.as_expr(*generators), sign_of(rest.as_expr(*generators))
+        written_divisor, sign = divisor.as_expr(*generators), sign_of(rest.as_expr(*generators))
         if sign:  # rest/divisor is not negative
-            outside.append((sign * shown, -1))
+            outside.append((sign * written_divisor, -1))
         else:
             squares += [(factor, -times) for factor, times in _irreducible(divisor)]
         rest = rest * divisor
@@ -92,7 +92,7 @@ def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr
     candidates.sort(key=lambda root: (-isinstance(root.expression, Abs), len(odd[root]), written(root.expression)))
     texts = {factor: str(factor) for factors in odd.values() for factor in factors}
     basis: list[tuple[PolyElement, frozenset[PolyElement], frozenset[Root]]] = []
-    found: dict[Root, Dependence] = {}
+    relations: dict[Root, Dependence] = {}
     for root in candidates:
         left, used = odd[root], frozenset([root])
         for least, factors, members in basis:
@@ -109,8 +109,8 @@ def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr
                 total[factor] = total.get(factor, 0) + n
         if number > 0:  # else they are real together at isolated points only
             divisors = ((absolute(f.as_expr(*generators)), n // 2) for f, n in sorted(total.items(), key=str) if n)
-            found[root] = Dependence(number, tuple(others), tuple(divisors))
-    return found
+            relations[root] = Dependence(number, tuple(others), tuple(divisors))
+    return relations
 
 
 def _factored(poly: PolyElement) -> tuple[Rational, dict[PolyElement, int]]:

@@ -113,17 +113,17 @@ class FormulaRing:
         self.fine = self._take_fine_constants()
         self.exponent_bases = base_coefficients(self.exponents.values())
         self.dependences: dict[Root, Dependence] = {}
-        roots = {root for found in self.radicals.values() for root in found.generators}
+        roots = {root for new in self.radicals.values() for root in new.generators}
         while True:
             self._number_generators(sorted(roots - set(self.dependences), key=_depth))
             relations_found = self._relate(ZZ) or self._relate(QQ)
             assert relations_found is not None  # the rationals suffice for any polynomial
             self.relations: Relations = relations_found
-            found = self._without_circles(self._dependences())
-            if not found:
+            new = self._without_circles(self._dependences())
+            if not new:
                 break
-            self.dependences |= found
-            for dependence in found.values():
+            self.dependences |= new
+            for dependence in new.values():
                 roots |= {factor for factor, _ in dependence.divisors if isinstance(factor, Root)}
                 roots |= set(square_root_of_number(dependence.number)[1])
         if self.relations.contradictory:
@@ -172,8 +172,8 @@ class FormulaRing:
             elif node.is_Pow and node.exp.is_Integer:
                 stack.append(node.base)
             elif is_root(node):
-                found = self.radicals[node] = radical(node, self._radicand)
-                stack.extend(found.parts)
+                root = self.radicals[node] = radical(node, self._radicand)
+                stack.extend(root.parts)
             elif type(node) in TRIGONOMETRIC:
                 form = self.forms[node.args[0]] = linear_form(node.args[0])
                 if form.half_turns:
@@ -194,8 +194,8 @@ class FormulaRing:
     def _radicand(self, base: Expr, index: int) -> Radicand:
         """Return a radicand in lowest terms, reduced by those hypotheses that hold no roots themselves."""
         plain = tuple(each for each in self.hypotheses if not any(map(is_root, preorder_traversal(each))))
-        found: Radicand = remembered(("radicand", base, index, plain), lambda: _taken_apart(base, index, plain))
-        return found
+        radicand: Radicand = remembered(("radicand", base, index, plain), lambda: _taken_apart(base, index, plain))
+        return radicand
 
     def _dependences(self) -> dict[Root, Dependence]:
         """Return the square roots that are products of other generators, if there are several."""
@@ -205,10 +205,10 @@ class FormulaRing:
             return {}
         return dependences({root: self._polynomial(root) for root in places}, self.generators)
 
-    def _without_circles(self, found: dict[Root, Dependence]) -> dict[Root, Dependence]:
+    def _without_circles(self, dependences: dict[Root, Dependence]) -> dict[Root, Dependence]:
         """Return those dependences by which no root comes to be expressed by itself, through others."""
         accepted: dict[Root, Dependence] = {}
-        for root, dependence in found.items():
+        for root, dependence in dependences.items():
             stack, seen = _named(dependence), set()
             while stack:
                 other = stack.pop()
@@ -342,11 +342,11 @@ class FormulaRing:
     def _power(self, base: Ratio, exponent: int, source: Expr) -> Ratio:
         return self.ratios.power(base if exponent >= 0 else self.ratios.invert(base, source), abs(exponent))
 
-    def _read_radical(self, found: Radical) -> Ratio:
-        factors = [self._root(root) for root in found.roots]
-        below = self.ratios.invert(self.ratio(found.below), found.below)
-        value = self.ratios.multiply([self.ratio(found.rational), below, *factors, *self._outside(found.outside)])
-        return self._power(value, found.power, found.base)
+    def _read_radical(self, parts: Radical) -> Ratio:
+        factors = [self._root(root) for root in parts.roots]
+        below = self.ratios.invert(self.ratio(parts.below), parts.below)
+        value = self.ratios.multiply([self.ratio(parts.rational), below, *factors, *self._outside(parts.outside)])
+        return self._power(value, parts.power, parts.base)
 
     def _root(self, root: Root) -> Ratio:
         dependence = self.dependences.get(root)

@@ -117,8 +117,8 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
     else:
         assert isinstance(node, Pow)
         base, power, index = node.base, int(node.exp.p), int(node.exp.q)
-    found = radicand(base, index)
-    content, above, below = found.content, found.above, found.below
+    parts = radicand(base, index)
+    content, above, below = parts.content, parts.above, parts.below
     if not content:
         if power < 0:
             raise InputError(f"the formula divides by a power of {base}, which is zero everywhere")
@@ -138,9 +138,9 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
         if len(Add.make_args(above)) * comb(terms + times - 1, times) > MOST_TERMS:
             raise TooLarge(f"a root whose radicand has more than {MOST_TERMS} terms over one denominator is not taken")
         inside = (above * below ** (index - 1)).expand()
-        shown = below * (above / below) ** Rational(1, index)
-        roots.append(Root(shown, inside, index, 1 + _nesting([inside])))
-    return Radical(base, rational, tuple(roots), below, power, found.outside, found.loose)
+        written_root = below * (above / below) ** Rational(1, index)
+        roots.append(Root(written_root, inside, index, 1 + _nesting([inside])))
+    return Radical(base, rational, tuple(roots), below, power, parts.outside, parts.loose)
 
 
 def absolute(value: Expr) -> Root | Expr:

@@ -1,6 +1,7 @@
-"""How far a step may go, in Python: what :file:`disc.h` and :file:`enclosure.h` are for the steppers in C.
+"""How far a step may go, in Python, for SciPy's steppers and for references.
 
-For SciPy's steppers and for references. See :mod:`symrot.codegen.enclosure.terms` for what is enclosed and why.
+The counterpart of :file:`disc.h` and :file:`enclosure.h` for the steppers in C. See
+:mod:`symrot.codegen.enclosure.terms` for the terms that are enclosed, and why.
 """
 
 import math
@@ -43,7 +44,7 @@ def _product(a: Disc, b: Disc) -> Disc:
 
 
 def _or_infinite(bound: float) -> float:
-    """Return a bound, which is infinite where nothing is known: zero times an infinite bound is not a number."""
+    """Return a bound, or infinity in place of not-a-number, which zero times an infinite bound gives."""
     return math.inf if math.isnan(bound) else bound
 
 
@@ -155,8 +156,8 @@ FUNCTIONS: dict[str, Callable[..., Disc]] = {
 def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
     """Return the bounds of an enclosure as one Python function of (t, reach, y, radii, weights, their sizes).
 
-    It leaves out the logarithms of sizes, which matter only where a bound is infinite or no number: there its result is
-    useless, elsewhere it is that of the discs, many times sooner.
+    It leaves out the logarithms of sizes, which matter only where a bound is infinite or not a number: there its result
+    is useless, elsewhere it equals the result of the discs and takes much less time.
     """
     lines, place = ["def bounds(t, reach, y, radii, w, a):"], 0
     for number in enclosure.series:
@@ -275,7 +276,7 @@ class Deviations:
 
 
 def deviations_of(enclosure: Enclosure) -> Callable[[Mapping[str, float]], Deviations]:
-    """Return what makes deviations of parameters; the function of the enclosure is made once."""
+    """Return a function from parameters to deviations; the function of the enclosure is compiled once."""
     bounds = _one_function(enclosure)
     return lambda parameters: Deviations(enclosure, parameters, bounds)
 

@@ -2,9 +2,9 @@
 
 An event is a formula in t, omega_1..3, q0..q3, or an equation between two. It is read by the safe reader, printed as C
 together with a bound of its rounding errors and with enclosures of its values, and searched along the polynomials of a
-motion (:file:`events.c`). Sign changes are told from touches, and both are located however close they stand, several in
-one step too; no zero is so short that it hides between samples. Poles, jumps past zero and zeros at the edge of the
-domain of a formula are no events.
+motion (:file:`events.c`). The search distinguishes sign changes from touches and locates both, however close together
+and even several in one step; it does not sample, so that it misses no zero. Poles, jumps past zero and zeros at the
+edge of the domain of a formula are no events.
 """
 
 import ctypes
@@ -23,10 +23,11 @@ from symrot.formula import exact_numbers as number
 from symrot.formula.program import Program
 from symrot.formula.tree import Node, names, parse, rename
 from symrot.propagation.events.polynomials import HEAD, Piece, rows_of
+from symrot.propagation.steppers.stepping import Integration
 
 __all__ = [
     "Event",
-    "Found",
+    "EventZero",
     "Piece",
     "event_library_source",
     "read_events",
@@ -42,7 +43,7 @@ KNOWN = {"t", "omega_1", "omega_2", "omega_3", *ATTITUDE}
 NEAR = 64 * float(np.finfo(float).eps)  # of the time: entries so close are one
 FIELDS = 5  # of an entry in events.c
 ROOM = 1024  # entries per call
-LONG = 1e-3  # of the motion: an event that stays zero for longer, up to an end, is none
+LONG = 1e-3  # of the motion: a formula that stays zero for longer, up to an end, has no event there
 OPERATIONS_PER_CALL = 5e6  # some 20 ms, after which Python can see an interrupt
 MOST_OPERATIONS, OPERATIONS_PER_ROW = 4e9, 2e5  # of a search; each row of a motion earns more
 MOST_ENTRIES = 500_000
@@ -59,8 +60,15 @@ class Event(NamedTuple):
     terminal : bool or int
         Whether the motion ends there; a number ends it at that occurrence.
     direction : int
-        1 for zeros through which the formula rises as the motion goes, -1 for those through which it falls, 0 for all,
-        those that it only touches among them.
+        1 for zeros through which the formula rises along the motion, -1 for zeros through which it falls, 0 for all
+        zeros, including touches.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> event = symrot.Event("omega_3 == 0", terminal=True)
+    >>> symrot.propagate("t_handle", events=[event]).status
+    1
     """
 
     formula: str
@@ -75,7 +83,7 @@ class Event(NamedTuple):
         return ("-", node, parse(right, "event")) if equals else node
 
 
-class Found(NamedTuple):
+class EventZero(NamedTuple):
     """One zero: which event, when, and ``"rising"``, ``"falling"`` or ``"touching"``."""
 
     event: int
@@ -84,31 +92,31 @@ class Found(NamedTuple):
 
 
 def read_events(events: Any) -> tuple[Event, ...]:
-    """Return events as they may be given: formulas as text, :class:`Event` or mappings with its fields.
+    """Return events from formulas as text, from :class:`Event`, or from mappings with its fields.
 
     Raises
     ------
     InputError
-        For anything else, and for names that are none of a motion.
+        For anything else, and for names that a motion does not have.
     """
     if isinstance(events, str | Event) or hasattr(events, "keys"):
         events = [events]
-    found = []
-    for place, given in enumerate(events):
+    checked = []
+    for place, entry in enumerate(events):
         where = f"events[{place}]"
-        if isinstance(given, str):
-            event = Event(given)
-        elif isinstance(given, Event):
-            event = given
-        elif hasattr(given, "keys") and "formula" in given and set(given) <= set(Event._fields):
-            event = Event(**given)
+        if isinstance(entry, str):
+            event = Event(entry)
+        elif isinstance(entry, Event):
+            event = entry
+        elif hasattr(entry, "keys") and "formula" in entry and set(entry) <= set(Event._fields):
+            event = Event(**entry)
         else:
             raise InputError(
                 f'{where}: expected a formula as text, such as "omega_3" or "q0 == 0.5", or a mapping with formula, '
-                f"terminal and direction, got {number.show(given)}"
+                f"terminal and direction, got {number.show(entry)}"
             )
-        found.append(_checked(event, where))
-    return tuple(found)
+        checked.append(_checked(event, where))
+    return tuple(checked)
 
 
 def _checked(event: Event, where: str) -> Event:
@@ -139,7 +147,7 @@ def uses_attitude(events: Iterable[Event]) -> bool:
 
 
 def timed(quantities: Program, events: Iterable[Event]) -> bool:
-    """Return whether the time stands in some event, or in the quantities that events are made of."""
+    """Return whether an event depends on the time, directly or through the quantities in it."""
     used = set().union(*(names(event.node) for event in events))
     return "t" in used or quantities.uses("t", tuple(f"{name} of t" for name in used))
 
@@ -147,7 +155,7 @@ def timed(quantities: Program, events: Iterable[Event]) -> bool:
 def event_library_source(
     quantities: Program, events: Sequence[Event], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
 ) -> str:
-    """Return the C source of a library that finds events; its parameters are those of the quantities."""
+    """Return the C source of a library that finds events; it takes the parameters of the quantities."""
     return guard_library_source(quantities, [_with_pi(event.node) for event in events], states, edges, scales)
 
 
@@ -198,7 +206,7 @@ _library = cache(_Library)
 
 
 class _Search:
-    """A search along one motion: its state in C, and the operations it spent."""
+    """A search along one motion: its state in C, and the number of operations so far."""
 
     def __init__(self, path: Path | str, p: Sequence[float], formulas: Sequence[str]) -> None:
         self.library, self.formulas = _library(str(path)), formulas
@@ -234,10 +242,10 @@ class _Search:
             listed += batch[: answer[0]].tolist()
             if self.spent > self.allowed or len(listed) > MOST_ENTRIES:
                 t = float(edges[min(answer[2], count)])
-                shown = ", ".join(map(repr, self.formulas))
+                formulas = ", ".join(map(repr, self.formulas))
                 raise PropagationError(
-                    f"events: expected formulas whose zeros can be told apart, but beyond t = {t!r} s those of {shown} "
-                    f"are not settled after {self.spent:.1g} operations and {len(listed)} entries"
+                    f"events: expected formulas whose zeros can be told apart, but beyond t = {t!r} s the zeros of "
+                    f"{formulas} are not settled after {self.spent:.1g} operations and {len(listed)} entries"
                 )
         return listed
 
@@ -251,15 +259,14 @@ class _Search:
         edges, side = piece.edges, 1.0 if piece.edges[-1] >= piece.edges[0] else -1.0
         place = int(np.searchsorted(side * edges, side * t, "left")) - 1
         row = np.ascontiguousarray(piece.rows[min(max(place, 0), len(piece.rows) - 1)])
-        given = event, t, row.ctypes.data, self.terms(piece.rows), ctypes.addressof(self.p)
-        value: int = self.library.sign(*given)
+        value: int = self.library.sign(event, t, row.ctypes.data, self.terms(piece.rows), ctypes.addressof(self.p))
         return value
 
 
 def search(
     path: Path | str, events: Sequence[Event], p: Sequence[float], pieces: Iterable[Piece], t0: float
-) -> tuple[list[Found], float | None]:
-    """Return the zeros along a motion in its order, and the time of the terminal one or None.
+) -> tuple[list[EventZero], float | None]:
+    """Return the zeros along a motion in its order, and the time of the terminal event or None.
 
     A zero at t0 itself is listed, with the sign it takes on after it, but ends no motion.
 
@@ -270,55 +277,57 @@ def search(
     p : sequence of float
         The parameters of its quantities.
     pieces : iterable of Piece
-        The motion from t0 on as polynomials (:mod:`symrot.propagation.events.polynomials`), in its order, one Piece
-        going on where the one before ends. They are asked for one after the other, until a terminal event.
+        The motion from t0 on as polynomials (:mod:`symrot.propagation.events.polynomials`), in its order, each Piece
+        beginning where the one before ends. The search takes pieces until it finds a terminal event.
 
     Raises
     ------
     PropagationError
         If the zeros cannot be told apart with the operations that a motion of such a length may take.
     """
-    task = _Search(path, p, [event.formula for event in events])
+    searcher = _Search(path, p, [event.formula for event in events])
     left = [int(event.terminal) for event in events]
-    found: list[Found] = []
-    held: list[list[float]] = []  # entries at the last edge, which the next piece may go on with
+    zeros: list[EventZero] = []
+    held: list[list[float]] = []  # entries at the last edge, which may continue in the next piece
     previous: Piece | None = None
     for piece in pieces:
         if not len(piece.rows):
             continue
-        entries = held + task.entries(piece)
+        entries = held + searcher.entries(piece)
         for entry in entries:  # a zero from the first edge on: the piece before tells the sign before it
             if previous is not None and not entry[3] and entry[1] == float(piece.edges[0]):
-                entry[3] = _sign_before_end(task, int(entry[0]), previous)
-                task.arrived.add((int(entry[0]), entry[1]))
+                entry[3] = _sign_before_end(searcher, int(entry[0]), previous)
+                searcher.arrived.add((int(entry[0]), entry[1]))
         last = float(piece.edges[-1])
         whole, held = _merged(entries, last)
-        stop = _settled(task, piece, events, whole, t0, left, found)
+        stop = _settled(searcher, piece, events, whole, t0, left, zeros)
         if stop is not None:
-            return found, stop
+            return zeros, stop
         previous = piece
     if previous is not None and held:
-        stop = _settled(task, previous, events, held, t0, left, found)
-        return found, stop
-    return found, None
+        stop = _settled(searcher, previous, events, held, t0, left, zeros)
+        return zeros, stop
+    return zeros, None
 
 
 def signs_at_ends(
     path: Path | str, formulas: Sequence[str], p: Sequence[float], piece: Piece
 ) -> tuple[list[int], list[int]]:
     """Return the signs that formulas have from the start of a piece on, and at its end; 0 within rounding of zero."""
-    task, numbers = _Search(path, p, formulas), range(len(formulas))
+    searcher, numbers = _Search(path, p, formulas), range(len(formulas))
     last = float(piece.edges[-1])
-    return [_first_sign(task, number, piece) for number in numbers], [task.sign(n, last, piece) for n in numbers]
+    return [_first_sign(searcher, number, piece) for number in numbers], [
+        searcher.sign(n, last, piece) for n in numbers
+    ]
 
 
-def _first_sign(task: _Search, number: int, piece: Piece) -> int:
-    """Return the first sign of a formula after the start of a piece that is beyond rounding, and holds twice as far."""
+def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
+    """Return the sign of a formula after the start of a piece: the first beyond rounding that repeats twice as far."""
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(first), abs(last - first)), 1.0 if last >= first else -1.0
     before = 0
     while width < abs(last - first):
-        sign = task.sign(number, first + side * width, piece)
+        sign = searcher.sign(number, first + side * width, piece)
         if sign and sign == before:
             return sign
         before = sign
@@ -327,7 +336,7 @@ def _first_sign(task: _Search, number: int, piece: Piece) -> int:
 
 
 def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]], list[list[float]]]:
-    """Return entries with those that go on with one another put together, and those that reach the last edge apart."""
+    """Return entries after joining adjacent ones, and separately the entries that reach the last edge."""
     whole: list[list[float]] = []
     open_ones: dict[float, list[float]] = {}
     side = 1.0 if not entries or last >= min(entry[1] for entry in entries) else -1.0
@@ -348,12 +357,12 @@ def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]],
     return [entry for entry in whole if entry not in at_end], at_end
 
 
-def _sign_before_end(task: _Search, event: int, piece: Piece) -> int:
-    """Return the last sign that an event has before the end of a piece, beyond rounding."""
+def _sign_before_end(searcher: _Search, event: int, piece: Piece) -> int:
+    """Return the last sign of an event before the end of a piece that exceeds rounding."""
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(last), abs(last - first)), 1.0 if last >= first else -1.0
     while width < abs(last - first):
-        sign = task.sign(event, last - side * width, piece)
+        sign = searcher.sign(event, last - side * width, piece)
         if sign:
             return sign
         width *= 2
@@ -361,18 +370,18 @@ def _sign_before_end(task: _Search, event: int, piece: Piece) -> int:
 
 
 def _settled(
-    task: _Search, piece: Piece, events: Sequence[Event], entries: list[list[float]], t0: float, left: list[int],
-    found: list[Found],
+    searcher: _Search, piece: Piece, events: Sequence[Event], entries: list[list[float]], t0: float, left: list[int],
+    zeros: list[EventZero],
 ) -> float | None:  # fmt: skip
-    """Add what entries stand for, in the order of the motion; return the time at which it ends, or None."""
+    """Add the zeros of entries, in the order of the motion; return the time of a terminal event, or None."""
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     side = 1.0 if last >= first else -1.0
 
     def sign(event: int, t: float, end: float, step: float) -> int:
-        """Return the sign away from a zero, the first one that is beyond rounding."""
+        """Return the first sign away from a zero that exceeds rounding."""
         width = 4 * NEAR * max(abs(t), abs(last - first))
         while width < abs(end - t):
-            value = task.sign(event, t + step * width, piece)
+            value = searcher.sign(event, t + step * width, piece)
             if value:
                 return value
             width *= 2
@@ -383,21 +392,21 @@ def _settled(
         before = before or (0 if at_start else sign(event, start, first, -side))
         after = after or sign(event, end, last, side)
         if not before and not after:
-            continue  # zero all along: no event
+            continue  # zero throughout: no event
         rests = abs(end - start) > LONG * abs(last - t0)
-        arrived = bool(before) and (event, start) in task.arrived  # and stays, as a wheel that friction stops
+        arrived = bool(before) and (event, start) in searcher.arrived  # and stays, as a wheel that friction stops
         near = 4 * NEAR * max(abs(start), abs(last - t0))
-        if arrived and any(each.event == event and abs(each.t - start) <= near for each in found):
+        if arrived and any(each.event == event and abs(each.t - start) <= near for each in zeros):
             continue  # it was seen to cross within rounding of the edge
         if not (before and after) and rests and not arrived:
-            continue  # zero all along up to an end of what is known: it passes through nothing
+            continue  # zero up to the end of the known motion: no crossing
         if rests and arrived:
-            after = 0  # where it goes when it is let go is another matter
+            after = 0  # its sign after it leaves zero belongs to another event
         t = t0 if at_start else start if rests and arrived else end if start == end else 0.5 * (start + end)
         kind = "rising" if after > before else "falling" if after < before else "touching"
         if events[event].direction and kind != {1: "rising", -1: "falling"}[events[event].direction]:
             continue
-        found.append(Found(event, t, kind))
+        zeros.append(EventZero(event, t, kind))
         if left[event] and not at_start:
             left[event] -= 1
             if not left[event]:
@@ -406,24 +415,24 @@ def _settled(
 
 
 def stepped(
-    task: Any, end: float, broken: list[PropagationError], records: list[Floats]
+    integration: Integration, end: float, broken: list[PropagationError], records: list[Floats]
 ) -> Generator[Piece, None, None]:
-    """Yield the steps of a task from its start to an end, as they are made.
+    """Yield the steps of an integration from its start to an end, as they are made.
 
-    What the stepper records is added to ``records``; what cuts the motion off, to ``broken``.
+    The recorded steps are added to ``records``; an error that ends the motion early, to ``broken``.
     """
-    room = task.stepper.rows_per_call
-    with closing(task.runs(end)) as runs:
+    room = integration.stepper.rows_per_call
+    with closing(integration.runs(end)) as runs:
         for run in runs:
             while run.t != run.stop:
-                rows = np.empty((room, task.stepper.row))
+                rows = np.empty((room, integration.stepper.row))
                 try:
-                    task.advance(run, None, 0, None, rows.ctypes.data, room)
+                    integration.advance(run, None, 0, None, rows.ctypes.data, room)
                 except PropagationError as error:
                     broken.append(error)
                 rows = rows[: run.recorded]
                 if len(rows):
                     records.append(rows)
-                    yield Piece(np.append(rows[:, 0], run.t), rows_of(task.stepper, rows))
+                    yield Piece(np.append(rows[:, 0], run.t), rows_of(integration.stepper, rows))
                 if broken:
                     return

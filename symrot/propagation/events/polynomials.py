@@ -1,9 +1,9 @@
-"""Motions as polynomials in time, piece by piece: what searches along a motion read, whatever made the motion.
+"""Motions as polynomials in time, piece by piece: the input of searches along a motion, whatever computed it.
 
 A row holds the states over one piece, in the layout of the steps of :file:`taylor.c`: t, h, the low part of t, a unit
 of time, then coefficient 0 of all N states, coefficient 1, and so on; powers of ``(time - t)/unit``. Taylor's steps are
-such rows; those of Dormand and Prince's dense output become such rows exactly, up to rounding; any other function of
-time is interpolated at Chebyshev points, on pieces that are halved until the polynomial has converged to rounding.
+such rows; steps of Dormand and Prince's dense output are converted to rows exactly, up to rounding; any other function
+of time is interpolated at Chebyshev points, on pieces that are halved until the polynomial has converged to rounding.
 """
 
 import math
@@ -24,10 +24,10 @@ Floats = NDArray[np.float64]
 HEAD = 4  # numbers before the coefficients of a row
 POINTS = 21  # of a fit, whose degree is one less
 EPS = float(np.finfo(float).eps)
-NOISE = 16.0  # units in the last place by which samples of a motion are taken to be off
+NOISE = 16.0  # units in the last place: assumed error of the samples of a motion
 ROUGH = 1e-9  # relative: a fit that is off by more does not follow the motion
 SURE, HALVINGS = 6, 40  # of a piece: after the first number, ROUGH is enough; the second is the most
-MOST_PIECES = 20_000  # that one call may cut the motion into, beyond those asked for
+MOST_PIECES = 20_000  # that one call may cut the motion into, beyond the edges it was given
 FEWEST, MOST = 16, 1024  # pieces fitted at a time
 
 
@@ -53,7 +53,7 @@ def rows_of(stepper: Any, record: Floats) -> Floats:
 
 @cache
 def _nested(terms: int) -> Floats:
-    """Return the matrix from coefficients of s, s r, s^2 r, s^2 r^2, ... with r = 1 - s to those of powers of s."""
+    """Return the matrix from coefficients of s, s r, s^2 r, s^2 r^2, ... with r = 1 - s to those of 1, s, s^2, ..."""
     matrix = np.zeros((terms, terms))
     power = np.zeros(terms)
     power[0] = 1.0
@@ -86,7 +86,7 @@ def fitted(
     states: Callable[[Floats], Floats], edges: Floats, blocks: Sequence[int], scales: Sequence[float], depth: int = 0,
     left: list[int] | None = None, accuracy: float | Floats = 0.0,
 ) -> Piece:  # fmt: skip
-    """Return polynomials that follow a motion to rounding, between edges or, where they do not, between more of them.
+    """Return polynomials that follow a motion to rounding between edges; edges are added where one polynomial cannot.
 
     Parameters
     ----------
@@ -95,13 +95,12 @@ def fitted(
     edges : array, shape (k + 1,)
         Rising or falling.
     blocks, scales
-        As :func:`symrot.propagation.steppers.dop853.translation_unit` takes them: what states are compared with.
+        As :func:`symrot.propagation.steppers.dop853.translation_unit` takes them: errors are relative to these sizes.
     depth, left : int, list of int
-        How often a piece was halved, and how many more pieces there may be: of the function itself.
-
+        For recursive calls: how often a piece was halved, and how many more pieces there may be.
     accuracy : float
-        Error of the motion itself on its largest size here: where its steps do not join, no fit can be closer. The
-        function itself hands on one error per state.
+        Error of the motion itself, relative to its largest size here: no fit can be closer where its steps do not join.
+        Recursive calls pass one error per state.
 
     Raises
     ------
@@ -131,7 +130,7 @@ def fitted(
         accuracy = accuracy * size.max(axis=0)
     rate = np.abs(values[:, :, : blocks[1]]).max(axis=(1, 2)) if scales[0] == 0.0 else np.zeros(len(half))
     doubt = EPS * (NOISE + rate * np.abs(times).max(axis=1))[:, None] * size  # a phase is as good as the time
-    series[np.abs(series) < 0.25 * EPS * size[:, None, :]] = 0.0  # what is left of rounding would grow outside
+    series[np.abs(series) < 0.25 * EPS * size[:, None, :]] = 0.0  # a remainder of rounding would grow outside
     powers = np.einsum("mk,nki->nmi", to_powers, series)
     slope = np.abs(powers[:, 1]) / np.abs(half)[:, None]
     doubt = doubt + EPS * np.abs(times).max(axis=1)[:, None] * slope  # the time itself is rounded
@@ -175,9 +174,9 @@ def fitted_pieces(
     blocks: Sequence[int],
     scales: Sequence[float],
 ) -> Generator[Piece, None, None]:
-    """Yield a motion that has no steps as polynomials, see :func:`fitted`; pieces as long as they can be.
+    """Yield a motion that has no steps as polynomials, in pieces as long as possible, see :func:`fitted`.
 
-    ``longest``, s, is a first guess of the length.
+    ``longest``, s, is a first guess of the length of a piece.
     """
     side, t, most, count = math.copysign(1.0, end - start), start, 8.0 * longest, FEWEST
     while t != end:

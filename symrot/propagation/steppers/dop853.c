@@ -146,7 +146,8 @@ static inline double symrot_scale_squared(const double *y, const double *y1, dou
     if (fixed > 0.0) return fixed*fixed;
     const double before = symrot_square_sum(y, block), after = symrot_square_sum(y1, block);
     const double larger = before > after ? before : after, least = SYMROT_RATE_FLOOR/h*(SYMROT_RATE_FLOOR/h);
-    return fmin(larger > least ? larger : least, DBL_MAX);  /* finite in the shortest of steps, too */
+    const double size = larger > least ? larger : least;
+    return size < DBL_MAX ? size : DBL_MAX;  /* finite in the shortest of steps, too */
 }
 
 /* Return the size of a block at the start: of a rate no less than it has when it has turned the body from rest. */
@@ -373,10 +374,14 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
         const double allowed = share > SYMROT_ROUND_OFF ? share : SYMROT_ROUND_OFF, weight = 1.0/(allowed*allowed);
         double worst = 0.0;
         for (int b = 0; b < SYMROT_COUNT; ++b) {
-            const double size = symrot_scale_squared(y, y1, h, b);
-            const double unit = size > SYMROT_LARGE || (size > 0.0 && size < 1.0/SYMROT_LARGE) ? 1.0/size : 1.0;
-            const double e5 = symrot_square_sum(error5, b)*unit, e3 = symrot_square_sum(error3, b)*unit;
-            const double error = e5*e5/((e5 + 0.01*e3)*(size*unit) + DBL_MIN)*weight;
+            double e5 = symrot_square_sum(error5, b), e3 = symrot_square_sum(error3, b);
+            double size = symrot_scale_squared(y, y1, h, b);
+            if (size > SYMROT_LARGE || (size > 0.0 && size < 1.0/SYMROT_LARGE)) {
+                e5 /= size;
+                e3 /= size;
+                size = 1.0;
+            }
+            const double error = e5*e5/((e5 + 0.01*e3)*size + DBL_MIN)*weight;
             if (worst == worst && !(error <= worst)) worst = error;  /* a NaN stays one, whatever other blocks say */
         }
         const double factor = SYMROT_SAFETY*symrot_inverse_root_16(worst);

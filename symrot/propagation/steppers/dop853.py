@@ -1,13 +1,14 @@
 """Dormand-Prince 8(5,3) around an emitted kernel: the C of :file:`dop853.c` driven from Python, one call per span.
 
-A library holds one kernel and the stepper compiled together (:func:`translation_unit`); :func:`integrate` follows a
-motion through sample times, :func:`record` keeps every step so that the motion can be asked for at any time later.
+A library holds one kernel and the stepper compiled together (:func:`translation_unit`). An :func:`integration` follows
+a motion through sample times, or records every step so that the states are known at any time later.
 
 Tolerance: the promise is about the trajectory, not about one step, see :func:`step_tolerance`.
 
-Time: a double keeps 53 bits of ``a*t``, so that phases of a torque lose digits as the time grows, which costs accuracy
-and, since errors look rough to the step control, steps. A kernel whose clock can be moved (a :data:`Clock`) is
-therefore given the time since an epoch that follows the motion, every :data:`WINDOW` steps, and where steps are short.
+Time: a double holds 53 bits of ``a*t``, so that phases of a torque lose digits as the time grows. That costs accuracy,
+and also steps, since the step control sees rounding errors as a rough torque. A kernel whose clock can be moved (a
+:data:`Clock`) is therefore given the time since an epoch, which moves along with the motion every :data:`WINDOW` steps,
+and where steps are short.
 """
 
 import math
@@ -25,41 +26,40 @@ from symrot.propagation.steppers.stepping import (
     NOT_FINITE_SENTENCE,
     PAUSED,
     UNDERFLOW,
-    Floats,
+    Integration,
     PathLike,
-    Recording,
-    Stats,
+    Run,
+    Segment,
     Stepper,
-    Stretch,
-    Task,
+    Window,
     check_tolerance,
 )
 
-__all__ = ["MAX_STEPS", "Recording", "Stats", "integrate", "record", "step_tolerance", "translation_unit"]
+__all__ = ["DENSE_ORDER", "MAX_STEPS", "NO_ENCLOSURE", "Clock", "integration", "step_tolerance", "translation_unit"]
 
 STEP_SHARE, NATURAL_TIMES = 0.14, 0.16  # of the tolerance; of the span, see step_tolerance
 TERMS = 8  # of the dense output
-DENSE_ORDER = 7  # to which it follows the states
+DENSE_ORDER = 7  # of the error of the dense output
 NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n#define SYMROT_DEPENDS 0\n"
 ENCLOSURE = "/* ENCLOSURE */\n"  # where dop853.c takes enclosure.h
-ROUGH = "#define SYMROT_ROUGH\n"  # corners, as of a root at zero, are left to the control of errors: see disc.h
+ROUGH = "#define SYMROT_ROUGH\n"  # corners, such as a root at zero, are left to the error control: see disc.h
 MIDDLE_REACH = 3  # of the discs of symrot.codegen.enclosure.terms.REACHES: the one to begin with
 
 Clock = Callable[[float], tuple[PathLike, Sequence[float]]]
-"""From an epoch, s, to the library of a kernel that counts its time from there, and the parameters of that kernel."""
+"""A function from an epoch, s, to the library of a kernel that counts time from the epoch, and its parameters."""
 
 WINDOW = 2048
 FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
-"""Steps after which the clock of a kernel is moved: phases on it stay below some 1e3 rad, and setting it costs a few
-per cent of the steps. Their errors are alike in all windows, and add up: with 8192 they were five times as large."""
+"""Steps after which the clock of a kernel is moved: phases on it stay below some 1e3 rad, and moving it costs a few
+per cent of the time. Phase errors are alike in all windows and add up: with 8192 they were five times as large."""
 
 
 def step_tolerance(tolerance: float) -> tuple[float, float]:
     """Return the error allowed in one step, and the fraction of the span that earns a step all of it.
 
-    A shorter step is allowed its share. Steps are about ``tolerance^(1/8)`` times as long as the motion's natural time,
-    so the second number makes the allowance a matter of natural times in the span, not of steps: the error at the end
-    then hardly depends on tolerance or span, except where the motion itself amplifies errors.
+    A shorter step is allowed a share in proportion. Steps are about ``tolerance^(1/8)`` times as long as the motion's
+    natural time, so that by the second number the allowance depends on the natural times in the span, not on the number
+    of steps: the error at the end then hardly depends on tolerance or span, except where the motion amplifies errors.
 
     Both constants are calibrated on free asymmetric bodies, through flips about the intermediate axis too, and on heavy
     tops, against 40-digit references (``tests/propagation/test_dop853.py``): errors stay below 5 times the tolerance.
@@ -88,13 +88,13 @@ def translation_unit(
     states, parameters : int
         Lengths of y and p.
     blocks : sequence of int
-        Edges of the blocks of states whose errors are judged apart, from 0 to ``states``: omega, then quaternion.
+        Edges of the blocks of states with separate error norms, from 0 to ``states``: omega, then quaternion.
     scales : sequence of float
-        One per block: 0 judges its error against the block's own size (a rate), a positive number against that number
-        (1 for a unit quaternion, or for an angle in rad).
+        One per block: with 0 the error is relative to the block's own size (a rate), otherwise to this number (1 for a
+        unit quaternion, or for an angle in rad).
     enclosure : str
-        What :func:`symrot.codegen.enclosure.terms.enclosure_source` prints of the kernel for order :data:`DENSE_ORDER`:
-        steps are held to what it proves.
+        Output of :func:`symrot.codegen.enclosure.source.enclosure_source` for the kernel and order
+        :data:`DENSE_ORDER`: the proof in it limits the steps.
     """
     edges = list(blocks)
     if edges[:1] != [0] or edges[-1] != states or edges != sorted(set(edges)) or len(scales) != len(edges) - 1:
@@ -120,76 +120,7 @@ def translation_unit(
     )
 
 
-def integrate(
-    library: PathLike,
-    p: ArrayLike,
-    y0: ArrayLike,
-    t0: float,
-    times: ArrayLike,
-    tolerance: float,
-    *,
-    breaks: Sequence[float] = (),
-    max_step: float = math.inf,
-    max_steps: int = MAX_STEPS,
-) -> tuple[Floats, Stats]:
-    """Return the states at the sample times, and what it cost.
-
-    Parameters
-    ----------
-    library : path
-        Built from :func:`translation_unit`.
-    p, y0 : arrays, shapes (parameters,) and (N,)
-        Parameters of the kernel; state at ``t0``.
-    t0 : float
-        Initial time, s.
-    times : array, shape (n,)
-        Sample times, s, in any order, before or after ``t0``, repeated or not. The steps depend on the first and last
-        of them only.
-    tolerance : float
-        Aim for the error of the whole trajectory, see :func:`step_tolerance`.
-    breaks : sequence of float
-        Times at which the kernel jumps; the motion is stepped exactly to each and started anew behind it.
-    max_step : float
-        Longest step, s, where the kernel has features that a longer one could pass over.
-    max_steps : int
-        Most steps to try before giving up.
-
-    Returns
-    -------
-    states : array, shape (n, N), C layout
-    stats : Stats
-
-    Raises
-    ------
-    InputError
-        If a shape, a time or the tolerance cannot be used.
-    PropagationError
-        If the motion cannot be followed to the end; the sentence says how far it came.
-    """
-    return task(library, p, y0, t0, tolerance, max_step, max_steps, breaks).sample(times)
-
-
-def record(
-    library: PathLike,
-    p: ArrayLike,
-    y0: ArrayLike,
-    t0: float,
-    span: tuple[float, float],
-    tolerance: float,
-    *,
-    breaks: Sequence[float] = (),
-    max_step: float = math.inf,
-    max_steps: int = MAX_STEPS,
-) -> Recording:
-    """Return the motion over ``span`` as a function of time; arguments as :func:`integrate`.
-
-    The same steps are taken as by :func:`integrate` to the ends of the span, so the two agree where they overlap. One
-    step takes 8 N + 2 numbers of memory.
-    """
-    return task(library, p, y0, t0, tolerance, max_step, max_steps, breaks).record(span)
-
-
-def task(
+def integration(
     library: PathLike,
     p: ArrayLike,
     y0: ArrayLike,
@@ -199,30 +130,59 @@ def task(
     max_steps: int = MAX_STEPS,
     breaks: Sequence[float] = (),
     clock: Clock | None = None,
-) -> Task:
-    """Return a motion to follow; arguments as :func:`integrate`, and the clock of its kernel if it can be moved."""
-    found = _Clocked if clock else Task
-    task = found(_stepper, library, p, y0, t0, tolerance, max_step, max_steps, breaks)
-    if isinstance(task, _Clocked):
-        task.clock = clock
-    return task
+) -> Integration:
+    """Return the integration of a motion, to be sampled or recorded; its input is checked.
+
+    Parameters
+    ----------
+    library : path
+        Built from :func:`translation_unit`.
+    p, y0 : arrays, shapes (parameters,) and (N,)
+        Parameters of the kernel; state at ``t0``.
+    t0 : float
+        Initial time, s.
+    tolerance : float
+        Error of the whole trajectory to aim for, see :func:`step_tolerance`.
+    max_step : float
+        Longest step, s, where the kernel has features that a longer one could pass over.
+    max_steps : int
+        Most steps to try before giving up.
+    breaks : sequence of float
+        Times at which the kernel jumps; the motion is stepped exactly to each and restarted behind it.
+    clock : function, optional
+        The clock of the kernel, if it can be moved.
+
+    Raises
+    ------
+    InputError
+        If a shape, a time or the tolerance cannot be used.
+    """
+    if clock is None:
+        return Integration(_stepper, library, p, y0, t0, tolerance, max_step, max_steps, breaks)
+    return _Clocked(clock, _stepper, library, p, y0, t0, tolerance, max_step, max_steps, breaks)
 
 
-class _Clocked(Task):
-    """A motion whose kernel counts its time from an epoch that follows it."""
+class _Clocked(Integration):
+    """An integration whose kernel counts time from an epoch that moves along with the motion."""
 
-    clock: Any
+    def __init__(self, clock: Clock, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self._clock = clock
 
-    def hand(self, run: Any) -> tuple[Callable[..., Any], Any, int]:
-        """Return what steps a run further, after moving the clock where it shows too much."""
+    def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
+        """Return the function that continues a run, after moving the clock if it has run too far."""
         tried = self.stepper.tried(run)
-        if not hasattr(run, "moved"):
-            run.held, run.moved, run.far = (self.stepper.run, self.p), -WINDOW if run.t else 0, FAR
-        if tried - run.moved >= WINDOW or abs(run.t - run.epoch) > FAR * abs(run.h) > 0.0:
-            path, p = self.clock(run.t)
+        window = run.window
+        if window is None:
+            window = Window(self.stepper.run, self.p, -WINDOW if run.t else 0)
+            run.far = FAR
+        if tried - window.since >= WINDOW or abs(run.t - run.epoch) > FAR * abs(run.h) > 0.0:
+            path, p = self._clock(run.t)
             stepper = _stepper(str(path))
-            run.held, run.moved, run.epoch = (stepper.run, stepper.new_parameters(*p)), max(tried, 0), run.t
-        return *run.held, WINDOW - (tried - run.moved)
+            window = Window(stepper.run, stepper.new_parameters(*p), max(tried, 0))
+            run.epoch = run.t
+        run.window = window
+        return window.step, window.parameters, WINDOW - (tried - window.since)
 
 
 class _Stepper(Stepper):
@@ -243,17 +203,16 @@ class _Stepper(Stepper):
     def row_length(self) -> int:
         return 2 + TERMS * self.states
 
-    def enter(self, run: Any, stretch: Stretch, allowed: float) -> None:
-        run.h, run.first, run.last, run.tolerance = 0.0, stretch.first, stretch.last, allowed
+    def enter(self, run: Run, segment: Segment, allowed: float) -> None:
+        run.h, run.first, run.last, run.tolerance = 0.0, segment.first, segment.last, allowed
         run.proven, run.reach = 0.0, MIDDLE_REACH
 
     @staticmethod
-    def tried(run: Any) -> int:
-        found: int = run.accepted + run.rejected
-        return found
+    def tried(run: Run) -> int:
+        return run.accepted + run.rejected
 
     @staticmethod
-    def cost(run: Any) -> tuple[int, int, int]:
+    def cost(run: Run) -> tuple[int, int, int]:
         return run.accepted, run.rejected, run.evaluations
 
 

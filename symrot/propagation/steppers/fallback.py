@@ -1,16 +1,17 @@
-"""The SciPy fallback: any method of ``scipy.integrate.solve_ivp``, called as :mod:`symrot.propagation.steppers.dop853`
-is.
+"""The SciPy fallback: any method of ``scipy.integrate.solve_ivp``.
 
-For where there is no C compiler, and for those who want LSODA. The tolerance means the same as far as SciPy allows: the
-error of every block of states against the largest size the block has on the way, found by a first coarse pass, and
-shared out over the length of the motion. SciPy is imported when a motion is first followed.
+It steps motions where there is no C compiler, and for users who want LSODA. The tolerance means the same as far as
+SciPy allows: the error of every block of states is relative to the largest size of the block along the motion, which a
+first coarse pass determines, and is shared out over the length of the motion. SciPy is imported when a motion is first
+followed.
 
-Time: where steps are short beside the time, a double keeps too few digits of it. Where the clock of the right-hand side
-can be moved (a :data:`Clock`), SciPy then starts anew on one that shows 0 nearby.
+Time: where steps are short compared with the time, a double holds too few digits of it. If the clock of the right-hand
+side can be moved (a :data:`Clock`), SciPy then restarts on a clock that shows 0 nearby.
 """
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -22,29 +23,29 @@ from symrot.closed_form.arithmetic.double_double import two_sum
 from symrot.errors import InputError
 from symrot.propagation import progress
 from symrot.propagation.enclosures.step_limit import Deviations, longest_followed
-from symrot.propagation.steppers.cut_off import CutOff, add_samples, why_hopeless, why_stuck
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped, add_samples, why_hopeless, why_stuck
 from symrot.propagation.steppers.stepping import (
     NOT_FINITE_SENTENCE,
     Floats,
     Recording,
+    Segment,
     Stats,
-    Stretch,
-    both_sides,
     check_longest_step,
     check_tolerance,
-    stretches,
+    segments,
+    split_at,
 )
 
-__all__ = ["METHODS", "FallbackRecording", "Whole", "integrate", "method_name", "record"]
+__all__ = ["METHODS", "FallbackRecording", "Options", "WholeMotion", "integrate", "method_name", "record"]
 
 Rhs = Callable[[float, Floats, Floats], ArrayLike]
 Clock = Callable[[float], tuple[Rhs, Sequence[float]]]
-"""From an epoch, s, to a right-hand side that counts its time from there, and its parameters."""
+"""A function from an epoch, s, to a right-hand side that counts time from the epoch, and its parameters."""
 Piece = tuple[float, float, Any]  # from, to, SciPy's solution between
 
 
-class Whole(NamedTuple):
-    """The motion of which a part is followed: its two ends, s, and the evaluations spent on it before."""
+class WholeMotion(NamedTuple):
+    """The whole motion when SciPy follows a part of it: both ends, s, and the evaluations spent before the part."""
 
     start: float
     end: float
@@ -52,7 +53,7 @@ class Whole(NamedTuple):
 
 
 METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "LSODA": 0.001}
-"""SciPy's methods, and the share of the tolerance that one step of each is given; calibrated as in dop853.py."""
+"""SciPy's methods, each with the share of the tolerance that one step may use; calibrated as in dop853.py."""
 
 DEFAULT = "DOP853"
 FIT_ORDER = 7  # of the polynomial that tells how the states move in a step
@@ -62,13 +63,13 @@ FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more
 STUCK = "the step shrank to nothing, as it does before a singularity"
 PILOT_TURN = 1e-3  # rad over the whole span
 PILOT_TOLERANCE = 1e-3  # of the coarse pass
-EFFORT_CUT_OFF = 4  # a motion that cannot be followed to its end may take a quarter of the evaluations
-BEFORE_POLE = 0.5  # of the way to where the coarse pass is cut off: further on, states may grow without bound
+EFFORT_CUT_OFF = 4  # a motion that cannot be followed to its end may take this part of the evaluations
+BEFORE_POLE = 0.5  # of the way to the end of a coarse pass that stops early: beyond, states may grow without bound
 PILOT_STEPS = 10  # a motion of so many coarse steps may spend the whole share in every step
-MAX_EVALUATIONS = 1_000_000  # unless another limit is given: half a minute
+MAX_EVALUATIONS = 1_000_000  # default limit: half a minute
 PATIENCE = 50_000  # evaluations after each of which the pace is judged
-MAX_IDLE = 100  # steps too short for the clock of the scene, one after the other, as where LSODA starts anew
-MAX_BROKEN = 1000  # derivatives that are not finite, before the motion is given up
+MAX_IDLE = 100  # consecutive steps too short for the clock of the scene, as after a restart of LSODA
+MAX_BROKEN = 1000  # derivatives that are not finite, before the motion stops
 _NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, FIT_ORDER + 1) / FIT_ORDER)  # Chebyshev's, without the start
 _FIT = np.linalg.inv(_NODES[:, None] ** np.arange(1, FIT_ORDER + 1))  # from rises there to coefficients
 SMALLEST_RTOL = 100 * float(np.finfo(float).eps)  # SciPy takes no smaller one
@@ -88,59 +89,71 @@ def method_name(text: str) -> str:
     return name
 
 
-def integrate(
-    rhs: Rhs,
-    p: ArrayLike,
-    y0: ArrayLike,
-    t0: float,
-    times: ArrayLike,
-    tolerance: float,
-    *,
-    method: str = DEFAULT,
-    blocks: Sequence[int] = (0, 3, 7),
-    scales: Sequence[float] = (0.0, 1.0),
-    breaks: Sequence[float] = (),
-    max_step: float = math.inf,
-    max_steps: int = MAX_EVALUATIONS,
-    deviations: Deviations | None = None,
-    clock: Clock | None = None,
-) -> tuple[Floats, Stats]:
-    """Return the states at the sample times, shape (n, N), and what it cost.
+@dataclass(frozen=True)
+class Options:
+    """How SciPy follows a motion.
 
-    As :func:`symrot.propagation.steppers.dop853.integrate`, but for these:
+    Attributes
+    ----------
+    method : str
+        As :func:`method_name` takes it.
+    blocks, scales
+        As :func:`symrot.propagation.steppers.dop853.translation_unit` takes them; the last edge may lie beyond N.
+    breaks, max_step
+        As :func:`symrot.propagation.steppers.dop853.integration` takes them.
+    max_steps : int
+        Most evaluations of the right-hand side.
+    deviations : Deviations, optional
+        Bounds of the terms of the right-hand side that may hide a feature: they limit the steps.
+    clock : callable, optional
+        The clock of the right-hand side, if it can be moved.
+    whole : WholeMotion, optional
+        The whole motion, if only a part of it is followed. Then ``max_steps`` limits the whole.
+    """
+
+    method: str = DEFAULT
+    blocks: Sequence[int] = (0, 3, 7)
+    scales: Sequence[float] = (0.0, 1.0)
+    breaks: Sequence[float] = ()
+    max_step: float = math.inf
+    max_steps: int = MAX_EVALUATIONS
+    deviations: Deviations | None = None
+    clock: Clock | None = None
+    whole: WholeMotion | None = None
+
+
+def integrate(
+    rhs: Rhs, p: ArrayLike, y0: ArrayLike, t0: float, times: ArrayLike, tolerance: float, options: Options = Options()
+) -> tuple[Floats, Stats]:
+    """Return the states at the sample times, shape (n, N), and their cost.
 
     Parameters
     ----------
     rhs : callable
         ``rhs(t, y, p)`` returns dy, shape (N,).
-    method : str
-        As :func:`method_name` takes it.
-    blocks, scales
-        As :func:`symrot.propagation.steppers.dop853.translation_unit` takes them; the last edge may lie beyond N.
-    max_steps : int
-        Most evaluations of ``rhs``.
-    deviations : Deviations, optional
-        Of the terms of ``rhs`` that may hide a feature: steps are held to what they prove.
-    clock : callable, optional
-        Of ``rhs``, where it can be moved: see :data:`Clock`.
+    p, y0, t0, tolerance
+        As :func:`symrot.propagation.steppers.dop853.integration` takes them.
+    times : array, shape (n,)
+        Sample times, s, in any order, before or after ``t0``.
+    options : Options
+        The method and the limits of its steps.
     """
     times = np.asarray(times, dtype=np.float64)
     if times.ndim != 1 or not np.isfinite(times).all():
         raise InputError(f"sample times are a sequence of finite numbers, got {times!r}")
-    limits = breaks, max_step, max_steps, deviations, clock
-    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, *limits)
-    states = np.empty((len(times), len(task.y0)))
+    motion = _Integration(rhs, p, y0, t0, tolerance, options)
+    states = np.empty((len(times), len(motion.y0)))
     done = np.empty(0, dtype=np.intp)
-    for part in both_sides(times, task.t0):
+    for part in split_at(times, motion.t0):
         try:
-            states[part] = task.follow(times[part])
-        except (CutOff, KeyboardInterrupt) as error:
-            inside, own = task.partial(times[part])
-            add_samples(error, part[inside], own, task.stats()[:3])
+            states[part] = motion.follow(times[part])
+        except (IntegrationStopped, KeyboardInterrupt) as error:
+            inside, own = motion.partial(times[part])
+            add_samples(error, part[inside], own, motion.stats()[:3])
             add_samples(error, done, states[done])
             raise
         done = np.concatenate([done, part])
-    return states, task.stats()
+    return states, motion.stats()
 
 
 def record(
@@ -150,47 +163,37 @@ def record(
     t0: float,
     span: tuple[float, float],
     tolerance: float,
-    *,
-    method: str = DEFAULT,
-    blocks: Sequence[int] = (0, 3, 7),
-    scales: Sequence[float] = (0.0, 1.0),
-    breaks: Sequence[float] = (),
-    max_step: float = math.inf,
-    max_steps: int = MAX_EVALUATIONS,
-    deviations: Deviations | None = None,
-    clock: Clock | None = None,
-    whole: Whole | None = None,
+    options: Options = Options(),
 ) -> "FallbackRecording":
-    """Return the motion over ``span`` as a function of time; see :func:`symrot.propagation.steppers.dop853.record`.
+    """Return the motion over ``span`` as a function of time; arguments as :func:`integrate` takes them.
 
-    A motion that is cut off or interrupted has what was computed in the ``recording`` of the exception, if anything
-    was. Of a part of a motion, ``max_steps`` is that of the ``whole``.
+    A motion that stops early or is interrupted has the part computed before in the ``recording`` of the exception, if
+    there is one.
     """
-    limits = breaks, max_step, max_steps, deviations, clock
-    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, *limits, whole)
-    low, high = min(*span, task.t0), max(*span, task.t0)
+    motion = _Integration(rhs, p, y0, t0, tolerance, options)
+    low, high = min(*span, motion.t0), max(*span, motion.t0)
     finished: list[Piece] = []
     try:
         for end in (low, high):
-            finished += task.solutions(end)
-    except (CutOff, KeyboardInterrupt) as error:
-        finished += task.pieces if task.final else []
+            finished += motion.solutions(end)
+    except (IntegrationStopped, KeyboardInterrupt) as error:
+        finished += motion.pieces if motion.final else []
         if finished:
-            reached = [time for low, high, _ in finished for time in (low, high)]
-            error.recording = FallbackRecording(task, finished, min(reached), max(reached))  # type: ignore[union-attr]
+            ends = [time for low, high, _ in finished for time in (low, high)]
+            error.recording = FallbackRecording(motion, finished, min(ends), max(ends))  # type: ignore[union-attr]
         raise
-    return FallbackRecording(task, finished, low, high)
+    return FallbackRecording(motion, finished, low, high)
 
 
 class FallbackRecording(Recording):
-    """A motion that SciPy has followed; see :class:`symrot.propagation.steppers.stepping.Recording`."""
+    """The steps of a motion by SciPy; see :class:`symrot.propagation.steppers.stepping.Recording`."""
 
-    def __init__(self, task: "_Task", pieces: list[Piece], low: float, high: float) -> None:
+    def __init__(self, motion: "_Integration", pieces: list[Piece], low: float, high: float) -> None:
         self._pieces = pieces
-        super().__init__(task.t0, task.y0, (low, high), task.stats())
+        super().__init__(motion.t0, motion.y0, (low, high), motion.stats())
 
     def edges(self, start: float, end: float) -> list[Floats]:
-        """Return the ends of SciPy's steps from a start to an end, one array for each stretch, in that order."""
+        """Return the ends of SciPy's steps from a start to an end, one array for each segment, in that order."""
         side = 1.0 if end >= start else -1.0
         chosen = [
             np.sort(np.asarray(solution.ts, dtype=np.float64) * side) * side
@@ -211,66 +214,50 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
             states[chosen] = solution(times[chosen]).T
 
 
-class _Moved:
-    """SciPy's solution over a step on a clock that shows 0 at an epoch, as a function of time on the first clock."""
+class _ShiftedSolution:
+    """SciPy's solution over a step on a moved clock, as a function of time on the clock before the move."""
 
     def __init__(self, solution: Any, epoch: float) -> None:
         self._solution, self._epoch = solution, epoch
 
     def __call__(self, t: Floats) -> Floats:
-        found: Floats = self._solution(t - self._epoch)
-        return found
+        states: Floats = self._solution(t - self._epoch)
+        return states
 
 
-class _Task:
-    """One motion to follow with SciPy."""
+class _Integration:
+    """The integration of one motion by SciPy: its checked input, and its cost so far."""
 
-    def __init__(
-        self,
-        rhs: Rhs,
-        p: ArrayLike,
-        y0: ArrayLike,
-        t0: float,
-        tolerance: float,
-        method: str,
-        blocks: Sequence[int],
-        scales: Sequence[float],
-        breaks: Sequence[float],
-        max_step: float,
-        max_steps: int,
-        deviations: Deviations | None,
-        clock: Clock | None,
-        whole: Whole | None = None,
-    ) -> None:
+    def __init__(self, rhs: Rhs, p: ArrayLike, y0: ArrayLike, t0: float, tolerance: float, options: Options) -> None:
         self.began = perf_counter()
-        self.method = method_name(method)
-        self.rhs, self.p, self.clock, self.epoch = rhs, np.array(p, dtype=np.float64), clock, 0.0
+        self.method, self.clock, self.deviations = method_name(options.method), options.clock, options.deviations
+        self.rhs, self.p, self.epoch = rhs, np.array(p, dtype=np.float64), 0.0
         self.unmoved = self.rhs, self.p
         self.y0, self.t0 = np.array(y0, dtype=np.float64), float(t0)
-        if self.y0.ndim != 1 or not all(np.isfinite(given).all() for given in (self.t0, self.y0, self.p)):
+        if self.y0.ndim != 1 or not all(np.isfinite(values).all() for values in (self.t0, self.y0, self.p)):
             raise InputError(f"initial time, state and parameters are finite numbers, got {t0!r}, {y0!r}, {p!r}")
         check_tolerance(tolerance)
-        check_longest_step(max_step)
-        self.tolerance, self.breaks, self.deviations = tolerance, sorted(map(float, breaks)), deviations
-        self.max_step, self.max_evaluations = max_step, max_steps
+        check_longest_step(options.max_step)
+        self.tolerance, self.breaks = tolerance, sorted(map(float, options.breaks))
+        self.max_step, self.max_evaluations = options.max_step, options.max_steps
         self.blocks = [
             (slice(low, min(high, len(self.y0))), scale)
-            for (low, high), scale in zip(pairwise(blocks), scales, strict=True)
+            for (low, high), scale in zip(pairwise(options.blocks), options.scales, strict=True)
             if low < len(self.y0)
         ]
         self.steps = self.evaluations = self.broken = 0
         self.pieces: list[Piece] = []  # of the pass that runs
         self.final = False  # whether that is the pass that counts
         self.mark = (0, self.t0)  # work and time when the pace was judged last
-        self.whole, self.before = whole, deviations.spent if deviations else 0
+        self.whole, self.before = options.whole, self.deviations.spent if self.deviations else 0
         with np.errstate(all="ignore"):  # the sentence says it
             first = self._derivative(self.t0, self.y0)
         if not np.isfinite(first).all():
-            raise CutOff(self.t0, NOT_FINITE_SENTENCE)
+            raise IntegrationStopped(self.t0, NOT_FINITE_SENTENCE)
 
     @property
     def work(self) -> int:
-        """Evaluations of the rates and of what bounds them, which take as long: by these the effort is limited."""
+        """Evaluations of the rates and of their bounds, which take as long; their sum is limited."""
         return self.evaluations + (self.deviations.spent - self.before if self.deviations else 0)
 
     def stats(self) -> Stats:
@@ -278,13 +265,13 @@ class _Task:
 
     def follow(self, times: Floats) -> Floats:
         """Return the states at times sorted away from t0, all on one side of it."""
-        found = np.empty((len(times), len(self.y0)))
-        _evaluate(self.solutions(float(times[-1])), times, found)
-        found[times == self.t0] = self.y0
-        return found
+        states = np.empty((len(times), len(self.y0)))
+        _evaluate(self.solutions(float(times[-1])), times, states)
+        states[times == self.t0] = self.y0
+        return states
 
     def partial(self, times: Floats) -> tuple[NDArray[np.intp], Floats]:
-        """Return numbers and states of the times, sorted away from t0, that lie before the motion was cut off."""
+        """Return numbers and states of the times, sorted away from t0, that lie before the motion stopped early."""
         pieces = self.pieces if self.final else []  # the coarse pass is no result
         way = max((max(abs(low - self.t0), abs(high - self.t0)) for low, high, _ in pieces), default=0.0)
         inside = np.flatnonzero(np.abs(times - self.t0) <= way)
@@ -294,22 +281,22 @@ class _Task:
         return inside, states
 
     def solutions(self, end: float) -> list[Piece]:
-        """Return (low, high, solution) for each stretch between switching times, from t0 to the end.
+        """Return (low, high, solution) for each segment between switching times, from t0 to the end.
 
-        Where the coarse pass is cut off, the motion is followed as far as that came, so that its samples are not lost.
+        If the coarse pass stops early, the motion is followed as far as the pass, so that no sample is lost.
         """
         self.final, self.pieces = False, []
         if end == self.t0:
             return []
-        slowest = PILOT_TURN / abs(end - self.t0)  # rad/s: nothing turns the body that turns it less
+        slowest = PILOT_TURN / abs(end - self.t0)  # rad/s: a slower rotation does not count
         bars = [
             SLACK * PILOT_TOLERANCE * (scale if scale > 0.0 else max(float(np.linalg.norm(self.y0[block])), slowest))
             for block, scale in self.blocks
         ]
-        early: CutOff | None = None
+        early: IntegrationStopped | None = None
         try:
-            self._stretches(end, PILOT_TOLERANCE, np.full(len(self.y0), PILOT_TOLERANCE), bars)
-        except CutOff as error:
+            self._segments(end, PILOT_TOLERANCE, np.full(len(self.y0), PILOT_TOLERANCE), bars)
+        except IntegrationStopped as error:
             if not self.pieces or self._spent >= self.max_evaluations:
                 raise
             early, end = error, float(self.pieces[-1][2].ts[-1])
@@ -327,27 +314,27 @@ class _Task:
             allowed[block] = share * max(size, slowest) / math.sqrt(len(self.y0))
         self.final = True
         try:
-            pieces = self._stretches(end, SMALLEST_RTOL, allowed, bars)
-        except CutOff as error:
-            raise error if early is None else CutOff(error.t, error.reason, early.stop) from None
+            pieces = self._segments(end, SMALLEST_RTOL, allowed, bars)
+        except IntegrationStopped as error:
+            raise error if early is None else IntegrationStopped(error.t, error.reason, early.stop) from None
         if early is not None:
             raise early
         return pieces
 
-    def _stretches(self, end: float, rtol: float, atol: Floats, bars: list[float]) -> list[Piece]:
+    def _segments(self, end: float, rtol: float, atol: Floats, bars: list[float]) -> list[Piece]:
         y, self.pieces, self.mark, self.goal = self.y0, [], (self.work, self.t0), end
         self.epoch, (self.rhs, self.p) = 0.0, self.unmoved
-        for stretch in stretches(self.t0, end, self.breaks):
+        for segment in segments(self.t0, end, self.breaks):
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-                self._follow_stretch(stretch, y, rtol, atol, bars)
-            y = self.pieces[-1][2](stretch.stop)
+                self._follow_segment(segment, y, rtol, atol, bars)
+            y = self.pieces[-1][2](segment.stop)
         return self.pieces
 
-    def _follow_stretch(self, stretch: Stretch, y: Floats, rtol: float, atol: Floats, bars: list[float]) -> None:
-        """Add SciPy's solution over a stretch to the pieces, as far as it comes; no step longer than is proven."""
+    def _follow_segment(self, segment: Segment, y: Floats, rtol: float, atol: Floats, bars: list[float]) -> None:
+        """Add SciPy's solution over a segment to the pieces, as far as it gets; no step is longer than proven safe."""
         import scipy.integrate
 
-        earliest, latest = min(stretch.first, stretch.last), max(stretch.first, stretch.last)
+        earliest, latest = min(segment.first, segment.last), max(segment.first, segment.last)
         new_solver: Any = getattr(scipy.integrate, self.method)
 
         def begin(t: float, y: Floats, longest: float) -> Any:
@@ -356,12 +343,12 @@ class _Task:
             def rate(t: float, y: Floats) -> Floats:
                 return self._derivative(min(max(t, low), high), y)
 
-            return new_solver(rate, t, y, stretch.stop - self.epoch, rtol=rtol, atol=atol, max_step=longest)
+            return new_solver(rate, t, y, segment.stop - self.epoch, rtol=rtol, atol=atol, max_step=longest)
 
-        times: list[float] = [stretch.start]
+        times: list[float] = [segment.start]
         interpolants: list[Any] = []
         try:
-            self._steps(begin, y, stretch, bars, times, interpolants)
+            self._steps(begin, y, segment, bars, times, interpolants)
         finally:
             if interpolants:
                 lagging = self.method in ("BDF", "LSODA")  # their steps hold the end that they begin at
@@ -370,101 +357,103 @@ class _Task:
                 self.pieces.append((min(times[0], times[-1]), max(times[0], times[-1]), solution))
 
     def _steps(
-        self, begin: Any, y: Floats, stretch: Stretch, bars: list[float], times: list[float], interpolants: list[Any]
+        self, begin: Any, y: Floats, segment: Segment, bars: list[float], times: list[float], interpolants: list[Any]
     ) -> None:
         longest, idle = self.max_step, 0
-        solver = begin(stretch.start - self.epoch, y, longest)
+        solver = begin(segment.start - self.epoch, y, longest)
         while solver.status == "running":
-            start, end = (self.whole.start, self.whole.end) if self.whole else (self.t0, stretch.stop)
-            shown, y = float(solver.t), solver.y.copy()  # what the present clock shows
-            before = self.epoch + shown
+            start, end = (self.whole.start, self.whole.end) if self.whole else (self.t0, segment.stop)
+            now, y = float(solver.t), solver.y.copy()  # what the present clock shows
+            before = self.epoch + now
             progress.report(before if self.final else self.t0, start, end if self.whole else self.goal)
-            self._judge_pace(before, end if self.final else stretch.stop)  # a coarse pass is no part of the whole
+            self._judge_pace(before, end if self.final else segment.stop)  # a coarse pass is no part of the whole
             broken = self.broken
             try:
                 message = solver.step()
-            except ValueError:  # of linear algebra, for numbers that are not finite
-                longest = 0.5 * min(float(solver.h_abs), abs(stretch.stop - before), longest)
+            except (ValueError, IntegrationStopped):  # ValueError: linear algebra rejects numbers that are not finite
+                longest = 0.5 * min(float(solver.h_abs), abs(segment.stop - before), longest)
                 if longest <= 4.0 * math.ulp(before):
-                    raise CutOff(before, NOT_FINITE_SENTENCE, end) from None
-                solver = begin(shown, y, longest)
+                    raise IntegrationStopped(before, NOT_FINITE_SENTENCE, end) from None
+                solver = begin(now, y, longest)
                 continue
-            step = float(solver.t) - shown
+            step = float(solver.t) - now
             if self.broken > broken and not np.isfinite(self._derivative(float(solver.t), solver.y)).all():
                 if abs(step) <= 4.0 * math.ulp(before):
-                    raise CutOff(before, NOT_FINITE_SENTENCE, end)
-                longest = 0.5 * abs(step)  # LSODA goes on where the rates have no value
-                solver = begin(shown, y, longest)
+                    raise IntegrationStopped(before, NOT_FINITE_SENTENCE, end)
+                longest = 0.5 * abs(step)  # LSODA continues where the rates have no value
+                solver = begin(now, y, longest)
                 continue
-            after = stretch.stop if solver.status == "finished" else self.epoch + float(solver.t)
-            moves = solver.status != "failed" and step * solver.direction > 0.0  # LSODA may say so when it could not
-            if self.clock is not None and abs(shown) > FAR * abs(step) and abs(shown) > math.ulp(before):
-                shown = self._move_clock(self.clock, shown)
-                solver = begin(shown, y, longest)
+            after = segment.stop if solver.status == "finished" else self.epoch + float(solver.t)
+            moves = (
+                solver.status != "failed" and step * solver.direction > 0.0
+            )  # LSODA may report success without a step
+            if self.clock is not None and abs(now) > FAR * abs(step) and abs(now) > math.ulp(before):
+                now = self._move_clock(self.clock, now)
+                solver = begin(now, y, longest)
                 continue
             idle = idle + 1 if after == before else 0
             if message == solver.TOO_SMALL_STEP or (solver.status != "failed" and not moves) or idle > MAX_IDLE:
-                raise CutOff(before, why_stuck(STUCK, before, start, end), end)
+                raise IntegrationStopped(before, why_stuck(STUCK, before, start, end), end)
             if solver.status == "failed" or not np.isfinite(solver.y).all():
-                raise CutOff(after, message or NOT_FINITE_SENTENCE, end)
+                raise IntegrationStopped(after, message or NOT_FINITE_SENTENCE, end)
             dense = solver.dense_output()
-            proven = step if self.deviations is None else self._proven(before, y, dense, shown, step, bars)
+            proven = step if self.deviations is None else self._proven(before, y, dense, now, step, bars)
             if proven != step:
                 if abs(proven) <= 4.0 * math.ulp(before):
-                    raise CutOff(before, why_stuck(STUCK, before, start, end), end)
+                    raise IntegrationStopped(before, why_stuck(STUCK, before, start, end), end)
                 longest = abs(proven)
-                solver = begin(shown, y, longest)
+                solver = begin(now, y, longest)
                 continue
             self.steps += 1
             if after != before:
                 times.append(after)
-                interpolants.append(_Moved(dense, self.epoch) if self.epoch else dense)
+                interpolants.append(_ShiftedSolution(dense, self.epoch) if self.epoch else dense)
             if longest < self.max_step and abs(step) > HELD * longest and solver.status == "running":
                 longest = min(REGAIN * longest, self.max_step)
                 if self.method == "LSODA":
                     solver = begin(solver.t, solver.y.copy(), longest)
-                else:  # the others read it before every step
+                else:  # the other methods read it before every step
                     solver.max_step = longest
 
-    def _move_clock(self, clock: Clock, shown: float) -> float:
-        """Have the clock show about 0 where it now shows another time, and return what it shows instead, exactly."""
-        self.epoch, rest = two_sum(self.epoch, shown)
+    def _move_clock(self, clock: Clock, now: float) -> float:
+        """Move the clock so that it shows about 0 at present, and return the exact time that it shows."""
+        self.epoch, rest = two_sum(self.epoch, now)
         self.rhs, p = clock(self.epoch)
         self.p = np.array(p, dtype=np.float64)
         return float(rest)
 
     def _judge_pace(self, t: float, stop: float) -> None:
-        """Give the motion up if the rest would take far more evaluations than the limit."""
+        """Raise IntegrationStopped if the rest of the motion would take far more evaluations than the limit."""
         work = self.work
         spent = work - self.mark[0]
         if spent >= PATIENCE:
             reason = why_hopeless(spent, abs(t - self.mark[1]), abs(stop - t), self.max_evaluations)
             if reason:
-                raise CutOff(t, reason, stop)
+                raise IntegrationStopped(t, reason, stop)
             self.mark = (work, t)
         if self._spent > self.max_evaluations:
-            raise CutOff(t, f"{self.max_evaluations} evaluations were not enough", stop)
+            raise IntegrationStopped(t, f"{self.max_evaluations} evaluations were not enough", stop)
 
     @property
     def _spent(self) -> int:
         return self.work + (self.whole.spent if self.whole else 0)
 
-    def _proven(self, t: float, y: Floats, dense: Any, shown: float, step: float, bars: list[float]) -> float:
-        """Return the longest part of a step, from ``shown`` on the present clock, that is proven to miss nothing."""
+    def _proven(self, t: float, y: Floats, dense: Any, now: float, step: float, bars: list[float]) -> float:
+        """Return the longest part of a step, from ``now`` on the present clock, that provably misses no feature."""
         assert self.deviations is not None
-        path = np.abs(_FIT @ (dense(shown + _NODES * step).T - y)).T.tolist()
+        path = np.abs(_FIT @ (dense(now + _NODES * step).T - y)).T.tolist()
         edges = [0, *(block.stop for block, _ in self.blocks)]
         return longest_followed(self.deviations, t, y.tolist(), path, step, bars, edges, FIT_ORDER)
 
     def _derivative(self, t: float, y: Floats) -> Floats:
         self.evaluations += 1
         if self.evaluations > self.max_evaluations:
-            raise CutOff(self.epoch + float(t), f"{self.max_evaluations} evaluations were not enough")
+            raise IntegrationStopped(self.epoch + float(t), f"{self.max_evaluations} evaluations were not enough")
         dy = np.asarray(self.rhs(t, y, self.p), dtype=np.float64)
         if dy.shape != self.y0.shape:
             raise InputError(f"the right-hand side returns {len(self.y0)} numbers, got an array of shape {dy.shape}")
         if not math.isfinite(dy.sum()):
             self.broken += 1
             if self.broken > MAX_BROKEN:
-                raise CutOff(self.epoch + float(t), NOT_FINITE_SENTENCE)
+                raise IntegrationStopped(self.epoch + float(t), NOT_FINITE_SENTENCE)
         return dy

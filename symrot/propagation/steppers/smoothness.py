@@ -1,15 +1,15 @@
-"""Whether a plan's torques are smooth enough for Taylor series, from its structure alone. No SymPy.
+"""Decide from the structure of a plan whether its torques are smooth enough for Taylor series. No SymPy.
 
-A series needs derivatives of every order where it is expanded. Quotients, powers, sin, cos, exp, log and their like
-have them wherever they are defined; the absolute value and the square root do not where their argument vanishes, which
-a motion may well reach: at rest, where it turns back. Dormand and Prince's method steps such torques instead.
+A series needs derivatives of every order where it is expanded. Quotients, powers, sin, cos, exp and log have them
+wherever they are defined. The absolute value and the square root have none where their argument is zero, and a motion
+may reach such a point, for example at rest. Dormand and Prince's method steps such torques instead.
 """
 
 from symrot.dynamics.structure import FormulaTorque, Pattern, TorqueStructure
 from symrot.formula import tree as expression
 from symrot.planning.plan import Plan
 
-__all__ = ["roughness"]
+__all__ = ["non_smooth_torque"]
 
 CHANGING = frozenset({"t", *(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4))})
 BRANCHING = frozenset({"abs", "sqrt", "asin", "acos", "atan2"})  # not smooth somewhere on their domain
@@ -35,6 +35,6 @@ def _of_torque(torque: TorqueStructure) -> str:
     return ""
 
 
-def roughness(plan: Plan) -> str:
+def non_smooth_torque(plan: Plan) -> str:
     """Return an empty text, or the sentence that says which torque of a plan is not smooth."""
     return next(filter(None, map(_of_torque, plan.structure.torques)), "")

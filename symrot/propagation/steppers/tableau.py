@@ -9,7 +9,7 @@ compares the two byte for byte. Tests check the order conditions too, so that a 
 Source: P. J. Prince, J. R. Dormand, J. Comput. Appl. Math. 7 (1981) 67; error estimates and dense output: E. Hairer,
 S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.5, II.6, and ``dop853.f``.
 
-Run ``python -m symrot.propagation.steppers.tableau`` to print the header anew.
+Run ``python -m symrot.propagation.steppers.tableau`` to print the header again.
 """
 
 from collections.abc import Mapping

@@ -1,7 +1,8 @@
 """Taylor series of order 20 around an emitted jet: the C of :file:`taylor.c` driven from Python, one call per span.
 
-The counterpart of :mod:`symrot.propagation.steppers.dop853` for right-hand sides that are known as formulas and smooth:
-a few long steps, each good to round-off if asked, at any time inside a step from the same coefficients. A library holds
+The counterpart of :mod:`symrot.propagation.steppers.dop853` for right-hand sides that are smooth formulas: a few long
+steps, each accurate to round-off if the tolerance is small, and states at any time inside a step from the same
+coefficients. A library holds
 one system and the stepper compiled together (:func:`translation_unit`).
 
 Tolerance: the promise is about the trajectory, not about one step, see :func:`step_tail`.
@@ -11,7 +12,7 @@ import ctypes
 import math
 from collections.abc import Sequence
 from functools import cache
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,16 +28,15 @@ from symrot.propagation.steppers.stepping import (
     PAUSED,
     UNDERFLOW,
     Floats,
+    Integration,
     PathLike,
-    Recording,
-    Stats,
+    Run,
+    Segment,
     Stepper,
-    Stretch,
-    Task,
     check_tolerance,
 )
 
-__all__ = ["FLAGS", "integrate", "order_for", "record", "refusal", "step_tail", "translation_unit"]
+__all__ = ["FLAGS", "integration", "order_for", "refusal", "step_tail", "translation_unit"]
 
 FLAGS = (*compiled.FLAGS, *compiled.SCHEDULED)
 STEPS_OF_ALL = 4.0  # a span of so many steps allows each of them the whole tolerance, see step_tail
@@ -53,8 +53,8 @@ NO_INVARIANTS = NO_INVARIANT + "#define SYMROT_INVARIANT_PARAMETERS 0\n"
 NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n"
 MIDDLE_REACH = 3  # of the discs of symrot.codegen.enclosure.terms.REACHES: the one to begin with
 PROJECTED_EVERY = 16  # steps: by measurement, seldom enough to cost a few percent and often enough to lose nothing
-MANY_PRODUCTS = 40  # of a right-hand side: from there on the work of a step is in its sums, which grow as order squared
-ORDERS = {  # by whether there are many: from which tolerance on which order is fastest, see order_for
+MANY_PRODUCTS = 40  # of a right-hand side: above it the sums of a step, which grow as order squared, dominate its cost
+ORDERS = {  # by whether there are many products: least tolerance, and the fastest order from there on
     False: ((1e-3, 14), (1e-6, 16), (0.0, 20)),
     True: ((3e-2, 8), (1e-3, 10), (1e-5, 12), (1e-7, 16), (0.0, 20)),
 }
@@ -64,7 +64,7 @@ def step_tail(tolerance: float) -> tuple[float, float]:
     """Return the size allowed to the last terms of a step's series, and the fraction of the span that earns all of it.
 
     A step shorter than that is allowed its share of the span to the power 7/4, as errors grow with the number of steps
-    when nothing but a turning body amplifies them: the error at the end then hardly depends on the span.
+    when only the rotation amplifies them: the error at the end then hardly depends on the span.
 
     The constant is calibrated on free asymmetric bodies, through flips about the intermediate axis too, and on heavy
     tops, against references of 50 digits (``tests/propagation/test_taylor.py``): errors stay below 5 times the
@@ -75,7 +75,7 @@ def step_tail(tolerance: float) -> tuple[float, float]:
 
 
 def order_for(tolerance: float, program: Program | None = None) -> int:
-    """Return the order that is fastest for a tolerance and the products of a right-hand side; any keeps its promise.
+    """Return the fastest order for a tolerance and the products of a right-hand side; every order is accurate enough.
 
     Measured by ``python -m symrot.bench.taylor --orders``: below 1e-6 orders 16 to 24 lie within a tenth of each other.
     """
@@ -114,10 +114,10 @@ def translation_unit(
     order : int, optional
         Of the series, even; default: 20. See :func:`order_for`.
     invariants : str
-        What :func:`symrot.codegen.taylor.invariant_source.invariant_definitions` prints: the motion is projected onto
-        them. Their parameters follow those of the program.
+        Output of :func:`symrot.codegen.taylor.invariant_source.invariant_definitions`: the motion is projected onto
+        these invariants. Their parameters follow the parameters of the program.
     enclosed : bool
-        Whether steps are held to what an enclosure of the rates proves, see :mod:`symrot.codegen.enclosure.terms`.
+        Whether an enclosure of the rates limits the steps, see :mod:`symrot.codegen.enclosure.terms`.
 
     Raises
     ------
@@ -140,74 +140,34 @@ def translation_unit(
     return "\n".join(parts)
 
 
-def integrate(
+def integration(
     library: PathLike,
     p: ArrayLike,
     y0: ArrayLike,
     t0: float,
-    times: ArrayLike,
     tolerance: float,
-    *,
     max_step: float = math.inf,
     max_steps: int = MAX_STEPS,
     project: bool = True,
-) -> tuple[Floats, Stats]:
-    """Return the states at the sample times, shape (n, N), and what it cost.
+) -> Integration:
+    """Return the integration of a motion, as :func:`symrot.propagation.steppers.dop853.integration` does.
 
-    As :func:`symrot.propagation.steppers.dop853.integrate`, but for these:
+    Its ``stats`` count jets as evaluations: a jet is all coefficients of one step.
 
     Parameters
     ----------
     library : path
         Built from :func:`translation_unit`.
     tolerance : float
-        Aim for the error of the whole trajectory, see :func:`step_tail`.
+        Error of the whole trajectory to aim for, see :func:`step_tail`.
     max_steps : int
         Most steps to take before giving up.
     project : bool
-        Whether to hold the motion on its invariants, where the library knows some.
-
-    Returns
-    -------
-    stats : Stats
-        ``evaluations`` counts jets: all coefficients of one step.
+        Whether to project the motion onto its invariants, if the library has any.
     """
-    return task(library, p, y0, t0, tolerance, max_step, max_steps, project).sample(times)
-
-
-def record(
-    library: PathLike,
-    p: ArrayLike,
-    y0: ArrayLike,
-    t0: float,
-    span: tuple[float, float],
-    tolerance: float,
-    *,
-    max_step: float = math.inf,
-    max_steps: int = MAX_STEPS,
-    project: bool = True,
-) -> Recording:
-    """Return the motion over ``span`` as a function of time; see :func:`symrot.propagation.steppers.dop853.record`.
-
-    One step takes 21 N + 4 numbers of memory.
-    """
-    return task(library, p, y0, t0, tolerance, max_step, max_steps, project).record(span)
-
-
-def task(
-    library: PathLike,
-    p: ArrayLike,
-    y0: ArrayLike,
-    t0: float,
-    tolerance: float,
-    max_step: float = math.inf,
-    max_steps: int = MAX_STEPS,
-    project: bool = True,
-) -> Task:
-    """Return a motion to follow; arguments as :func:`integrate`."""
-    found = Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps)
-    found.fields["every"] = PROJECTED_EVERY if project else 0
-    return found
+    motion = Integration(_stepper, library, p, y0, t0, tolerance, max_step, max_steps)
+    motion.fields["every"] = PROJECTED_EVERY if project else 0
+    return motion
 
 
 class _Stepper(Stepper):
@@ -236,24 +196,23 @@ class _Stepper(Stepper):
     def row_length(self) -> int:
         return 4 + (self.order + 1) * self.states
 
-    def enter(self, run: Any, stretch: Stretch, allowed: float) -> None:
+    def enter(self, run: Run, segment: Segment, allowed: float) -> None:
         run.unit, run.proven, run.tail, run.reach = 0.0, 0.0, allowed, MIDDLE_REACH
 
     @staticmethod
-    def tried(run: Any) -> int:
-        found: int = run.accepted
-        return found
+    def tried(run: Run) -> int:
+        return run.accepted
 
     @staticmethod
-    def cost(run: Any) -> tuple[int, int, int]:
+    def cost(run: Run) -> tuple[int, int, int]:
         return run.accepted, run.jets - run.accepted, run.jets
 
     def jet(self, t: float, y: ArrayLike, p: ArrayLike, unit: float = 1.0) -> Floats:
         """Return the Taylor coefficients of the states at t, shape (order + 1, N), in powers of ``unit``."""
         state, values = np.array(y, dtype=np.float64), np.array(p, dtype=np.float64)
-        found = np.empty((self.order + 1, self.states))
-        self._jet(t, state.ctypes.data, values.ctypes.data, unit, self.order, found.ctypes.data)
-        return found
+        coefficients = np.empty((self.order + 1, self.states))
+        self._jet(t, state.ctypes.data, values.ctypes.data, unit, self.order, coefficients.ctypes.data)
+        return coefficients
 
 
 _stepper = cache(_Stepper)

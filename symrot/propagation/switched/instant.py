@@ -1,7 +1,7 @@
 """Times to twice the digits of a double, and clocks that start at one.
 
 At t = 1e6 s doubles lie 1e-10 s apart: a switch that is located to the last bit of such a number is off by a part of
-1e-10 of what the torque does within a second. As a sum of two doubles a time keeps 32 digits.
+1e-10 of the effect that the torque has within a second. As a sum of two doubles a time has 32 digits.
 """
 
 from fractions import Fraction
@@ -26,12 +26,12 @@ class Instant(NamedTuple):
         return Fraction(self.high) + Fraction(self.low)
 
     def after(self, *seconds: float) -> "Instant":
-        """Return the instant so many seconds later; of several numbers their sum."""
+        """Return a later instant; several numbers of seconds are added."""
         high, low = self
         for second in seconds:
             total = high + second
             part = total - high
-            low += (high - (total - part)) + (second - part)  # what the sum lost
+            low += (high - (total - part)) + (second - part)  # the rounding error of the sum
             high = total
         total = high + low
         return Instant(total, low - (total - high))
@@ -45,7 +45,7 @@ class Instant(NamedTuple):
         return (times - self.high) - self.low
 
     def reached(self, times: Floats, side: float) -> int:
-        """Return how many of the times, which rise (``side`` 1) or fall (-1), do not lie beyond this instant."""
+        """Return how many times, which rise (``side`` 1) or fall (-1), do not lie beyond this instant."""
         count = int(np.searchsorted(side * times, side * self.high, "right"))
         while side * self.low < 0.0 and count and times[count - 1] == self.high:
             count -= 1

@@ -1,7 +1,7 @@
 """Motions under torques that jump or bend: from one switch to the next, each located to the last bits.
 
 Between switches the modes of :mod:`symrot.formula.switches` are constants and the motion is smooth: any stepper follows
-it, while the guards are searched as events are. Where a guard would leave the side of its mode, the motion is stepped
+it, while the guards are searched like events. Where a guard would leave the side of its mode, the motion is stepped
 exactly to that time and goes on with the mode of the other side. If both sides send it back (dry friction at rest,
 relay control) the guard stays at zero: the motion slides, and the mode takes the value that holds it there, until that
 value leaves the range of the switch.
@@ -10,18 +10,19 @@ Source: A. F. Filippov, Differential Equations with Discontinuous Righthand Side
 """
 
 from time import perf_counter
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 
 from symrot.errors import PropagationError
 from symrot.planning.plan import Plan, make_plan
+from symrot.propagation.compiled_models import scene_kernel
 from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.method import Choice, choose_method
-from symrot.propagation.motion import Motion, MotionInParts
+from symrot.propagation.motion import Motion, MotionInParts, Setup
 from symrot.propagation.propagator import Propagator
-from symrot.propagation.steppers.cut_off import CutOff, add_samples
-from symrot.propagation.steppers.stepping import Floats, Recording, Stats, Switching, both_sides, stats_of
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped, add_samples
+from symrot.propagation.steppers.stepping import Floats, Recording, Stats, Switching, split_at, stats_of
 from symrot.propagation.switched.run import Chunk, SwitchedRun
 from symrot.propagation.switched.system import SwitchedSystem
 from symrot.scene.scene import Initial
@@ -41,23 +42,22 @@ class SwitchedPropagator(Propagator):
         return SwitchedMotion(plan, choose_method(plan, self._method), self.tolerance)
 
 
+@final
 class SwitchedMotion(MotionInParts):
-    """A motion under torques with switches."""
-
-    movable = False  # each regime has a clock of its own
+    """A motion under torques with switches; each regime between them has a clock of its own."""
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
-        self.plan, self.choice, self.tolerance, self.library = plan, choice, tolerance, None
-        self.start = float(plan.scene.span.start)
+        start = float(plan.scene.span.start)
+        super().__init__(Setup(plan, choice, tolerance, start, lambda: scene_kernel(plan)), plan)
         self.system = SwitchedSystem(plan, choice, tolerance)
         self.system.regime(frozenset(), self.system.initial_modes())
 
-    def integrate(self, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times, shape (n, N), and what it cost."""
+    def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
+        """Return the states at the times, shape (n, N), and their cost."""
         began, states = perf_counter(), np.empty((len(times), len(self.plan.states)))
         cost, done = np.zeros(3, dtype=np.int64), np.empty(0, dtype=np.intp)
         changes: dict[tuple[float, str], str] = {}
-        for part in both_sides(times, self.start):
+        for part in split_at(times, self.start):
             sorted_times = times[part]
             count = int((sorted_times == self.start).sum())
             states[part[:count]] = self.plan.initial_state
@@ -74,7 +74,7 @@ class SwitchedMotion(MotionInParts):
 
             try:
                 run.follow(sample)
-            except (CutOff, KeyboardInterrupt) as error:
+            except (IntegrationStopped, KeyboardInterrupt) as error:
                 numbers = np.concatenate([done, part[:count]])
                 add_samples(error, numbers, states[numbers], cost + run.cost)
                 raise
@@ -84,12 +84,12 @@ class SwitchedMotion(MotionInParts):
         return states, stats_of(cost, perf_counter() - began, _switchings(changes))
 
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to an end as polynomials and at any time; what cut it off in ``broken``."""
+        """Return the motion from its start to an end as polynomials and at any time, an early end in ``broken``."""
         chunks: list[Chunk] = []
         run = SwitchedRun(self, self.system, end)
         try:
             run.follow(chunks.append)
-        except CutOff as error:
+        except IntegrationStopped as error:
             broken.append(error)
         stats = stats_of(run.cost, 0.0, _switchings(run.changes))
         states = SwitchedRecording(self.start, self.plan.initial_state, (self.start, end), stats, chunks)
@@ -133,7 +133,7 @@ class SwitchedRecording(Recording):
             places[beyond] += 1
         for place in np.unique(places):
             if place == len(self._chunks):
-                states[places == place] = np.nan  # beyond where the motion was cut off
+                states[places == place] = np.nan  # after the motion stopped early
             else:
                 chosen = places == place
                 states[chosen] = self._chunks[place].states(times[chosen])

@@ -15,9 +15,9 @@ from symrot.planning.scene_kernel import Parameters
 from symrot.propagation.binding import folded, two_doubles, value_of
 from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import Event, guard_library_source
-from symrot.propagation.motion import Motion
+from symrot.propagation.motion import SciPyMotion, SteppedMotion
 from symrot.propagation.switched.instant import Instant
-from symrot.propagation.time_shift import Following
+from symrot.propagation.time_shift import ShiftedParameters
 
 __all__ = ["Guard", "Modes", "Regime"]
 
@@ -25,25 +25,37 @@ Modes = dict[str, int]
 
 
 class Guard(NamedTuple):
-    """A formula that is positive as long as its switch keeps its mode, and the change of the mode where it is not."""
+    """A formula that is positive as long as its switch has its mode, and the change of the mode where it is not."""
 
     mode: str
     formula: str
-    change: int  # 0: to the opposite sign; 1, -1: to that side, or by that much
+    change: int  # 0: to the opposite sign; 1 or -1: to that side, or by that number
     where: Conditions
+
+
+class RegimeParameters(NamedTuple):
+    """The parameters of a regime under some modes, for one clock after another.
+
+    ``invariants`` are pairs of doubles that no clock changes; only Taylor steps take them.
+    """
+
+    rates: ShiftedParameters
+    guards: ShiftedParameters
+    quantities: ShiftedParameters
+    invariants: list[float]
 
 
 class Regime:
     """The smooth motion while some guards stay at zero, and the guards that end it.
 
-    Its clock shows 0 wherever the motion enters it: the parameters of rates and guards are those of that instant.
+    Its clock shows 0 at the instant at which the motion enters it; rates and guards have parameters for that instant.
     """
 
     def __init__(
         self,
         constants: Mapping[str, Fraction],
         all_switches: Sequence[Switch],
-        motion: Motion,
+        motion: SteppedMotion | SciPyMotion,
         held: frozenset[str],
         switches: Sequence[Switch],
     ) -> None:
@@ -62,17 +74,17 @@ class Regime:
         known = {name for name, _ in self.parameters} | set(modes)
         self.more = sorted(known & set().union(*map(names, nodes)))
         self.events = [Event(guard.formula, terminal=True, direction=-1) for guard in self.guards]
-        columns = {name: f"{name} of the scene" for name in self.more}  # a kernel has names of its own for constants
+        columns = {name: f"{name} of the scene" for name in self.more}  # a kernel names its constants differently
         columns |= {f"{mode}_of_t": f"{mode} of t" for mode in held}
         quantities, self.quantity_parameters = motion.kernel.quantities, motion.kernel.quantity_parameters
-        if quantities.uses("t"):  # as the value of a mode that holds its guard at zero
+        if quantities.uses("t"):  # for example the value of a mode that holds its guard at zero
             quantities, self.quantity_parameters = moved(quantities, self.quantity_parameters)
         program = _with_parameters(quantities, [columns[name] for name in self.more])
         source = guard_library_source(
             program, [rename(node, columns) for node in nodes], self.plan.states, *error_blocks(self.plan)
         )
         self.path = library.build(source, "events")
-        self._following: dict[tuple[int, ...], tuple[Following, Following, Following, list[float]]] = {}
+        self._parameters: dict[tuple[int, ...], RegimeParameters] = {}
         self._active: dict[tuple[int, ...], list[bool]] = {}
         self._bound: dict[tuple[tuple[int, ...], Instant | None], tuple[list[float], list[float]]] = {}
 
@@ -88,48 +100,43 @@ class Regime:
             yield Guard(mode, guard, -1, where)
             yield Guard(mode, f"1 - ({guard})", 1, where)
 
-    def _follow(self, modes: Modes) -> tuple[Following, Following, Following, list[float]]:
-        """Return the parameters of rates, guards and quantities for one clock after another, and those of invariants.
-
-        The last are pairs of doubles, for Taylor steps; under other modes some of them have no value.
-        """
+    def _parameters_under(self, modes: Modes) -> RegimeParameters:
+        """Return the parameters under some modes; parameters of invariants have no value under all modes."""
         key = tuple(modes.values())
-        if key not in self._following:
+        if key not in self._parameters:
             values = {name: Fraction(value) for name, value in modes.items()}
-            rates, guards, quantities = self._with_constants
             taylor = self.motion.choice.method == "taylor"
             invariants = self.motion.kernel.quantity_parameters if taylor else ()
             constants = {**self.constants, **values}
             ratios = [value_of(node, constants).as_integer_ratio() for _, node in invariants]
             pairs = [part for ratio in ratios for part in two_doubles(*ratio)]
-            following = Following(rates, values), Following(guards, values), Following(quantities, values)
-            self._following[key] = *following, pairs
-        return self._following[key]
+            rates, guards, quantities = (ShiftedParameters(each, values) for each in self._with_constants)
+            self._parameters[key] = RegimeParameters(rates, guards, quantities, pairs)
+        return self._parameters[key]
 
     def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
-        """Return what the names in :attr:`formulas` stand for on a clock that shows 0 at an instant."""
-        numbers = self._follow(modes)[1].parameters(zero.exact)
+        """Return the values of the names in :attr:`formulas` on a clock that shows 0 at an instant."""
+        numbers = self._parameters_under(modes).guards.parameters(zero.exact)
         return {name: number for (name, _), number in zip(self.parameters, numbers, strict=True)} | {
             name: float(mode) for name, mode in modes.items()
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
-        """Return the parameters of the stepper's library and of the guards', on a clock that shows 0 at an instant."""
-        following, guards, quantities, pairs = self._follow(modes)
-        fixed = following.fixed and guards.fixed and quantities.fixed
+        """Return the parameters of the stepper and of the guards, on a clock that shows 0 at an instant."""
+        rates, guards, quantities, invariants = self._parameters_under(modes)
+        fixed = rates.fixed and guards.fixed and quantities.fixed
         place = tuple(modes.values()), None if fixed else zero
         if place not in self._bound:
             if place[1] is not None:
                 self._bound = {key: value for key, value in self._bound.items() if key[1] in (None, zero)}
-            rates, values = following.parameters(zero.exact), self.values(modes, zero)
-            rates += pairs
-            self._bound[place] = rates, [*quantities.parameters(zero.exact), *(values[name] for name in self.more)]
+            numbers, values = [*rates.parameters(zero.exact), *invariants], self.values(modes, zero)
+            self._bound[place] = numbers, [*quantities.parameters(zero.exact), *(values[name] for name in self.more)]
         return self._bound[place]
 
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
         """Return the parameters of the rates as a function of an epoch, s, on a clock that shows 0 at an instant."""
-        following = self._follow(modes)[0]
-        return None if following.fixed else lambda since: following.parameters(zero.exact + Fraction(since))
+        rates = self._parameters_under(modes).rates
+        return None if rates.fixed else lambda since: rates.parameters(zero.exact + Fraction(since))
 
     @cached_property
     def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:
@@ -144,7 +151,7 @@ class Regime:
         return rates, guards, quantities
 
     def active(self, modes: Modes) -> list[bool]:
-        """Return which guards matter."""
+        """Return which guards are active under some modes."""
         key = tuple(modes.values())
         if key not in self._active:
             self._active[key] = [hold(guard.where, modes, self.held) for guard in self.guards]
@@ -152,15 +159,15 @@ class Regime:
 
 
 def _distance(switch: Switch) -> Node:
-    """Return what is zero where a switch switches: its guard, less the whole number below it for a floor.
+    """Return a formula that is zero where a switch switches: its guard, less the whole number below it for a floor.
 
-    The number is subtracted before anything is rounded: far from t = 0 it takes most digits of the guard away.
+    The number is subtracted before rounding: far from t = 0 it cancels most digits of the guard.
     """
     return switch.guard if switch.kind == "sign" else ("-", switch.guard, ("symbol", switch.mode))
 
 
 def _with_parameters(program: Program, more: list[str]) -> Program:
-    """Return a program with further parameters, which its outputs do not use."""
+    """Return a program with more parameters, which its outputs do not use."""
     arguments = list(program.signature.arguments)
     place = next((k for k, argument in enumerate(arguments) if argument.name == "p"), None)
     extra = tuple((name, "", "") for name in more)

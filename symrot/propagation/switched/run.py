@@ -1,9 +1,9 @@
-"""A motion under torques with switches on its way from the start to one end: when it switches, slides, stops."""
+"""A motion under torques with switches from the start to one end: where it switches, slides or stops."""
 
 import math
 from collections.abc import Callable, Generator
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,22 +17,22 @@ from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import search, signs_at_ends
 from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.motion import Motion
-from symrot.propagation.steppers.cut_off import CutOff
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Guard, Modes, Regime
 from symrot.propagation.switched.run_state import CHATTER, RunState
-from symrot.propagation.switched.smooth_pieces import SOURCES
+from symrot.propagation.switched.smooth_pieces import smooth_pieces
 from symrot.propagation.switched.system import SwitchedSystem
 
 __all__ = ["Chunk", "SwitchedRun"]
 
 MOST_SWITCHES, MOST_AT_ONCE = 1_000_000, 1000
-HOP_BITS = 10  # a hop over a switch is at most so many times two ulps of the clock long
-LEAST_TURN = 1e-3  # rad over the whole span: slower rates are as good as this one
-AWAY = range(50, 400, 10)  # a hop away from a switch is so many times halved a span
-NEARBY, MOST_ULPS = 1e-6, 64.0  # parts of the way since the last switch; last bits of a time that was located
-CHATTERING = 1e-9  # of the span: so many switches as are remembered within it are endlessly many
+HOP_BITS = 10  # a hop over a switch is at most 2 to this power units in the last place of the clock long
+LEAST_TURN = 1e-3  # rad over the whole span: errors of slower rates are relative to this one
+AWAY = range(50, 400, 10)  # a hop away from a switch is the span, halved so many times
+NEARBY, MOST_ULPS = 1e-6, 64.0  # of the way since the last switch; units in the last place of a located time
+CHATTERING = 1e-9  # of the span: CHATTER switches within it count as endlessly many
 Consumer = Callable[["Chunk"], None]
 
 
@@ -52,7 +52,7 @@ class Chunk(NamedTuple):
     def piece(self) -> Piece:
         """Return the part as polynomials on the clock of the scene."""
         rows, edges = self.own_piece.rows.copy(), self.own_piece.edges + self.zero.low + self.zero.high
-        edges[0], edges[-1] = self.start.high, self.stop.high  # as the parts before and after have them
+        edges[0], edges[-1] = self.start.high, self.stop.high  # the same numbers as in the parts before and after
         time, low = two_sum(self.zero.high, rows[:, 0])
         rows[:, 0], rows[:, 2] = two_sum(time, low + (rows[:, 2] + self.zero.low))
         return Piece(edges, rows)
@@ -61,7 +61,7 @@ class Chunk(NamedTuple):
 class SwitchedRun(RunState):
     """A motion on its way from the start to one end.
 
-    Its clock shows 0 at the last switch, which is known to twice the digits of a double: ``t`` and ``end`` are times on
+    Its clock shows 0 at the last switch, which is known to twice the digits of a double. ``t`` and ``end`` are times on
     that clock, s.
     """
 
@@ -72,15 +72,15 @@ class SwitchedRun(RunState):
         self.held = frozenset[str]()
         self.cost = np.zeros(3, dtype=np.int64)  # steps accepted and rejected, evaluations
         self.switches = 0
-        self.changes: dict[tuple[float, str], str] = {}  # what each function with a switch did at a time
-        self.flipped: dict[str, int] = {}  # modes changed at this very time, and how often
-        self.released: set[str] = set()  # modes whose guards were held until this very time: they leave zero slowly
+        self.changes: dict[tuple[float, str], str] = {}  # how each function switched, by time and function
+        self.flipped: dict[str, int] = {}  # modes changed at this time, and how often
+        self.released: set[str] = set()  # modes whose guards were held until this time: they leave zero slowly
         self.order: list[str] = []  # the same in the order of the changes
-        self.left: set[tuple[str, int]] = set()  # modes and their values left at this very time
+        self.left: set[tuple[str, int]] = set()  # modes with the values that they had before changes at this time
         self.settled, self.hopped = 0, False
 
     def follow(self, consume: Consumer) -> None:
-        """Follow the motion to its end, handing on each part as it is known."""
+        """Follow the motion to its end, passing each part to ``consume`` as soon as it is known."""
         with progress.within(self.motion.start, self._end.high, lambda: self.zero.high):
             try:
                 self._check_start()
@@ -94,7 +94,7 @@ class SwitchedRun(RunState):
                         raise self.interrupt
                     if guard is not None:
                         self._switch(regime, guard)
-            except CutOff as error:
+            except IntegrationStopped as error:
                 raise error.later(self.zero.high) from None
 
     @property
@@ -112,7 +112,7 @@ class SwitchedRun(RunState):
             self.end = 0.0
 
     def _check_start(self) -> None:
-        """Refuse a start on a switch from which both sides lead away: the motion has more than one way on."""
+        """Raise IntegrationStopped for a start on a switch from which both sides lead away: there are two motions."""
         for switch in self.system.switches:
             mode = switch.mode
             if mode not in self.system.undecided or not hold(switch.where, self.modes) or self.t == self.end:
@@ -122,15 +122,14 @@ class SwitchedRun(RunState):
                 modes = self.system.beside_start(mode, sign)
                 regime = self.system.regime(self.held, modes)
                 rates, values = regime.bound(modes, self.zero)
-                piece, _ = next(self._source(regime, rates).pieces())
+                piece, _ = next(smooth_pieces(self, regime, rates).pieces())
                 signs, _ = signs_at_ends(regime.path, [guard.formula for guard in regime.guards], values, piece)
                 leaving += all(s > 0 for s, guard in zip(signs, regime.guards, strict=True) if guard.mode == mode)
             if leaving == 2:
                 way = "past" if self.side < 0.0 else "future"
-                raise CutOff(self.t, f"the motion starts on {self._name(mode)} and has more than one {way}", self.end)
-
-    def _source(self, regime: Regime, rates: list[float]) -> Any:
-        return SOURCES[self.motion.choice.method.partition(":")[0]](self, regime, rates)
+                raise IntegrationStopped(
+                    self.t, f"the motion starts on {self._name(mode)} and has more than one {way}", self.end
+                )
 
     def _segment(self, regime: Regime, consume: Consumer) -> Guard | None:
         """Follow one smooth part; return the guard that ended it, or None at the end of the motion."""
@@ -141,7 +140,7 @@ class SwitchedRun(RunState):
         events = [
             event if on else event._replace(terminal=False) for event, on in zip(regime.events, active, strict=True)
         ]
-        source = self._source(regime, rates)
+        source = smooth_pieces(self, regime, rates)
         start, passed = self.t, [self.t]
         violated: list[Guard] = []
 
@@ -154,7 +153,7 @@ class SwitchedRun(RunState):
                     return
                 current[:] = [(piece, states)]
                 yield piece
-                if last:  # though no crossing was seen: within rounding it was there from the start of the piece
+                if last:  # without a crossing: within rounding the guard was negative from the start of the piece
                     violated.extend(last)
                     if passed[-1] != start:
                         self.t, self.y = passed[-1], states(np.array(passed[-1:]))[0]
@@ -166,8 +165,8 @@ class SwitchedRun(RunState):
         current: list[tuple[Piece, Callable[[Floats], Floats]]] = []
         watching = watched()
         try:
-            found, stop = search(regime.path, events, values, watching, start)
-        except CutOff as error:
+            zeros, stop = search(regime.path, events, values, watching, start)
+        except IntegrationStopped as error:
             at = passed[-1]
             y = current[0][1](np.array([at]))[0] if current else self.y
             hop = self._hop(regime, active, rates, at, y, error)
@@ -188,10 +187,10 @@ class SwitchedRun(RunState):
         if violated:
             return violated[0]
         if stop is None:
-            self.t = self.end if current else self.t  # a mode was settled: once more from here
+            self.t = self.end if current else self.t  # a mode was settled: repeat from here
             return None
         piece, states = current[0]
-        ended = next(each.event for each in reversed(found) if each.t == stop and active[each.event])
+        ended = next(each.event for each in reversed(zeros) if each.t == stop and active[each.event])
         guard = regime.guards[ended]
         instant = self._at(stop) if stop == self.end else self._located(regime, guard, stop)
         if abs(stop) > abs(passed[-1]):
@@ -204,19 +203,19 @@ class SwitchedRun(RunState):
         return guard
 
     def _arrive(self, instant: Instant) -> None:
-        """Begin anew at a switch, where the motion is now; the clock shows 0 there, unless it is the end."""
+        """Restart at a switch, where the motion is now; the clock shows 0 there, unless it is the end."""
         if self.t != self.end:
             self._move_clock(instant)
         self.flipped, self.order, self.left, self.released, self.hopped = {}, [], set(), set(), False
 
     def _hop(
-        self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: CutOff
+        self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: IntegrationStopped
     ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
-        """Return a straight piece on from where a stepper is stuck, and the guard that it crosses; or None.
+        """Return a straight piece that continues from where a stepper is stuck, and the guard that it crosses; or None.
 
-        As sqrt(1 - t) before a switch at 1 s, and sqrt(t - 1) after it: steps shrink to nothing where a torque has no
-        derivative, though it has an impulse. Over a time so short that the impulse is less than the tolerance the
-        motion may go straight on: to the guard if the guard is that near, or away from the last switch.
+        Examples are sqrt(1 - t) before a switch at 1 s, and sqrt(t - 1) after it: steps shrink to zero where a torque
+        has no derivative, though its impulse is finite. While the impulse is less than the tolerance the motion may
+        continue straight: to the guard if the guard is that near, or away from the last switch.
         """
         kernel, motion = regime.motion.kernel, regime.motion
         p = np.array(rates[: len(kernel.rate_parameters)])
@@ -263,7 +262,7 @@ class SwitchedRun(RunState):
                 float(evaluate(parse(guard.formula), self._values(regime, place), FLOAT_FUNCTIONS, float))
                 for place in places
             )
-        except (ArithmeticError, ValueError):
+        except (ArithmeticError, ValueError, IntegrationStopped):
             return False
         return before >= 0.0 >= after and before > after
 
@@ -289,14 +288,14 @@ class SwitchedRun(RunState):
         try:
             slope = (value(aside) - value(-aside)) / (2.0 * aside)
             correction = -value(0.0) / slope
-        except (ArithmeticError, ValueError):
+        except (ArithmeticError, ValueError, IntegrationStopped):
             return instant
         return instant.after(correction) if abs(correction) <= MOST_ULPS * math.ulp(t) else instant
 
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
     ) -> tuple[list[Guard], list[Guard]]:
-        """Return the guards that are on the wrong side from the start of a piece on, and those that are at its end."""
+        """Return the guards that are negative from the start of a piece on, and those negative at its end."""
         formulas = [guard.formula for guard in regime.guards]
         first, last = (
             [guard for guard, on, sign in zip(regime.guards, active, signs, strict=True) if on and sign < 0]
@@ -305,9 +304,9 @@ class SwitchedRun(RunState):
         return first, last
 
     def _settle(self, regime: Regime, active: list[bool], piece: Piece, states: Callable[[Floats], Floats]) -> bool:
-        """Give each mode whose guard is zero, and stays it, its value at zero; return whether a mode changed.
+        """Give each mode whose guard is and stays zero its value at zero; return whether a mode changed.
 
-        A mode that is 0 takes the sign of its guard as soon as that is other than zero.
+        A mode that is 0 takes the sign of its guard as soon as the guard is not zero.
         """
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
 
@@ -316,16 +315,16 @@ class SwitchedRun(RunState):
 
         signs_now = signs_under(self.modes)
         end = float(piece.edges[-1])
-        later = end, states(np.array([end]))[0]  # a guard may leave zero more slowly than rounding shows
+        later = end, states(np.array([end]))[0]  # a guard may leave zero so slowly that rounding hides it
         for switch in self.system.switches:
             mode = switch.mode
             numbers = [n for n, guard in enumerate(regime.guards) if guard.mode == mode and active[n]]
             if mode in self.held or not numbers:
                 continue
-            resting = switch.kind == "sign" and self.modes[mode] == 0  # so that its mode times its guard is zero
+            resting = switch.kind == "sign" and self.modes[mode] == 0  # then its mode times its guard is zero
             signs = signs_under({**self.modes, mode: 1}) if resting else signs_now
             sign = signs[numbers[0]]
-            if switch.kind == "floor":  # closed on the left: at n + 1 it is n + 1
+            if switch.kind == "floor":  # at n + 1 the floor is n + 1
                 upper = signs[numbers[1]]
                 if not upper and self._guard_value(mode) == 1.0:
                     settled[mode] = self.modes[mode] + 1
@@ -338,14 +337,14 @@ class SwitchedRun(RunState):
         if changed:
             self.settled += 1
             if self.settled > MOST_SWITCHES:
-                raise CutOff(self.t, "its switches settle endlessly", self.end)
+                raise IntegrationStopped(self.t, "its switches settle endlessly", self.end)
         self.modes = settled
         return changed
 
     def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
         """Return the distance of a mode's guard from its zero, at a time and a state or at the present ones.
 
-        Of a floor, how far the guard is above the whole number that is its mode.
+        For a floor: the distance of the guard from the whole number that is its mode.
         """
         regime = self.system.regime(self.held, self.modes)
         return float(
@@ -353,7 +352,7 @@ class SwitchedRun(RunState):
         )
 
     def _values(self, regime: Regime, place: tuple[float, Floats]) -> dict[str, float]:
-        """Return what the names in guards stand for at a time and a state."""
+        """Return the values of the names in guards at a time and a state."""
         t, y = place
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure.attitude else []
@@ -366,16 +365,16 @@ class SwitchedRun(RunState):
         mode, kind = guard.mode, self.by_name[guard.mode].kind
         self.left.add((mode, self.modes[mode]))
         again = self.flipped.get(mode, 0)
-        if again and self._jumped(mode):  # with a mode inside its guard: that it changes again says nothing
+        if again and self._jumped(mode):  # a mode inside its guard changed too, so that this is no return
             again = 0
         self.order.append(mode)
         if len(self.order) > MOST_AT_ONCE:
-            raise CutOff(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
+            raise IntegrationStopped(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
         if again == 0:
             self._count()
         self.flipped[mode] = again + 1
         if again > 2 and kind == "sign":
-            raise CutOff(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
+            raise IntegrationStopped(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
         self.changes[self.now, self._name(mode)] = "released" if mode in self.held else "passed"
         asleep = self._asleep()
         if mode in self.held:
@@ -388,28 +387,30 @@ class SwitchedRun(RunState):
             self.modes[mode] = -self.modes[mode]
         else:
             above = math.floor(self._guard_value(mode))
-            far = abs(above) > 1  # it jumped over some whole numbers
+            far = abs(above) > 1  # the guard jumped over whole numbers
             self.modes[mode] += above if far else guard.change
             if (mode, self.modes[mode]) in self.left:
-                raise CutOff(self.t, f"the motion would slide along the jump of {self._name(mode)}", self.end)
+                raise IntegrationStopped(
+                    self.t, f"the motion would slide along the jump of {self._name(mode)}", self.end
+                )
         for other in asleep - self._asleep():
             self._wake(other)
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether a mode inside a mode's guard has changed at this very time since that mode did."""
+        """Return whether a mode inside a mode's guard has changed at this time since that mode did."""
         inside = names(self.by_name[mode].guard)
         last = len(self.order) - self.order[::-1].index(mode)
         return any(other in inside for other in self.order[last:])
 
     def _asleep(self) -> set[str]:
-        """Return the modes whose guards do not matter."""
+        """Return the modes whose guards are not active."""
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
-        """Give a mode whose guard begins to matter the value that the guard tells, if it tells one."""
+        """Set a mode whose guard becomes active by the value of the guard, if the guard has one."""
         try:
             guard = self._guard_value(mode)
-        except (ArithmeticError, ValueError):
+        except (ArithmeticError, ValueError, IntegrationStopped):
             return
         if self.by_name[mode].kind == "floor":
             self.modes[mode] += math.floor(guard)
@@ -418,17 +419,17 @@ class SwitchedRun(RunState):
 
     def _hold(self, regime: Regime, mode: str) -> None:
         if self.side < 0.0:
-            raise CutOff(self.t, "a motion that slides along a switch has more than one past", self.end)
+            raise IntegrationStopped(self.t, "a motion that slides along a switch has more than one past", self.end)
         mode = self.system.twins[mode][0]
         self.held |= {mode}
         self.changes[self.now, self._name(mode)] = "held"
         guard = self.by_name[mode].guard
         if guard[0] == "symbol" and guard[1] in regime.plan.states:
-            self.y[regime.plan.states.index(guard[1])] = 0.0  # exactly, where the guard is a state
+            self.y[regime.plan.states.index(guard[1])] = 0.0  # exactly zero, where the guard is a state
         try:
             self.system.regime(self.held, self.modes)
         except InputError:
-            raise CutOff(
+            raise IntegrationStopped(
                 self.t, f"the motion would slide along {self._name(mode)}, in no single way", self.end
             ) from None
 
@@ -439,7 +440,7 @@ class SwitchedRun(RunState):
         near = len(self.recent) == CHATTER and way <= CHATTERING * self.span
         if near or self.switches > MOST_SWITCHES:
             within = f"{CHATTER} within {way:.1e} s" if near else f"more than {MOST_SWITCHES}"
-            raise CutOff(self.t, f"its switches follow one another endlessly ({within})", self.end)
+            raise IntegrationStopped(self.t, f"its switches follow one another endlessly ({within})", self.end)
 
     def _name(self, mode: str) -> str:
         return str(self.by_name[mode].label)

@@ -1,4 +1,4 @@
-"""Where a motion under torques with switches stands: its clock, its states and what was spent on the way."""
+"""The present state of a motion under torques with switches: its clock, its states and its cost so far."""
 
 from collections import deque
 from collections.abc import Callable
@@ -16,7 +16,7 @@ CHATTER = 50  # switches that are remembered
 
 
 class RunState:
-    """A motion on its way from the start to one end, on a clock that shows 0 at the last switch.
+    """The present state of a motion between its start and one end, on a clock that shows 0 at the last switch.
 
     Attributes
     ----------
@@ -29,9 +29,9 @@ class RunState:
     y : array, shape (N,)
         The states at ``t``.
     spent, mark : int, (int, float)
-        SciPy's evaluations; those, and the way, when the pace was judged last.
+        SciPy's evaluations; evaluations and distance in time, s, when the pace was last checked.
     interrupt : KeyboardInterrupt or None
-        One that came while SciPy followed the motion beyond a switch.
+        An interrupt that came while SciPy followed the motion beyond a switch.
     recent : deque of Instant
         The last switches.
     """
@@ -51,6 +51,6 @@ class RunState:
         return Instant(self.motion.start) - self.zero
 
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
-        """Return the clock of a regime from now on, with what is stepped; None where its rates do not hold the time."""
+        """Return the clock of a regime from now on, with the function to step; None if its rates have no time."""
         parameters = regime.rates_since(self.modes, self.zero)
         return (lambda since: (stepped, parameters(since))) if parameters else None

@@ -1,104 +1,109 @@
-"""The pieces of a smooth motion on its way to the next switch, by each stepper: polynomials, and states at any time."""
+"""The pieces of a smooth motion up to the next switch, by each stepper: polynomials, and states at any time."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.polynomials import Piece, fitted, rows_of
+from symrot.propagation.motion import SciPyMotion, SteppedMotion
 from symrot.propagation.steppers import dop853, taylor
-from symrot.propagation.steppers.cut_off import CutOff, why_hopeless
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped, why_hopeless
 from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Regime
 from symrot.propagation.switched.run_state import RunState
 
-__all__ = ["SOURCES"]
+__all__ = ["SciPyPieces", "SteppedPieces", "smooth_pieces"]
 
-ROOM = 4  # steps in the first piece after a switch; twice as many in each piece after it
+ROOM = 4  # steps in the first piece after a switch; each further piece has twice as many
 WINDOWS, FEWEST = 64, 8  # pieces of the span that SciPy follows at a time, at first and later
 JOIN = 0.01  # of the tolerance: how far the ends of LSODA's steps may be apart
-RECENT = 4  # smooth parts before, whose lengths tell how long the next may be
+RECENT = 4  # number of smooth parts whose lengths predict the length of the next one
 FIRST_ANGLE = 30.0  # rad
 SHORTEST = 1e-6  # of the span
-OVERHEAD = 200  # evaluations: how long a window takes beside them
+OVERHEAD = 200  # evaluations that take as long as the rest of a window
 
 
 class SteppedPieces:
     """Pieces of a motion by a stepper in C."""
 
-    def __init__(self, run: RunState, regime: Regime, rates: list[float]) -> None:
-        motion = regime.motion
-        assert motion.library is not None
+    def __init__(self, run: RunState, regime: Regime, motion: SteppedMotion, rates: list[float]) -> None:
         if not np.isfinite(run.y).all():
-            raise CutOff(run.t, "its states are not finite there", run.end)
-        stepping = taylor if motion.choice.method == "taylor" else dop853
-        moved = run.clock(regime, motion.library) if stepping is dop853 else None
-        options = {"clock": moved} if moved else {}
-        self.task = stepping.task(motion.library, rates, run.y, run.t, motion.tolerance, **options)
-        self.task.way, self.end = run.span, run.end
+            raise IntegrationStopped(run.t, "its states are not finite there", run.end)
+        start = (motion.library, rates, run.y, run.t, motion.tolerance)
+        if motion.choice.method == "taylor":
+            self.integration = taylor.integration(*start)
+        else:
+            self.integration = dop853.integration(*start, clock=run.clock(regime, motion.library))
+        self.integration.way, self.end = run.span, run.end
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
-        task, room = self.task, ROOM
-        for run in task.runs(self.end):
+        """Yield the pieces in the order of the motion, with their states as a function of time."""
+        integration, room = self.integration, ROOM
+        for run in integration.runs(self.end):
             while run.t != run.stop:
-                rows = np.empty((room, task.stepper.row))
+                rows = np.empty((room, integration.stepper.row))
                 try:
-                    task.advance(run, None, 0, None, rows.ctypes.data, room)
-                except CutOff as error:
-                    stuck: CutOff | None = error
+                    integration.advance(run, None, 0, None, rows.ctypes.data, room)
+                except IntegrationStopped as error:
+                    stuck: IntegrationStopped | None = error
                 else:
                     stuck = None
                 rows = rows[: run.recorded]
                 if len(rows):
 
                     def states(times: Floats, rows: Floats = rows) -> Floats:
-                        inside: Floats = task.stepper.dense(rows, times)
-                        return inside
+                        return integration.stepper.dense(rows, times)
 
-                    yield Piece(np.append(rows[:, 0], run.t), rows_of(task.stepper, rows)), states
+                    yield Piece(np.append(rows[:, 0], run.t), rows_of(integration.stepper, rows)), states
                 if stuck is not None:
                     raise stuck
-                room = min(2 * room, task.stepper.rows_per_call)
+                room = min(2 * room, integration.stepper.rows_per_call)
 
-    def cost(self) -> Any:
-        return np.array([self.task.accepted, self.task.rejected, self.task.evaluations])
+    def cost(self) -> NDArray[np.int64]:
+        """Return steps accepted, steps rejected and evaluations so far."""
+        integration = self.integration
+        return np.array([integration.accepted, integration.rejected, integration.evaluations])
 
 
 class SciPyPieces:
-    """Pieces of a motion by SciPy: a window of time after the other."""
+    """Pieces of a motion by SciPy, one window of time after another."""
 
-    def __init__(self, run: RunState, regime: Regime, rates: list[float]) -> None:
-        self.run, self.motion, self.rates, self.counts = run, regime.motion, rates, np.zeros(3, dtype=np.int64)
-        self.clock = run.clock(regime, self.motion.rates)
+    def __init__(self, run: RunState, regime: Regime, motion: SciPyMotion, rates: list[float]) -> None:
+        self.run, self.motion, self.rates, self.counts = run, motion, rates, np.zeros(3, dtype=np.int64)
+        self.clock = run.clock(regime, motion.rates)
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
+        """Yield the pieces in the order of the motion, with their states as a function of time."""
         from symrot.propagation.steppers import fallback
 
         run, t, y = self.run, self.run.t, self.run.y
         side = 1.0 if run.end >= t else -1.0
         length = self._first_length()
-        options = self.motion.scipy_options_for(self.rates) | {"clock": self.clock}
+        options = replace(self.motion.options(self.rates), clock=self.clock)
         while t != run.end:
             stop = run.end if abs(run.end - t) <= 1.01 * length else t + side * length
             share = max(abs(stop - t) / run.span, 1e-3)
             self._judge_pace(t)
-            options["whole"] = fallback.Whole(run.start, run.end, run.spent)
-            ended: CutOff | KeyboardInterrupt | None = None
+            part = replace(options, whole=fallback.WholeMotion(run.start, run.end, run.spent))
+            ended: IntegrationStopped | KeyboardInterrupt | None = None
             recording: Any
             try:
                 recording = fallback.record(
-                    self.motion.rates, self.rates, y, t, (t, stop), run.motion.tolerance * share, **options
+                    self.motion.rates, self.rates, y, t, (t, stop), run.motion.tolerance * share, part
                 )
-            except (CutOff, KeyboardInterrupt) as error:
+            except (IntegrationStopped, KeyboardInterrupt) as error:
                 before: fallback.FallbackRecording | None = getattr(error, "recording", None)
                 if before is None:
                     raise
                 recording, ended = before, error
                 stop = recording.span[side > 0.0]
-                if isinstance(error, KeyboardInterrupt):  # a switch before it must not forget it
+                if isinstance(error, KeyboardInterrupt):  # must survive a switch before it
                     run.interrupt = error
             self.counts += recording.stats[:3]
             run.spent += recording.stats.evaluations + OVERHEAD
@@ -110,9 +115,9 @@ class SciPyPieces:
             y, t, length = recording(stop), stop, min(2.0 * length, run.span / FEWEST)
 
     def _first_length(self) -> float:
-        """Return how far to go at first, s: no farther than twice the longest smooth part of late, nor many rotations.
+        """Return the length of the first window, s: at most twice the longest recent smooth part, and few rotations.
 
-        What is followed beyond the next switch is wasted.
+        Work beyond the next switch is wasted.
         """
         run = self.run
         (_, rates, *_), _ = error_blocks(self.motion.plan)
@@ -123,7 +128,7 @@ class SciPyPieces:
         return min(max(2.0 * likely, SHORTEST * run.span), run.span / WINDOWS)
 
     def _judge_pace(self, t: float) -> None:
-        """Give the whole motion up if the rest would take far more than the limit."""
+        """Raise IntegrationStopped if the rest of the whole motion would take far more evaluations than the limit."""
         from symrot.propagation.steppers.fallback import MAX_EVALUATIONS, PATIENCE
 
         run = self.run
@@ -132,13 +137,19 @@ class SciPyPieces:
             way = abs(t - run.start)
             reason = why_hopeless(spent, way - run.mark[1], abs(run.end - t), MAX_EVALUATIONS)
             if reason:
-                raise CutOff(t, reason, run.end)
+                raise IntegrationStopped(t, reason, run.end)
             run.mark = (run.spent, way)
         if run.spent > MAX_EVALUATIONS:
-            raise CutOff(t, f"{MAX_EVALUATIONS} evaluations were not enough", run.end)
+            raise IntegrationStopped(t, f"{MAX_EVALUATIONS} evaluations were not enough", run.end)
 
-    def cost(self) -> Any:
+    def cost(self) -> NDArray[np.int64]:
+        """Return steps accepted, steps rejected and evaluations so far."""
         return self.counts
 
 
-SOURCES: dict[str, Any] = {"taylor": SteppedPieces, "dop853": SteppedPieces, "scipy": SciPyPieces}
+def smooth_pieces(run: RunState, regime: Regime, rates: list[float]) -> SteppedPieces | SciPyPieces:
+    """Return the pieces of a motion from where a run is now, with the parameters of the rates of its regime."""
+    motion = regime.motion
+    if isinstance(motion, SteppedMotion):
+        return SteppedPieces(run, regime, motion, rates)
+    return SciPyPieces(run, regime, motion, rates)

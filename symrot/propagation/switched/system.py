@@ -1,4 +1,4 @@
-"""What motions under torques with switches have in common: their switches, and the smooth motions between these."""
+"""The system of a motion under torques with switches: its switches, and the smooth motions between them."""
 
 import math
 from collections.abc import Mapping
@@ -15,7 +15,7 @@ from symrot.formula.tree import evaluate, names, parse, rename, text
 from symrot.planning.plan import Plan
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import on_own_clock
-from symrot.propagation.steppers.cut_off import CutOff
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.switched.regimes import Modes, Regime
 
 __all__ = ["SwitchedSystem"]
@@ -24,7 +24,7 @@ STATES = frozenset({*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range
 
 
 class SwitchedSystem:
-    """The switches of all torques of a plan, and one regime for each way in which they can stand."""
+    """The switches of all torques of a plan, and one regime for each combination of held guards."""
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
         self.plan, self.choice, self.tolerance = plan, choice, tolerance
@@ -43,7 +43,7 @@ class SwitchedSystem:
     def twins(self) -> dict[str, list[str]]:
         """The modes of one torque that have the same guard as a mode, itself included: those that jump come first.
 
-        As of sign(omega_3) and abs(omega_3) in the friction of a bearing that is greater at rest.
+        An example is sign(omega_3) and abs(omega_3) in the friction of a bearing, which is greater at rest.
         """
         twins: dict[str, list[str]] = {}
         for switches in self._switches_by_torque:
@@ -56,7 +56,7 @@ class SwitchedSystem:
 
     @cached_property
     def settled(self) -> set[str]:
-        """The modes whose guards never change: they hold neither the time, nor a state, nor a mode that does."""
+        """The modes whose guards never change: without the time, a state or a mode that changes in them."""
         settled = set[str]()
         for switch in self.switches:
             if names(switch.guard) <= self.constants.keys() - ({each.mode for each in self.switches} - settled):
@@ -68,12 +68,12 @@ class SwitchedSystem:
         return {"pi": PI, **self.plan.constants}
 
     def initial_modes(self) -> Modes:
-        """Return the modes at the start; a guard that is zero there counts as positive, until the motion tells."""
+        """Return the modes at the start; a guard that is zero there counts as positive until the motion decides."""
         return dict(self._initial_modes[0])
 
     @property
     def undecided(self) -> set[str]:
-        """The modes whose guards are zero at the start, and not only because of the time."""
+        """The modes whose guards are zero at the start, not only because of the time."""
         return self._initial_modes[1]
 
     @cached_property
@@ -81,10 +81,10 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the modes on one side of a guard that is zero at the start: those with it in their guards follow."""
+        """Return the modes at the start on one side of a guard that is zero there; modes that depend on it follow."""
         return self._modes_at_start({mode: sign})[0]
 
-    def _modes_at_start(self, given: Modes) -> tuple[Modes, set[str]]:
+    def _modes_at_start(self, chosen_modes: Modes) -> tuple[Modes, set[str]]:
         start, modes, undecided = self.plan.scene.initial, Modes(), set[str]()
         values: dict[str, float] = {name: float(value) for name, value in self.constants.items()}
         values |= {"t": self.start, **{f"omega_{i + 1}": float(value) for i, value in enumerate(start.omega_b)}}
@@ -97,20 +97,20 @@ class SwitchedSystem:
             try:
                 guard = float(evaluate(chosen(switch.guard, modes), values, FLOAT_FUNCTIONS, float))
             except (ArithmeticError, ValueError):
-                raise CutOff(self.start, f"{switch.label} has no value there") from None
+                raise IntegrationStopped(self.start, f"{switch.label} has no value there") from None
             modes[switch.mode] = math.floor(guard) if switch.kind == "floor" else -1 if guard < 0.0 else 1
             if guard == 0.0 and switch.mode in self.settled:
                 modes[switch.mode] = 0 if switch.kind == "floor" else switch.at_zero
-            modes[switch.mode] = given.get(switch.mode, modes[switch.mode])
+            modes[switch.mode] = chosen_modes.get(switch.mode, modes[switch.mode])
             values[switch.mode] = float(modes[switch.mode])
             if guard == 0.0 and switch.kind == "sign" and names(switch.guard) & STATES:
                 undecided.add(switch.mode)
         return modes, undecided
 
     def regime(self, held: frozenset[str], modes: Modes) -> Regime:
-        """Return the smooth motion while the guards of some modes stay at zero; derived when first asked for.
+        """Return the smooth motion while the guards of some modes stay at zero; derived on first use.
 
-        The other modes count where they choose between the parts of a ``where``.
+        The other modes matter if they choose between the parts of a ``where``.
         """
         key = held, tuple(modes.values()) if self._chooses else ()
         if key not in self._regimes:
@@ -162,15 +162,15 @@ def _switches(torque: FormulaTorque) -> list[Switch]:
 
 
 def _bends(switch: Switch | TorqueSwitch) -> bool:
-    """Return whether a formula bends at a switch, and does not jump: where its guard is zero its mode is at will."""
+    """Return whether a formula bends at a switch without a jump: at zero of the guard either mode is right."""
     return switch.at_zero == 1
 
 
 def _chosen(torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: Mapping[str, str]) -> TorqueStructure:
-    """Return a torque with the parts of its formulas that hold under some modes, and those of its modes that are held.
+    """Return a torque with the parts of its formulas that apply under some modes, and with its held modes.
 
-    Its guards that do not matter are left out. Modes with the guard of a held one are ``tied`` to that: where the
-    formula jumps there they take its value.
+    Inactive guards are left out. A mode with the same guard as a held mode is ``tied`` to it: if the formula jumps
+    there, it takes the value of the held mode.
     """
     if not isinstance(torque, FormulaTorque):
         return torque

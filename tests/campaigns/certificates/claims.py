@@ -20,7 +20,7 @@ from symrot.errors import CertificateError
 from symrot.kernels.definition import Law
 from symrot.kernels.removable import arc_ratio, copysign, select_ge, sinc, sine_gap, tangent_gap
 
-__all__ = ["claims_no_more", "same_but_for_bounds"]
+__all__ = ["is_weaker_or_equal", "same_but_for_bounds"]
 
 FUNCTIONS: dict[str, Callable[..., Expr]] = {
     each.__name__: each for each in (
@@ -56,7 +56,7 @@ def same_but_for_bounds(data: Data, other: Data, double: Operations, single: Ope
     return True
 
 
-def claims_no_more(data: Data, other: Data) -> bool:
+def is_weaker_or_equal(data: Data, other: Data) -> bool:
     """Tell whether what ``recheck.py`` looks at in a certificate is claimed by another one too, or proven here.
 
     That is: files, places of inputs, formulas of outputs, laws. Inputs and outputs are known by their places, so that

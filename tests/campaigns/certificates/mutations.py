@@ -21,11 +21,11 @@ from typing import Any
 
 from symrot.certificates import exact_check, recheck
 from symrot.certificates.audit import audit, operations_of
-from symrot.certificates.certificate import Data, Subject, printed, said_of
+from symrot.certificates.certificate import Data, KernelUnderTest, certificate_json, proven_statement
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.errors import CertificateError
-from tests.campaigns.certificates.claims import claims_no_more, same_but_for_bounds
+from tests.campaigns.certificates.claims import is_weaker_or_equal, same_but_for_bounds
 from tests.campaigns.certificates.same_bits import same_bits
 
 __all__ = ["Campaign", "Files", "corrupt_c", "corrupted_c", "main", "tamper", "tampered_certificates"]
@@ -231,11 +231,11 @@ def tamper(data: Data, random: Random) -> tuple[str, Data]:
 class Files:
     """One kernel in a folder: its texts, its certificate, and what symrot says of it."""
 
-    def __init__(self, directory: Path, subject: Subject, certificate: str) -> None:
+    def __init__(self, directory: Path, subject: KernelUnderTest, certificate: str) -> None:
         is_scene = any(name.startswith("../../") for name in subject.files)
         self.directory = directory / "c" / "scenes" if is_scene else directory / "c"
         self.subject, self.name, self.texts = subject, subject.name, subject.files
-        self.said = said_of(subject)
+        self.said = proven_statement(subject)
         self.data: Data = json.loads(certificate)
         self.digests = _digests(self.source, self.data)
         self.path = self.directory / f"{self.name}.cert.json"
@@ -263,7 +263,7 @@ class Files:
             path = (self.directory / name).resolve()
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text, encoding="utf-8")
-        self.path.write_text(printed(self.data), encoding="utf-8")
+        self.path.write_text(certificate_json(self.data), encoding="utf-8")
 
     def accepted(self) -> list[str]:
         """Return by whom the files are accepted as they are: "recheck", "exact", "audit"."""
@@ -335,7 +335,7 @@ def corrupted_c(kernels: Sequence[Files], count: int, random: Random) -> Campaig
         (files.directory / f"{files.name}.c").write_text(text, encoding="utf-8")
         digest = sha256(text.encode()).hexdigest()
         forged = files.data | {"files": files.data["files"] | {f"{files.name}.c": digest}}
-        files.path.write_text(printed(forged), encoding="utf-8")
+        files.path.write_text(certificate_json(forged), encoding="utf-8")
         accepted = files.accepted()
         files.restore()
         if accepted and "audit" not in accepted and files.same_bits(text, random):
@@ -358,13 +358,13 @@ def tampered_certificates(kernels: Sequence[Files], count: int, random: Random, 
         files = random.choice(kernels)
         part, data = tamper(files.data, random)
         campaign.tried[part] += 1
-        files.path.write_text(printed(data) if sealed else json.dumps(data), encoding="utf-8")
+        files.path.write_text(certificate_json(data) if sealed else json.dumps(data), encoding="utf-8")
         accepted = files.accepted()
         files.restore()
         if sealed and "audit" in accepted and same_but_for_bounds(files.data, data, *files.operations):
             campaign.same[part] += 1
             continue
-        if sealed and accepted and "audit" not in accepted and claims_no_more(files.data, data):
+        if sealed and accepted and "audit" not in accepted and is_weaker_or_equal(files.data, data):
             campaign.words[part] += 1
             campaign.proofs += "exact" not in accepted
             continue

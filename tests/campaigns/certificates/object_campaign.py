@@ -14,7 +14,7 @@ from time import perf_counter
 
 from symrot.certificates.object_code.build import COMPILERS, FLAGS, compile_object, compiler_version
 from symrot.certificates.object_code.comparison import CONTRACTED, DIFFERS, IDENTICAL, NOT_UNDERSTOOD, compare_object
-from symrot.certificates.object_code.disassembly import listing, missing
+from symrot.certificates.object_code.disassembly import read_listing, why_no_objdump
 from symrot.errors import CompilerError, SymrotError
 from tests.campaigns.certificates.object_code_mutants import Mutant, mutants, same_bits
 
@@ -29,7 +29,7 @@ SPARE = 6  # times as many are drawn at most as are counted
 
 def campaign(sources: Sequence[Path], compiler: str, flags: Sequence[str]) -> tuple[Counter[str], float, list[str]]:
     """Return counts of verdicts, milliseconds per function (without compiling) and a sentence for each not accepted."""
-    counts, seconds, said = Counter[str](), 0.0, []
+    counts, seconds, reports = Counter[str](), 0.0, []
     with TemporaryDirectory(prefix="symrot-") as directory:
         for source in sources:
             target, text = Path(directory) / "kernel.o", source.read_text(encoding="utf-8")
@@ -37,14 +37,14 @@ def campaign(sources: Sequence[Path], compiler: str, flags: Sequence[str]) -> tu
                 compile_object(compiler, flags, source, target)
             except CompilerError as reason:
                 counts[TEXT] += 1
-                said.append(str(reason))
+                reports.append(str(reason))
                 continue
             start = perf_counter()
             for verdict in compare_object(text, target, (), source.name):
                 counts[verdict.verdict] += 1
-                said += [] if verdict.accepted else [verdict.sentence()]
+                reports += [] if verdict.accepted else [verdict.sentence()]
             seconds += perf_counter() - start
-    return counts, 1000 * seconds / max(counts.total(), 1), said
+    return counts, 1000 * seconds / max(counts.total(), 1), reports
 
 
 def corrupted(
@@ -56,39 +56,39 @@ def corrupted(
     that was accepted and gives the same bits on many inputs is no corruption, nor is one that only contracts, by flags
     that do: said, not counted, and another is drawn in its place.
     """
-    counts, said = Counter[str](), []
+    counts, reports = Counter[str](), []
     each = max(1, count // len(sources))
     for source in sources:
-        text, wanted = source.read_text(encoding="utf-8"), counts.total() + each
+        text, total = source.read_text(encoding="utf-8"), counts.total() + each
         with TemporaryDirectory(prefix="symrot-") as directory:
             for mutant in mutants(source, Path(directory), compiler, flags, SPARE * each, seed):
                 outcome = _outcome(source, text, Path(directory) / "good.o", mutant)
                 if outcome != REFUSED:
                     why = "" if mutant.kind == "flags" else _changed(Path(directory) / "good.o", mutant.path)
-                    said.append(f"{source.stem}, {mutant.kind}: {mutant.what}{why}: {outcome}")
+                    reports.append(f"{source.stem}, {mutant.kind}: {mutant.what}{why}: {outcome}")
                 if outcome in (REFUSED, ACCEPTED):
                     counts[f"{mutant.kind}: {outcome}"] += 1
-                if counts.total() == wanted:
+                if counts.total() == total:
                     break
-    return counts, said
+    return counts, reports
 
 
 def _outcome(source: Path, text: str, good: Path, mutant: Mutant) -> str:
     """Return what became of a corrupted file; other flags may contract, and then the bits are others by right."""
     try:
-        found = {item.verdict for item in compare_object(text, mutant.path, (), source.name)}
+        verdicts = {item.verdict for item in compare_object(text, mutant.path, (), source.name)}
     except SymrotError:
         return REFUSED
-    if not found <= {IDENTICAL, CONTRACTED}:
+    if not verdicts <= {IDENTICAL, CONTRACTED}:
         return REFUSED
-    if CONTRACTED in found and mutant.kind == "flags":
+    if CONTRACTED in verdicts and mutant.kind == "flags":
         return CONTRACTED
     return SAME if same_bits(source, good, mutant.path) else ACCEPTED
 
 
 def _changed(good: Path, mutant: Path) -> str:
     """Return the first instruction that a corrupted file has in another form."""
-    before, after = listing(good).code, listing(mutant).code
+    before, after = read_listing(good).code, read_listing(mutant).code
     for place, instruction in before.items():
         other = after.get(place)
         if other is None or (other.text, other.relocation) != (instruction.text, instruction.relocation):
@@ -105,25 +105,25 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args(argv)
     sources = [path for path in sorted(options.kernels.glob("*.c")) if path.stem != "symrot_selftest"]
-    if missing() or not sources:
-        print(missing() or f"{options.kernels}: expected kernels in C, there are none")
+    if why_no_objdump() or not sources:
+        print(why_no_objdump() or f"{options.kernels}: expected kernels in C, there are none")
         return 2
     chosen, failed = sources[:: options.every], False
     print(f"{len(chosen)} kernels, one-sample functions of double and float")
     print(f"{'compiler and flags':<66}{'identical':>10}{'contracted':>11}{'differs':>8}{'unknown':>8}{'ms each':>8}")
     for compiler in (name for name in COMPILERS if compiler_version(name)):
         for flags in (*FLAGS, FAST):
-            counts, each, said = campaign(chosen, compiler, flags)
+            counts, each, reports = campaign(chosen, compiler, flags)
             columns = "".join(f"{counts[v]:>{w}}" for v, w in zip(VERDICTS, (10, 11, 8, 8), strict=True))
             print(f"{' '.join((compiler, *flags)):<66}{columns}{each:>8.1f}", flush=True)
             if counts[TEXT]:
                 print(f"  {counts[TEXT]} kernels {TEXT}", flush=True)
-            print("".join(f"  {line}\n" for line in said if flags != FAST), end="", flush=True)
+            print("".join(f"  {line}\n" for line in reports if flags != FAST), end="", flush=True)
     picked = sources[:: max(1, len(sources) // 20)][:20]
     for compiler in (name for name in COMPILERS if compiler_version(name)):
-        counts, said = corrupted(picked, compiler, FLAGS[1], options.mutants // 2, options.seed)
+        counts, reports = corrupted(picked, compiler, FLAGS[1], options.mutants // 2, options.seed)
         print(f"{compiler}: {counts.total()} corrupted files: {dict(sorted(counts.items()))}")
-        print("".join(f"  {line}\n" for line in said), end="", flush=True)
+        print("".join(f"  {line}\n" for line in reports), end="", flush=True)
         failed = failed or any(name.endswith(": accepted") for name in counts)
     return int(failed)
 

@@ -87,8 +87,8 @@ def _links(content: bytes, functions: Sequence[str]) -> list[tuple[int, tuple[in
         (at, struct.unpack_from(_RELOCATION, content, at)) for at in range(table.offset, table.offset + table.size, 24)
     )
     spans = _spans(content, sections, functions)
-    found = [(at, row, text.offset + row[0]) for at, row in rows]
-    return [item for item in found if any(start <= item[2] < stop for start, stop in spans)]
+    places = [(at, row, text.offset + row[0]) for at, row in rows]
+    return [item for item in places if any(start <= item[2] < stop for start, stop in spans)]
 
 
 def _code(content: bytes, functions: Sequence[str], random: Random) -> tuple[str, bytes] | None:
@@ -151,9 +151,9 @@ def _edited(text: str, random: Random) -> tuple[str, str] | None:
             places.append(number)
     for _ in range(50):
         number, (pattern, new) = random.choice(places), random.choice(_EDITS)
-        found = list(pattern.finditer(lines[number], lines[number].index("=")))
-        if found:
-            match, replacement = random.choice(found), random.choice(new)
+        matches = list(pattern.finditer(lines[number], lines[number].index("=")))
+        if matches:
+            match, replacement = random.choice(matches), random.choice(new)
             line = lines[number][: match.start()] + replacement + lines[number][match.end() :]
             if line != lines[number]:
                 return f"line {number + 1}: {line.strip()}", "\n".join([*lines[:number], line, *lines[number + 1 :]])
@@ -177,7 +177,9 @@ def mutants(
         How many, and the seed of the choice.
     """
     random, text = Random(f"{seed} {source.name} {compiler} {' '.join(flags)}"), source.read_text(encoding="utf-8")
-    functions = [name for name, found in functions_of(text).items() if found.returns == "void" and "_batch" not in name]
+    functions = [
+        name for name, function in functions_of(text).items() if function.returns == "void" and "_batch" not in name
+    ]
     good = directory / "good.o"
     compile_object(compiler, flags, source, good)
     content, made = good.read_bytes(), 0
@@ -230,7 +232,7 @@ def _from_edited(
 
 def same_bits(source: Path, good: Path, mutant: Path, seed: int = 1) -> bool:
     """Return whether two object files of one kernel give the same bits on many inputs, NaN for NaN; a crash is a no."""
-    found = []
+    outputs = []
     for path in (good, mutant):
         library = path.with_suffix(".so")
         command = [
@@ -248,8 +250,8 @@ def same_bits(source: Path, good: Path, mutant: Path, seed: int = 1) -> bool:
             return False
         if done.returncode:
             return False
-        found.append(json.loads(done.stdout))
-    return bool(found[0] == found[1])
+        outputs.append(json.loads(done.stdout))
+    return bool(outputs[0] == outputs[1])
 
 
 SPECIAL = (0.0, -0.0, 1.0, -1.0, 0.5, float("inf"), float("-inf"), float("nan"), 5e-324, 1e-160, 1e160, 1e-30, 3.5)
@@ -257,7 +259,7 @@ SPECIAL = (0.0, -0.0, 1.0, -1.0, 0.5, float("inf"), float("-inf"), float("nan"),
 
 def _outputs(source: Path, library: Path, seed: int) -> list[list[str]]:
     """Run the one-sample functions of a library and return their outputs as text."""
-    random, found = Random(seed), []
+    random, values = Random(seed), []
     loaded = ctypes.CDLL(str(library))
     for name, function in functions_of(source.read_text(encoding="utf-8")).items():
         if function.returns != "void" or any(p.type == "size_t" for p in function.parameters):
@@ -272,8 +274,8 @@ def _outputs(source: Path, library: Path, seed: int) -> list[list[str]]:
                 arguments.append(array if parameter.size else real(chosen[0]))
                 outputs += [array] if parameter.size and not parameter.is_const else []
             getattr(loaded, name)(*arguments)
-            found.append([float(value).hex() for array in outputs for value in array])
-    return found
+            values.append([float(value).hex() for array in outputs for value in array])
+    return values
 
 
 if __name__ == "__main__":

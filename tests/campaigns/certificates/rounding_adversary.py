@@ -17,14 +17,14 @@ from numpy.typing import NDArray
 
 from symrot.certificates.rounding.adjoint import evaluate
 from symrot.certificates.rounding.intervals import DIGITS
-from symrot.certificates.rounding.output_graph import Cone
+from symrot.certificates.rounding.output_graph import OutputGraph
 from symrot.certificates.rounding.region import UNIT_NORM, Region
 from tests.campaigns.certificates.rounding_replay import FLOAT, Points
 
-__all__ = ["BROOD", "CHAINS", "Field", "climb", "distinct", "pointwise", "top"]
+__all__ = ["CANDIDATES_PER_STEP", "RESTARTS", "Field", "climb", "distinct", "pointwise", "top"]
 
-CHAINS = 64  # climbs at once
-BROOD = 8  # points that are tried near each at once
+RESTARTS = 64  # climbs at once
+CANDIDATES_PER_STEP = 8  # points that are tried near each at once
 SHARES = 4  # times that the better half of the climbs takes the place of the worse
 LAST_BITS = 0.5  # part of the steps that change last bits only: up to half of all bits
 MOVED = 1.5  # inputs that a step changes, on average
@@ -57,8 +57,8 @@ class Field:
         part = rng.random((len(self.places), count))
         ends = rng.random(part.shape) < rng.choice([0.0, 0.5, 0.9], size=count)
         part = np.where(ends, np.round(part) + (0.5 - np.round(part)) * 2.0 ** -rng.integers(4, 50, part.shape), part)
-        found, inside = self.inside(low + (high - low) * part)
-        return np.asarray(found[:, inside])
+        points, inside = self.inside(low + (high - low) * part)
+        return np.asarray(points[:, inside])
 
     def near(self, points: Points, rng: np.random.Generator) -> tuple[Points, NDArray[np.bool_]]:
         """Return a point near each, and which of them are in the region."""
@@ -72,36 +72,36 @@ class Field:
         step = np.where(rng.random(shape[1]) < LAST_BITS, bits, far)
         return self.inside(np.clip(at + step * (rng.random(shape) < MOVED / len(self.places)), low, high))
 
-    def inside(self, found: NDArray[np.float64]) -> tuple[Points, NDArray[np.bool_]]:
+    def inside(self, points: NDArray[np.float64]) -> tuple[Points, NDArray[np.bool_]]:
         """Return points rounded to the precision, brought to the unit spheres of the region, and which are in it."""
         low, high = self.ends
         groups = [[self.places.index(place) for place in group] for group in self.region.unit]
         for rows in groups:
-            square = (found[rows] ** 2).sum(axis=0)
+            square = (points[rows] ** 2).sum(axis=0)
             apart = (np.abs(square - 1) > UNIT_NORM / 2) & (square > 0)  # nearer ones keep their last bits
-            found[rows] /= np.where(apart, np.sqrt(square), 1.0)
-        rounded = found.astype(self.kind).astype(np.float64)
+            points[rows] /= np.where(apart, np.sqrt(square), 1.0)
+        rounded = points.astype(self.kind).astype(np.float64)
         inside: NDArray[np.bool_] = np.asarray(((rounded >= low) & (rounded <= high)).all(axis=0))
         for rows in groups:
             inside = inside & (np.abs((rounded[rows] ** 2).sum(axis=0) - 1) < 0.9 * UNIT_NORM)
         return rounded.astype(self.kind), inside
 
 
-def pointwise(cone: Cone, field: Field, libm_ulp: float) -> Errors:
+def pointwise(graph: OutputGraph, field: Field, libm_ulp: float) -> Errors:
     """Return the bounds that the method finds at single points: where they are large, roundings are coarse."""
-    rows = [field.places.index(place) for place in cone.places]
+    rows = [field.places.index(place) for place in graph.places]
 
     def bounds(points: Points) -> NDArray[np.float64]:
         at = points[rows].astype(np.float64)
-        decided = np.full((len(cone.conditions), at.shape[1]), -1, np.int8)
+        decided = np.full((len(graph.conditions), at.shape[1]), -1, np.int8)
         with np.errstate(all="ignore"):
-            found = evaluate(cone, np.stack([at, at]), decided, field.region, libm_ulp).bound
-        return np.where(np.isfinite(found), found, -1.0)
+            errors = evaluate(graph, np.stack([at, at]), decided, field.region, libm_ulp).bound
+        return np.where(np.isfinite(errors), errors, -1.0)
 
     return bounds
 
 
-def top(errors: NDArray[np.float64], count: int = CHAINS) -> NDArray[np.intp]:
+def top(errors: NDArray[np.float64], count: int = RESTARTS) -> NDArray[np.intp]:
     """Return the places of the largest errors, the largest first."""
     return np.argsort(-errors, kind="stable")[:count]
 
@@ -116,26 +116,26 @@ def climb(errors_of: Errors, field: Field, start: Points, rounds: int, rng: np.r
     field : Field
         Where.
     start : ndarray, shape (inputs, n)
-        The first ``CHAINS`` of them are climbed from; if there are fewer, from some several times.
+        The first ``RESTARTS`` of them are climbed from; if there are fewer, from some several times.
     rounds : int
-        Steps of each climb, the best of ``BROOD`` tried ones each, if it is better than none.
+        Steps of each climb, the best of ``CANDIDATES_PER_STEP`` tried ones each, if it is better than none.
     rng : numpy.random.Generator
         Of the steps.
     """
-    points = start[:, np.arange(CHAINS) % start.shape[1]]
+    points = start[:, np.arange(RESTARTS) % start.shape[1]]
     errors = errors_of(points)
     share = max(rounds // (SHARES + 1), 1)
     for number in range(rounds):
         if number % share == share - 1 and number < SHARES * share:
             order = top(errors)
-            points[:, order[CHAINS // 2 :]] = points[:, order[: CHAINS // 2]]
-            errors[order[CHAINS // 2 :]] = errors[order[: CHAINS // 2]]
-        near, inside = field.near(np.repeat(points, BROOD, axis=1), rng)
-        found = np.where(inside, errors_of(near), -1.0).reshape(CHAINS, BROOD)
-        best = found.argmax(axis=1)
-        better = found.max(axis=1) > errors
-        points[:, better] = near[:, (np.arange(CHAINS) * BROOD + best)[better]]
-        errors[better] = found.max(axis=1)[better]
+            points[:, order[RESTARTS // 2 :]] = points[:, order[: RESTARTS // 2]]
+            errors[order[RESTARTS // 2 :]] = errors[order[: RESTARTS // 2]]
+        near, inside = field.near(np.repeat(points, CANDIDATES_PER_STEP, axis=1), rng)
+        trial_errors = np.where(inside, errors_of(near), -1.0).reshape(RESTARTS, CANDIDATES_PER_STEP)
+        best = trial_errors.argmax(axis=1)
+        better = trial_errors.max(axis=1) > errors
+        points[:, better] = near[:, (np.arange(RESTARTS) * CANDIDATES_PER_STEP + best)[better]]
+        errors[better] = trial_errors.max(axis=1)[better]
     return np.asarray(points[:, top(errors)])
 
 

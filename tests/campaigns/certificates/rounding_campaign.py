@@ -16,9 +16,9 @@ from math import inf
 from pathlib import Path
 
 from symrot.certificates.readback.operations import Operations
-from symrot.certificates.rounding.bounds import BUDGET, OutputBound, bound_outputs, tasks
+from symrot.certificates.rounding.bounds import BUDGET, OutputBound, bound_outputs, bound_tasks
 from symrot.certificates.rounding.intervals import DIGITS
-from symrot.certificates.rounding.library import operations_of, prepare, problem
+from symrot.certificates.rounding.library import library_problem, operations_of, prepare
 from symrot.errors import InputError
 from symrot.kernels.library import definition, kernel_names
 from tests.campaigns.certificates.rounding_measured import Measured, measure
@@ -96,8 +96,8 @@ def compare(
     """Return a row for each output."""
     unit = 2.0 ** -DIGITS[operations.precision]
     return [
-        Row(kernel, operations.precision, each.output, found.error / unit, each.bound / unit, found.at)
-        for each, found in zip(bounds, measured, strict=True)
+        Row(kernel, operations.precision, each.output, errors.error / unit, each.bound / unit, errors.at)
+        for each, errors in zip(bounds, measured, strict=True)
     ]
 
 
@@ -112,25 +112,25 @@ def rows(name: str, text: str, points: int, seed: int = 1, budget: int = BUDGET,
 
 
 def _rows(name: str, operations: Operations, points: int, seed: int, budget: int) -> list[Row]:
-    given = problem(definition(name), operations)
-    bounds = bound_outputs(operations, given.box, given.region, budget)
-    found = compare(operations, bounds, measure(operations, given.box, bounds, given.region, points, seed), name)
-    if not all(row.tight for row in found):  # a larger error may only be rare: look for it longer
-        loose = [each for each, row in zip(bounds, found, strict=True) if not row.tight]
-        more = measure(operations, given.box, loose, given.region, LONGER * points, seed + 1)
+    problem = library_problem(definition(name), operations)
+    bounds = bound_outputs(operations, problem.box, problem.region, budget)
+    rows = compare(operations, bounds, measure(operations, problem.box, bounds, problem.region, points, seed), name)
+    if not all(row.tight for row in rows):  # a larger error may only be rare: look for it longer
+        loose = [each for each, row in zip(bounds, rows, strict=True) if not row.tight]
+        more = measure(operations, problem.box, loose, problem.region, LONGER * points, seed + 1)
         again = {row.output: row for row in compare(operations, loose, more, name)}
-        found = [max(row, again.get(row.output, row), key=lambda each: each.measured) for row in found]
-    return found
+        rows = [max(row, again.get(row.output, row), key=lambda each: each.measured) for row in rows]
+    return rows
 
 
 def _keys(name: str, text: str) -> dict[tuple[str, str], str]:
     """Return (precision, output) of a kernel -> what its computation has in common with equal ones."""
-    found = {}
+    keys = {}
     for operations in operations_of(name, text):
-        given = problem(definition(name), operations)
-        for output, task in tasks(operations, given.box, given.region).items():
-            found[operations.precision, output] = task.key
-    return found
+        problem = library_problem(definition(name), operations)
+        for output, task in bound_tasks(operations, problem.box, problem.region).items():
+            keys[operations.precision, output] = task.key
+    return keys
 
 
 @dataclass(frozen=True)
@@ -171,11 +171,11 @@ def table(texts: Mapping[str, str], points: int = POINTS, workers: int = 2) -> I
         work.append(_Work(name, text, suffixes))
     known: dict[str, Row] = {}
     with ProcessPoolExecutor(workers) as pool:
-        for each, found in zip(work, pool.map(partial(_measured, points=points), work), strict=True):
-            if isinstance(found, str):
-                yield each.name, found
+        for each, rows in zip(work, pool.map(partial(_measured, points=points), work), strict=True):
+            if isinstance(rows, str):
+                yield each.name, rows
                 continue
-            for row in found:
+            for row in rows:
                 key = keys[each.name][row.precision, row.output]
                 known[key] = max(row, known.get(key, row), key=lambda row: row.measured)
             yield (
@@ -184,16 +184,16 @@ def table(texts: Mapping[str, str], points: int = POINTS, workers: int = 2) -> I
             )
 
 
-def _line(found: Sequence[Row]) -> str:
-    loose = max(found, key=lambda row: (not row.holds, row.ratio))
-    verdict = "BROKEN" if not loose.holds else "" if all(row.tight for row in found) else "LOOSE"
-    said = f"{loose.output:16s} measured {loose.measured:10.4g}  bound {loose.bound:10.4g}"
-    return f"{loose.kernel:34s} {loose.precision} {said}  ratio {loose.ratio:6.3g} {verdict}".rstrip()
+def _line(rows: Sequence[Row]) -> str:
+    loose = max(rows, key=lambda row: (not row.holds, row.ratio))
+    verdict = "BROKEN" if not loose.holds else "" if all(row.tight for row in rows) else "LOOSE"
+    text = f"{loose.output:16s} measured {loose.measured:10.4g}  bound {loose.bound:10.4g}"
+    return f"{loose.kernel:34s} {loose.precision} {text}  ratio {loose.ratio:6.3g} {verdict}".rstrip()
 
 
-def class_lines(found: Iterable[Row]) -> list[str]:
+def class_lines(all_rows: Iterable[Row]) -> list[str]:
     """Return a line for each class: bar, kernels, largest ratio and where it is; and those that miss it."""
-    rows = list(found)
+    rows = list(all_rows)
     lines = []
     for each in CLASSES:
         own = [row for row in rows if class_of(row.kernel) is each]
@@ -226,14 +226,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     prepare(texts.items(), options.workers)
     every: list[Row] = []
     failed = 0
-    for name, found in table(texts, options.points, options.workers):
-        if isinstance(found, str):
+    for name, rows in table(texts, options.points, options.workers):
+        if isinstance(rows, str):
             failed += 1
-            print(f"{name:34s} no bound: {found}", flush=True)
+            print(f"{name:34s} no bound: {rows}", flush=True)
             continue
         for precision in DIGITS:
-            print(_line([row for row in found if row.precision == precision]), flush=True)
-        every += found
+            print(_line([row for row in rows if row.precision == precision]), flush=True)
+        every += rows
     print("\n".join(class_lines(every)))
     broken = sum(not row.holds for row in every)
     print(f"{len(every)} outputs, {broken} errors above their bounds, {failed} kernels without bounds")

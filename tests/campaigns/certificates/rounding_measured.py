@@ -17,9 +17,17 @@ from numpy.typing import NDArray
 from symrot.certificates.readback.operations import RELATIONS, Operations, operands
 from symrot.certificates.rounding.adjoint import LIBM_ULP
 from symrot.certificates.rounding.bounds import Box, OutputBound
-from symrot.certificates.rounding.output_graph import cone_of
+from symrot.certificates.rounding.output_graph import output_graph
 from symrot.certificates.rounding.region import EVERYWHERE, Region
-from tests.campaigns.certificates.rounding_adversary import BROOD, CHAINS, Field, climb, distinct, pointwise, top
+from tests.campaigns.certificates.rounding_adversary import (
+    CANDIDATES_PER_STEP,
+    RESTARTS,
+    Field,
+    climb,
+    distinct,
+    pointwise,
+    top,
+)
 from tests.campaigns.certificates.rounding_replay import Points, behind, meant, replay, scan
 
 __all__ = ["Measured", "measure"]
@@ -74,24 +82,26 @@ def measure(
     field = Field(places, operations.precision, box, region)
     scanned = field.points(points // 2, rng)
     errors = scan(operations, region, scanned)
-    rounds = max(points // (2 * len(bounds) * CHAINS * BROOD), LEAST_ROUNDS)
-    found = []
+    rounds = max(points // (2 * len(bounds) * RESTARTS * CANDIDATES_PER_STEP), LEAST_ROUNDS)
+    measurements = []
     for each in bounds:
         best = scanned[:, top(errors[each.output])]
         middle = {place: float(sum(box[place]) / 2) for place in places} | dict(each.at)
         worst = np.array([[middle[place]] for place in places]).astype(field.kind)
         coarse = _coarse(operations, field, each.output, np.concatenate([worst, scanned[:, :JUDGED]], axis=1), rng)
-        start = distinct([worst, coarse[:, : CHAINS // 2], best])
+        start = distinct([worst, coarse[:, : RESTARTS // 2], best])
         own = behind(operations, each.output)
         climbed = _climbed(own, field, start, rounds, rng)
         every = distinct([climbed[:, :CONFIRMED], best[:, :CONFIRMED]])
-        found.append(_confirm(own, each, every, scanned.shape[1] + (rounds + 1) * CHAINS * BROOD))
-    return tuple(found)
+        measurements.append(
+            _confirm(own, each, every, scanned.shape[1] + (rounds + 1) * RESTARTS * CANDIDATES_PER_STEP)
+        )
+    return tuple(measurements)
 
 
 def _coarse(operations: Operations, field: Field, output: str, points: Points, rng: np.random.Generator) -> Points:
     """Return points where the method's bound of an output is large, found from some."""
-    bounds = pointwise(cone_of(operations, dict(operations.outputs)[output]), field, LIBM_ULP)
+    bounds = pointwise(output_graph(operations, dict(operations.outputs)[output]), field, LIBM_ULP)
     return climb(bounds, field, points[:, top(bounds(points))], AIMED, rng)
 
 
@@ -117,8 +127,8 @@ def _confirm(operations: Operations, each: OutputBound, points: Points, used: in
                 error = abs(error - 2 * mpmath.pi * mpmath.nint(error / (2 * mpmath.pi)))
             if error > best:
                 best, at = error, points[:, column]
-    shown = tuple((place, float(x)) for place, x in zip(operations.inputs, at, strict=True))
-    return Measured(each.output, float(best), shown, used)
+    point = tuple((place, float(x)) for place, x in zip(operations.inputs, at, strict=True))
+    return Measured(each.output, float(best), point, used)
 
 
 def _confirmed(operations: Operations, computed: Sequence[Any], column: int, root: int, point: Any) -> Any:

@@ -12,8 +12,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.certificates.readback.intended_constants import meaning
-from symrot.certificates.readback.operations import RELATIONS, Builder, Operations, operands
+from symrot.certificates.readback.intended_constants import intended_value
+from symrot.certificates.readback.operations import RELATIONS, GraphBuilder, Operations, operands
 from symrot.certificates.rounding.region import Region
 from symrot.errors import CertificateError
 
@@ -36,15 +36,15 @@ _WIDE_CALLS: dict[str, Callable[..., Any]] = {"sin": np.sin, "cos": np.cos, "ata
 def meant(value: Fraction, precision: str) -> tuple[Fraction, bool]:
     """Return what a constant stands for, and whether times pi; itself where that is not told by the constant."""
     try:
-        found = meaning(value, precision)
+        constant = intended_value(value, precision)
     except CertificateError:
         return value, False
-    return found.fraction, found.times_pi
+    return constant.fraction, constant.times_pi
 
 
 def behind(operations: Operations, output: str) -> Operations:
     """Return the operations that one output needs, of the same inputs."""
-    builder = Builder()
+    builder = GraphBuilder()
     builder.nodes = list(operations.nodes)
     root = dict(operations.outputs)[output]
     return builder.finish(operations.name, operations.precision, operations.inputs, [(output, root)])
@@ -72,8 +72,8 @@ def replay(operations: Operations, points: Points) -> tuple[list[Any], list[Any]
             computed.append(np.where(holds, computed[node[4]], computed[node[5]]))
             exact.append(np.where(holds, exact[node[4]], exact[node[5]]))
         elif node[0] == "call":
-            taken = [computed[i].astype(np.float64) for i in node[2]]
-            computed.append(_CALLS[node[1]](*taken).astype(np.float64).astype(kind))
+            arguments = [computed[i].astype(np.float64) for i in node[2]]
+            computed.append(_CALLS[node[1]](*arguments).astype(np.float64).astype(kind))
             exact.append(_WIDE_CALLS[node[1]](*(exact[i] for i in node[2])))
         else:
             computed.append(_ROUNDED[node[0]](*(computed[i] for i in operands(node))))
@@ -89,10 +89,10 @@ def scan(operations: Operations, region: Region, points: Points) -> dict[str, ND
         for node in operations.nodes if region.clearance else ():
             if node[0] == "call" and node[1] == "atan2":
                 outside |= np.hypot(*(exact[i] for i in node[2])) < region.clearance
-        found = {}
+        extremes = {}
         for place, index in operations.outputs:
             error = np.abs(computed[index].astype(exact[index].dtype) - exact[index]).astype(np.float64)
             if region.unit:
                 error = np.abs(error - 2 * pi * np.rint(error / (2 * pi)))
-            found[place] = np.where(outside | ~np.isfinite(error), -1.0, error)
-    return found
+            extremes[place] = np.where(outside | ~np.isfinite(error), -1.0, error)
+    return extremes

@@ -36,8 +36,8 @@ def same_bits(files: Mapping[str, str], name: str, other: str, data: Mapping[str
         return False
     inputs = [place for place, *_ in data["inputs"]]
     places = [*inputs, *(place for place, *_ in data["spec"]["formulas"])]
-    for function, said in data["readback"].items():
-        kind = np.float32 if said["type"] == "float" else np.float64
+    for function, readback in data["readback"].items():
+        kind = np.float32 if readback["type"] == "float" else np.float64
         for many in (0, SAMPLES):
             for _ in range(RUNS):
                 arrays: dict[str, list[float]] = {}
@@ -46,8 +46,8 @@ def same_bits(files: Mapping[str, str], name: str, other: str, data: Mapping[str
                     count = 1 if base == "p" or not many else many
                     drawn = [random.uniform(-2, 2) for _ in range(count)]
                     arrays.setdefault(base, []).extend(drawn if place in inputs else [0.0] * count)
-                found = [_called(loaded, function, arrays, places, kind, many) for loaded in (first, second)]
-                if found[0] != found[1]:
+                outputs = [_called(loaded, function, arrays, places, kind, many) for loaded in (first, second)]
+                if outputs[0] != outputs[1]:
                     return False
     return True
 
@@ -64,9 +64,9 @@ def _called(
     """Return what the arrays hold after a call of one sample, or of many."""
     real = ctypes.c_float if kind is np.float32 else ctypes.c_double
     held = {base: np.array(values, kind) for base, values in arrays.items()}
-    given: list[Any] = [ctypes.c_size_t(many)] if many else []
+    arguments: list[Any] = [ctypes.c_size_t(many)] if many else []
     for base, values in held.items():
         plain = base in places and not many  # a number by itself
-        given.append(real(values[0]) if plain else ctypes.c_void_p(values.ctypes.data))
-    getattr(loaded, f"{name}_batch" if many else name)(*given)
+        arguments.append(real(values[0]) if plain else ctypes.c_void_p(values.ctypes.data))
+    getattr(loaded, f"{name}_batch" if many else name)(*arguments)
     return [values.tobytes() for values in held.values()]

@@ -20,8 +20,8 @@ from symrot.checker.claim.tree import Node, number, product, replaced, sum_of, t
 from symrot.checker.interface import check
 from symrot.checker.repair.edits import single_edits
 from symrot.errors import InputError
-from tests.campaigns.checker.judge import ANGLES, FUNCTIONS, QUATERNIONS, SYMBOLS
-from tests.campaigns.checker.judge_wider import EXPONENTS, HYPOTHESES, INVERSES, truth_under
+from tests.campaigns.checker.oracle import ANGLES, FUNCTIONS, QUATERNIONS, SYMBOLS
+from tests.campaigns.checker.oracle_extended import EXPONENTS, HYPOTHESES, INVERSES, truth_under
 from tests.campaigns.checker.real_identities import judged_real, real_claims
 from tests.campaigns.checker.run import Judged, Tally, answer_of, judged_claims, read_log
 

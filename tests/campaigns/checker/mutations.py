@@ -9,7 +9,7 @@ from fractions import Fraction
 from random import Random
 
 from symrot import symbols
-from symrot.checker.claim.claims import Claim, shown_relation
+from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
 
 __all__ = ["MUTATIONS", "mutated", "places"]
@@ -225,7 +225,7 @@ def mutated(claim: Claim, code: str, source: Random, is_matrix: IsMatrix, among:
     for step in path:
         node = node.args[step]
     made = source.choice(list(MUTATIONS[code](node, is_matrix)))
-    trees[place] = _settled(replaced(trees[place], path, lambda _: made))
+    trees[place] = _flattened(replaced(trees[place], path, lambda _: made))
     define = tuple((name, trees[name]) for name, _ in claim.define)
     relation = (sign, trees["left"], trees["right"])
     used = {piece.value for tree in trees.values() for _, piece in walk(tree) if piece.kind == "name"}
@@ -237,13 +237,13 @@ def mutated(claim: Claim, code: str, source: Random, is_matrix: IsMatrix, among:
         define=define,
         symbols=(*claim.symbols, *sorted(used - known)),
         functions=(*claim.functions, *sorted(called - known)),
-        sources={**claim.sources, "claim": shown_relation(relation)},
+        sources={**claim.sources, "claim": relation_text(relation)},
     )
 
 
-def _settled(node: Node) -> Node:
+def _flattened(node: Node) -> Node:
     """Return a tree with sums in sums and products in products made flat, as the reader gives them."""
-    args = [_settled(child) for child in node.args]
+    args = [_flattened(child) for child in node.args]
     if node.kind in ("sum", "product"):
         return (sum_of if node.kind == "sum" else product)(args)
     if node.kind == "neg":

@@ -2,7 +2,7 @@
 
 A claim is a formula against what rules of real functions make of it (each holds wherever both sides have a value), what
 wrong rules make of it, or something else. Sides with a value nowhere are wanted: nothing may be said to be true of
-them. What is true is judged by :mod:`tests.campaigns.checker.judge_real`, point by point, for the verdict and its evidence.
+them. What is true is judged by :mod:`tests.campaigns.checker.oracle_real`, point by point, for the verdict and its evidence.
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,7 +13,7 @@ from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.claim.tree import Node, replaced, text, walk
 from symrot.checker.interface import check
 from symrot.checker.verdict import Verdict
-from tests.campaigns.checker.judge_real import (
+from tests.campaigns.checker.oracle_real import (
     NAMES,
     Edge,
     Large,
@@ -182,7 +182,7 @@ def fault(claim: str, verdict: Verdict | str, source: Random) -> str:
     Parameters
     ----------
     claim : str
-        ``left == right`` with the names of :data:`tests.campaigns.checker.judge_real.NAMES`.
+        ``left == right`` with the names of :data:`tests.campaigns.checker.oracle_real.NAMES`.
     verdict : Verdict or str
         Or the sentence by which the claim was refused.
     source : Random

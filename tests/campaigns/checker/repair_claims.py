@@ -14,9 +14,9 @@ from sympy import MatrixBase
 from symrot.catalogue import derivation, names
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import Relation, read_expression, read_relation
-from symrot.checker.decide.decision import shown
 from symrot.conventions import INTRINSIC_SEQUENCES, SEQUENCES
 from symrot.errors import InputError
+from symrot.exact.printing import as_text
 from symrot.kinematics.euler import rate_jacobian
 from symrot.proof.derivation import Step
 
@@ -119,7 +119,7 @@ def _of_sequences() -> Iterator[tuple[str, str, tuple[tuple[str, str], ...], tup
         dcm = ("R", "*".join(turns if sequence.isupper() else turns[::-1]))
         for frame, claim in (("body", "diff(R, t) == R*skew(w)"), ("space", "diff(R, t) == skew(w)*R")):
             jacobian = rate_jacobian(sequence, frame)
-            rows = [[_in_time(shown(jacobian[i, j])) for j in range(3)] for i in range(3)]
+            rows = [[_in_time(as_text(jacobian[i, j])) for j in range(3)] for i in range(3)]
             terms = [
                 " + ".join(f"({entry})*diff({angle}, t)" for entry, angle in zip(row, angles, strict=True)
                            if entry != "0") for row in rows
@@ -156,7 +156,7 @@ def claims_of_statements() -> Iterator[tuple[str, Claim]]:
         known = {*functions, *(word for word, _ in define), "pi"}
         symbols = sorted({piece for tree in trees for piece in _names(tree)} - known)
         yield name, Claim(
-            id=name, symbols=tuple(symbols), functions=functions, define=definitions, given=hypotheses,
+            id=name, symbols=tuple(symbols), functions=functions, define=definitions, hypotheses=hypotheses,
             relation=relation, sources={"claim": source},
         )  # fmt: skip
 
@@ -187,16 +187,16 @@ def _of_step(step: Step, label: str) -> list[Claim]:
 
 def _claim(left: Any, right: Any, hypotheses: Sequence[Any], label: str) -> Claim | None:
     """Return an equation as a claim; None for one beyond what the reader takes."""
-    source = f"{shown(left)} == {shown(right)}"
+    source = f"{as_text(left)} == {as_text(right)}"
     symbols = sorted(set().union(*(side.free_symbols for side in (left, right, *hypotheses))), key=str)
     signs: list[Relation] = [read_relation(f"{symbol} > 0") for symbol in symbols if symbol.is_positive]
-    zeros = [read_relation(f"{shown(formula)} == 0") for formula in hypotheses]
+    zeros = [read_relation(f"{as_text(formula)} == 0") for formula in hypotheses]
     try:
         relation = read_relation(source)
     except InputError:
         return None
     return Claim(
-        id=label, symbols=tuple(map(str, symbols)), given=(*zeros, *signs), relation=relation,
+        id=label, symbols=tuple(map(str, symbols)), hypotheses=(*zeros, *signs), relation=relation,
         sources={"claim": " ".join(source.split())},
     )  # fmt: skip
 

@@ -17,9 +17,9 @@ from time import perf_counter
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.claim.tree import Node
-from symrot.checker.decide.decision import Decision, decide_problem
+from symrot.checker.decide.decision import Decision, decide_equation
 from symrot.checker.latex.matrices import MATRIX_CALLS
-from symrot.checker.repair.canonical_form import settled
+from symrot.checker.repair.canonical_form import canonical
 from symrot.checker.repair.diagnose import diagnose
 from symrot.checker.verdict import Repair
 from symrot.errors import InputError
@@ -59,7 +59,7 @@ class Outcome:
 
 def matrix_test(claim: Claim) -> IsMatrix:
     """Return whether a piece of a claim is a matrix, by its form and the definitions."""
-    matrices = {name for name, value in claim.meaning().values.items() if getattr(value, "is_Matrix", False)}
+    matrices = {name for name, value in claim.definitions.values.items() if getattr(value, "is_Matrix", False)}
 
     def is_matrix(node: Node) -> bool:
         if node.kind == "name":
@@ -107,7 +107,7 @@ def _with_faults(original: Claim, codes: Sequence[str], source: Random) -> Claim
 
 def _decided(claim: Claim) -> Decision | None:
     try:
-        return decide_problem(claim.problem())
+        return decide_equation(claim.equation)
     except InputError:
         return None
 
@@ -156,16 +156,16 @@ def _written(claim: Claim) -> tuple[Node, ...]:
     """Return the trees of a claim, up to the order of terms and of scalar factors."""
     assert claim.relation is not None
     is_matrix = matrix_test(claim)
-    return tuple(settled(tree, is_matrix) for tree in (*claim.relation[1:], *(tree for _, tree in claim.define)))
+    return tuple(canonical(tree, is_matrix) for tree in (*claim.relation[1:], *(tree for _, tree in claim.define)))
 
 
 def _same(original: Claim, found: Claim) -> bool:
     """Return whether two claims have the same sides and definitions, proven entry by entry."""
     assert original.relation is not None and found.relation is not None
-    hypotheses = original.problem().hypotheses
+    hypotheses = original.equation.hypotheses
     if _written(original) == _written(found):
         return True
-    first, second = original.meaning(), found.meaning()
+    first, second = original.interpreter(), found.interpreter()
     pairs = [(first.values[name], second.values[name]) for name, _ in original.define]
     try:
         sides = zip(original.relation[1:], found.relation[1:], strict=True)

@@ -1,4 +1,4 @@
-"""Values of trees at rational points by exact arithmetic that shares nothing with the engine: judge of the campaign.
+"""Values of trees at rational points by exact arithmetic that shares nothing with the engine: the oracle of the campaign.
 
 An angle is given by the rational cosine and sine of its half, a function of time by that and its rate.
 """

@@ -1,8 +1,8 @@
-"""Follow a motion with events: their times, the states there, and the samples up to and at a terminal one."""
+"""Motions with events: the times of the events, the states there, and the samples up to a terminal event."""
 
 from collections.abc import Callable, Generator, Sequence
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,13 +11,21 @@ from symrot.build import cache as library
 from symrot.errors import InputError, PropagationError
 from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks
-from symrot.propagation.events.events import Event, Found, event_library_source, search, stepped, timed, uses_attitude
+from symrot.propagation.events.events import (
+    Event,
+    EventZero,
+    event_library_source,
+    search,
+    stepped,
+    timed,
+    uses_attitude,
+)
 from symrot.propagation.events.polynomials import Piece, fitted, fitted_pieces
-from symrot.propagation.motion import Motion, MotionInParts
-from symrot.propagation.steppers.cut_off import CutOff
-from symrot.propagation.steppers.stepping import Stats, Switching, both_sides, stats_of
+from symrot.propagation.motion import Motion, MotionInParts, SciPyMotion, SteppedInC, on_clock
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
+from symrot.propagation.steppers.stepping import Integration, Stats, Switching, split_at, stats_of
 
-__all__ = ["Eventful", "follow"]
+__all__ = ["EventResult", "integrate_with_events"]
 
 Floats = NDArray[np.float64]
 
@@ -25,13 +33,13 @@ TURN_PER_PIECE = 2.0  # rad: how far a motion without steps rotates in the first
 SAMPLES_OF_RATE = 257  # by which the largest rate of such a motion is judged
 
 
-class Eventful(NamedTuple):
+class EventResult(NamedTuple):
     """A motion with events.
 
     Attributes
     ----------
     t, states : arrays, shapes (n,) and (n, N)
-        Samples as they were asked for; in place of those beyond a terminal event, one at the event.
+        Samples at the requested times; a single sample at a terminal event replaces all samples beyond it.
     t_events, y_events : lists of arrays, shapes (k,) and (k, N)
         Per event, in rising order of time: when it happened, and the states there.
     kinds : list of lists of str
@@ -50,7 +58,7 @@ class Eventful(NamedTuple):
 
 
 class _Side(NamedTuple):
-    """A motion to one side of its start: how to take it piece by piece, and its states at times on the way."""
+    """A motion to one side of its start: its pieces as polynomials, and its states at times on that side."""
 
     pieces: Generator[Piece, None, None]
     states: Callable[[Floats], Floats]
@@ -59,13 +67,13 @@ class _Side(NamedTuple):
     switchings: tuple[Switching, ...] = ()
 
 
-def follow(motion: Motion, times: Floats, events: Sequence[Event]) -> Eventful:
+def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]) -> EventResult:
     """Return a motion at its sample times with the events on the way from the start to the first and last of them.
 
     Raises
     ------
     InputError
-        If an event needs the attitude and the plan leaves it out, or if nothing of the motion changes.
+        If an event needs the attitude and the plan leaves it out, or if no state of the motion changes.
     CompilerError
         If there is no C compiler.
     PropagationError
@@ -80,39 +88,45 @@ def follow(motion: Motion, times: Floats, events: Sequence[Event]) -> Eventful:
     if not plan.states:
         raise InputError(f"events: expected a motion with states that change, got the scene {plan.scene.name!r}")
     quantities = motion.kernel.quantities
-    motion = motion if timed(quantities, events) else motion.on_clock(times)
-    zero, asked = motion.epoch, times.copy()
+    motion = motion if timed(quantities, events) else on_clock(motion, times)
+    zero, sample_times = motion.epoch, times.copy()
     times = times - zero if zero else times
     source = event_library_source(quantities, events, plan.states, *error_blocks(plan))
     path, p = library.build(source, "events"), bind(motion.kernel.quantity_parameters, plan.constants)
-    states, kept = np.empty((len(times), len(plan.states))), np.zeros(len(times), dtype=bool)
-    found: list[tuple[Found, Floats]] = []
+    states, known = (
+        np.empty((len(times), len(plan.states))),
+        np.zeros(len(times), dtype=bool),
+    )  # before a terminal event
+    zeros: list[tuple[EventZero, Floats]] = []
     counts, ended, switchings = np.zeros(3, dtype=int), False, list[Switching]()
-    for part in both_sides(times, motion.start):
+    for part in split_at(times, motion.start):
         end = float(times[part[-1]])
-        side = _side(motion, end)
+        try:
+            side = _side(motion, end)
+        except IntegrationStopped as early:
+            raise (early.later(zero) if zero else early) from None
         listed, stop = search(path, events, p, side.pieces, motion.start) if end != motion.start else ([], None)
         if side.broken and stop is None:
             error = side.broken[0]
-            raise error.later(zero) if isinstance(error, CutOff) else error
+            raise error.later(zero) if isinstance(error, IntegrationStopped) else error
         ended |= stop is not None
         inside = part if stop is None else part[np.abs(times[part] - motion.start) <= abs(stop - motion.start)]
-        kept[inside] = True
+        known[inside] = True
         states[inside] = side.states(times[inside])
         rows = side.states(np.array([each.t for each in listed]))
         if stop is not None and times[inside[-1:]].tolist() != [stop]:
             last = part[len(inside)]  # the first sample beyond becomes the one at the event
-            kept[last], asked[last], states[last] = True, stop + zero, rows[-1]
-        found = _joined(found, list(zip(listed, rows, strict=True)), motion.start)
+            known[last], sample_times[last], states[last] = True, stop + zero, rows[-1]
+        zeros = _joined(zeros, list(zip(listed, rows, strict=True)), motion.start)
         side.pieces.close()
         counts += side.cost()
         reached = abs((end if stop is None else stop) - motion.start)
         switchings += [each for each in side.switchings if abs(each.t - motion.start) <= reached]
-    found.sort(key=lambda each: each[0].t)
-    own = [[each for each in found if each[0].event == number] for number in range(len(events))]
-    return Eventful(
-        asked[kept],
-        states[kept],
+    zeros.sort(key=lambda each: each[0].t)
+    own = [[each for each in zeros if each[0].event == number] for number in range(len(events))]
+    return EventResult(
+        sample_times[known],
+        states[known],
         stats_of(counts, perf_counter() - began, switchings),
         [np.array([each.t + zero for each, _ in group]) for group in own],
         [np.array([row for _, row in group]).reshape(-1, len(plan.states)) for group in own],
@@ -122,9 +136,9 @@ def follow(motion: Motion, times: Floats, events: Sequence[Event]) -> Eventful:
 
 
 def _joined(
-    before: list[tuple[Found, Floats]], after: list[tuple[Found, Floats]], t0: float
-) -> list[tuple[Found, Floats]]:
-    """Put the two sides of a motion together: a zero at the start is one, a touch if both sides leave it alike."""
+    before: list[tuple[EventZero, Floats]], after: list[tuple[EventZero, Floats]], t0: float
+) -> list[tuple[EventZero, Floats]]:
+    """Join the zeros of both sides of a motion; a zero at the start counts once, as a touch if both sides agree."""
     at_start = {each.event: each for each, _ in before if each.t == t0}
     joined = [
         pair for pair in before if pair[0].t != t0 or pair[0].event not in {e.event for e, _ in after if e.t == t0}
@@ -137,28 +151,35 @@ def _joined(
 
 def _side(motion: Motion, end: float) -> _Side:
     """Return the motion from its start to an end."""
-    method, plan = motion.choice.method.partition(":")[0], motion.plan
+    plan = motion.plan
     start, y0 = motion.start, np.array(plan.initial_state, dtype=np.float64)
     broken: list[PropagationError] = []
     if isinstance(motion, MotionInParts):
         pieces, path = motion.parts(end, broken)
         return _Side((piece for piece in pieces), path, broken, lambda: path.stats[:3], path.stats.switchings)
-    if method in ("taylor", "dop853"):
-        task = motion.stepping.again()
+    if isinstance(motion, SteppedInC):
+        integration = motion.stepping.restarted()
         rows: list[Floats] = []
 
         def states(times: Floats) -> Floats:
-            found = task.stepper.dense(np.concatenate(rows), times) if rows else np.empty((len(times), len(y0)))
-            found[times == start] = y0
-            return found
+            dense = integration.stepper.dense
+            values = dense(np.concatenate(rows), times) if rows else np.empty((len(times), len(y0)))
+            values[times == start] = y0
+            return values
 
-        return _Side(stepped(task, end, broken, rows), states, broken, lambda: _cost(task))
+        return _Side(stepped(integration, end, broken, rows), states, broken, lambda: _cost(integration))
     blocks = error_blocks(plan)
-    if method == "scipy":
+    if isinstance(motion, SciPyMotion):
         from symrot.propagation.steppers import fallback
 
         recording = fallback.record(
-            motion.rates, motion.rate_parameters, y0, start, (start, end), motion.tolerance, **motion.scipy_options
+            motion.rates,
+            motion.rate_parameters,
+            y0,
+            start,
+            (start, end),
+            motion.tolerance,
+            motion.options(motion.rate_parameters),
         )
 
         def steps() -> Generator[Piece, None, None]:
@@ -175,5 +196,5 @@ def _side(motion: Motion, end: float) -> _Side:
     return _Side(fitted_pieces(anywhere, start, end, longest, *blocks), anywhere, broken, lambda: (0, 0, 0))
 
 
-def _cost(task: Any) -> tuple[int, int, int]:
-    return task.accepted, task.rejected, task.evaluations
+def _cost(integration: Integration) -> tuple[int, int, int]:
+    return integration.accepted, integration.rejected, integration.evaluations

@@ -3,13 +3,14 @@
 from typing import Any
 
 from sympy import Derivative, Expr
+from sympy.core.relational import Relational
 from sympy.printing.str import StrPrinter
 
-__all__ = ["shown"]
+__all__ = ["as_text"]
 
 
 class _Printer(StrPrinter):  # type: ignore[misc]
-    """Text that our reader reads back: ``diff(phi(t), t)`` for a derivative."""
+    """A printer whose text the reader of claims reads back: ``diff(phi(t), t)`` for a derivative."""
 
     def _print_Derivative(self, node: Derivative) -> str:
         variables = ", ".join(self._print(v) for v, times in node.variable_count for _ in range(int(times)))
@@ -18,7 +19,10 @@ class _Printer(StrPrinter):  # type: ignore[misc]
     def _print_Abs(self, node: Expr) -> str:
         return f"abs({self._print(node.args[0])})"
 
+    def _print_Relational(self, node: Relational) -> str:
+        return f"{self._print(node.lhs)} {node.rel_op} {self._print(node.rhs)}"
 
-def shown(value: Any) -> str:
+
+def as_text(value: Any) -> str:
     """Return a SymPy value as text in the language of claims."""
     return str(_Printer().doprint(value))

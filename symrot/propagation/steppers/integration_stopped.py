@@ -1,4 +1,4 @@
-"""Motions that end before they should: the error, the reasons, and the samples that were computed before."""
+"""Motions that stop early: the error, the reasons, and the samples computed before."""
 
 import math
 from collections.abc import Iterable
@@ -9,38 +9,38 @@ from numpy.typing import NDArray
 
 from symrot.errors import PropagationError
 
-__all__ = ["CutOff", "Samples", "add_samples", "why_hopeless", "why_stuck"]
+__all__ = ["IntegrationStopped", "Samples", "add_samples", "why_hopeless", "why_stuck"]
 
-HOPELESS = 3.0  # times the limit: a motion is given up that needs so many more steps at its pace
-MANY_TICKS = 2**20  # of the clock between two ends: with fewer, it is the clock that ends short steps
+HOPELESS = 3.0  # times the limit of steps: a motion that needs more at its pace is stopped
+MANY_TICKS = 2**20  # doubles between both ends: with fewer, the resolution of the clock ends short steps
 
 Floats = NDArray[np.float64]
 
 
-class CutOff(PropagationError):
-    """A motion that ends at t, s, on the way to ``stop``."""
+class IntegrationStopped(PropagationError):
+    """The error of a motion that stops at t, s, on the way to ``stop``."""
 
     def __init__(self, t: float, reason: str, stop: float | None = None) -> None:
         way = "" if stop is None else f" on the way to {stop!r} s"
         super().__init__(f"the motion cannot be followed beyond t = {t!r} s{way}: {reason}")
         self.t, self.reason, self.stop = t, reason, stop
-        self.samples: Samples | None = None  # those before t
-        self.recording: Any = None  # the motion before t, where one was being recorded
+        self.samples: Samples | None = None  # the samples before t
+        self.recording: Any = None  # the motion before t, if it was being recorded
 
-    def later(self, epoch: float) -> "CutOff":
+    def later(self, epoch: float) -> "IntegrationStopped":
         """Return the error for a clock that shows ``epoch`` where this one shows 0."""
-        later = CutOff(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
+        later = IntegrationStopped(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
         later.samples = self.samples
         return later
 
 
 class Samples(NamedTuple):
-    """The samples that were computed before a motion was cut off.
+    """The samples computed before a motion stopped early.
 
     Attributes
     ----------
     numbers : array, shape (k,)
-        Places of the samples among all that were asked for.
+        Places of the samples among all requested samples.
     states : array, shape (k, N)
     cost : (int, int, int)
         Steps accepted and rejected, and evaluations, that were spent until then.
@@ -54,9 +54,9 @@ class Samples(NamedTuple):
 def add_samples(
     error: BaseException, numbers: NDArray[np.intp], states: Floats, cost: Iterable[int] | None = None
 ) -> None:
-    """Have an error, or an interrupt, carry the samples computed before it in ``samples``, and what they cost."""
+    """Attach the samples computed before an error or an interrupt, and their cost, to its attribute ``samples``."""
     before: Samples | None = getattr(error, "samples", None)
-    if before is not None:  # of one side: the other side was finished first
+    if before is not None:  # the other side of the start was finished first
         numbers, states = np.concatenate([numbers, before.numbers]), np.concatenate([states, before.states])
         cost = before.cost if cost is None else cost
     accepted, rejected, evaluations = map(int, (0, 0, 0) if cost is None else cost)
@@ -64,17 +64,16 @@ def add_samples(
 
 
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
-    """Return why steps shrank to nothing at t: for ``reason``, or since the clock has few numbers on the whole way."""
+    """Return why steps shrank to zero at t: for ``reason``, or since the clock is too coarse for the whole span."""
     apart = math.ulp(t)
     if abs(stop - t0) > MANY_TICKS * apart:
         return reason
-    return (
-        f"the clock is too coarse for its steps: numbers lie {apart:.3g} s apart there; count the time from nearer by"
-    )
+    advice = "choose t = 0 nearer to the motion"
+    return f"the clock is too coarse for its steps: doubles lie {apart:.3g} s apart there; {advice}"
 
 
 def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
-    """Return why a motion is given up, or nothing; it took the steps for the last ``way``, s, with ``left`` to go."""
+    """Return why a motion is hopeless, or an empty text; ``steps`` covered the last ``way``, s, and ``left`` remain."""
     if steps * left <= HOPELESS * limit * way:
         return ""
     more = f"{steps * left / way:.0e} of them, far" if way > 0.0 else "endlessly many,"

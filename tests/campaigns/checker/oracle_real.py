@@ -1,9 +1,9 @@
-"""Values of trees at real points in 60 digits, and where there is none: judge of the campaign over real functions.
+"""Values of trees at real points in 60 digits, and where there is none: the oracle of the campaign over real functions.
 
 Arithmetic of mpmath's floating point numbers alone, which shares nothing with the engine: it proves nothing, but tells
 two values apart, and a value from none. The rules are those of real functions: a power ``u^(p/q)``, q > 1, of u >= 0
 only; logarithms of positive numbers; ``asin`` and ``acos`` between -1 and 1; no division by zero. A piece that is
-multiplied by zero must have a value too. Near the edge of a domain, and beyond e^100, the judge does not know.
+multiplied by zero must have a value too. Near the edge of a domain, and beyond e^100, the oracle does not answer.
 """
 
 from collections.abc import Mapping, Sequence

@@ -12,7 +12,7 @@ from random import Random
 from typing import Any
 
 from symrot.checker.claim.tree import Node
-from tests.campaigns.checker.judge import RationalPoint, Undefined, multiple, random_point
+from tests.campaigns.checker.oracle import RationalPoint, Undefined, multiple, random_point
 
 __all__ = ["EXPONENTS", "HYPOTHESES", "INVERSES", "WiderPoint", "truth_under", "wider_point"]
 

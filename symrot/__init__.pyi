@@ -1,0 +1,121 @@
+"""The types of the public names of symrot, which ``__init__.py`` imports at their first use."""
+
+from symrot.catalogue import derivation
+from symrot.checker.interface import RefusedClaims, check, check_file
+from symrot.checker.recognition.identification import Identification, identify
+from symrot.checker.verdict import Diagnosis, Dimensions, Repair, Verdict
+from symrot.conventions import SEQUENCES
+from symrot.dynamics.equations import euler_equations
+from symrot.dynamics.structure import Structure
+from symrot.ensemble.ensemble import Ensemble, EnsembleStats, propagate_ensemble
+from symrot.errors import CertificateError, CompilerError, InputError, PropagationError, SymrotError
+from symrot.exact.decide import normal_form
+from symrot.exact.evidence import Counterexample
+from symrot.inertia.solids import Solid, solid
+from symrot.kinematics.chart import Limit, RateMatrix, SingularSet
+from symrot.kinematics.dossier import LockedPoint, SingularityDossier, singularity_dossier
+from symrot.kinematics.euler import EulerRateMatrix, dcm, rate_jacobian
+from symrot.kinematics.quaternion import quaternion_product, quaternion_rates, quaternion_to_dcm
+from symrot.planning.plan import Plan, RuleOutcome
+from symrot.planning.scene_kernel import SceneKernel
+from symrot.proof.derivation import Derivation, ProofError
+from symrot.proof.page import Step
+from symrot.propagation.events.events import Event
+from symrot.propagation.method import METHODS
+from symrot.propagation.propagate import propagate, propagator
+from symrot.propagation.propagator import Propagator
+from symrot.propagation.steppers.stepping import Stats
+from symrot.propagation.trajectory import Invariant, Trajectory
+from symrot.scene.scene import Body, Initial, Output, Scene, Span, Table, Torque, load_scene, shipped_scenes
+from symrot.workshop.certification import (
+    Audit,
+    Certificate,
+    LargestBox,
+    OutputError,
+    RoundingBounds,
+    audit,
+    bound,
+    certify,
+    largest_box,
+)
+from symrot.workshop.emit import Emitted, emit, explain, kernel_names, plan
+
+__version__: str
+
+__all__ = [
+    "METHODS",
+    "SEQUENCES",
+    "Audit",
+    "Body",
+    "Certificate",
+    "CertificateError",
+    "CompilerError",
+    "Counterexample",
+    "Derivation",
+    "Diagnosis",
+    "Dimensions",
+    "Emitted",
+    "Ensemble",
+    "EnsembleStats",
+    "EulerRateMatrix",
+    "Event",
+    "Identification",
+    "Initial",
+    "InputError",
+    "Invariant",
+    "LargestBox",
+    "Limit",
+    "LockedPoint",
+    "Output",
+    "OutputError",
+    "Plan",
+    "ProofError",
+    "PropagationError",
+    "Propagator",
+    "RateMatrix",
+    "RefusedClaims",
+    "Repair",
+    "RoundingBounds",
+    "RuleOutcome",
+    "Scene",
+    "SceneKernel",
+    "SingularSet",
+    "SingularityDossier",
+    "Solid",
+    "Span",
+    "Stats",
+    "Step",
+    "Structure",
+    "SymrotError",
+    "Table",
+    "Torque",
+    "Trajectory",
+    "Verdict",
+    "__version__",
+    "audit",
+    "bound",
+    "certify",
+    "check",
+    "check_file",
+    "dcm",
+    "derivation",
+    "emit",
+    "euler_equations",
+    "explain",
+    "identify",
+    "kernel_names",
+    "largest_box",
+    "load_scene",
+    "normal_form",
+    "plan",
+    "propagate",
+    "propagate_ensemble",
+    "propagator",
+    "quaternion_product",
+    "quaternion_rates",
+    "quaternion_to_dcm",
+    "rate_jacobian",
+    "shipped_scenes",
+    "singularity_dossier",
+    "solid",
+]

@@ -1,0 +1,95 @@
+"""The kernels that can be certified: kernels of the library, and the equations of motion of scenes with their laws."""
+
+from collections.abc import Mapping, Sequence
+from functools import reduce
+from operator import add
+
+from sympy import Expr, Matrix, Rational, Symbol, zeros
+
+from symrot.certificates.certificate import KernelUnderTest
+from symrot.codegen.printing.banner import Description
+from symrot.dynamics.equations import Equations
+from symrot.formula.program import Program
+from symrot.formula.tree import Node, evaluate
+from symrot.kernels.definition import Definition, Law
+from symrot.kinematics.quaternion import quaternion_product
+from symrot.symbols import constant, omega_b
+
+__all__ = ["library_kernel_under_test", "scene_kernel_under_test", "scene_laws"]
+
+DOUBLE_AND_FLOAT, ONLY_DOUBLE = {"": "double", "f": "float"}, {"": "double"}
+
+
+def library_kernel_under_test(
+    kernel: Definition, description: Description, files: Mapping[str, str]
+) -> KernelUnderTest:
+    """Return a kernel of the library in the form in which it is certified.
+
+    Parameters
+    ----------
+    kernel : Definition
+        Its formulas and laws.
+    description : Description
+        The content of the header comments of its files.
+    files : mapping of str to str
+        Path of a file, relative to the certificate -> its text.
+    """
+    return KernelUnderTest(
+        kernel.name, kernel.title, description, kernel.inputs, kernel.results, kernel.named, kernel.laws(), files,
+        DOUBLE_AND_FLOAT,
+    )  # fmt: skip
+
+
+def scene_kernel_under_test(
+    equations: Equations,
+    program: Program,
+    parameters: Sequence[tuple[str, Node]],
+    description: Description,
+    files: Mapping[str, str],
+) -> KernelUnderTest:
+    """Return the kernel of a scene's equations of motion in the form in which it is certified.
+
+    ``parameters`` are the arguments of the kernel that stand for formulas in the constants of the scene.
+    """
+    inputs = tuple(a for a in program.signature.arguments if a.role == "in" and a.size)
+    (target,) = (a for a in program.signature.arguments if a.role == "out")
+    return KernelUnderTest(
+        program.signature.name, description.title, description, inputs,
+        ((target, equations.rates),), equations.definitions, scene_laws(equations), files, ONLY_DOUBLE,
+        {name: _expression(node) for name, node in parameters},
+    )  # fmt: skip
+
+
+def _expression(node: Node) -> Expr:
+    """Return a formula in the constants of a scene as a SymPy expression."""
+    return evaluate(node, _ConstantsByName(), number=lambda value: Rational(value.numerator, value.denominator))
+
+
+class _ConstantsByName(dict[str, Symbol]):
+    """A dictionary in which every name has a value: the symbol of the constant with that name."""
+
+    def __missing__(self, name: str) -> Symbol:
+        return constant(name)
+
+
+def scene_laws(equations: Equations) -> tuple[Law, ...]:
+    """Return the laws that the rates of a scene obey, stated without solving for the rates.
+
+    ``I domega/dt + omega x (I omega + h)`` is the torque, in every component, also in those that are no states because
+    they stay constant; and ``dq/dt`` is ``q (0, omega) / 2``.
+    """
+    motion = equations.motion
+    rate = {state: constant(f"d{state}") for state in equations.states}
+    relations = tuple(equations.relations)
+    laws = []
+    if any(state in omega_b for state in equations.states):
+        torque = reduce(add, (law.torque for law in equations.laws), zeros(3, 1))
+        acceleration = Matrix([rate.get(w, 0) for w in omega_b])
+        balance = motion.inertia * acceleration + motion.omega_b.cross(equations.momentum_b) - torque
+        laws.append(Law("I domega/dt + omega x (I omega + h) is the torque", tuple(balance), relations))
+    if motion.quaternion is not None and (quaternion_states := [s for s in equations.states if s not in omega_b]):
+        q = Matrix(motion.quaternion)
+        chain_rule = reduce(add, (q.diff(state) * rate[state] for state in quaternion_states), zeros(4, 1))
+        quaternion_rate = quaternion_product(motion.quaternion, [0, *motion.omega_b]) / 2
+        laws.append(Law("dq/dt is q (0, omega) / 2", tuple(chain_rule - Matrix(quaternion_rate)), relations))
+    return tuple(laws)

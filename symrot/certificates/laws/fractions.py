@@ -1,0 +1,128 @@
+"""Exact arithmetic with fractions of polynomials over the rationals, and SymPy formulas as such fractions.
+
+The proofs of laws and of the equality of C text and formulas share this arithmetic. They prove different statements, so
+neither checks the other; the check that is independent of both is :mod:`symrot.certificates.exact_check`, which uses no
+polynomials at all.
+"""
+
+from abc import ABC, abstractmethod
+from fractions import Fraction
+
+from sympy import Expr, pi
+from sympy.polys.domains import QQ
+from sympy.polys.rings import PolyElement, PolyRing
+
+from symrot.errors import CertificateError
+
+__all__ = ["FormulaReader", "FractionField", "Quotient", "quotient_text"]
+
+Quotient = tuple[PolyElement, PolyElement]  # numerator, denominator, in lowest terms
+
+
+class FractionField:
+    """The field of fractions of a polynomial ring; equal fractions are equal tuples.
+
+    ``name`` is the name of the kernel, for errors.
+    """
+
+    def __init__(self, ring: PolyRing, name: str) -> None:
+        self.ring, self.name = ring, name
+        self.generators = dict(zip(map(str, ring.symbols), ring.gens, strict=True))
+
+    def number(self, value: Fraction | int) -> Quotient:
+        """Return a rational number as a fraction of the field."""
+        value = Fraction(value)
+        return self.ring.ground_new(QQ(value.numerator, value.denominator)), self.ring.one
+
+    def generator(self, name: str) -> Quotient:
+        """Return the generator of the ring with a name."""
+        return self.generators[name], self.ring.one
+
+    def lowest(self, above: PolyElement, below: PolyElement) -> Quotient:
+        """Return a fraction in lowest terms, whose denominator has the leading coefficient 1."""
+        if not below:
+            raise CertificateError(f"{self.name}: expected a formula that is defined somewhere, got a division by zero")
+        if not below.is_ground:
+            above, below = above.cancel(below)
+        lead = below.LC
+        return (above, below) if lead == 1 else (above.quo_ground(lead), below.quo_ground(lead))
+
+    def add(self, a: Quotient, b: Quotient) -> Quotient:
+        """Return a + b."""
+        if a[1] == b[1]:
+            return self.lowest(a[0] + b[0], a[1])
+        return self.lowest(a[0] * b[1] + b[0] * a[1], a[1] * b[1])
+
+    def negative(self, a: Quotient) -> Quotient:
+        """Return -a."""
+        return -a[0], a[1]
+
+    def subtract(self, a: Quotient, b: Quotient) -> Quotient:
+        """Return a - b."""
+        return self.add(a, self.negative(b))
+
+    def multiply(self, a: Quotient, b: Quotient) -> Quotient:
+        """Return a*b."""
+        return self.lowest(a[0] * b[0], a[1] * b[1])
+
+    def divide(self, a: Quotient, b: Quotient) -> Quotient:
+        """Return a/b; raise CertificateError if b is zero."""
+        return self.lowest(a[0] * b[1], a[1] * b[0])
+
+    def power(self, a: Quotient, exponent: int) -> Quotient:
+        """Return ``a**exponent``; the exponent may be negative."""
+        above, below = a if exponent > 0 else (a[1], a[0])
+        return self.lowest(above ** abs(exponent), below ** abs(exponent))
+
+
+def quotient_text(value: Quotient) -> str:
+    """Return a fraction as text."""
+    above, below = value
+    return str(above) if below == 1 else f"({above})/({below})"
+
+
+class FormulaReader(ABC):
+    """Converts SymPy formulas to fractions; a subclass says what symbols, roots and functions become.
+
+    ``values`` holds the formulas that were read before.
+    """
+
+    fractions: FractionField
+    values: dict[Expr, Quotient]
+
+    @abstractmethod
+    def symbol(self, name: str) -> Quotient:
+        """Return the value of a symbol, or of pi."""
+
+    @abstractmethod
+    def root(self, square: Quotient) -> Quotient:
+        """Return the square root of a fraction."""
+
+    @abstractmethod
+    def function(self, expr: Expr) -> Quotient:
+        """Return the value of a function call."""
+
+    def read(self, expr: Expr) -> Quotient:
+        """Return a formula as a fraction."""
+        if expr not in self.values:
+            self.values[expr] = self._read(expr)
+        return self.values[expr]
+
+    def _read(self, expr: Expr) -> Quotient:
+        fractions = self.fractions
+        if expr.is_Rational:
+            return fractions.number(Fraction(int(expr.p), int(expr.q)))
+        if expr.is_Symbol or expr is pi:
+            return self.symbol(str(expr))
+        if expr.is_Add or expr.is_Mul:
+            combine = fractions.add if expr.is_Add else fractions.multiply
+            result, *others = map(self.read, expr.args)
+            for value in others:
+                result = combine(result, value)
+            return result
+        if expr.is_Pow and (2 * expr.exp).is_Integer:
+            base = self.read(expr.base)
+            if expr.exp.is_Integer:
+                return fractions.power(base, int(expr.exp))
+            return fractions.power(self.root(base), int(2 * expr.exp))
+        return self.function(expr)

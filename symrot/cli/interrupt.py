@@ -1,0 +1,43 @@
+"""Make Ctrl-C reach the command even if Python discards it.
+
+Python discards an exception that is raised inside a weak reference's callback, a ``__del__`` method or a callback from
+C; it passes the exception to ``sys.unraisablehook`` and goes on. A KeyboardInterrupt that is raised at such a moment
+(during an import, for example) would leave the command running. The hook installed here raises it again a moment later.
+"""
+
+import signal
+import sys
+from threading import Timer, main_thread
+from typing import Any
+
+__all__ = ["repeat_lost_interrupts"]
+
+SECONDS = 0.02  # enough for the callback that lost the interrupt to return
+
+
+def repeat_lost_interrupts() -> None:
+    """Install the hook; other discarded exceptions go on to the hook that was installed before."""
+    previous = sys.unraisablehook
+
+    def hook(discarded: Any, /) -> None:
+        if discarded.exc_type is KeyboardInterrupt:
+            _interrupt_later()
+        else:
+            previous(discarded)
+
+    sys.unraisablehook = hook
+
+
+def _interrupt_later() -> None:
+    timer = Timer(SECONDS, _interrupt)
+    timer.daemon = True
+    timer.start()
+
+
+def _interrupt() -> None:
+    """Interrupt the main thread; only a signal wakes it while it waits for a lock."""
+    main = main_thread().ident
+    if hasattr(signal, "pthread_kill") and main is not None:
+        signal.pthread_kill(main, signal.SIGINT)
+    else:
+        signal.raise_signal(signal.SIGINT)

@@ -1,0 +1,250 @@
+"""The decision engine: an equation passes through named stages until one of them decides it.
+
+A stage is a function of the case. It returns a decision, or None to leave the case to the next stage, and it stores in
+the case whatever later stages need: proofs, a counterexample. :mod:`symrot.exact.decide` lists the stages for plain
+formulas, :mod:`symrot.checker.decide.decision` the longer list for claims.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, TypeVar
+
+from sympy import Expr, Integer, MatrixBase, MatrixExpr, sympify
+
+from symrot.errors import InputError
+from symrot.exact.congruence_closure import proof_by_congruence
+from symrot.exact.evidence import Counterexample, Requirement
+from symrot.exact.intervals import enclosure
+from symrot.exact.inverse_sums import proof
+from symrot.exact.ring.ratio import Ratio
+from symrot.exact.ring.ring import FormulaRing
+
+__all__ = [
+    "Case", "Decision", "Search", "Shape", "ShapeMismatch", "congruence", "first_decision", "flatten", "matched_sides",
+    "place_in_matrix", "prove", "refute", "shape_text", "subtract",
+]  # fmt: skip
+
+MOST_SEARCHED = 4
+"""Unproven entries of a matrix in which a counterexample is sought."""
+
+Shape = tuple[int, int] | None
+"""(rows, columns) of a matrix; None for a scalar."""
+
+Search = Callable[[FormulaRing, Expr, Expr, tuple[int, int] | None], Counterexample | None]
+"""A search for a point where two formulas differ: (ring, left, right, entry of the matrix) -> counterexample."""
+
+
+@dataclass(frozen=True)
+class Decision:
+    """The decision on an equation, with its evidence.
+
+    Attributes
+    ----------
+    verdict : str
+        ``"true"``: proven wherever both sides are defined, and a point is known where they are. ``"false"``:
+        ``counterexample`` shows it. ``"conditional"``: true under any one of ``requires``. ``"undecided"``.
+    conditions : tuple
+        Relations that hold where both sides are defined: divisors that must not vanish, radicands that must not be
+        negative; of a conditional claim first its requirements.
+    requires : tuple of Requirement
+    counterexample : Counterexample or None
+    reason : str
+        The reason why a claim is undecided; otherwise empty.
+    residual : Expr or Matrix or None
+        The normal form of left - right, from :func:`symrot.exact.decide.decide` alone.
+    stopped_by : tuple of Expr
+        The terms about which too little is known to decide, from :func:`symrot.exact.decide.decide` alone.
+    products : int
+        The number of products of terms that expanding the formulas of a claim took.
+    """
+
+    verdict: str
+    conditions: tuple[Any, ...] = ()
+    requires: tuple[Requirement, ...] = ()
+    counterexample: Counterexample | None = None
+    reason: str = ""
+    residual: Any = None
+    stopped_by: tuple[Expr, ...] = ()
+    products: int = 0
+
+
+@dataclass
+class Case(ABC):
+    """An equation under decision: the entries of its sides, their ring, and the evidence that the stages collect.
+
+    Attributes
+    ----------
+    lefts, rights : list of Expr
+        Entries of the two sides, row by row.
+    shape : (int, int) or None
+    ring : FormulaRing
+        The ring into which the sides and the hypotheses are read.
+    residuals : list of Ratio
+        left - right of each entry.
+    unproven : list of int
+        Numbers of the entries for which no proof of equality is known.
+    proof_rings : tuple of FormulaRing
+        Further rings in which entries were proven; their divisors become conditions.
+    rings : tuple of FormulaRing
+        Further rings on which ``conditions`` rely.
+    conditions : tuple
+        Relations under which the verdict holds.
+    counterexample : Counterexample or None
+    """
+
+    lefts: list[Expr]
+    rights: list[Expr]
+    shape: Shape
+    ring: FormulaRing
+    residuals: list[Ratio] = field(default_factory=list)
+    unproven: list[int] = field(default_factory=list)
+    proof_rings: tuple[FormulaRing, ...] = ()
+    rings: tuple[FormulaRing, ...] = ()
+    conditions: tuple[Any, ...] = ()
+    counterexample: Counterexample | None = None
+
+    @abstractmethod
+    def conditions_of(self, rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
+        """Return the relations that hold where both sides are defined and proofs in further rings are valid."""
+
+    @abstractmethod
+    def confirmed(self) -> Decision:
+        """Return the verdict "true" if a point is known where both sides are defined, else "undecided"."""
+
+    def rely_on(self, rings: tuple[FormulaRing, ...]) -> None:
+        """Make further rings part of the evidence, and their divisors part of the conditions."""
+        self.rings, self.conditions = rings, self.conditions_of(rings)
+
+    @cached_property
+    def sides(self) -> tuple[Expr, ...]:
+        """The entries of both sides."""
+        return (*self.lefts, *self.rights)
+
+    def search(self, *searches: Search, places: Sequence[int] | None = None) -> Counterexample | None:
+        """Return the first counterexample that one of the searches finds, in unproven entries unless others are named.
+
+        A point that provably breaks a hypothesis is passed over.
+        """
+        for search in searches:
+            for place in self.unproven[:MOST_SEARCHED] if places is None else places:
+                entry = place_in_matrix(place, self.shape)
+                witness = search(self.ring, self.lefts[place], self.rights[place], entry)
+                if witness is not None and not self._breaks_hypothesis(witness):
+                    return witness
+        return None
+
+    def _breaks_hypothesis(self, witness: Counterexample) -> bool:
+        values = dict(witness.point)
+        enclosures = [enclosure(hypothesis, values) for hypothesis in self.ring.hypotheses]
+        return any(interval is not None and 0 not in interval for interval in enclosures)
+
+
+C = TypeVar("C", bound=Case)
+
+
+def first_decision(case: C, stages: Sequence[Callable[[C], Decision | None]]) -> Decision:
+    """Return the decision of the first stage that decides a case; the last stage decides every case."""
+    for stage in stages:
+        decision = stage(case)
+        if decision is not None:
+            return decision
+    raise AssertionError(f"the last of the stages, {stages[-1].__name__}, must decide every case")
+
+
+# -- stages that all cases share --------------------------------------------------------------------------------------
+
+
+def subtract(case: Case) -> None:
+    """Form left - right of each entry and try to prove that it vanishes."""
+    ring = case.ring
+    case.residuals = [ring.difference(a, b) for a, b in zip(case.lefts, case.rights, strict=True)]
+    proofs = [proof(ring, residual.numerator) for residual in case.residuals]
+    case.unproven = [place for place, rings in enumerate(proofs) if rings is None]
+    case.proof_rings = tuple(ring for rings in proofs if rings for ring in rings)
+
+
+def prove(case: Case) -> Decision | None:
+    """Decide a case all of whose entries are proven."""
+    if case.unproven:
+        return None
+    case.rely_on(case.proof_rings)
+    return case.confirmed()
+
+
+def refute(case: Case) -> Decision | None:
+    """Decide a case that has a counterexample."""
+    if case.counterexample is None:
+        return None
+    return Decision("false", case.conditions, counterexample=case.counterexample)
+
+
+def congruence(case: Case) -> Decision | None:
+    """Decide a case whose unproven entries hold once inverse functions in them are proven equal to each other."""
+    ring = case.ring
+    proofs = [proof_by_congruence(case.lefts[n], case.rights[n], ring.hypotheses, ring.domain) for n in case.unproven]
+    if None in proofs:
+        return None
+    case.unproven = []
+    case.rely_on((*case.proof_rings, *(ring for rings in proofs if rings for ring in rings)))
+    return case.confirmed()
+
+
+# -- sides ------------------------------------------------------------------------------------------------------------
+
+
+class ShapeMismatch(InputError):
+    """Two sides of different shapes, ``shapes``: (rows, columns), or None for a scalar."""
+
+    def __init__(self, left: Shape, right: Shape) -> None:
+        self.shapes = (left, right)
+        super().__init__(f"two sides of an equation have one shape, got {shape_text(left)} = {shape_text(right)}")
+
+
+def matched_sides(left: Any, right: Any) -> tuple[list[Expr], list[Expr], Shape]:
+    """Return the entries of both sides of an equation and their common shape; 0 stands for a zero matrix of any shape.
+
+    Raises
+    ------
+    ShapeMismatch
+        If the shapes differ.
+    InputError
+        If a side is neither a scalar formula nor a matrix of them.
+    """
+    (lefts, shape), (rights, other) = flatten(left), flatten(right)
+    if other is None and rights == [0]:
+        rights, other = [Integer(0)] * len(lefts), shape
+    if shape is None and lefts == [0]:
+        lefts, shape = [Integer(0)] * len(rights), other
+    if shape != other:
+        raise ShapeMismatch(shape, other)
+    return lefts, rights, shape
+
+
+def flatten(expression: Any) -> tuple[list[Expr], Shape]:
+    """Return the entries of a formula row by row, and its shape.
+
+    Raises
+    ------
+    InputError
+        If it is neither a scalar formula nor a matrix of them.
+    """
+    expression = sympify(expression)
+    if isinstance(expression, MatrixExpr):
+        expression = expression.as_explicit()
+    if isinstance(expression, MatrixBase):
+        return list(expression), (int(expression.rows), int(expression.cols))
+    if not isinstance(expression, Expr):
+        raise InputError(f"exact decision takes a formula or a matrix of formulas, got {expression!r}")
+    return [expression], None
+
+
+def place_in_matrix(number: int, shape: Shape) -> tuple[int, int] | None:
+    """Return (row, column), from 1, of an entry counted row by row from 0; None in a scalar."""
+    return None if shape is None else (number // shape[1] + 1, number % shape[1] + 1)
+
+
+def shape_text(shape: Shape) -> str:
+    """Return a shape in words."""
+    return "a scalar" if shape is None else f"a {shape[0]} x {shape[1]} matrix"

@@ -1,0 +1,71 @@
+"""The evidence of a decision: the point of a counterexample, and the requirement of a conditional claim."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from sympy import Expr
+
+from symrot.exact.printing import as_text
+
+__all__ = ["Counterexample", "Requirement"]
+
+
+@dataclass(frozen=True)
+class Counterexample:
+    """A point where two formulas differ, with exact values.
+
+    Attributes
+    ----------
+    point : tuple of (Expr, Expr)
+        Symbols, sines and cosines, each with its exact value.
+    entry : (int, int) or None
+        Row and column, from 1, of the entry of a matrix that differs.
+    left, right : Expr or str
+        The exact values of the two sides; text where it says more, such as ``"1/3 = 0.333333333333.."``.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
+    >>> verdict.counterexample.lhs != verdict.counterexample.rhs
+    True
+    """
+
+    point: tuple[tuple[Expr, Expr], ...]
+    entry: tuple[int, int] | None
+    left: Any
+    right: Any
+
+    @cached_property
+    def values(self) -> dict[str, str]:
+        """The point as text: names with their values."""
+        return {as_text(name): as_text(value) for name, value in self.point}
+
+    @cached_property
+    def lhs(self) -> str:
+        """The value of the left side as text."""
+        return as_text(self.left)
+
+    @cached_property
+    def rhs(self) -> str:
+        """The value of the right side as text."""
+        return as_text(self.right)
+
+    def __str__(self) -> str:
+        point = ", ".join(f"{name} = {value}" for name, value in self.values.items())
+        place = f"entry {self.entry}: " if self.entry else ""
+        return f"{place}{self.lhs} against {self.rhs}" + (f" at {point}" if point else "")
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """A condition under which a claim holds: its code, its text, and formulas that are zero, or not negative, then."""
+
+    code: str
+    text: str
+    zeros: tuple[Expr, ...] = ()
+    signs: tuple[Expr, ...] = ()
+
+    def __str__(self) -> str:
+        return self.text

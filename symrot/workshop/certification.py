@@ -1,0 +1,443 @@
+"""Certify a kernel, audit certificates, and bound rounding errors: the functions behind the commands of these names."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from symrot.errors import InputError
+from symrot.formula import exact_numbers
+from symrot.workshop import bounds as rounding
+from symrot.workshop import certify as certificates
+
+__all__ = [
+    "Audit",
+    "Certificate",
+    "LargestBox",
+    "OutputError",
+    "RoundingBounds",
+    "audit",
+    "bound",
+    "certify",
+    "largest_box",
+]
+
+Ranges = Sequence[str] | Mapping[str, tuple[Any, Any]]
+Progress = Callable[[str], object]
+
+
+def _silent(line: str) -> None:
+    """Discard a line of progress."""
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """The proofs about one emitted kernel; ``print`` shows them as `symrot certify` does.
+
+    Attributes
+    ----------
+    kernel : str
+        Name of the C function.
+    title : str
+        What the kernel computes.
+    laws : tuple of str
+        The laws that are proven of its formulas.
+    proofs : tuple of str
+        The kinds of proof that the certificate contains, among ``"laws"``, ``"Coq"``, ``"C text"``, ``"rounding"`` and
+        ``"object code"``.
+    data : mapping
+        The whole certificate, as in the file NAME.cert.json.
+    files : tuple of Path
+        The files that were written.
+    objects_compared : bool
+        Whether object code was compared just now.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.certify("euler_zxz_body_rates", rounding=False).kernel
+    'euler_zxz_body_rates'
+    """
+
+    kernel: str
+    title: str
+    laws: tuple[str, ...]
+    proofs: tuple[str, ...]
+    data: Mapping[str, Any] = field(repr=False)
+    files: tuple[Path, ...] = ()
+    objects_compared: bool = False
+
+    @property
+    def refuted(self) -> bool:
+        """Whether object code was compared just now and differs where its bits must be those of the C text."""
+        return self.objects_compared and certificates.refuted([dict(self.data)])
+
+    def __str__(self) -> str:
+        return "\n".join(certificates.lines(dict(self.data), self.objects_compared))
+
+
+@dataclass(frozen=True)
+class Audit:
+    """Certificates that hold; an audit that fails raises CertificateError instead. ``print`` shows the statements.
+
+    Attributes
+    ----------
+    statements : mapping of str to tuple of str
+        Path of each certificate -> the statements that were checked.
+    flags : tuple of str
+        What holds under the compiler flags that were passed; empty without flags.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.Audit({"a.cert.json": ("the laws hold",)}).statements["a.cert.json"]
+    ('the laws hold',)
+    """
+
+    statements: Mapping[str, tuple[str, ...]]
+    flags: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        return "\n".join([*(line for lines in self.statements.values() for line in lines), *self.flags])
+
+
+@dataclass(frozen=True)
+class OutputError:
+    """The bound of the rounding error of one output.
+
+    Attributes
+    ----------
+    output : str
+        Place of the output, ``"dq[0]"``.
+    bound : float
+        No computed value on the box differs from the exact value by more; in the unit of the output.
+    pointwise : float
+        The largest bound at a single point of the box that was tried: by this method, ``bound`` cannot be below it.
+    converged : bool
+        Whether ``bound`` is about as small as this method can make it.
+    modulo_turns : bool
+        Whether the error is measured modulo whole rotations.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.OutputError("dq[0]", 1e-15, 9e-16, True, False).bound
+    1e-15
+    """
+
+    output: str
+    bound: float
+    pointwise: float
+    converged: bool
+    modulo_turns: bool
+
+
+@dataclass(frozen=True)
+class RoundingBounds:
+    """Bounds of the rounding errors of a kernel on a box of inputs; ``print`` shows them as `symrot bound` does.
+
+    Attributes
+    ----------
+    kernel : str
+        Name of the C function.
+    precision : str
+        ``"double"`` or ``"float"``.
+    box : mapping of str to (float, float)
+        Place of each input -> its range, in the unit of the input.
+    outputs : tuple of OutputError
+    assumptions : tuple of str
+        What the bounds rely on.
+    data : mapping
+        The bounds as plain data, as in a certificate.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> bounds = symrot.bound("euler_zxz_body_rates", {"theta": (1, 2)})
+    >>> len(bounds.outputs)
+    3
+    """
+
+    kernel: str
+    precision: str
+    box: Mapping[str, tuple[float, float]]
+    outputs: tuple[OutputError, ...]
+    assumptions: tuple[str, ...]
+    data: Mapping[str, Any] = field(repr=False)
+
+    @property
+    def largest(self) -> float:
+        """The largest bound of all outputs."""
+        return max(output.bound for output in self.outputs)
+
+    def __str__(self) -> str:
+        return "\n".join(rounding.lines(self.data))
+
+
+@dataclass(frozen=True)
+class LargestBox:
+    """The largest box, of one shape, on which no rounding error exceeds a target.
+
+    Attributes
+    ----------
+    kernel : str
+        Name of the C function.
+    target : float
+        The largest error that is allowed, in the unit of the outputs.
+    size : float
+        Width of the box relative to the box that the search started from.
+    box : mapping of str to (float, float)
+        Place of each input -> its range, in the unit of the input.
+    error : float
+        The largest bound of an output on that box.
+    data : mapping
+        The same as plain data.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> largest = symrot.largest_box("euler_zxz_body_rates", 1e-13, {"theta": (1, 2)}, variables=["theta"])
+    >>> largest.error <= largest.target
+    True
+    """
+
+    kernel: str
+    target: float
+    size: float
+    box: Mapping[str, tuple[float, float]]
+    error: float
+    data: Mapping[str, Any] = field(repr=False)
+
+    def __str__(self) -> str:
+        return "\n".join(rounding.target_lines(self.data))
+
+
+def certify(
+    kernel: str | Path,
+    box: Ranges = (),
+    *,
+    directory: str | Path | None = None,
+    objects: bool = False,
+    rounding: bool = True,
+    progress: Progress = _silent,
+) -> Certificate:
+    """Prove that a kernel computes its formulas, and return the certificate.
+
+    Parameters
+    ----------
+    kernel : str or Path
+        A kernel of the library, a scene, or a file NAME.c or NAME.cert.json exactly as symrot emits it.
+    box : mapping or sequence of str
+        Ranges of inputs on which rounding errors are bounded, as for :func:`bound`. All other ranges are the kernel's
+        own. The kernel of a scene is bounded only if ``box`` is not empty.
+    directory : str or Path, optional
+        Folder for the kernel and its certificate; without it no file is written.
+    objects : bool
+        Whether the kernel is compiled by each installed compiler and the object code compared with the C text.
+    rounding : bool
+        Whether rounding errors are bounded now; otherwise the certificate of a kernel of the library contains the
+        bounds that come with symrot.
+    progress : callable
+        Called with a line of text as each part of the work begins.
+
+    Returns
+    -------
+    Certificate
+
+    Raises
+    ------
+    InputError
+        For an unknown kernel, an edited file or a box that cannot be used.
+    CertificateError
+        If a proof fails.
+    CompilerError
+        If ``objects`` is true and there is no compiler.
+
+    Notes
+    -----
+    Convention: SI units, angles in rad; a certificate names frames and units of every input.
+    Source: ``docs/certificates.md`` says what each proof covers.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.certify("euler_zxz_body_rates", rounding=False).laws
+    ('B dangles/dt is the given angular velocity',)
+    """
+    folder = None if directory is None else Path(directory)
+    data, files = certificates.certify(str(kernel), _ranges(box), folder, objects, rounding, progress)
+    laws = tuple(law["law"] for law in data["laws"])
+    return Certificate(data["kernel"], data["title"], laws, certificates.proofs(data), data, tuple(files), objects)
+
+
+def audit(
+    *paths: str | Path,
+    object_file: str | Path | None = None,
+    flags: str | None = None,
+    rerun_bounds: bool = False,
+    coq: bool = False,
+    progress: Progress = _silent,
+) -> Audit:
+    """Check that certificates hold for the kernels in their folders, by proving every statement again.
+
+    Parameters
+    ----------
+    *paths : str or Path
+        Certificates NAME.cert.json, each in one folder with the files that it names.
+    object_file : str or Path, optional
+        NAME.o as your compiler made it; it is compared with the C text rounding for rounding.
+    flags : str, optional
+        Compiler and flags, ``"gcc -O3 -mfma"``: the audit fails if they void the certificate.
+    rerun_bounds : bool
+        Whether bounds of rounding errors are computed again; otherwise they are compared with the stored ones.
+    coq : bool
+        Whether Coq checks the theorem about the kernel.
+    progress : callable
+        Called with a line of text as each part of the work begins.
+
+    Returns
+    -------
+    Audit
+
+    Raises
+    ------
+    InputError
+        For no path, a file that cannot be read, or an unknown flag.
+    CertificateError
+        For the first statement that does not hold.
+
+    Notes
+    -----
+    Source: ``docs/certificates.md`` says what each proof covers.
+
+    Examples
+    --------
+    >>> import symrot, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     certificate = symrot.certify("euler_zxz_body_rates", directory=folder)
+    ...     audit = symrot.audit(*(path for path in certificate.files if path.suffix == ".json"))
+    >>> len(audit.statements)
+    1
+    """
+    if not paths:
+        raise InputError("audit: expected the path of a certificate, NAME.cert.json, got no path")
+    on_flags = () if flags is None else tuple(certificates.flag_lines(flags))
+    compiled = None if object_file is None else Path(object_file)
+    reports = certificates.audit_files([Path(path) for path in paths], compiled, rerun_bounds, coq, progress)
+    return Audit({path: tuple(lines) for path, lines in reports.items()}, on_flags)
+
+
+def bound(kernel: str | Path, box: Ranges = (), precision: str = "double") -> RoundingBounds:
+    """Bound the rounding errors of a kernel for all inputs in a box.
+
+    Parameters
+    ----------
+    kernel : str or Path
+        A kernel of the library, the name of a shipped scene, or the path of a scene file.
+    box : mapping or sequence of str
+        Ranges of inputs, in their units: ``{"theta": (-1.4, 1.4)}`` or ``["theta=-1.4:1.4"]``. A name is that of a
+        component (``"theta"``), a place (``"angles[1]"``) or a physical constant of a scene (``"A"``). A float means
+        its exact binary value, a text its decimal value. All other ranges are the kernel's own.
+    precision : str
+        ``"double"`` or ``"float"``; the kernel of a scene has ``"double"`` only.
+
+    Returns
+    -------
+    RoundingBounds
+
+    Raises
+    ------
+    InputError
+        For an unknown kernel or precision, a range that cannot be used, or a box on which an output has no bound.
+
+    Notes
+    -----
+    Convention: errors are absolute, in the unit of the output; frames and units are those of the kernel's inputs.
+    Source: ``docs/certificates.md`` states the assumptions and the method.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.bound("euler_zxz_body_rates", {"theta": (1, 2)}).largest < 1e-12
+    True
+    """
+    _check_precision(precision)
+    data = rounding.facts(str(kernel), _ranges(box), precision)
+    part = data["precisions"][0]
+    outputs = tuple(
+        OutputError(
+            each["output"], float.fromhex(each["absolute"]), float.fromhex(each["pointwise"]),
+            each["converged"], each["modulo_turns"],
+        )
+        for each in part["outputs"]
+    )  # fmt: skip
+    return RoundingBounds(data["kernel"], precision, _float_box(data["box"]), outputs, tuple(data["assumptions"]), data)
+
+
+def largest_box(
+    kernel: str | Path,
+    target: float,
+    box: Ranges = (),
+    precision: str = "double",
+    *,
+    variables: Sequence[str] = (),
+) -> LargestBox:
+    """Return the largest box, resized about its middle, on which no rounding error of a kernel exceeds a target.
+
+    Parameters
+    ----------
+    kernel, box, precision
+        As for :func:`bound`.
+    target : float
+        The largest error that is allowed, in the unit of the outputs.
+    variables : sequence of str
+        Names of the inputs whose ranges are resized; default: all inputs with a range of nonzero finite width, except
+        the components of a scene's quaternion.
+
+    Returns
+    -------
+    LargestBox
+
+    Raises
+    ------
+    InputError
+        As for :func:`bound`, for an unknown variable, and for a target that no box of that shape meets.
+
+    Notes
+    -----
+    Convention and source: as for :func:`bound`.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.largest_box("euler_zxz_body_rates", 1e-13, {"theta": (1, 2)}, variables=["theta"]).error <= 1e-13
+    True
+    """
+    _check_precision(precision)
+    data = rounding.target_facts(str(kernel), _ranges(box), precision, target, variables)
+    error = float.fromhex(data["largest_error"])
+    return LargestBox(data["kernel"], target, data["size"], _float_box(data["box"]), error, data)
+
+
+def _check_precision(precision: str) -> None:
+    if precision not in rounding.PRECISIONS:
+        raise InputError(f"precision: expected one of {', '.join(rounding.PRECISIONS)}, got {precision!r}")
+
+
+def _ranges(box: Ranges) -> Sequence[str]:
+    """Return ranges as text NAME=LOW:HIGH; a float is written as the fraction that it is."""
+    if isinstance(box, str):
+        raise InputError(f"box: expected a mapping or a list of texts NAME=LOW:HIGH, got one text, {box[:60]!r}")
+    if not isinstance(box, Mapping):
+        return box
+    texts = []
+    for name, ends in box.items():
+        if isinstance(ends, str) or not hasattr(ends, "__len__") or len(ends) != 2:
+            raise InputError(f"box: expected two ends of the range of {name}, (low, high), got {ends!r}")
+        low, high = (exact_numbers.read(end, f"box: {name}") for end in ends)
+        texts.append(f"{name}={low}:{high}")
+    return texts
+
+
+def _float_box(box: Mapping[str, Sequence[str]]) -> dict[str, tuple[float, float]]:
+    return {place: (float.fromhex(low), float.fromhex(high)) for place, (low, high) in box.items()}

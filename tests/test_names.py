@@ -1,0 +1,47 @@
+"""Names say what a thing is: no variable, argument, attribute or function is called by a participle such as ``found``."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+import symrot
+
+PACKAGE = Path(symrot.__file__).parent
+PARTICIPLES = {"found", "given", "kept", "said", "shown", "spoken", "taken", "wanted"}
+NOT_YET = ("bench", "certificates", "cli", "codegen", "proof")
+"""Rooms whose names still have to follow."""
+ROOMS = tuple(sorted({path.name for path in PACKAGE.iterdir() if (path / "__init__.py").is_file()} - {*NOT_YET}))
+
+
+def participles(source):
+    """The names in a text of Python that are participles, with their lines."""
+    for node in ast.walk(ast.parse(source)):
+        names = {
+            ast.Name: ("id",), ast.arg: ("arg",), ast.Attribute: ("attr",), ast.keyword: ("arg",),
+            ast.FunctionDef: ("name",), ast.ClassDef: ("name",), ast.alias: ("name", "asname"),
+        }.get(type(node), ())  # fmt: skip
+        yield from (
+            (getattr(node, "lineno", 0), getattr(node, name))
+            for name in names
+            if (getattr(node, name) or "").strip("_").lower() in PARTICIPLES
+        )
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_no_name_is_a_participle(room):
+    files = sorted((PACKAGE / room).rglob("*.py"))
+    names = {str(path.relative_to(PACKAGE)): [*participles(path.read_text(encoding="utf-8"))] for path in files}
+    assert files and not {path: where for path, where in names.items() if where}
+
+
+@pytest.mark.parametrize("source", [
+    "found = 1", "for taken in (): pass", "def f(given): pass", "def shown(): pass", "lambda kept: 0", "f(wanted=1)",
+    "x.said", "class A:\n    spoken: int = 0", "[found for found in ()]", "import a as _shown", "with a as kept: pass",
+])  # fmt: skip
+def test_a_participle_is_noticed(source):
+    assert [*participles(source)]
+
+
+def test_other_names_pass():
+    assert [*participles("foundation, given_name = taken_together.showing(keep=1)")] == []
