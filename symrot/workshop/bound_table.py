@@ -16,8 +16,8 @@ from symrot.certificates.rounding.bounds import STORE, BoundTask, bound_tasks, e
 from symrot.certificates.rounding.branch_and_bound import SearchResult
 from symrot.certificates.rounding.library import library_problem, operations_of, prepare
 from symrot.certificates.rounding.store import TABLE, method, printed_table, table
-from symrot.codegen.library_kernels import kernel_description, kernel_program
-from symrot.codegen.printing.c_source import DOUBLE, FLOAT, c_source
+from symrot.codegen.library_kernels import kernel_program
+from symrot.codegen.printing.c_source import DOUBLE, FLOAT, c_functions
 from symrot.files.writing import write
 from symrot.kernels.library import definition, kernel_names
 
@@ -27,11 +27,8 @@ SPARE = 1e-9  # relative: other versions of NumPy add in another order
 
 
 def _texts() -> dict[str, str]:
-    """Return the C text of each kernel; its head comment does not mention rounding errors."""
-    return {
-        name: c_source(kernel_program(name), kernel_description(definition(name), "c"), (DOUBLE, FLOAT), True)
-        for name in kernel_names()
-    }
+    """Return the C text of each kernel without its head comment, which states rounding errors."""
+    return {name: c_functions(kernel_program(name), (DOUBLE, FLOAT), near=True) for name in kernel_names()}
 
 
 def library_tasks() -> dict[str, BoundTask]:

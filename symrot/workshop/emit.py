@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -61,6 +61,15 @@ class Emitted(_Texts):
     kernel: Any = None
     bounds: Mapping[str, Any] | None = None
 
+    @classmethod
+    def of(
+        cls, kernel: Any, bounds: Mapping[str, Any] | None, name: str, source: str, header: str = ""
+    ) -> "Emitted":  # fmt: skip
+        """Return the texts of a kernel, with the kernel itself and the rounding bounds for its certificate."""
+        emitted = cls(name, source, header)
+        emitted.kernel, emitted.bounds = kernel, bounds
+        return emitted
+
     @property
     def function(self) -> str:
         """The name of the C function for one sample in double precision."""
@@ -70,11 +79,9 @@ class Emitted(_Texts):
     def certificate(self) -> str:
         """The text of the certificate; raises CertificateError where a proof fails."""
         from symrot.certificates.certificate import certificate_text, with_sections
-        from symrot.certificates.rounding.bounds_text import library_section
 
         text = certificate_text(subject(self.kernel, self.bounds))
-        section = library_section(self.name, self.source) if _is_kernel(self.kernel) else self.bounds
-        return with_sections(text, {"rounding": section}) if isinstance(section, dict) else text
+        return with_sections(text, {"rounding": self.bounds}) if isinstance(self.bounds, dict) else text
 
 
 def _scene(source: Scene | str | Path) -> Scene:
@@ -180,25 +187,9 @@ def emit(kernel: Scene | str | Path, target: str = "c", bounds: Mapping[str, Any
     >>> symrot.emit("euler_zxz_body_rates").name
     'euler_zxz_body_rates'
     """
-    from symrot.codegen.printing.c_source import DOUBLE, FLOAT, c_header, c_source
-    from symrot.codegen.printing.numpy_source import numpy_source
-
     if target not in TARGETS:
         raise InputError(f"target: expected one of {', '.join(TARGETS)}, got {target!r}")
-    is_kernel = _is_kernel(kernel)
-    program, description = _library_kernel(kernel, target) if is_kernel else _scene_kernel(kernel, target, bounds)
-    name = program.signature.name
-    if target == "numpy":
-        emitted = Emitted(name, numpy_source(program, description), "")
-    else:
-        reals = (DOUBLE, FLOAT) if is_kernel else (DOUBLE,)
-        source = c_source(program, description, reals, is_kernel)
-        if is_kernel:  # the head comment states the bounds of the text below it: printed a second time, with them
-            description = _library_kernel(kernel, target, source)[1]
-            source = c_source(program, description, reals, is_kernel)
-        emitted = Emitted(name, source, c_header(program, description, reals))
-    emitted.kernel, emitted.bounds = kernel, bounds
-    return emitted
+    return _library_kernel(str(kernel), target) if _is_kernel(kernel) else _scene_kernel(kernel, target, bounds)
 
 
 def _is_kernel(kernel: Any) -> bool:
@@ -211,6 +202,7 @@ def subject(kernel: Scene | str | Path, bounds: Mapping[str, Any] | None = None)
     ``bounds`` are the rounding bounds that a scene's kernel is emitted with (:func:`emit`).
     """
     from symrot.certificates.kernel_under_test import library_kernel_under_test, scene_kernel_under_test
+    from symrot.codegen.library_kernels import kernel_description
     from symrot.codegen.printing.c_source import MATH_HEADER
     from symrot.codegen.printing.math_header import math_header
     from symrot.dynamics.equations import equations_of_motion
@@ -222,7 +214,7 @@ def subject(kernel: Scene | str | Path, bounds: Mapping[str, Any] | None = None)
     files |= {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in c.source else {}
     files[f"../numpy/{c.name}.py" if is_kernel else f"../../numpy/scenes/{c.name}.py"] = numpy.source
     if is_kernel:
-        return library_kernel_under_test(definition(kernel), _library_kernel(kernel, "c")[1], files)
+        return library_kernel_under_test(definition(kernel), kernel_description(definition(kernel), "c"), files)
     scene_plan = _formulas(kernel)
     equations = equations_of_motion(scene_plan.structure)
     lowered, description = _scene_rates(scene_plan, equations, "c")
@@ -247,28 +239,45 @@ def kernel_names() -> tuple[str, ...]:
     return library.kernel_names()
 
 
-def _library_kernel(name: Any, target: str, source: str = "") -> tuple[Any, Any]:
-    """Return the program and the description of a library kernel, with rounding bounds if its C source is passed."""
-    from symrot.certificates.rounding.bounds_text import bounds_sentence
+@cache
+def _library_kernel(name: str, target: str) -> Emitted:
+    """Return the text of a kernel of the library with its rounding bounds; each is printed once per process.
+
+    The head comment states the bounds of the operations below it, so the functions are printed and bounded first.
+    """
+    from symrot.certificates.rounding.bounds_text import bounds_sentence, library_section
     from symrot.codegen.library_kernels import kernel_description, kernel_program
+    from symrot.codegen.printing.c_source import DOUBLE, FLOAT, c_functions, c_header, with_head
+    from symrot.codegen.printing.numpy_source import numpy_source
     from symrot.kernels.library import definition
 
-    return kernel_program(name), kernel_description(
-        definition(name), target, bounds_sentence(name, source) if source else ""
-    )
+    program = kernel_program(name)
+    if target == "numpy":
+        return Emitted.of(name, None, name, numpy_source(program, kernel_description(definition(name), target)))
+    reals = (DOUBLE, FLOAT)
+    functions = c_functions(program, reals, near=True)
+    section = library_section(name, functions)
+    bounds = section if isinstance(section, dict) else None
+    description = kernel_description(definition(name), target, bounds_sentence(name, functions))
+    source, header = with_head(program, description, functions), c_header(program, description, reals)
+    return Emitted.of(name, bounds, name, source, header)
 
 
-def _scene_kernel(
-    scene: Scene | str | Path, target: str, bounds: Mapping[str, Any] | None = None
-) -> tuple[Any, Any]:  # fmt: skip
+def _scene_kernel(scene: Scene | str | Path, target: str, bounds: Mapping[str, Any] | None) -> Emitted:
     from symrot.certificates.rounding.scenes import header_lines
+    from symrot.codegen.printing.c_source import c_header, c_source
+    from symrot.codegen.printing.numpy_source import numpy_source
     from symrot.codegen.scene_kernels import with_values
     from symrot.dynamics.equations import equations_of_motion
 
     scene_plan = _formulas(scene)
     contract_lines = header_lines(scene_inputs(scene), bounds) if bounds and target == "c" else ()
     lowered, description = _scene_rates(scene_plan, equations_of_motion(scene_plan.structure), target, contract_lines)
-    return with_values(lowered.program, lowered.parameters, scene_plan.constants), description
+    program = with_values(lowered.program, lowered.parameters, scene_plan.constants)
+    name = program.signature.name
+    if target == "numpy":
+        return Emitted.of(scene, bounds, name, numpy_source(program, description))
+    return Emitted.of(scene, bounds, name, c_source(program, description), c_header(program, description))
 
 
 def scene_inputs(scene: Scene | str | Path) -> "SceneInputs":

@@ -13,7 +13,19 @@ from symrot.formula.program import Argument, Program
 from symrot.formula.tree import FUNCTIONS, Node, names, rename, text
 from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
 
-__all__ = ["DOUBLE", "FLOAT", "MATH_HEADER", "Real", "c_expression", "c_function", "c_header", "c_name", "c_source"]
+__all__ = [
+    "DOUBLE",
+    "FLOAT",
+    "MATH_HEADER",
+    "Real",
+    "c_expression",
+    "c_function",
+    "c_functions",
+    "c_header",
+    "c_name",
+    "c_source",
+    "with_head",
+]
 
 MATH_HEADER = "symrot_math.h"
 INDEPENDENT = "SYMROT_INDEPENDENT"  # in front of a loop over samples: none of them reads what another one writes
@@ -421,9 +433,27 @@ def c_source(program: Program, description: Description, reals: Sequence[Real] =
     Parameters
     ----------
     program : Program
-        What it computes.
+        The kernel.
     description : Description
-        What the head says beside that.
+        What the head comment states in addition to the program.
+    reals, near
+        As for :func:`c_functions`.
+    """
+    return with_head(program, description, c_functions(program, reals, near))
+
+
+def with_head(program: Program, description: Description, functions: str) -> str:
+    """Return the C text of a kernel: its head comment, then the text that :func:`c_functions` printed."""
+    return "\n".join([*banner(program, description, "/*", " *", " */"), functions])
+
+
+def c_functions(program: Program, reals: Sequence[Real] = (DOUBLE,), near: bool = False) -> str:
+    """Return the C99 text of a kernel without its head comment.
+
+    Parameters
+    ----------
+    program : Program
+        The kernel.
     reals : sequence of Real
         The types of numbers, each with its one-sample and its batch function.
     near : bool
@@ -431,7 +461,7 @@ def c_source(program: Program, description: Description, reals: Sequence[Real] =
         library for blocks with an angle out of its range.
     """
     near = near and without_branches(program)
-    lines = [*banner(program, description, "/*", " *", " */"), *_includes(program, near)]
+    lines = _includes(program, near)
     lines += [f'#include "{program.signature.name}.h"', ""]
     for real in reals:
         for name in called(program):
