@@ -11,7 +11,7 @@ input and output arrays that do not overlap, and that the processor and ``objdum
 (``*_batch``) are not compared.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -103,7 +103,7 @@ def compare_object(
     return tuple(compare_function(read_kernel(text, name, where), functions_in_text[name], listing) for name in names)
 
 
-def one_sample_functions(functions: dict[str, CFunction]) -> tuple[str, ...]:
+def one_sample_functions(functions: Mapping[str, CFunction]) -> tuple[str, ...]:
     """Return the names of the functions that compute one sample."""
     return tuple(
         name

@@ -4,7 +4,10 @@ This module shares no code with the emitter, so that a mistake there cannot hide
 """
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
+from types import MappingProxyType
 
 from symrot.errors import CertificateError
 
@@ -131,15 +134,19 @@ class Cursor:
         return tuple(self.tokens[start : self.index - 1])
 
 
-def functions_of(text: str, where: str = "kernel") -> dict[str, CFunction]:
+@lru_cache(maxsize=32)
+def functions_of(text: str, where: str = "kernel") -> Mapping[str, CFunction]:
     """Return the functions that a C file defines, by name; prototypes are skipped.
+
+    A text is read once for its functions in double and float, of one sample and of a batch.
 
     Raises
     ------
     CertificateError
         For any C that symrot does not emit, with its line.
     """
-    cursor, functions = Cursor(_tokens(text, where), where), {}
+    cursor = Cursor(_tokens(text, where), where)
+    functions: dict[str, CFunction] = {}
     while cursor.index < len(cursor.tokens):
         function = _function(cursor)
         if function is None:
@@ -149,7 +156,7 @@ def functions_of(text: str, where: str = "kernel") -> dict[str, CFunction]:
                 f"{where}, line {function.line}: expected one definition of {function.name}, got two"
             )
         functions[function.name] = function
-    return functions
+    return MappingProxyType(functions)
 
 
 def _function(cursor: Cursor) -> CFunction | None:
