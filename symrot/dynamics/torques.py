@@ -7,6 +7,7 @@ Each law gives the torque in body components and, where it has one, the potentia
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import lru_cache
 from itertools import combinations_with_replacement
 from typing import Any
 
@@ -133,8 +134,13 @@ def _expression(motion: Motion, torque: Matrix, frame: str) -> TorqueLaw:
 
 def collected_cross(left: Matrix, right: Matrix, variables: Matrix) -> Matrix:
     """Return ``left x right`` with products of two variables collected: (C - B) r_2 r_3, zero for equal moments."""
+    return _collected_cross(ImmutableMatrix(left), ImmutableMatrix(right), ImmutableMatrix(variables)).as_mutable()
+
+
+@lru_cache(maxsize=64)  # scenes differ in their torques more than in their tensors
+def _collected_cross(left: ImmutableMatrix, right: ImmutableMatrix, variables: ImmutableMatrix) -> ImmutableMatrix:
     pairs = [a * b for a, b in combinations_with_replacement(variables, 2)]
-    return left.cross(right).applyfunc(lambda entry: entry.expand().collect(pairs))
+    return ImmutableMatrix(left.cross(right).applyfunc(lambda entry: entry.expand().collect(pairs)))
 
 
 LAWS: dict[str, Callable[..., TorqueLaw]] = {

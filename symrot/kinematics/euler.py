@@ -7,7 +7,7 @@ Nothing about a sequence is typed in. An extrinsic sequence is the intrinsic one
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property, partial
+from functools import cache, cached_property, lru_cache, partial
 from typing import Any
 
 from sympy import (
@@ -248,8 +248,13 @@ def rate_jacobian(sequence: str, frame: str = "body", angles: Sequence[Any] | No
     >>> rate_jacobian("ZXZ").row(2)
     Matrix([[cos(theta), 0, 1]])
     """
-    first, middle, last = factors(sequence, angles)
-    parameters = tuple(factor.angle for factor in sorted((first, middle, last), key=lambda factor: factor.place))
+    in_order = sorted(factors(sequence, angles), key=lambda factor: factor.place)
+    return _rate_jacobian(sequence, check_frame(frame), tuple(factor.angle for factor in in_order))
+
+
+@lru_cache(maxsize=256)
+def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> EulerRateMatrix:
+    first, middle, last = factors(sequence, parameters)
     carry, core, order = _core(sequence, frame, parameters)
     determinant, inverse = _solved(carry, core, order)
     cosine = Abs((first.direction.T * middle.rotation * last.direction)[0])

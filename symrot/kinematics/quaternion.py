@@ -5,7 +5,7 @@ A quaternion is an immutable column, shape (4, 1). Proof: ``derivations/quaterni
 """
 
 from collections.abc import Sequence
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from itertools import pairwise
 from typing import Any
 
@@ -172,7 +172,11 @@ def quaternion_to_dcm(q: Sequence[Any] | Matrix = symbols.quaternion, form: str 
     """
     if form not in FORMS:
         raise InputError(f"the form of a dcm is one of {', '.join(map(repr, FORMS))}; got {form!r}")
-    q = expressions(q, 4, "a quaternion")
+    return _dcm(tuple(expressions(q, 4, "a quaternion")), form)
+
+
+@lru_cache(maxsize=256)
+def _dcm(q: tuple[Expr, ...], form: str) -> ImmutableMatrix:
     columns = [quaternion_product(q, [0, *unit_vector(i)], conjugate(q))[1:, 0].applyfunc(expand) for i in range(3)]
     homogeneous = Matrix.hstack(*columns)
     if form == "unit":

@@ -5,6 +5,7 @@ about the axis by the angle, right-handed.
 """
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from itertools import permutations
 from typing import Any
 
@@ -95,9 +96,13 @@ def elementary_rotation(axis: int | str, angle: Any) -> ImmutableMatrix:
     The part along the axis stays, the part across it turns:
     ``e e^T + cos(angle) (1 - e e^T) + sin(angle) skew(e)``.
     """
+    return _elementary_rotation(axis_number(axis), sympify(angle))
+
+
+@lru_cache(maxsize=256)
+def _elementary_rotation(axis: int, angle: Expr) -> ImmutableMatrix:
     e = unit_vector(axis)
     along = e * e.T
-    angle = sympify(angle)
     return ImmutableMatrix(along + cos(angle) * (eye(3) - along) + sin(angle) * skew(e))
 
 
