@@ -14,7 +14,7 @@ from time import process_time
 import pytest
 
 from symrot.certificates import recheck
-from symrot.certificates.certificate import printed
+from symrot.certificates.certificate import certificate_json
 
 GENERATED = Path(__file__).parents[2] / "generated" / "c"
 ATTITUDE, TOP, ANGLES = "quaternion_of_dcm", "heavy_top", "euler_zyx_body_rates"
@@ -49,7 +49,7 @@ class Forgery:
         for end in (".c", ".h"):
             text = (self.folder / f"{self.name}{end}").read_bytes()
             self.data["files"][f"{self.name}{end}"] = sha256(text).hexdigest()
-        self.path.write_text(printed(self.data), encoding="utf-8")
+        self.path.write_text(certificate_json(self.data), encoding="utf-8")
 
     def refusal(self):
         """Return the sentence that refuses the certificate; it comes soon, and is one line."""
@@ -274,7 +274,7 @@ def renamed(files, name, folder, *kept):
         f"{name}{end}": sha256((folder / f"{name}{end}").read_bytes()).hexdigest() for end in (".c", ".h")
     }
     path = folder / f"{name}.cert.json"
-    path.write_text(printed(data), encoding="utf-8")
+    path.write_text(certificate_json(data), encoding="utf-8")
     return path
 
 
