@@ -80,7 +80,7 @@ def derive() -> Derivation:
         "The shadow set is the same attitude.",
         MODIFIED.dcm(shadow()),
         MODIFIED.dcm(),
-        because="it is the projection of the opposite quaternion",
+        because="the shadow set is the projection of $-q$",
         named=r"R\left(-s/|s|^2\right)",
         display="R(s)",
     )
@@ -107,7 +107,7 @@ def _projection(d: Derivation, which: Projection, form: Form) -> None:
         named="R",
         display=form.dcm[1],
     )
-    d.step("It is a rotation.", dcm_sb * dcm_sb.T, ONE, because="it is that of a unit quaternion",
+    d.step("It is a rotation.", dcm_sb * dcm_sb.T, ONE, because="the matrix is that of a unit quaternion",
            named=r"R R^{\mathsf T}")  # fmt: skip
     d.step(
         "The angular velocity in the body, from the rate of the matrix.",
@@ -121,7 +121,7 @@ def _projection(d: Derivation, which: Projection, form: Form) -> None:
         "The same matrix, collected.",
         body.as_immutable(),
         form.omega[0],
-        because="its entries are quadratic at most",
+        because="the entries are polynomials of degree two at most",
         named="B_b",
         display=form.omega[1],
     )
