@@ -220,7 +220,7 @@ REVEALED = {  # expression -> the type that mypy reveals
     'symrot.load_scene("t_handle")': "symrot.scene.scene.Scene",
     'symrot.plan("t_handle")': "symrot.planning.plan.Plan",
     'symrot.check("x == x")': "symrot.checker.verdict.Verdict",
-    'symrot.check("x == x").counterexample': "symrot.checker.verdict.Counterexample | None",
+    'symrot.check("x == x").counterexample': "symrot.exact.evidence.Counterexample | None",
     'symrot.identify("x")[0]': "symrot.checker.recognition.identification.Identification",
     'symrot.derivation("poinsot")': "symrot.proof.derivation.Derivation",
     'symrot.solid("cone")': "symrot.inertia.solids.Solid",

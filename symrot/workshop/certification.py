@@ -196,8 +196,8 @@ class LargestBox:
     Examples
     --------
     >>> import symrot
-    >>> found = symrot.largest_box("euler_zxz_body_rates", 1e-13, {"theta": (1, 2)}, variables=["theta"])
-    >>> found.error <= found.target
+    >>> largest = symrot.largest_box("euler_zxz_body_rates", 1e-13, {"theta": (1, 2)}, variables=["theta"])
+    >>> largest.error <= largest.target
     True
     """
 

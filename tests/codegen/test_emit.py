@@ -180,7 +180,7 @@ def test_a_program_that_uses_what_is_not_there_is_refused():
 def test_saved_kernels_come_back_equal(scene_rates):
     plan, _, _ = scene_rates
     kernel = derive_scene_kernel(plan.structure)
-    again = SceneKernel(json.loads(json.dumps(kernel.data)))
+    again = SceneKernel(json.loads(json.dumps(kernel.record)))
     assert again.rates == kernel.rates and again.quantities == kernel.quantities
     assert again.rate_parameters == kernel.rate_parameters and again.conserved == kernel.conserved
 

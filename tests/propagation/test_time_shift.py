@@ -299,7 +299,7 @@ def test_a_motion_that_was_derived_before_needs_no_sympy_far_away():
 def test_a_clock_that_is_too_coarse_is_said_to_be():
     """A torque that is asked for at the times of the scene cannot have another clock."""
     driven = propagator(scene(GENERAL, ["0", "0", "omega_1/9"], 10**15), torque=lambda t, w, q: (0.0, 0.1, 0.0))
-    with pytest.raises(PropagationError, match=r"numbers lie 0\.125 s apart"):
+    with pytest.raises(PropagationError, match=r"doubles lie 0\.125 s apart"):
         driven(10**15 + np.array([0.0, 5.0]))
 
 

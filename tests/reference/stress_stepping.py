@@ -65,7 +65,7 @@ class Stepped:
         """Return the changes of the kept quantities, in exact arithmetic, relative to the largest of them."""
         values = bind(self.kernel.quantity_parameters, self.plan.constants)
         known = {name: F(v) for (name, _), v in zip(self.kernel.quantity_parameters, values, strict=True)}
-        outputs = [item.output for item in self.kernel.conserved if item.kept]
+        outputs = [item.output for item in self.kernel.conserved if item.holds]
         both = [
             self.kernel.quantities.evaluate(
                 known | {n: F(float(v)) for n, v in zip(self.plan.states, y, strict=True)}, {}, F, outputs
