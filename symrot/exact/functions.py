@@ -28,7 +28,7 @@ TRIGONOMETRIC = {
     sympy.sec: (None, "cos"),
     sympy.csc: (None, "sin"),
 }
-"""Function -> (above, below) in the sine and cosine of its argument; None is 1."""
+"""Function -> (numerator, denominator) in the sine and cosine of its argument; None stands for 1."""
 
 
 def is_jet(node: Expr) -> bool:
@@ -37,7 +37,7 @@ def is_jet(node: Expr) -> bool:
     Raises
     ------
     InputError
-        If it is no finite exact scalar at all.
+        If the leaf is not a finite exact scalar.
     """
     if node.is_Float:
         raise InputError(f"exact decision takes exact numbers, such as Rational(1, 2); got the float {node}")

@@ -1,4 +1,4 @@
-"""Sines and cosines of rational multiples of pi that are no multiples of pi/24, as polynomials in one number.
+"""Sines and cosines of rational multiples of pi other than multiples of pi/24, as polynomials in one number.
 
 With ``g = 2 cos(pi/N)``, N even, ``2 cos(k pi/N)`` is a polynomial in g with integer coefficients, and the sine is the
 cosine of the complement. The minimal polynomial of g comes from the cyclotomic polynomial of order 2N, which reads
@@ -14,7 +14,9 @@ from sympy.abc import x
 __all__ = ["LARGEST_DEGREE", "degree", "doubled_cosine", "is_fine", "minimal_polynomial", "multiples", "order"]
 
 LARGEST_DEGREE = 160
-"""Of the minimal polynomial: multiples of pi/180 need 48, of pi/360 need 96; beyond it a constant stays a symbol."""
+"""Largest degree of a minimal polynomial: multiples of pi/180 need 48, multiples of pi/360 need 96.
+
+Beyond it a constant stays a symbol."""
 
 
 def order(denominator: int) -> int:
