@@ -1,4 +1,4 @@
-"""Which scenes have an exact motion, and that motion: a table of forms, each with its condition."""
+"""The table of closed forms: each with its condition on scenes and the function that makes the motion."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -16,12 +16,12 @@ __all__ = ["FORMS", "Exact", "Form", "exact_form", "push_and_drag"]
 
 
 class Exact(Protocol):
-    """A motion known at any time; times count from the initial state, s."""
+    """The interface of a motion in closed form; times are counted from the initial state, s."""
 
     def evaluate(
         self, t: ArrayLike, omega: bool = True, quaternion: bool = True
     ) -> tuple[Floats | None, Floats | None]:
-        """Return angular velocity (n, 3) in the body and attitude (n, 4), what is not asked for as None."""
+        """Return angular velocity (n, 3) in the body and attitude (n, 4); a quantity not requested is None."""
 
 
 Vector = tuple[Fraction, ...]
@@ -29,7 +29,7 @@ Starts = Callable[[Initial], Exact]
 
 
 class Form(NamedTuple):
-    """A class of motions in closed form: what it is, which scenes have it, and how to make it."""
+    """A class of motions in closed form: its description, its condition on scenes, and its constructor."""
 
     name: str
     fits: Callable[[Scene], bool]
@@ -43,7 +43,7 @@ class Form(NamedTuple):
         return self.starts(scene)(scene.initial)
 
     def begin(self) -> None:
-        """Start what compiles the form, if it must be compiled; other work can be done meanwhile."""
+        """Start compiling the form in the background, if it has to be compiled."""
         from symrot.closed_form.build import begin
 
         if self.library and not library.missing():
@@ -65,7 +65,7 @@ def _symmetric_about(scene: Scene, axis: int) -> bool:
 
 
 def _only_axis(vector: tuple[Fraction, ...]) -> int | None:
-    """Return the axis that a vector lies along, if it does."""
+    """Return the number of the axis that a vector is parallel to, or None."""
     along = [axis for axis, component in enumerate(vector) if component != 0]
     return along[0] if len(along) == 1 else None
 
@@ -124,7 +124,7 @@ def _is_driven(scene: Scene) -> bool:
 
 
 def _driven_axis(scene: Scene) -> int | None:
-    """Return the principal axis that constant torques and linear damping keep a rotation to."""
+    """Return the principal axis about which a rotation remains under constant torques and linear damping, or None."""
     if not _is_driven(scene):
         return None
     push, turning = push_and_drag(scene)[0], _only_axis(scene.initial.omega_b)
@@ -136,7 +136,7 @@ def _driven_axis(scene: Scene) -> int | None:
 
 
 def _driven_symmetry_axis(scene: Scene) -> int | None:
-    """Return the symmetry axis that a constant torque acts about; undamped, where an attitude is asked for."""
+    """Return the symmetry axis about which a constant torque acts, or None; with an attitude, only without damping."""
     if not _is_driven(scene):
         return None
     push, drag = push_and_drag(scene)
@@ -168,7 +168,7 @@ def _axial(scene: Scene) -> Starts:
 
 
 def _field_axis(name: str) -> Callable[[Scene], int | None]:
-    """Return what finds the axis that a field of the only torque lies along."""
+    """Return a function that returns the axis along which a vector field of the only torque lies, or None."""
     return lambda scene: _only_axis(scene.torques[0].vector(name))
 
 
@@ -227,11 +227,11 @@ FORMS = (
         _driven_symmetry_axis,
     ),
 )
-"""The motions in closed form, in the order in which they are looked for."""
+"""The closed forms, in the order in which a scene is compared with them."""
 
 
 def exact_form(scene: Scene) -> Form | None:
-    """Return the form of a scene's exact motion, or None if it has none here."""
+    """Return the closed form of a scene's motion, or None if no form of the table applies."""
     if scene.table is not None:  # samples act besides what the forms look at
         return None
     return next((form for form in FORMS if form.fits(scene)), None)

@@ -69,13 +69,13 @@ def motion_of_tensor(
 
 
 def starts(principal: Principal) -> Callable[[Initial], ExactMotion]:
-    """Return what gives the motion of a body from an initial state; see :func:`motion_of_tensor`."""
+    """Return a function of the initial state that returns the body's motion; see :func:`motion_of_tensor`."""
     body = Body(principal)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
 class Body:
-    """A free body with what its motions share: moments, their differences, and axes where they are not principal."""
+    """A free body with the constants that its motions share: moments, their differences, and its principal axes."""
 
     def __init__(self, body: Principal) -> None:
         integers, shared = common(body.moments)
@@ -93,7 +93,7 @@ class Body:
 
     @cached_property
     def fixed(self) -> Any:
-        """Moments and axes as C reads them to find many motions' angular velocity along the axes."""
+        """Moments and axes as C takes them to compute the angular velocities of many motions along the axes."""
         from symrot.closed_form.free_body.bodies import fixed_body
 
         return fixed_body(self._principal.moments, [x for row in self._principal.axes for x in row])

@@ -41,13 +41,13 @@ def motion(
 
 
 def starts(inertia: Sequence[Number], rotor: Sequence[Number]) -> Callable[[Initial], ExactMotion]:
-    """Return what gives the motion from an initial state; see :func:`motion`."""
+    """Return a function of the initial state that returns its motion; see :func:`motion`."""
     body = Gyrostat(inertia, rotor)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
 class Gyrostat:
-    """A gyrostat with what its motions share."""
+    """A gyrostat with the constants that all its motions share."""
 
     def __init__(self, inertia: Sequence[Number], rotor: Sequence[Number]) -> None:
         self._inertia = moments = numbers("inertia", inertia, 3, SMALLEST)

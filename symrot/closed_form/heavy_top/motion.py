@@ -1,8 +1,8 @@
 """The symmetric heavy top at any time, exactly: Lagrange's top, spherical and physical pendulums, spinning or not.
 
-Hanging, upright, through the vertical, started exactly there, near and on the separatrix of the sleeping top. Each
-sample costs the same however far it lies from the start and carries an error of a few 1e-16. The formulas are in
-:file:`heavy_top.c`.
+All starts are covered: hanging, upright, exactly vertical, passing through the vertical, near and on the separatrix of
+the sleeping top. Each sample takes the same time however far it is from the start, with an error of a few 1e-16. The
+formulas are in :file:`heavy_top.c`.
 
 Source: Klein & Sommerfeld, Theory of the Top, vol. 2, chapter 6; Whittaker, Analytical Dynamics, 4th ed., section 72.
 
@@ -49,7 +49,7 @@ def motion(
     quaternion0 : 4 numbers
         Attitude, body to space, scalar first; it is normalised.
     direction : 3 numbers
-        Of gravity, in space; any length but zero.
+        Direction of gravity in space; any length except zero.
 
     Raises
     ------
@@ -67,13 +67,16 @@ def motion(
 def starts(
     inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number] = _DOWN
 ) -> Callable[[Initial], ExactMotion]:
-    """Return what gives the motion from an initial state; what all starts share is found once. See :func:`motion`."""
+    """Return a function of the initial state that returns its motion; it computes shared constants once.
+
+    See :func:`motion`.
+    """
     top = Top(inertia, weight, center_of_mass, direction)
     return lambda start: top.motion(start.omega_b, start.quaternion)
 
 
 class Top:
-    """A heavy top with what its motions share: its moments, its pull, and its axes."""
+    """A heavy top with the constants that all its motions share: its moments, its pull, and its axes."""
 
     def __init__(
         self, inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number]
@@ -117,14 +120,14 @@ class Top:
 
 
 class Frame:
-    """The axes of space and body that the formulas of a heavy top count from: the third ones up and along the axis.
+    """The axes of space and body in which the formulas of a heavy top hold: up and the symmetry axis are the third.
 
     Parameters
     ----------
     axis : 0, 1 or 2
-        Of the body.
+        The symmetry axis of the body.
     up : 3 Fractions
-        Against the pull of a weight in front of the fixed point, in space.
+        The direction in space opposite to the pull on a centre of mass at a positive distance from the fixed point.
     """
 
     def __init__(self, axis: int, up: Sequence[Fraction]) -> None:
@@ -142,7 +145,7 @@ class Frame:
 
     @property
     def plain(self) -> bool:
-        """Whether these axes are the given ones, so that no attitude need be turned."""
+        """Whether these axes are the given ones, so that no attitude has to be rotated."""
         return self._before is self._after is None
 
     def start(self, quaternion: Sequence[Number]) -> list[float]:

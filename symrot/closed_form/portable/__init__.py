@@ -1,7 +1,7 @@
-"""The exact motions without a C compiler: constants by mpmath, samples by NumPy, the same formulas.
+"""The motions in closed form for use without a C compiler: constants by mpmath, samples by NumPy, the same formulas.
 
-Slower (milliseconds to find the constants, about a microsecond for each sample) and as exact: the constants have 120
-digits, and phases are carried in turns. What C returns is held against it in tests.
+They are slower (milliseconds for the constants, about a microsecond for each sample) and equally accurate: the
+constants have 120 digits, and phases are represented in turns. Tests compare the results of C with them.
 """
 
 from collections.abc import Callable
@@ -14,4 +14,4 @@ from symrot.closed_form.portable.heavy_top import HeavyTop
 __all__ = ["MOTIONS"]
 
 MOTIONS: dict[str, Callable[..., Any]] = {"free_body": FreeBody, "gyrostat": Gyrostat, "heavy_top": HeavyTop}
-"""Each motion by the name of its C file; it takes what the C function takes."""
+"""The motions by the names of their C files, with the arguments of the C functions."""

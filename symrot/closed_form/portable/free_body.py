@@ -209,7 +209,7 @@ class FreeBody:
         )
 
         def pair(weight: float, order: float) -> tuple[Floats, Floats]:
-            """Return nome**weight times cosh and sinh of order*v, never a product of something huge and tiny."""
+            """Return nome**weight times cosh and sinh of order*v, without overflow of a factor."""
             log = self.log_nome * weight if weight else 0.0
             up, down = np.exp(log + order * v), np.exp(log - order * v)
             return 0.5 * (up + down), (np.sinh(order * v) if log == 0.0 else 0.5 * (up - down))
@@ -243,7 +243,7 @@ def _rounded(x: Fraction) -> Any:
 def _canonical(
     moments: list[Any], w: list[Any], differences: list[Any], defect: Any
 ) -> tuple[list[int], list[int], int]:
-    """Return which axes e1, e2, e3 are, along or against them, and the sign of I3 - I2."""
+    """Return the numbers of the axes e1, e2, e3, their directions along them, and the sign of I3 - I2."""
     above = [differences[2] >= 0, differences[0] >= 0, differences[1] >= 0]  # I_i >= I_(i+1)
     largest = 0 if above[0] and not above[2] else 1 if above[1] else 2
     a, b = (largest + 1) % 3, (largest + 2) % 3

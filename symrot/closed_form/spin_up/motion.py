@@ -1,12 +1,13 @@
 """A symmetric body under a constant torque about its axis, at any time, in closed form: spin up, down, and through.
 
-The transverse angular velocity keeps its length W and turns in the body by a phase quadratic in time. In axes that turn
-with it the body turns at ``(W, 0, Omega)``, with Omega linear in time: the equation of a two-level system swept through
-resonance (Zener, Proc. R. Soc. A 137 (1932) 696), solved by parabolic cylinder functions of ``x = Omega/sqrt(s)``, s
-the sweep, and of the one parameter ``kappa = W/sqrt(s)``. Far from resonance, or for a large kappa, their asymptotic
-series hold to the last bit, in the form of a slowly turning vector and the phase about it; near it Taylor's series at
-40 places. Phases are carried in turns, as pairs of doubles: errors of the attitude stay at a few 1e-16 however many
-turns have passed. A sample costs the same at any time; those beyond 1e13 rad take integers.
+The transverse angular velocity keeps its length W and rotates in the body by a phase quadratic in time. In axes that
+rotate with it the body rotates at ``(W, 0, Omega)``, with Omega linear in time: the equation of a two-level system
+swept through resonance (Zener, Proc. R. Soc. A 137 (1932) 696). Its solutions are parabolic cylinder functions of
+``x = Omega/sqrt(s)``, with the sweep rate s and the only parameter ``kappa = W/sqrt(s)``. Far from resonance, or for a
+large kappa, asymptotic series are exact to the last bit, in the form of a slowly rotating vector and the phase about
+it; near resonance Taylor series at 40 places are. Phases are represented in turns, as pairs of doubles: the error of
+the attitude stays at a few 1e-16 for any number of turns. A sample takes the same time at any t; samples beyond 1e13
+rad are computed in integers.
 
 The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
@@ -41,9 +42,9 @@ class SpinUp:
     ----------
     body : Body
     rates : 3 numbers
-        Angular velocity at the start, rad/s, not all along the axis.
+        Angular velocity at the start, rad/s, not parallel to the axis.
     attitude : 4 numbers
-        At the start, not zero.
+        Attitude at the start, not zero.
     """
 
     regime = "circular"
@@ -75,7 +76,7 @@ class SpinUp:
         Raises
         ------
         InputError
-            If a time is not finite, or the angular velocity at it is beyond all doubles.
+            If a time is not finite, or the angular velocity at it exceeds all doubles.
         """
         times = times_of(t)
         rates = np.empty((len(times), 3)) if omega else None
@@ -85,7 +86,7 @@ class SpinUp:
         return rates, attitudes
 
     def _by_integers(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Write the samples of more turns than pairs of doubles count."""
+        """Write the samples of too many turns for pairs of doubles."""
         for time in (float(times.min()), float(times.max())):
             if not self.integers.finite(time):
                 raise InputError(f"expected times at which the angular velocity is a finite number, got {time!r} s")
@@ -122,13 +123,16 @@ def motion(
 
 
 def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[Initial], SpinUp]:
-    """Return what gives the motion from an initial state; what all starts share is read once. See :func:`motion`."""
+    """Return a function of the initial state that returns its motion; it reads shared constants once.
+
+    See :func:`motion`.
+    """
     body = Body(inertia, axis, torque)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
 class Body:
-    """A symmetric body and its torque, as what its motions share."""
+    """A symmetric body and its torque, with the constants that all its motions share."""
 
     def __init__(self, inertia: Sequence[Number], axis: int, torque: Number) -> None:
         self._inertia, (self.torque,) = numbers("inertia", inertia, 3, SMALLEST), numbers("torque", [torque], 1)

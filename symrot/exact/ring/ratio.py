@@ -171,9 +171,10 @@ class Ratios:
         )
 
     def _may_divide(self, number: int, value: int) -> bool:
-        """Return whether a factor may divide a polynomial, by their values; a division that leaves a rest is long.
+        """Return whether a factor may divide a polynomial, judged by integer values of both: a vain division is slow.
 
-        Both have integer coefficients without a common divisor, so by Gauss's lemma the quotient has such too.
+        Both have integer coefficients without a common divisor, so by Gauss's lemma the quotient has integer
+        coefficients too.
         """
         own = self.values[number]
         return own == 0 or value % own == 0

@@ -85,7 +85,7 @@ class FormulaRing:
     relations : sequence of Expr
         Hypotheses, each an expression that is zero.
     domain : sequence of Expr
-        Formulas that are not negative wherever the expressions are defined, for example radicands that they no longer contain.
+        Formulas that are not negative wherever the expressions are defined, such as radicands that SymPy cancelled.
 
     Raises
     ------
