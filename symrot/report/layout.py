@@ -140,7 +140,7 @@ def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequenc
 
 
 def _parts(widths: Sequence[int], width: int, right: Sequence[int]) -> list[list[int]]:
-    """Return the columns of each part of a table whose parts are printed below one another, each with the first column."""
+    """Return the columns of each part of a table; parts are printed below one another, each with the first column."""
     parts = [[0]]
     for i in range(1, len(widths)):
         full = sum(widths[j] + 2 for j in parts[-1]) + widths[i] > width
