@@ -1,7 +1,7 @@
 """An attitude of a scene: quaternion, Euler sequence, axis and angle, or direction cosine matrix, read exactly.
 
-Everything is in Fractions, so a right angle turns a part of a body by exactly a right angle, and the quaternion of an
-initial attitude is a unit one to 2^-200 whatever was typed. Conventions: :mod:`symrot.conventions`.
+All numbers are Fractions, so that a right angle rotates a part of a body by exactly a right angle, and the quaternion
+of an initial attitude has unit norm to 2^-200 for any input. Conventions: :mod:`symrot.conventions`.
 """
 
 from collections.abc import Callable, Mapping
@@ -16,7 +16,7 @@ from symrot.scene.reader import Entry, Reader, expected, flag, number, read_tabl
 __all__ = ["ORTHOGONAL", "Attitude", "read_attitude", "read_sequence", "to_body", "to_space"]
 
 ORTHOGONAL = Fraction(1, 10**9)
-"""Largest difference from the identity of R R^T for a typed matrix R; what is nearer is made a rotation exactly."""
+"""Largest difference of R R^T from the identity for a typed matrix R; R is then replaced by an exact rotation."""
 
 FORMS = '{quaternion = [..]}, {sequence = "ZXZ", angles = [..]}, {axis = [..], angle = ..} or {dcm = [[..], ..]}'
 
@@ -26,7 +26,7 @@ Matrix = tuple[Vector, Vector, Vector]
 
 
 class Attitude(NamedTuple):
-    """An attitude in both forms: the unit quaternion, and ``dcm_sb``, exact where the angles are."""
+    """An attitude in both forms: the unit quaternion, and ``dcm_sb``, which is exact if the angles are."""
 
     quaternion: Quaternion
     dcm: Matrix

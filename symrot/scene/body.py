@@ -1,7 +1,7 @@
-"""The body of a scene: exactly one way of giving its inertia, the point it turns about, and whether it can turn.
+"""The body of a scene: exactly one source of its inertia, the point about which it rotates, and its admissibility.
 
-Ways: ``shape`` with its dimensions and mass or density; ``[[body.part]]``, a composite; ``principal`` moments;
-``inertia``, the tensor. The result is exact (Fractions) and in the axes in which the body was given.
+The sources are ``shape`` with dimensions and mass or density; ``[[body.part]]``, a composite; ``principal`` moments;
+and ``inertia``, the tensor. The result is exact (Fractions) and in the axes in which the body was given.
 """
 
 from collections.abc import Callable, Mapping
@@ -37,7 +37,7 @@ _NEGLIGIBLE = Fraction(1, 2**200)  # as symrot.formula.exact_numbers.equal
 
 
 class Body(NamedTuple):
-    """A rigid body about the point it turns about, in the axes in which it was given.
+    """A rigid body about its point of rotation, in the axes in which it was given.
 
     ``inertia`` (kg m^2) is about that point; ``center_of_mass`` (m) is relative to it, None when it is unknown;
     ``mass`` (kg) is None when it is unknown. ``principal`` holds the class of the body, its moments and axes.
@@ -79,7 +79,7 @@ def read_body(value: Any, where: str) -> Body:
     Raises
     ------
     InputError
-        Naming file, key, value and expectation: none or several sources of giving the inertia, unknown shapes and keys,
+        Naming file, key, value and expectation: none or several sources of the inertia, unknown shapes and keys,
         dimensions out of range, an inertia that no body has, a body that cannot turn freely (a needle, a point).
     """
     entries = table(value, where, f"a table with {EXPECTED_SOURCE}")
@@ -144,7 +144,7 @@ def _tensor(value: Any, where: str) -> Matrix:
 
 
 def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return a body whose moments, about the point it turns about, were typed."""
+    """Return a body from typed moments about its point of rotation."""
     about, center = values["about"], values["center_of_mass"]
     if about == "center_of_mass":
         if center is not None and any(center):
@@ -253,7 +253,7 @@ _length = number("a number in m")
 
 
 def _bounded(value: Any, where: str) -> None:
-    """Refuse a dimension that is no number or out of range, before anything is computed with it."""
+    """Raise InputError for a dimension that is not a number or is out of range, before anything is computed from it."""
     if isinstance(value, list | tuple):
         for index, item in enumerate(value):
             _bounded(item, f"{where}[{index}]")

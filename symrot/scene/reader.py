@@ -1,4 +1,4 @@
-"""Readers of one value of a scene, and of a table of them, with the place of it in every complaint.
+"""Readers of the values and tables of a scene; every error names the place of its value.
 
 A reader is a function ``(value, where) -> result`` that raises :class:`symrot.errors.InputError` with one sentence:
 file, key, expectation, value. ``where`` reads ``"tumbling.toml: body.mass"``. Standard library only.
@@ -19,11 +19,11 @@ __all__ = [
 Reader = Callable[[Any, str], Any]
 
 LARGEST = Fraction(10) ** 100
-"""Largest magnitude of a quantity of a scene, and the inverse of the smallest: so that their products stay doubles."""
+"""Largest magnitude of a quantity of a scene, and the inverse of the smallest: so products are finite doubles."""
 
 
 class Entry(NamedTuple):
-    """One key of a table: its reader, whether it must be there, what it is when left out."""
+    """One key of a table: its reader, whether it is required, and its default value."""
 
     read: Reader
     required: bool = False
@@ -37,14 +37,14 @@ def under(where: str, key: str) -> str:
 
 
 def expected(where: str, expectation: str, value: object = ..., reason: str = "") -> NoReturn:
-    """Raise the InputError of one value: where, what was expected, what arrived, and why that is not it."""
+    """Raise the InputError for one value: its place, the expectation, the value, and the reason."""
     place = where.removesuffix(": ")
     got = "" if value is ... else f", got {show(value)}"
     raise InputError(f"{place}: expected {expectation}{got}" + (f" ({reason})" if reason else ""))
 
 
 def nearest(word: object, known: Iterable[str]) -> str:
-    """Return ``"did you mean 'x'?"`` for the known word nearest to a mistyped one, or nothing."""
+    """Return ``"did you mean 'x'?"`` for the known word nearest to a mistyped one, or an empty text."""
     from difflib import get_close_matches  # only on the way to an error
 
     matches = get_close_matches(str(word)[:80], list(known), 1, 0.5)
@@ -59,7 +59,7 @@ def table(value: object, where: str, expectation: str = "a table") -> Mapping[st
 
 
 def read_table(value: object, where: str, entries: Mapping[str, Entry], what: str = "a table") -> dict[str, Any]:
-    """Return the values of a table by key: every key known, every required one there, defaults filled in."""
+    """Return the values of a table by key, with defaults; raise InputError for unknown or missing keys."""
     entries_by_key = table(value, where, f"{what} with the keys {', '.join(entries)}")
     for key in entries_by_key:
         if key not in entries:

@@ -1,4 +1,4 @@
-"""A torque of a scene that is a table of samples: written in the scene, or in a CSV file beside it."""
+"""Torques given by samples: a table in the scene itself, or a CSV file in its folder."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
@@ -26,9 +26,9 @@ _STEEPEST = 1e100
 
 
 class Table(NamedTuple):
-    """Samples of a torque: ``times`` (s, rising; twice the same at a switching time) and ``moments`` (N m).
+    """Samples of a torque: ``times`` (s, increasing, each switching time twice) and ``moments`` (N m).
 
-    Between switching times a cubic spline goes through the samples; outside of them the torque is not known.
+    Between switching times a cubic spline interpolates the samples; outside of the samples the torque is not defined.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Table(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """As of the torques that are formulas."""
+        """The kind, as for torques given by formulas."""
         return TABLE_KIND.kind
 
 
@@ -64,7 +64,7 @@ _moment = vector("N m")
 
 
 def _plain(value: Any) -> bool:
-    """Return whether a number is a double that needs no reading, as of many samples nearly all do not."""
+    """Return whether a number is a plain double that needs no further check, as most samples are."""
     return type(value) is float and (1e-99 < abs(value) < 1e99 or value == 0.0)
 
 
@@ -153,7 +153,7 @@ def read_samples(
 
 
 def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, rows: int) -> None:
-    """Check that times rise, twice the same at switching times alone, with two samples or more in every piece."""
+    """Check that times increase, that only switching times occur twice, and that each piece has two samples or more."""
     if len(times) < 2:
         expected(place, f"two samples or more, got {len(times)}")
     length = 1
@@ -172,7 +172,7 @@ def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, r
 
 
 def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ...], place: str) -> None:
-    """Check that the coefficients of a spline are doubles."""
+    """Check that the coefficients of a spline are finite doubles."""
     for (before, here), (after, there) in pairwise(zip(times, moments, strict=True)):
         gap, change = after - before, max(abs(y - x) for x, y in zip(here, there, strict=True))
         if gap and not (gap >= 1 / _STEEPEST and change <= gap * _STEEPEST):
@@ -181,9 +181,9 @@ def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ..
 
 
 def _allowed_file(file: str, folder: Path, table_folders: str | Path | Sequence[str | Path], where: str) -> Path:
-    """Return the file of samples that a scene names, links followed; refuse one outside the folders for it.
+    """Return the file of samples that a scene names, links resolved; raise InputError outside the allowed folders.
 
-    A scene may come from a stranger: it must not make symrot open, and quote, another file of the user.
+    A scene may come from an untrusted source: it must not make symrot open, and quote, another file of the user.
     """
     if isinstance(table_folders, str | Path):
         table_folders = (table_folders,)

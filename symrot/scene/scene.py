@@ -1,7 +1,7 @@
 """A scene: the problem as data. A TOML file (or a dict) in, exact numbers out; no SymPy.
 
-The format is the table :data:`TOP` and the readers it names. Everything that a scene says is checked here, and every
-complaint is one sentence with file, key, expectation and value (:class:`symrot.errors.InputError`).
+The format is the table :data:`TOP` with the readers that it names. Everything in a scene is checked here, and every
+error is one sentence with file, key, expectation and value (:class:`symrot.errors.InputError`).
 """
 
 from collections.abc import Mapping, Sequence
@@ -162,7 +162,7 @@ class Scene:
 
     @property
     def torque_kinds(self) -> tuple[str, ...]:
-        """The kinds of all that acts: the formulas, then the table."""
+        """The kinds of all torques: first those given by formulas, then the table."""
         table = () if self.table is None else (self.table.kind,)
         return (*(torque.kind for torque in self.torques), *table)
 

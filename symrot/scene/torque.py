@@ -67,7 +67,7 @@ class Torque(NamedTuple):
         return value
 
     def constant(self, name: str, component: int | None) -> Fraction:
-        """Return a number by the name of its constant and, if that is a vector, its place in it."""
+        """Return a number by the name of its constant and, for a component of a vector, its index."""
         return self.number(name) if component is None else self.vector(name)[component]
 
     def with_constant(self, name: str, component: int | None, value: Fraction) -> "Torque":
