@@ -52,7 +52,7 @@ _TURNS = [Rational(n, d) * pi for n, d in ((1, 1), (-1, 1), (2, 1), (1, 2), (-1,
 
 
 @dataclass(frozen=True)
-class Coordinate:
+class FreeChoice:
     """Generators whose values are chosen together, and the possible values, the simplest first."""
 
     generators: tuple[int, ...]
@@ -267,19 +267,19 @@ def _occurring(poly: PolyElement) -> set[int]:
 # -- rational points ------------------------------------------------------------------------------------------------
 
 
-def _coordinates(ring: FormulaRing) -> tuple[list[Coordinate], list[tuple[int, PolyElement]]]:
+def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, PolyElement]]]:
     """Return the coordinates that can be chosen freely, and the hypotheses that then fix one generator each.
 
     Such a hypothesis is linear in its generator.
     """
     fixed: set[int] = set()
-    coordinates: list[Coordinate] = []
+    coordinates: list[FreeChoice] = []
     solved: list[tuple[int, PolyElement]] = []
     leaf_numbers = set(ring.symbols.values())
     for hypothesis in ring.hypothesis_numerators:
         sphere = _sphere(hypothesis)
         if sphere and not fixed & set(sphere):
-            coordinates.append(Coordinate(sphere, _simple_sphere(len(sphere)), _random_sphere(len(sphere))))
+            coordinates.append(FreeChoice(sphere, _simple_sphere(len(sphere)), _random_sphere(len(sphere))))
             fixed |= set(sphere)
             continue
         degrees = hypothesis.degrees() if hypothesis else ()
@@ -289,11 +289,11 @@ def _coordinates(ring: FormulaRing) -> tuple[list[Coordinate], list[tuple[int, P
             fixed.add(linear[0])
     for atom, place in ring.sines.items():
         pair = (place, ring.cosines[atom])
-        coordinates.append(Coordinate(pair, _simple_circle(), _random_sphere(2), atom))
+        coordinates.append(FreeChoice(pair, _simple_circle(), _random_sphere(2), atom))
     for leaf, number in ring.symbols.items():
         if number not in fixed:
             simple = tuple((Fraction(v),) for v in (0, 1, -1, 2, 3) if _assumed(leaf, Fraction(v)))
-            coordinates.append(Coordinate((number,), simple, _random_number(leaf)))
+            coordinates.append(FreeChoice((number,), simple, _random_number(leaf)))
     return coordinates, solved[::-1]
 
 
@@ -414,7 +414,7 @@ def _formula_value(ring: FormulaRing, node: Expr, values: dict[int, Fraction], k
 
 
 def _named(
-    ring: FormulaRing, coordinates: list[Coordinate], values: dict[int, Fraction], used: set[Expr]
+    ring: FormulaRing, coordinates: list[FreeChoice], values: dict[int, Fraction], used: set[Expr]
 ) -> Iterator[tuple[Expr, Expr]]:
     """Yield every symbol and angle in use with its value; quarter turns as angles, others as cosine and sine."""
     zero, one = Fraction(0), Fraction(1)

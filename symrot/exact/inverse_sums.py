@@ -23,7 +23,7 @@ from symrot.exact.floats import seems_zero
 from symrot.exact.intervals import enclosure
 from symrot.exact.ring.ring import FormulaRing
 
-__all__ = ["Lift", "Principal", "lifts", "principal", "proof", "vanishes"]
+__all__ = ["Lift", "PrincipalValueProof", "lifts", "principal", "proof", "vanishes"]
 
 MOST_TERMS = 60
 """Largest number of terms of a residual that is factored."""
@@ -90,7 +90,7 @@ def _lifts_of(ring: FormulaRing, factor: PolyElement, used: set[int]) -> Iterato
 
 
 @dataclass(frozen=True)
-class Principal:
+class PrincipalValueProof:
     """The proof by ``rings`` that a residual is zero wherever the formulas ``least`` and ``most`` are not negative."""
 
     least: Expr
@@ -98,7 +98,7 @@ class Principal:
     rings: tuple[FormulaRing, ...]
 
 
-def principal(ring: FormulaRing, numerator: PolyElement) -> Principal | None:
+def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
     """Return where a residual of the form ``asin(S) - w``, with ``S = sin w`` proven, is zero; also for acos and atan.
 
     It is zero exactly where w is a principal value: between -pi/2 and pi/2 for asin and atan, 0 and pi for acos.
@@ -121,7 +121,7 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> Principal | None:
             other = FormulaRing([function(angle), leaf.args[0]], ring.hypotheses, ring.domain)
             further = proof(other, other.difference(function(angle), leaf.args[0]).numerator)
             if further is not None:
-                return Principal(angle - least, most - angle, (other, *further))
+                return PrincipalValueProof(angle - least, most - angle, (other, *further))
     return None
 
 

@@ -11,7 +11,15 @@ from functools import cache
 from sympy import Poly, cyclotomic_poly, totient
 from sympy.abc import x
 
-__all__ = ["LARGEST_DEGREE", "degree", "doubled_cosine", "is_fine", "minimal_polynomial", "multiples", "order"]
+__all__ = [
+    "LARGEST_DEGREE",
+    "degree",
+    "doubled_cosine",
+    "minimal_polynomial",
+    "multiples",
+    "needs_cyclotomic_field",
+    "order",
+]
 
 LARGEST_DEGREE = 160
 """Largest degree of a minimal polynomial: multiples of pi/180 need 48, multiples of pi/360 need 96.
@@ -24,7 +32,7 @@ def order(denominator: int) -> int:
     return denominator if denominator % 2 == 0 else 2 * denominator
 
 
-def is_fine(denominator: int) -> bool:
+def needs_cyclotomic_field(denominator: int) -> bool:
     """Return whether sines of multiples of pi/denominator are within the limit."""
     return order(denominator) <= 12 * LARGEST_DEGREE and degree(order(denominator)) <= LARGEST_DEGREE
 

@@ -13,7 +13,7 @@ from typing import Any
 from sympy import Expr
 
 from symrot.exact.domain.needs import Need, assumptions_of, leaves_of
-from symrot.exact.domain.newton_box import Equations
+from symrot.exact.domain.newton_box import EquationSystem
 from symrot.exact.floats import NoValue, float_at
 from symrot.exact.intervals import enclosure
 
@@ -72,7 +72,7 @@ def known_point(needs: Sequence[Need], equations: Sequence[Expr] = ()) -> Point 
 class _Search:
     def __init__(self, needs: Sequence[Need], equations: Sequence[Expr], leaves: Sequence[Expr]) -> None:
         self.needs, self.leaves, self.looks = needs, leaves, 0
-        self.equations = Equations(equations, leaves) if equations else None
+        self.equations = EquationSystem(equations, leaves) if equations else None
         self.own = {need: leaves_of([need.formula]) for need in needs}
 
     def point(self) -> Point | None:

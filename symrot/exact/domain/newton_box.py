@@ -17,7 +17,7 @@ from symrot.exact.floats import NoValue, float_at
 from symrot.exact.intervals import enclosure
 from symrot.exact.size import pieces
 
-__all__ = ["Equations"]
+__all__ = ["EquationSystem"]
 
 MOST_STEPS = 40
 MOST_EQUATIONS = 24
@@ -31,7 +31,7 @@ RADII = (1e-11, 1e-8, 1e-6)
 Row = list[float]
 
 
-class Equations:
+class EquationSystem:
     """Equations ``formula = 0`` in given unknowns, to be solved from a start.
 
     Parameters

@@ -35,7 +35,7 @@ from symrot.exact.angles.constants import Number, cosine_number, root_number, va
 from symrot.exact.angles.inverse import INVERSE, cosine_sine
 from symrot.exact.angles.known_angles import halved, is_bound, parts_of, unbound
 from symrot.exact.budget import remembered, spend_ring
-from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC, is_jet
+from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC, is_function_of_time
 from symrot.exact.ring.radicands import Dependence, dependences, take_squares
 from symrot.exact.ring.ratio import Ratio, Ratios, TooLarge
 from symrot.exact.ring.relations import Relations, Rule, relate
@@ -189,7 +189,7 @@ class FormulaRing:
             elif node is S.Exp1:
                 self.exponents[Integer(1)] = linear_form(Integer(1))
             else:
-                self.leaves[node] = is_jet(node)
+                self.leaves[node] = is_function_of_time(node)
 
     def _radicand(self, base: Expr, index: int) -> Radicand:
         """Return a radicand in lowest terms, reduced by those hypotheses that hold no roots themselves."""
@@ -221,7 +221,7 @@ class FormulaRing:
 
     def _take_fine_constants(self) -> int:
         """Return N of the generator 2 cos(pi/N) for constant angles that are not multiples of pi/24; 0 without any."""
-        if pi not in self.bases or not cyclotomic.is_fine(self.bases[pi].denominator):
+        if pi not in self.bases or not cyclotomic.needs_cyclotomic_field(self.bases[pi].denominator):
             return 0
         return cyclotomic.order(self.bases.pop(pi).denominator)
 
