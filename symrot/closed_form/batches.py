@@ -10,12 +10,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.closed_form.arithmetic import double_double as dd
-from symrot.closed_form.arithmetic.pairs import GRID, LARGEST, SMALLEST, attitude, common, pair, quotient
+from symrot.closed_form.arithmetic.pairs import (
+    GRID,
+    LARGEST,
+    SMALLEST,
+    attitude,
+    over_common_denominator,
+    pair,
+    quotient,
+)
 from symrot.closed_form.axial.compiled import Constants
 from symrot.closed_form.axial.motion import turned_about
 from symrot.closed_form.build import Floats
 from symrot.closed_form.free_body import bodies
-from symrot.closed_form.free_body.motion import NEGLIGIBLE, Body, Defect, gaps
+from symrot.closed_form.free_body.motion import NEGLIGIBLE, Defect, FreeRigidBody, gaps
 from symrot.closed_form.heavy_top.motion import Frame
 from symrot.closed_form.many import Batch
 from symrot.closed_form.spin_up.compiled import limits
@@ -145,7 +153,7 @@ def _noticed(omega: Floats) -> Floats:
     return np.where(abs(omega) < np.ldexp(abs(omega).max(axis=1), -NEGLIGIBLE)[:, None], 0.0, omega)
 
 
-def free_bodies(body: Body, omega: Floats, start: Floats) -> Batch:
+def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
     """Return the motions of one free body from :func:`usual` angular velocities and attitudes (8,) or (n, 8)."""
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
@@ -174,7 +182,7 @@ def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floa
     else:
         own = zip(*([x] * n if isinstance(x, Fraction) else x.tolist() for x in moments), strict=True)
         for i, (row, rates) in enumerate(zip(own, omega.tolist(), strict=True)):
-            integers, shared = common(row)
+            integers, shared = over_common_denominator(row)
             exact[i, :6] = gaps(integers, shared)
             exact[i, 6:] = Defect(integers)(_integers(rates))
     return Batch("free_body", (pairs, _pairs(omega), start, exact, None))

@@ -16,7 +16,7 @@ from symrot.build import cache as library
 from symrot.closed_form.arithmetic import double_double as dd
 from symrot.closed_form.arithmetic.pairs import LARGEST, SMALLEST, attitude, pair
 from symrot.closed_form.build import loaded
-from symrot.closed_form.registry import Exact, Form, exact_form
+from symrot.closed_form.registry import ClosedForm, Exact, exact_form
 from symrot.ensemble.variation import PRINCIPAL, PRODUCTS, Variation
 from symrot.errors import InputError
 from symrot.propagation.steppers.stepping import Floats
@@ -34,7 +34,7 @@ MOST_BITS = 59  # of a pattern, beside those of angular velocity
 class Kind(NamedTuple):
     """The closed form of a motion, and the axis of the body that the form refers to, if any."""
 
-    form: Form | None
+    form: ClosedForm | None
     axis: int | None
 
 
@@ -92,7 +92,7 @@ ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
 class Solved(NamedTuple):
     """Trajectories of one closed form, as arrays if the form has arrays."""
 
-    form: Form
+    form: ClosedForm
     rows: Rows
     batch: "Batch | None"
     usual: Any  # which rows the arrays are good for
@@ -204,7 +204,7 @@ def _put_starts(
 class _Alone:
     """Motions one by one; motions of the same form and pattern share the constants that do not depend on the start."""
 
-    def __init__(self, variation: Variation, form: Form) -> None:
+    def __init__(self, variation: Variation, form: ClosedForm) -> None:
         self._variation, self._form = variation, form
         self._starts: dict[tuple[bool, ...], Callable[[Initial], Exact]] = {}
 
@@ -295,11 +295,11 @@ def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
 
 def _free(part: _Part) -> tuple["Batch | None", Usual]:
     from symrot.closed_form import batches
-    from symrot.closed_form.free_body.motion import Body
+    from symrot.closed_form.free_body.motion import FreeRigidBody
 
     variation = part.variation
     if not variation.columns:
-        body = variation.cached("free body", lambda: Body(variation.scene.body.principal))
+        body = variation.cached("free body", lambda: FreeRigidBody(variation.scene.body.principal))
         return batches.free_bodies(body, part.omega, part.start), True
     if not variation.in_principal_axes:
         entries = [part.constant(name) for name in (*PRINCIPAL, *PRODUCTS)]

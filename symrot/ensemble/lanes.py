@@ -24,7 +24,17 @@ from symrot.propagation.steppers.integration_stopped import IntegrationStopped, 
 from symrot.propagation.steppers.stepping import DONE, NOT_FINITE, UNDERFLOW, Floats, PathLike, is_sorted
 from symrot.propagation.steppers.taylor import step_tail
 
-__all__ = ["FLAGS", "Lanes", "Outcome", "Task", "around", "follow", "lanes", "order_for", "translation_unit"]
+__all__ = [
+    "FLAGS",
+    "LaneIntegration",
+    "Lanes",
+    "Outcome",
+    "follow",
+    "lanes",
+    "order_for",
+    "translation_unit",
+    "wrap_translation_unit",
+]
 
 Integers = NDArray[np.int64]
 
@@ -71,10 +81,10 @@ def translation_unit(
     """
     from symrot.codegen.taylor.ensemble_source import lane_definitions
 
-    return around(lane_definitions(program, blocks, scales, order), width)
+    return wrap_translation_unit(lane_definitions(program, blocks, scales, order), width)
 
 
-def around(definitions: str, width: int | None = None) -> str:
+def wrap_translation_unit(definitions: str, width: int | None = None) -> str:
     """Return the C source of a library from the text of its system; see :func:`translation_unit`."""
     head = "" if width is None else "#define SYMROT_PLAIN\n" if width == 1 else f"#define SYMROT_LANES {width}\n"
     paths = ("ensemble/lanes.h", "propagation/steppers/series.h", "ensemble/lanes.c")
@@ -177,7 +187,7 @@ def _legs(t0: float, times: Floats, n: int) -> _Legs:
     return _Legs(table.ravel(), np.ascontiguousarray(rows[:, rows[2] > 0]), None if in_order else order)
 
 
-class Task:
+class LaneIntegration:
     """Motions bound to numbers and sample times: prepared once, run any number of times.
 
     Parameters
@@ -258,8 +268,8 @@ class Task:
 
 
 def follow(*arguments: Any, **options: Any) -> Outcome:
-    """Follow n motions through their sample times; arguments as :class:`Task` takes them."""
-    return Task(*arguments, **options).run()
+    """Follow n motions through their sample times; arguments as :class:`LaneIntegration` takes them."""
+    return LaneIntegration(*arguments, **options).run()
 
 
 def _share(library: Lanes, jobs: list[Any]) -> None:

@@ -172,7 +172,7 @@ def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
 
         system = lane_definitions(kernel.rates, *error_blocks(plan), order)
         library.store(key, system)
-    return library.build(lanes.around(system), "lanes", lanes.FLAGS)
+    return library.build(lanes.wrap_translation_unit(system), "lanes", lanes.FLAGS)
 
 
 class _Stepped:

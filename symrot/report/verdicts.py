@@ -55,7 +55,7 @@ def _is_file(source: str) -> bool:
 
 
 def lines(verdicts: Sequence[Verdict], source: str) -> list[str]:
-    """Return verdicts as lines: a single claim in full; for a file the claims that are not true in full, and a count."""
+    """Return verdicts as lines: a single claim in full; of a file the claims that are not true in full, and a count."""
     if len(verdicts) == 1 and not _is_file(source):
         return _full(verdicts[0], verdicts[0].verdict)
     text: list[str] = []

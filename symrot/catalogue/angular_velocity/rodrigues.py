@@ -15,7 +15,7 @@ ONE = eye(3)
 
 
 @dataclass(frozen=True)
-class Form:
+class ProjectionForm:
     """The formulas claimed for one set of parameters, each as an expression and as LaTeX for a reader."""
 
     title: str
@@ -26,10 +26,10 @@ class Form:
     inverse: tuple[Matrix, str]
 
 
-def _classical() -> Form:
+def _classical() -> ProjectionForm:
     p = Matrix(symbols.rodrigues)
     k, below = Matrix(skew(p)), 1 + squared(p)
-    return Form(
+    return ProjectionForm(
         "Classical: axis times the tangent of half the angle",
         "g",
         symbols.rodrigues_rates,
@@ -39,11 +39,11 @@ def _classical() -> Form:
     )
 
 
-def _modified() -> Form:
+def _modified() -> ProjectionForm:
     p = Matrix(symbols.mrp)
     k, square = Matrix(skew(p)), squared(p)
     below, inner = (1 + square) ** 2, (1 - square) * ONE + 2 * p * p.T
-    return Form(
+    return ProjectionForm(
         "Modified: axis times the tangent of a quarter of the angle",
         "s",
         symbols.mrp_rates,
@@ -87,7 +87,7 @@ def derive() -> Derivation:
     return d
 
 
-def _projection(d: Derivation, which: Projection, form: Form) -> None:
+def _projection(d: Derivation, which: Projection, form: ProjectionForm) -> None:
     dcm_sb, rates = which.dcm(), Matrix(form.rates)
     dcm_rate = rate(dcm_sb, pairs(which.parameters, form.rates))
     body, space = which.rate_matrix("body"), which.rate_matrix("space")

@@ -9,8 +9,18 @@ from symrot.errors import InputError
 from symrot.formula.exact_numbers import equal, show
 
 __all__ = [
-    "GRID", "LARGEST", "SMALLEST", "Number", "attitude", "common", "numbers", "on_grid", "pair", "quotient", "same",
-    "spread",
+    "GRID",
+    "LARGEST",
+    "SMALLEST",
+    "Number",
+    "attitude",
+    "flatten_pairs",
+    "numbers",
+    "on_grid",
+    "over_common_denominator",
+    "pair",
+    "quotient",
+    "same",
 ]  # fmt: skip
 
 Number = float | int | Fraction
@@ -40,7 +50,7 @@ def pair(value: Number) -> tuple[float, float]:
     return (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
 
 
-def spread(values: Sequence[Number]) -> list[float]:
+def flatten_pairs(values: Sequence[Number]) -> list[float]:
     """Return hi, lo of each number in one list."""
     result: list[float] = []
     for value in values:
@@ -73,7 +83,7 @@ def same(a: Number, b: Number) -> bool:
     return a == b or (not (isinstance(a, float) and isinstance(b, float)) and equal(Fraction(a), Fraction(b)))
 
 
-def common(values: Sequence[Number]) -> tuple[list[int], int]:
+def over_common_denominator(values: Sequence[Number]) -> tuple[list[int], int]:
     """Return integers and the denominator that they share."""
     ratios = [value.as_integer_ratio() for value in values]
     shared = ratios[0][1]

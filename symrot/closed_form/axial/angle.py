@@ -19,7 +19,7 @@ from symrot.closed_form.build import Floats
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
 
-__all__ = ["FEW", "LARGE", "SMALL", "Turning", "fallen"]
+__all__ = ["FEW", "LARGE", "SMALL", "Turning", "exp_and_expm1"]
 
 FEW = 64
 """Number of times up to which integers are used."""
@@ -38,7 +38,7 @@ _GUARD = 16  # bits for what they lose
 _TERMS = 20  # of the series of (exp(x) - 1 - x)/x^2 for |x| <= 1, whose next is 2^-70
 
 
-def fallen(high: Floats, low: Floats) -> tuple[Floats, Floats]:
+def exp_and_expm1(high: Floats, low: Floats) -> tuple[Floats, Floats]:
     """Return exp(x) and exp(x) - 1 of pairs, rounded to doubles."""
     grown = np.exp(high)
     return grown * (1.0 + low), np.expm1(high) + grown * low

@@ -17,12 +17,12 @@ from symrot.closed_form.build import Floats
 from symrot.errors import CompilerError, InputError
 from symrot.formula import exact_numbers as number
 
-__all__ = ["EARLY", "LOST", "Constants", "Loops", "Ratio", "available", "functions", "parts"]
+__all__ = ["OUT_OF_RANGE", "TOO_MANY_TURNS", "Constants", "Loops", "Ratio", "available", "functions", "parts"]
 
 Ratio = tuple[int, int]
 """Numerator and positive denominator."""
 
-LOST, EARLY = 1, 2
+TOO_MANY_TURNS, OUT_OF_RANGE = 1, 2
 """Return values of the loops: a sample has too many turns, or the numbers at a time leave the range of doubles."""
 
 _LARGEST = 200  # 2^200 stands for what is larger: whatever it multiplies is more turns than the loops know
@@ -66,7 +66,8 @@ class Loops(NamedTuple):
     def __call__(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> int:
         """Write angular velocity (n, 3) and attitude (n, 4) at the times, where an array is given; return a status.
 
-        The status is 0; or :data:`LOST`, with NaN in rows of too many turns; or :data:`EARLY`, with nothing written.
+        The status is 0; or :data:`TOO_MANY_TURNS`, with NaN in the rows of these samples; or :data:`OUT_OF_RANGE`, with
+        nothing written.
         """
         status: int = self.evaluate(self.place, len(times), address(times), address(omega), address(quaternion))
         return status

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 from symrot.closed_form.arithmetic.double_double import two_product
 from symrot.closed_form.arithmetic.pairs import LARGEST, SMALLEST, Number, numbers, pair
 from symrot.closed_form.axial import compiled as axial_compiled
-from symrot.closed_form.axial.angle import Turning, fallen
+from symrot.closed_form.axial.angle import Turning, exp_and_expm1
 from symrot.closed_form.build import Floats, times_of
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
@@ -74,9 +74,9 @@ class AxialMotion:
         rates = np.empty((len(times), 3)) if omega else None
         attitudes = np.empty((len(times), 4)) if quaternion else None
         status = self._loops(times, rates, attitudes)
-        if status == axial_compiled.EARLY:
+        if status == axial_compiled.OUT_OF_RANGE:
             self._refuse(times)
-        if status == axial_compiled.LOST:
+        if status == axial_compiled.TOO_MANY_TURNS:
             for values, way in ((rates, self._rates), (attitudes, self._quaternions)):
                 if values is not None and (lost := np.isnan(values).any(axis=1)).any():
                     values[lost] = way(times[lost])
@@ -115,7 +115,7 @@ class AxialMotion:
         if not high:
             return spin
         x, error = two_product(t, high)
-        left, lost = fallen(x, error + t * low)
+        left, lost = exp_and_expm1(x, error + t * low)
         spin = rate * left + push * (lost / high)
         early = x > 1.0
         if early.any():  # where rate and push would all but cancel

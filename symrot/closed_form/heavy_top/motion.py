@@ -13,7 +13,16 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 from symrot.closed_form.arithmetic.frames import product, quaternion_of, to_axis
-from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, attitude, common, numbers, on_grid, same, spread
+from symrot.closed_form.arithmetic.pairs import (
+    SMALLEST,
+    Number,
+    attitude,
+    flatten_pairs,
+    numbers,
+    on_grid,
+    over_common_denominator,
+    same,
+)
 from symrot.closed_form.free_body import motion as free_body
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.errors import InputError
@@ -99,7 +108,7 @@ class Top:
             return
         axis = along[0]
         pull = Fraction(force) * Fraction(center[axis])
-        self.moments, self.pull = spread([moments[axis - 2], moments[axis]]), spread([abs(pull)])
+        self.moments, self.pull = flatten_pairs([moments[axis - 2], moments[axis]]), flatten_pairs([abs(pull)])
         self.frame = Frame(axis, [-Fraction(x) if pull > 0 else Fraction(x) for x in down])
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
@@ -111,7 +120,7 @@ class Top:
         named = [rates[k] for k in frame.named]
         return prepared(
             "heavy_top",
-            (self.moments, self.pull, spread(named), frame.start(attitude), frame.space, frame.axes),
+            (self.moments, self.pull, flatten_pairs(named), frame.start(attitude), frame.space, frame.axes),
             lambda: (
                 "a heavy top has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
                 f"not zero, got moments {[float(x) for x in self._inertia]}, omega {[float(x) for x in named]}"
@@ -136,12 +145,14 @@ class Frame:
         self.before, self.after = None, None  # what an attitude is multiplied by
         if up[0] or up[1] or up[2] < 0:  # turned so that the third axis points up
             turn = quaternion_of(to_axis(up))
-            self.space, self.before = spread(turn), (turn[0], -turn[1], -turn[2], -turn[3])
+            self.space, self.before = flatten_pairs(turn), (turn[0], -turn[1], -turn[2], -turn[3])
         if axis != 2:
             matrix = [[Fraction(int(self.named[k] == i)) for k in range(3)] for i in range(3)]
             self.after = quaternion_of(matrix)
-            self.axes = spread([*(x for row in matrix for x in row), *self.after])
-        self._before, self._after = (None if q is None else common(q) for q in (self.before, self.after))
+            self.axes = flatten_pairs([*(x for row in matrix for x in row), *self.after])
+        self._before, self._after = (
+            None if q is None else over_common_denominator(q) for q in (self.before, self.after)
+        )
 
     @property
     def plain(self) -> bool:
@@ -152,7 +163,7 @@ class Frame:
         """Return an attitude between these axes, as :func:`symrot.closed_form.arithmetic.pairs.attitude` has it."""
         if self.plain:
             return attitude(quaternion)
-        integers, shared = common(quaternion)
+        integers, shared = over_common_denominator(quaternion)
         if self._before is not None:
             integers, shared = list(product(self._before[0], integers)), shared * self._before[1]
         if self._after is not None:

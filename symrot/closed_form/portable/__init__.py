@@ -7,11 +7,15 @@ constants have 120 digits, and phases are represented in turns. Tests compare th
 from collections.abc import Callable
 from typing import Any
 
-from symrot.closed_form.portable.free_body import FreeBody
-from symrot.closed_form.portable.gyrostat import Gyrostat
-from symrot.closed_form.portable.heavy_top import HeavyTop
+from symrot.closed_form.portable.free_body import PortableFreeBody
+from symrot.closed_form.portable.gyrostat import PortableGyrostat
+from symrot.closed_form.portable.heavy_top import PortableHeavyTop
 
 __all__ = ["MOTIONS"]
 
-MOTIONS: dict[str, Callable[..., Any]] = {"free_body": FreeBody, "gyrostat": Gyrostat, "heavy_top": HeavyTop}
+MOTIONS: dict[str, Callable[..., Any]] = {
+    "free_body": PortableFreeBody,
+    "gyrostat": PortableGyrostat,
+    "heavy_top": PortableHeavyTop,
+}
 """The motions by the names of their C files, with the arguments of the C functions."""

@@ -10,13 +10,13 @@ from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import DIGITS, TERMS, Phase, multiples, number, power_of_two, turned_by, vector
 from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, matrix_quaternion, product, unit
 
-__all__ = ["FreeBody"]
+__all__ = ["PortableFreeBody"]
 
 SWITCH = 0.7  # the modulus from which on the imaginary transforms are summed
 NEGLIGIBLE = mpf(10) ** -150  # of the largest component of omega
 
 
-class FreeBody:
+class PortableFreeBody:
     """One motion; arguments as ``symrot_free_body_prepare`` takes them, in lists of hi, lo."""
 
     def __init__(

@@ -12,7 +12,7 @@ from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import DIGITS, TERMS, Phase, multiples, number, power_of_two, vector
 from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, product, unit
 
-__all__ = ["HeavyTop"]
+__all__ = ["PortableHeavyTop"]
 
 SWITCH = 0.7  # the modulus from which on the imaginary transforms are summed
 EQUAL = (
@@ -21,7 +21,7 @@ EQUAL = (
 NOTHING = mpf(10) ** -31  # of alpha or beta
 
 
-class HeavyTop:
+class PortableHeavyTop:
     """One motion; arguments as ``symrot_heavy_top_prepare`` takes them, in lists of hi, lo."""
 
     def __init__(

@@ -13,7 +13,7 @@ from symrot.closed_form.spin_up.resonance import PIECES
 from symrot.closed_form.spin_up.series import DEGREE
 from symrot.formula import exact_numbers as number
 
-__all__ = ["SpinUp"]
+__all__ = ["PortableSpinUp"]
 
 _QUARTER = pair(1 / (4 * number.PI))
 _TERMS = 10  # of atanh, for arguments to 1/60
@@ -70,7 +70,7 @@ def _circle(turns: dd.Pair) -> tuple[Floats, Floats]:
     return np.sin(2.0 * np.pi * whole), np.cos(2.0 * np.pi * whole)
 
 
-class SpinUp:
+class PortableSpinUp:
     """One motion, from its constants, which are computed in integers, and the table near resonance if needed."""
 
     def __init__(self, constants: Sequence[float], table: Floats | None) -> None:

@@ -16,7 +16,7 @@ import numpy as np
 from symrot.closed_form.arithmetic import frames
 from symrot.closed_form.arithmetic.pairs import pair
 from symrot.closed_form.build import Floats
-from symrot.closed_form.portable.spin_up import SpinUp as Portable
+from symrot.closed_form.portable.spin_up import PortableSpinUp as Portable
 from symrot.closed_form.spin_up.off_resonance import (
     ONE,
     Quaternion,

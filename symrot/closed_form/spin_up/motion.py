@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, numbers, same, spread
+from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, flatten_pairs, numbers, same
 from symrot.closed_form.arithmetic.pairs import attitude as pairs_of
 from symrot.closed_form.build import Floats, times_of
 from symrot.closed_form.spin_up import compiled as spin_up_compiled
@@ -32,7 +32,7 @@ from symrot.scene.scene import Initial
 if TYPE_CHECKING:
     from symrot.closed_form.spin_up.integers import Integers
 
-__all__ = ["Body", "SpinUp", "motion", "starts"]
+__all__ = ["SpinUp", "SpunBody", "motion", "starts"]
 
 
 class SpinUp:
@@ -40,7 +40,7 @@ class SpinUp:
 
     Parameters
     ----------
-    body : Body
+    body : SpunBody
     rates : 3 numbers
         Angular velocity at the start, rad/s, not parallel to the axis.
     attitude : 4 numbers
@@ -49,11 +49,11 @@ class SpinUp:
 
     regime = "circular"
 
-    def __init__(self, body: "Body", rates: Sequence[Number], attitude: Sequence[Number]) -> None:
+    def __init__(self, body: "SpunBody", rates: Sequence[Number], attitude: Sequence[Number]) -> None:
         self._initial_state, axis = (body, rates, attitude), body.axis
         turned = rates[axis - 2], rates[axis - 1], rates[axis]
         self._source = (
-            Compiled(axis, [*body.shared, *spread(turned), *pairs_of(attitude)])
+            Compiled(axis, [*body.shared, *flatten_pairs(turned), *pairs_of(attitude)])
             if spin_up_compiled.available()
             else self.integers
         )
@@ -119,7 +119,7 @@ def motion(
     InputError
         If the body is not symmetric about the axis, turns about it alone, or a number is not of this domain.
     """
-    return Body(inertia, axis, torque).motion(omega0, quaternion0)
+    return SpunBody(inertia, axis, torque).motion(omega0, quaternion0)
 
 
 def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[Initial], SpinUp]:
@@ -127,11 +127,11 @@ def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[In
 
     See :func:`motion`.
     """
-    body = Body(inertia, axis, torque)
+    body = SpunBody(inertia, axis, torque)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
-class Body:
+class SpunBody:
     """A symmetric body and its torque, with the constants that all its motions share."""
 
     def __init__(self, inertia: Sequence[Number], axis: int, torque: Number) -> None:
@@ -140,7 +140,7 @@ class Body:
             raise InputError(f"expected an axis 0, 1 or 2, got {show(axis)}")
         self.axis, self.moments = axis, (self._inertia[axis - 2], self._inertia[axis])
         self._symmetric = same(self._inertia[axis - 2], self._inertia[axis - 1])
-        self.shared = spread([*self.moments, self.torque])
+        self.shared = flatten_pairs([*self.moments, self.torque])
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> SpinUp:
         """Return the motion from an initial state."""
