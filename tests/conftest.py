@@ -15,6 +15,8 @@ from mpmath import mp
 
 from symrot.build import cache as library
 
+os.environ.setdefault("SYMPY_CACHE_SIZE", "100000")  # results of SymPy in memory, for derivations that repeat them
+
 
 @pytest.hookimpl(optionalhook=True, tryfirst=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:

@@ -32,6 +32,7 @@ from symrot.propagation.propagate import propagator
 from symrot.report.work_precision import compared, lines, lines_of_comparison, read_study
 from symrot.scene.scene import Scene, load_scene
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 SHORT = {
     "schema": 1, "title": "short", "body": {"principal": [1, 2, 3]}, "initial": {"omega": ["3/10", 1, "1/2"]},
     "span": {"t": ["1/2", 3], "samples": 2},

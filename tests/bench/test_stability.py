@@ -18,6 +18,8 @@ from tests.reference import free_body as reference
 from tests.reference.figures import GRAVITY, body, largest
 from tests.reference.figures import TILT as TILTED
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 
 def plate(omega=stability.STARTS[0]):
     return stability._scene("free plate", {"principal": list(stability.PLATE)}, omega)

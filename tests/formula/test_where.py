@@ -12,6 +12,7 @@ from symrot.formula.switches import blended, chosen, has_choices, hold, smooth
 from symrot.formula.tree import evaluate, parse
 from tests.needs import needs_compiler
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 METHODS = ["taylor", "dop853", *(f"scipy:{name}" for name in ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA"))]
 
 

@@ -7,6 +7,7 @@ import symrot
 from symrot.errors import PropagationError
 from tests.needs import needs_compiler
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 METHODS = ["taylor", "dop853", *(f"scipy:{name}" for name in ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA"))]
 
 

@@ -12,6 +12,8 @@ from symrot.propagation.steppers import fallback
 from symrot.scene.scene import Scene
 from tests.reference.tops import MOTIONS, TIMES, error, parameters, rigid_body, taylor, wave
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 
 @pytest.mark.parametrize("text, name", [("scipy", "DOP853"), ("scipy:LSODA", "LSODA"), ("BDF", "BDF")])
 def test_scipy_methods_are_known_by_name(text, name):

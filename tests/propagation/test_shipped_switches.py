@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 import symrot
 from tests.needs import needs_compiler
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 METHODS = ["taylor", "dop853"]
 
 

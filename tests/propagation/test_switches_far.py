@@ -10,6 +10,7 @@ import symrot
 from symrot.propagation.switched.instant import Instant
 from tests.needs import needs_compiler
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 METHODS = ["taylor", "dop853", "scipy:DOP853"]
 THIRD = Fraction(3, 10)
 

@@ -11,6 +11,7 @@ from symrot.report import layout
 from symrot.scene.scene import Scene
 from tests.needs import needs_compiler
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 FRICTION = "-k*sign(omega_3) + where(t > 8, 2*k, 0)"
 METHODS = ["taylor", "dop853", "scipy:DOP853"]
 

@@ -12,6 +12,7 @@ from symrot.scene.file import names_with_kernels, shipped_names
 from symrot.scene.samples import COLUMNS, LARGEST_FILE
 from symrot.scene.scene import Scene, load_scene
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 HEAD = ", ".join(COLUMNS)
 ROWS = [[0, 0.1, 0, 0.2], [1, 0.2, 0.1, 0.1], [2, 0.1, 0, 0], [3, 0, -0.1, 0], [4, 0, 0, 0.1]]
 CSV = "\n".join([HEAD, *(", ".join(map(str, row)) for row in ROWS)])
