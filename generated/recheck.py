@@ -90,7 +90,7 @@ def need(holds, sentence):
         raise ValueError(sentence)
 
 
-def shown(value):
+def quoted(value):
     """Return a value for a sentence: short, in one line."""
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
@@ -409,7 +409,7 @@ def tokens(text, place):
     words, start, line = [], 0, 1
     while start < len(text):
         match = TOKEN.match(text, start)
-        need(match, f"{place}, line {line}: expected names, numbers and operators, got {shown(text[start])}")
+        need(match, f"{place}, line {line}: expected names, numbers and operators, got {quoted(text[start])}")
         if match.lastgroup != "space":
             words.append(Token(match.lastgroup, match[0], line))
         line += match[0].count("\n")
@@ -435,7 +435,7 @@ class Reader:
 
     def refuse(self, expectation):
         """Refuse the text at the next word."""
-        raise ValueError(f"{self.here()}: expected {expectation}, got {shown(self.token.text)}")
+        raise ValueError(f"{self.here()}: expected {expectation}, got {quoted(self.token.text)}")
 
     def need(self, holds, sentence):
         need(holds, f"{self.here()}: {sentence}")
@@ -513,7 +513,7 @@ class Reader:
         self.take(")")
         own = self.own.get(name)
         arity = len(own.parameters) if own else 4 if name in self.choices else self.functions.get(name)
-        self.need(arity, f"expected a known function, got {shown(name)}")
+        self.need(arity, f"expected a known function, got {quoted(name)}")
         self.need(len(arguments) == arity, f"expected {arity} arguments of {name}, got {len(arguments)}")
         if own:
             self.weight += own.weight
@@ -539,13 +539,13 @@ class FormulaReader(Reader):
 
     def number(self):
         text = self.advance()
-        self.need(NUMBER.fullmatch(text), f"expected a number such as 2 or 0.5, got {shown(text)}")
+        self.need(NUMBER.fullmatch(text), f"expected a number such as 2 or 0.5, got {quoted(text)}")
         return Number(Fraction(text))
 
     def variable(self, name):
         reserved = name in self.functions or name in self.choices or name in self.own
         known = not reserved and (self.symbols is None or name in self.symbols)
-        self.need(known, f"expected the name of a variable, got {shown(name)}")
+        self.need(known, f"expected the name of a variable, got {quoted(name)}")
         return Variable(name)
 
     def base(self, name):
@@ -570,7 +570,7 @@ class FormulaReader(Reader):
     def whole(self):
         """Return the expression of the text, refused if anything follows it."""
         expression = self.expression()
-        self.need(self.token.kind == "end", f"expected the end of the formula, got {shown(self.token.text)}")
+        self.need(self.token.kind == "end", f"expected the end of the formula, got {quoted(self.token.text)}")
         self.check_weight()
         return expression
 
@@ -630,7 +630,7 @@ def without_comments(text, file):
     comments, comments in comments, and all characters but printable ASCII and ends of lines.
     """
     odd = re.search(r"[^\n -~]|\\|\?\?|//", text)
-    need(not odd, f"{file}: expected plain ASCII without backslashes, ?? and //, got {shown(odd and odd[0])}")
+    need(not odd, f"{file}: expected plain ASCII without backslashes, ?? and //, got {quoted(odd and odd[0])}")
     pieces, start = [], 0
     while (opened := text.find("/*", start)) >= 0:
         closed = text.find("*/", opened + 2)
@@ -658,7 +658,7 @@ def split_includes(text, name, files):
             need(
                 line in known and line not in included,
                 f"{name}.c, line {number + 1}: expected #include of math.h, symrot_math.h or {name}.h, each once, "
-                f"got {shown(line)}",
+                f"got {quoted(line)}",
             )
             included.add(line)
             lines[number] = ""
@@ -686,7 +686,7 @@ class CReader(Reader):
         match = C_NUMBER.fullmatch(text)
         self.need(
             match and match[3] == REALS[self.real],
-            f"expected a {self.real} such as 2.0{REALS[self.real]}, got {shown(text)}",
+            f"expected a {self.real} such as 2.0{REALS[self.real]}, got {quoted(text)}",
         )
         return Literal(NEAREST[self.real](float(text.removesuffix("f"))).value)
 
@@ -704,7 +704,7 @@ class CReader(Reader):
         parameter = self.parameters.get(name)
         self.need(
             parameter and parameter.form != "value" and parameter.is_input == is_input,
-            f"expected an array of {'inputs' if is_input else 'outputs'}, got {shown(name)}",
+            f"expected an array of {'inputs' if is_input else 'outputs'}, got {quoted(name)}",
         )
         self.take("[")
         component = 0
@@ -930,21 +930,21 @@ ROUNDING_SHAPE = {
 def check_shape(value, shape, place):
     """Refuse a value that has not the types of a shape; parts that a shape does not name are not looked at."""
     if isinstance(shape, type):
-        need(isinstance(value, shape), f"{place}: expected a text, as the schema says, got {shown(value)}")
+        need(isinstance(value, shape), f"{place}: expected a text, as the schema says, got {quoted(value)}")
     elif isinstance(shape, tuple):
         right = isinstance(value, list) and len(value) == len(shape)
-        need(right, f"{place}: expected a list of {len(shape)}, as the schema says, got {shown(value)}")
+        need(right, f"{place}: expected a list of {len(shape)}, as the schema says, got {quoted(value)}")
         for index, part in enumerate(shape):
             check_shape(value[index], part, f"{place}[{index}]")
     elif isinstance(shape, list):
-        need(isinstance(value, list), f"{place}: expected a list, as the schema says, got {shown(value)}")
+        need(isinstance(value, list), f"{place}: expected a list, as the schema says, got {quoted(value)}")
         for index, part in enumerate(value):
             check_shape(part, shape[0], f"{place}[{index}]")
     else:
-        need(isinstance(value, dict), f"{place}: expected an object, as the schema says, got {shown(value)}")
+        need(isinstance(value, dict), f"{place}: expected an object, as the schema says, got {quoted(value)}")
         for key in value if str in shape else shape:
             need(key in value, f"{place}: expected {key!r}, as the schema says, and it is missing")
-            check_shape(value[key], shape[str] if str in shape else shape[key], f"{place}.{shown(key)[1:-1]}")
+            check_shape(value[key], shape[str] if str in shape else shape[key], f"{place}.{quoted(key)[1:-1]}")
 
 
 def content(path):
@@ -994,7 +994,7 @@ def certified(path):
         f"it is that of another file: expected the kernel of {path.name}, with its C file and header",
     )
     for file, digest in files.items():
-        need(re.fullmatch(r"(\.\./){0,2}(\w+/)*\w+\.\w+", file, re.ASCII), f"{shown(file)} is no file of a kernel")
+        need(re.fullmatch(r"(\.\./){0,2}(\w+/)*\w+\.\w+", file, re.ASCII), f"{quoted(file)} is no file of a kernel")
         if "/" not in file or (path.parent / file).exists():
             right = sha256(content(path.parent / file)).hexdigest() == digest
             need(right, f"{file} is not what was certified")
@@ -1012,7 +1012,7 @@ def defined_functions(definitions):
     functions = {}
     for name, text in definitions:
         new = is_name(name) and name not in functions
-        need(new, f"{shown(name)} is no new function: expected a name that means nothing yet")
+        need(new, f"{quoted(name)} is no new function: expected a name that means nothing yet")
         parameters = [letter for letter in "xyzw" if re.search(rf"\b{letter}\b", text)]
         need(parameters and parameters == [*"xyzw"][: len(parameters)], f"{name}: expected a function of x, or of x, y")
         reader = FormulaReader(text, f"function {name}", functions, ("pi", *parameters))
@@ -1041,13 +1041,13 @@ class Specification:
         self.inputs = []  # of (place, expression): a symbol, or a parameter by its formula
         for place, symbol in self.symbols.items():
             text = spec["parameters"].get(symbol, symbol)
-            self.inputs.append((place, self.read(text, f"input {shown(place)}")))
+            self.inputs.append((place, self.read(text, f"input {quoted(place)}")))
         self.named = []  # of (symbol, expression): parts of formulas, then outputs
         for symbol, text in spec["named"]:
-            self.named.append((symbol, self.read(text, f"formula of {shown(symbol)}")))
+            self.named.append((symbol, self.read(text, f"formula of {quoted(symbol)}")))
         self.outputs = []  # of (place, symbol)
         for place, symbol, text in spec["formulas"]:
-            self.named.append((symbol, self.read(text, f"formula of {shown(place)}")))
+            self.named.append((symbol, self.read(text, f"formula of {quoted(place)}")))
             self.outputs.append((place, symbol))
 
     def read(self, text, place):
@@ -1064,15 +1064,15 @@ class Specification:
 # --- laws -------------------------------------------------------------------------------------------------------------
 
 
-def draw_given(given, names):
+def draw_hypothesis(members, names):
     """Set the symbols that a law assumes to be a rotation matrix (nine, row by row) or of length one, at random.
 
     The matrix is that of a random unit quaternion: 2*v*v^T + 2*q0*[v]x + (2*q0^2 - 1)*1.
     """
-    vector = [names.numbers.draw() for _ in range(4 if len(given) == 9 else len(given))]
+    vector = [names.numbers.draw() for _ in range(4 if len(members) == 9 else len(members))]
     length = Decimal.sqrt(sum(each * each for each in vector))
     vector = [each / length for each in vector]
-    if len(given) == 9:
+    if len(members) == 9:
         q0, q1, q2, q3 = vector
         a = 2 * q0 * q0 - 1
         vector = [
@@ -1080,7 +1080,7 @@ def draw_given(given, names):
             2 * (q2 * q1 + q0 * q3), 2 * q2 * q2 + a, 2 * (q2 * q3 - q0 * q1),
             2 * (q3 * q1 - q0 * q2), 2 * (q3 * q2 + q0 * q1), 2 * q3 * q3 + a,
         ]  # fmt: skip
-    for name, value in zip(given, vector, strict=True):
+    for name, value in zip(members, vector, strict=True):
         names.define(name, value)
 
 
@@ -1091,17 +1091,17 @@ def check_law(law, specification, points):
     with its size at another point, where all symbols are random; but at most 1e-40 in any case. An analytic expression
     that is not zero is that small at a random point with negligible probability.
     """
-    place = f"the law {shown(law['law'])}"
+    place = f"the law {quoted(law['law'])}"
     need(law["vanishing"], f"{place} does not follow: expected an expression that vanishes, got none")
-    given = law["given"]
-    need(all(is_name(name) for name in given), f"{place}: expected names of symbols as given, got {shown(given)}")
+    members = law["given"]
+    need(all(is_name(name) for name in members), f"{place}: expected names of symbols as given, got {quoted(members)}")
     expressions = [specification.read(text, place) for text in law["vanishing"]]
 
     def values(law_holds):
         names = Names(Decimals())
         if law_holds:
-            if given:
-                draw_given(given, names)
+            if members:
+                draw_hypothesis(members, names)
             specification.set_values(names)
         return [expression.value(names.numbers, names) for expression in expressions]
 
@@ -1126,7 +1126,7 @@ def check_series(series, functions, real):
     what the certificate says, and a quarter of a unit in the last place.
     """
     name, split_text, coefficient_texts, rest_text = series
-    place = f"series of {shown(name)}"
+    place = f"series of {quoted(name)}"
     split, rest = constant(split_text, place), constant(rest_text, place)
     coefficients = [constant(text, place) for text in coefficient_texts]
     need(
@@ -1157,7 +1157,7 @@ def constants_of(readback, real):
     """
     pairs = [(constant(a, "constants"), constant(b, "constants")) for a, b in readback["constants"]]
     for name, _, coefficients, _ in readback["series"]:
-        numbers = [abs(constant(text, f"series of {shown(name)}")) for text in coefficients]
+        numbers = [abs(constant(text, f"series of {quoted(name)}")) for text in coefficients]
         pairs += zip(numbers, numbers, strict=True)
     constants = {}
     for written, exact in pairs:
@@ -1174,7 +1174,7 @@ def constants_of(readback, real):
 def component_of(place):
     """Return (array, component) of a place such as ``q[2]``; a number by value is component 0 of its name."""
     match = re.fullmatch(r"([A-Za-z]\w*)(?:\[(0|[1-9]\d{0,2})\])?", place, re.ASCII)
-    need(match, f"{shown(place)}: expected an argument of a function such as W or q[2]")
+    need(match, f"{quoted(place)}: expected an argument of a function such as W or q[2]")
     return match[1], int(match[2] or 0)
 
 
@@ -1184,7 +1184,7 @@ def array_sizes(data, is_input):
     for place, *_ in data["inputs"] if is_input else data["spec"]["formulas"]:
         name, component = component_of(place)
         right = component == sizes.get(name, 0) and not (place == name and name in sizes)
-        need(right, f"{shown(place)}: expected the inputs and outputs of the certificate to list arguments in order")
+        need(right, f"{quoted(place)}: expected the inputs and outputs of the certificate to list arguments in order")
         sizes[name] = component + 1
     return sizes
 
@@ -1280,7 +1280,7 @@ def hexadecimal(text, place):
     try:
         return float.fromhex(text)
     except (ValueError, OverflowError):
-        raise ValueError(f"{place}: expected a number such as 0x1.8p+3, got {shown(text)}") from None
+        raise ValueError(f"{place}: expected a number such as 0x1.8p+3, got {quoted(text)}") from None
 
 
 def point_of_box(data, specification, real):
@@ -1294,9 +1294,9 @@ def point_of_box(data, specification, real):
     numbers = Decimals()
     names, inputs = Names(numbers), {}
     for place, symbol in specification.symbols.items():
-        need(place in bounds["box"], f"rounding.box: expected a range of {shown(place)}")
+        need(place in bounds["box"], f"rounding.box: expected a range of {quoted(place)}")
         low, high = (hexadecimal(end, f"rounding.box.{place}") for end in bounds["box"][place])
-        need(-math.inf < low <= high < math.inf, f"rounding.box: expected a finite range of {shown(place)}")
+        need(-math.inf < low <= high < math.inf, f"rounding.box: expected a finite range of {quoted(place)}")
         value = NEAREST[real](low + (high - low) * randbelow(2**53 + 1) / 2**53).value
         inputs[place] = min(max(value, low), high)
         names.define(symbol, Decimal(inputs[place]))
@@ -1341,7 +1341,7 @@ def check_precision(name, data, specification, kernels):
     real = readback["type"]
     need(
         real in REALS and name == f"symrot_{data['kernel']}{REALS[real]}",
-        f"{shown(name)}: a function has another name or type: expected symrot_{data['kernel']}, for float with f",
+        f"{quoted(name)}: a function has another name or type: expected symrot_{data['kernel']}, for float with f",
     )
     functions = specification.functions
     for series in readback["series"]:
@@ -1434,7 +1434,7 @@ def check_banner(data, text):
     title = banner.split("\n\n")[0]
     need(
         bare(title) == bare(f"{name}: {data['title']}"),
-        f"{name}.c: expected the banner to begin with the kernel and title of the certificate, got {shown(title)}",
+        f"{name}.c: expected the banner to begin with the kernel and title of the certificate, got {quoted(title)}",
     )
     command = bare(data["regenerate"])
     need(command and command in bare(banner), f"{name}.c: expected the banner to name the command of the certificate")

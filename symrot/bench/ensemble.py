@@ -101,7 +101,7 @@ def _library(problem: Any, order: int, width: int | None = None) -> Any:
     return cache.build(source, "lanes", lanes.FLAGS)
 
 
-def _lanes(task: lanes.Task) -> BatchEnd:
+def _lanes(task: lanes.LaneIntegration) -> BatchEnd:
     result = task.run()
     return int(result.steps.sum()), result.states[:, 0]
 
@@ -114,7 +114,7 @@ def _ours(
     for order in sorted(set(orders)) or [0]:
         for tolerance in tolerances:
             path = _library(start.problem, order or lanes.order_for(tolerance), width)
-            task = lanes.Task(path, p, start.y, 0.0, np.array([start.stop]), tolerance)
+            task = lanes.LaneIntegration(path, p, start.y, 0.0, np.array([start.stop]), tolerance)
             tasks.append((f"{order}" if order else "lanes", tolerance, partial(_lanes, task)))
     return tasks
 

@@ -240,7 +240,7 @@ def _check(options: Namespace) -> int:
         raise InputError("--all: expected --textbook all as well, since the page contains every document")
     if options.textbook:
         return _check_textbook(options)
-    results = verdicts.check(options.claim, options.given, options.unit, not options.no_repair, progress)
+    results = verdicts.check(options.claim, options.hypotheses, options.unit, not options.no_repair, progress)
     progress("")
     if options.json:
         say_json([verdict.to_json() for verdict in results])
@@ -388,7 +388,7 @@ def _check_arguments(parser: ArgumentParser) -> None:
                         "beer-johnston, or all")  # fmt: skip
     parser.add_argument("--all", action="store_true", help="with --textbook all: write the page of errata")
     parser.add_argument("-o", "--output", metavar="DIR", default="generated", help="folder of --all (./generated)")
-    parser.add_argument("--given", metavar="HYPOTHESIS", action="append", default=[],
+    parser.add_argument("--given", dest="hypotheses", metavar="HYPOTHESIS", action="append", default=[],
                         help="'a == b', 'x > 0' or 'x != 0', with a claim as text; may be repeated")  # fmt: skip
     parser.add_argument("--unit", metavar="NAME=UNIT", action="append", default=[],
                         help="unit of a symbol, with a claim as text: 'F=kg m/s^2'; may be repeated")  # fmt: skip

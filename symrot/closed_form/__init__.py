@@ -1,1 +1,1 @@
-"""Exact motions: rotations at any time without stepping."""
+"""Motions in closed form: the angular velocity and attitude at any time, without stepping."""

@@ -1,6 +1,6 @@
-"""The numbers of many motions in closed form, as arrays: those of each motion to the last bit as they are alone.
+"""The constants of many motions in closed form, as arrays that equal the constants of each single motion bit by bit.
 
-Where all digits of a sum may cancel, integers find it, one motion after the other; pairs of doubles do the rest.
+A sum whose digits may all cancel is computed in integers, one motion after the other; pairs of doubles do the rest.
 """
 
 from collections.abc import Callable, Sequence
@@ -10,12 +10,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.closed_form.arithmetic import double_double as dd
-from symrot.closed_form.arithmetic.pairs import GRID, LARGEST, SMALLEST, attitude, common, pair, quotient
+from symrot.closed_form.arithmetic.pairs import (
+    GRID,
+    LARGEST,
+    SMALLEST,
+    attitude,
+    over_common_denominator,
+    pair,
+    quotient,
+)
 from symrot.closed_form.axial.compiled import Constants
 from symrot.closed_form.axial.motion import turned_about
 from symrot.closed_form.build import Floats
 from symrot.closed_form.free_body import bodies
-from symrot.closed_form.free_body.motion import NEGLIGIBLE, Body, Defect, gaps
+from symrot.closed_form.free_body.motion import NEGLIGIBLE, Defect, FreeRigidBody, gaps
 from symrot.closed_form.heavy_top.motion import Frame
 from symrot.closed_form.many import Batch
 from symrot.closed_form.spin_up.compiled import limits
@@ -27,7 +35,7 @@ __all__ = [
 ]  # fmt: skip
 
 Column = Floats | Fraction
-"""A constant: of each motion, shape (n,), or the same of all."""
+"""A constant: one value for each motion, shape (n,), or one for all."""
 
 _SPREAD = 2.0**-300  # components of a quaternion farther apart are left to fractions
 _DOUBT = 2.0**-12  # of a step of the grid: pairs of doubles err by less than a quarter of it
@@ -38,7 +46,7 @@ _TURNED = 2.0**-99  # by which products of unit quaternions may err: units by 2^
 def attitudes(quaternions: Floats) -> Floats:
     """Return unit quaternions as :func:`symrot.closed_form.arithmetic.pairs.attitude` has them, shape (n, 8).
 
-    Pairs of doubles settle all but one of some thousand; exact numbers settle that one.
+    Pairs of doubles decide the last bit of all but about one in a thousand; exact numbers decide it for the others.
     """
     high, low = _units(quaternions)
     return _on_grid(high, low, 0.0, lambda i: attitude(_unit(quaternions[i])))
@@ -93,9 +101,9 @@ def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
 
 
 def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], Sequence[float]]) -> Floats:
-    """Return pairs as :func:`symrot.closed_form.arithmetic.pairs.on_grid` does, and rows that it doubts exactly.
+    """Return pairs as :func:`symrot.closed_form.arithmetic.pairs.on_grid` does; doubtful rows are computed exactly.
 
-    The pairs err by a quarter of :data:`_DOUBT` of a step of the grid of each component, and by ``error``.
+    The error of the pairs is at most a quarter of :data:`_DOUBT` of a grid step of each component, plus ``error``.
     """
     last = np.where(abs(high) > _SPREAD, np.spacing(abs(high)), 1.0)
     part, steps = abs(low) / last, low / (last * GRID)
@@ -111,7 +119,7 @@ def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], S
 
 
 def _pairs(values: Floats) -> Floats:
-    """Return doubles with zeros between them."""
+    """Return doubles as pairs whose low parts are zero."""
     pairs = np.zeros((*values.shape[:-1], 2 * values.shape[-1]))
     pairs[..., ::2] = values
     return pairs
@@ -129,23 +137,23 @@ def _columns(values: Sequence[Column], n: int) -> Floats:
 
 
 def _together(values: Sequence[Column], n: int) -> Floats:
-    """Return constants as pairs, shape (2 k,) where all motions share them."""
+    """Return constants as pairs, of shape (2 k,) if all motions share them."""
     return _columns(values, n)[0] if all(isinstance(value, Fraction) for value in values) else _columns(values, n)
 
 
 def usual(omega: Floats) -> NDArray[np.bool_]:
-    """Return which angular velocities (n, 3) lie where these arrays are exact; others are a matter for one motion."""
+    """Return which angular velocities (n, 3) lie in the range where these arrays are exact."""
     largest = abs(omega).max(axis=1)
     is_usual: NDArray[np.bool_] = (largest <= LARGEST) & ((largest >= SMALLEST) | (largest == 0))
     return is_usual
 
 
 def _noticed(omega: Floats) -> Floats:
-    """Return angular velocities with zeros for components that a motion alone takes for zero."""
+    """Return angular velocities with zeros for the components that a single motion treats as zero."""
     return np.where(abs(omega) < np.ldexp(abs(omega).max(axis=1), -NEGLIGIBLE)[:, None], 0.0, omega)
 
 
-def free_bodies(body: Body, omega: Floats, start: Floats) -> Batch:
+def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
     """Return the motions of one free body from :func:`usual` angular velocities and attitudes (8,) or (n, 8)."""
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
@@ -174,7 +182,7 @@ def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floa
     else:
         own = zip(*([x] * n if isinstance(x, Fraction) else x.tolist() for x in moments), strict=True)
         for i, (row, rates) in enumerate(zip(own, omega.tolist(), strict=True)):
-            integers, shared = common(row)
+            integers, shared = over_common_denominator(row)
             exact[i, :6] = gaps(integers, shared)
             exact[i, 6:] = Defect(integers)(_integers(rates))
     return Batch("free_body", (pairs, _pairs(omega), start, exact, None))
@@ -183,7 +191,7 @@ def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floa
 def free_bodies_of_tensors(
     entries: Sequence[Column], omega: Floats, start: Floats
 ) -> tuple[Batch | None, NDArray[np.bool_]]:
-    """Return the motions of free bodies in axes that are not principal, and which of them these arrays settle.
+    """Return the motions of free bodies in axes that are not principal, and for which of them the arrays are exact.
 
     ``entries`` are the tensor's xx, yy, zz, xy, xz and yz, the rest as :func:`free_bodies`.
     """

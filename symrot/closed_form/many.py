@@ -1,7 +1,7 @@
-"""Many motions of one closed form in one call: what differs between them as arrays, what they share once.
+"""Many motions of one closed form in one call: constants that differ are arrays, shared ones are passed once.
 
-The constants and the samples of a motion are found by the same compiled functions as those of a single one, from the
-same numbers: they come out bit by bit the same.
+The constants and samples of each motion are computed by the same compiled functions from the same numbers as for a
+single motion, so that they are equal bit by bit.
 """
 
 import ctypes
@@ -21,18 +21,18 @@ AT_ONCE = 1024  # motions to a call: some 10 ms, after which Python can see an i
 
 
 class Batch(NamedTuple):
-    """Motions of the closed form ``name``, from what its `prepare` takes.
+    """Motions of the closed form ``name``, given by the arguments of its C function `prepare`.
 
-    Each argument is an array of shape (k,) that all motions share, of shape (n, k), or None. Of ``axial`` the one
-    argument is the record of constants itself; of ``spin_up``
-    there are two, its numbers, and the axis with the limits that all share.
+    Each argument is an array of shape (k,) that all motions share, of shape (n, k), or None. For ``axial`` the only
+    argument is the record of constants itself; for ``spin_up`` there are two: its numbers, and the axis with the limits
+    that all motions share.
     """
 
     name: str
     arguments: tuple[Floats | None, ...]
 
     def of(self, chosen: NDArray[np.bool_]) -> "Batch":
-        """Return some of the motions."""
+        """Return the motions of some rows."""
         own = (values[chosen] if values is not None and values.ndim == 2 else values for values in self.arguments)
         return Batch(self.name, tuple(own))
 
@@ -53,7 +53,7 @@ def _place(function: Any) -> int:
 
 
 def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | None, workers: int = 1) -> list[int]:
-    """Write the samples of n motions; return those that are to be made alone, whose numbers are not of the domain.
+    """Write the samples of n motions; return the motions outside the domain, which have to be evaluated alone.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
 
 
 class _Linked(NamedTuple):
-    """The loop over motions, and where the functions of a form are that it calls."""
+    """The loop over motions, and the addresses of the functions of a form that it calls."""
 
     run: Any
     prepare: int

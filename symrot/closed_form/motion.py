@@ -1,4 +1,4 @@
-"""What every exact motion offers: angular velocity and attitude at any times, each sample for itself."""
+"""The base class of motions in closed form, which return angular velocity and attitude at any times."""
 
 import ctypes
 from abc import ABC, abstractmethod
@@ -18,7 +18,7 @@ from symrot.errors import CompilerError, InputError
 __all__ = ["REGIMES", "ExactMotion", "functions", "prepared"]
 
 REGIMES = ("steady", "circular", "hyperbolic", "separatrix")
-"""Which series a motion takes: none; those of the elliptic functions; their imaginary transforms; on the separatrix."""
+"""The series of a motion: none, theta series, their imaginary transforms, or the functions of a separatrix."""
 
 _DOMAIN = 1
 _Functions = tuple[Any, Any, Any]
@@ -26,7 +26,7 @@ _bound: dict[str, _Functions] = {}
 
 
 class ExactMotion(ABC):
-    """A motion at any time. Times are counted from that of the initial state."""
+    """A motion at any time. Times are counted from the initial state."""
 
     regime: str
     """One of :data:`REGIMES`."""
@@ -44,7 +44,7 @@ class ExactMotion(ABC):
         t : number or sequence of n numbers
             s, from the initial state, in any order, negative ones too.
         omega, quaternion : bool
-            What is asked for; the other is None and costs nothing.
+            Whether to compute them; a quantity that is not computed is None.
 
         Returns
         -------
@@ -56,7 +56,7 @@ class ExactMotion(ABC):
         Raises
         ------
         InputError
-            If a time is not finite, or products of the numbers and times leave the doubles.
+            If a time is not finite, or products of the numbers and times exceed the range of doubles.
         """
         times = times_of(t)
         rates = np.empty((len(times), 3)) if omega else None
@@ -74,7 +74,7 @@ class ExactMotion(ABC):
 
 
 class _Compiled(ExactMotion):
-    """A motion whose constants and samples C computes."""
+    """A motion whose constants and samples are computed in C."""
 
     def __init__(self, constants: Any, evaluate: Any) -> None:
         self._constants, self._evaluate = constants, evaluate
@@ -86,7 +86,7 @@ class _Compiled(ExactMotion):
 
 
 class _Portable(ExactMotion):
-    """A motion whose constants mpmath and whose samples NumPy computes: where there is no C compiler."""
+    """A motion for use without a C compiler: constants computed by mpmath, samples by NumPy."""
 
     def __init__(self, motion: Any) -> None:
         self.regime, self._motion = motion.regime, motion
@@ -96,7 +96,7 @@ class _Portable(ExactMotion):
 
 
 def functions(name: str, arguments: int) -> _Functions:
-    """Return `prepare` and the loop over samples of a closed form, and the type of a record of its constants."""
+    """Return the C functions of a closed form (`prepare`, and the loop over samples) and the type of its record."""
     if name not in _bound:
         constants, samples = load(name)
         prepare, length = (getattr(constants, f"symrot_{name}_{part}") for part in ("prepare", "length"))
@@ -110,12 +110,12 @@ def functions(name: str, arguments: int) -> _Functions:
 
 
 def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Callable[[], str]) -> ExactMotion:
-    """Return a motion of ``name.c`` from what its `prepare` takes, each a list of doubles or None.
+    """Return a motion of ``name.c`` from the arguments of its `prepare`, each a list of doubles or None.
 
     Raises
     ------
     InputError
-        With the sentence of ``refusal`` if the numbers are not of the motion's domain.
+        With the text of ``refusal`` if the numbers are outside the motion's domain.
     CompilerError
         If the C compiler refuses the source, or breaks error-free arithmetic.
     """

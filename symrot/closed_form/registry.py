@@ -1,4 +1,4 @@
-"""Which scenes have an exact motion, and that motion: a table of forms, each with its condition."""
+"""The table of closed forms: each with its condition on scenes and the function that makes the motion."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -12,27 +12,27 @@ from symrot.formula.exact_numbers import equal
 from symrot.planning.plan import ATTITUDE_QUANTITIES
 from symrot.scene.scene import Initial, Scene
 
-__all__ = ["FORMS", "Exact", "Form", "exact_form", "push_and_drag"]
+__all__ = ["FORMS", "ClosedForm", "Exact", "exact_form", "torque_and_damping"]
 
 
 class Exact(Protocol):
-    """A motion known at any time; times count from the initial state, s."""
+    """The interface of a motion in closed form; times are counted from the initial state, s."""
 
     def evaluate(
         self, t: ArrayLike, omega: bool = True, quaternion: bool = True
     ) -> tuple[Floats | None, Floats | None]:
-        """Return angular velocity (n, 3) in the body and attitude (n, 4), what is not asked for as None."""
+        """Return angular velocity (n, 3) in the body and attitude (n, 4); a quantity not requested is None."""
 
 
 Vector = tuple[Fraction, ...]
 Starts = Callable[[Initial], Exact]
 
 
-class Form(NamedTuple):
-    """A class of motions in closed form: what it is, which scenes have it, and how to make it."""
+class ClosedForm(NamedTuple):
+    """A class of motions in closed form: its description, its condition on scenes, and its constructor."""
 
     name: str
-    fits: Callable[[Scene], bool]
+    applies: Callable[[Scene], bool]
     starts: Callable[[Scene], Starts]  # with all that motions from different starts share
     library: str  # what it evaluates, see symrot.closed_form.build; "" for none
     derivation: str  # what proves it
@@ -43,7 +43,7 @@ class Form(NamedTuple):
         return self.starts(scene)(scene.initial)
 
     def begin(self) -> None:
-        """Start what compiles the form, if it must be compiled; other work can be done meanwhile."""
+        """Start compiling the form in the background, if it has to be compiled."""
         from symrot.closed_form.build import begin
 
         if self.library and not library.missing():
@@ -65,7 +65,7 @@ def _symmetric_about(scene: Scene, axis: int) -> bool:
 
 
 def _only_axis(vector: tuple[Fraction, ...]) -> int | None:
-    """Return the axis that a vector lies along, if it does."""
+    """Return the number of the axis that a vector is parallel to, or None."""
     along = [axis for axis, component in enumerate(vector) if component != 0]
     return along[0] if len(along) == 1 else None
 
@@ -108,7 +108,7 @@ def _gyrostat(scene: Scene) -> Starts:
     return gyrostat.starts(_moments(scene), scene.torques[0].vector("angular_momentum"))
 
 
-def push_and_drag(scene: Scene) -> tuple[Vector, Vector]:
+def torque_and_damping(scene: Scene) -> tuple[Vector, Vector]:
     """Return the constant torque in the body and the coefficients of linear damping."""
     sums = []
     for kind, field in (("constant_body", "torque"), ("damping", "linear")):
@@ -124,10 +124,10 @@ def _is_driven(scene: Scene) -> bool:
 
 
 def _driven_axis(scene: Scene) -> int | None:
-    """Return the principal axis that constant torques and linear damping keep a rotation to."""
+    """Return the principal axis about which a rotation remains under constant torques and linear damping, or None."""
     if not _is_driven(scene):
         return None
-    push, turning = push_and_drag(scene)[0], _only_axis(scene.initial.omega_b)
+    push, turning = torque_and_damping(scene)[0], _only_axis(scene.initial.omega_b)
     axis = turning if turning is not None else _only_axis(push)
     across = [*scene.initial.omega_b, *push]
     if not any(across):
@@ -136,10 +136,10 @@ def _driven_axis(scene: Scene) -> int | None:
 
 
 def _driven_symmetry_axis(scene: Scene) -> int | None:
-    """Return the symmetry axis that a constant torque acts about; undamped, where an attitude is asked for."""
+    """Return the symmetry axis about which a constant torque acts, or None; with an attitude, only without damping."""
     if not _is_driven(scene):
         return None
-    push, drag = push_and_drag(scene)
+    push, drag = torque_and_damping(scene)
     if any(drag) and set(scene.output.quantities) & ATTITUDE_QUANTITIES:
         return None
     for axis in range(3):
@@ -163,12 +163,12 @@ def _axial(scene: Scene) -> Starts:
 
     axis = _turning_axis(scene)
     assert axis is not None
-    push, drag = push_and_drag(scene)
+    push, drag = torque_and_damping(scene)
     return axial.starts(_moments(scene), axis, push[axis], drag[axis], drag[axis - 1])
 
 
 def _field_axis(name: str) -> Callable[[Scene], int | None]:
-    """Return what finds the axis that a field of the only torque lies along."""
+    """Return a function that returns the axis along which a vector field of the only torque lies, or None."""
     return lambda scene: _only_axis(scene.torques[0].vector(name))
 
 
@@ -181,12 +181,12 @@ def _spin_up(scene: Scene) -> Starts:
 
     axis = _driven_symmetry_axis(scene)
     assert axis is not None
-    return spin_up.starts(_moments(scene), axis, push_and_drag(scene)[0][axis])
+    return spin_up.starts(_moments(scene), axis, torque_and_damping(scene)[0][axis])
 
 
 FORMS = (
-    Form("free body, theta functions", _is_free, _free_body, "free_body", "free_body_attitude"),
-    Form(
+    ClosedForm("free body, theta functions", _is_free, _free_body, "free_body", "free_body_attitude"),
+    ClosedForm(
         "symmetric heavy top, theta functions",
         _is_symmetric_top,
         _heavy_top,
@@ -194,7 +194,7 @@ FORMS = (
         "heavy_top_motion",
         _field_axis("center_of_mass"),
     ),
-    Form(
+    ClosedForm(
         "symmetric gyrostat, two steady rotations",
         _is_symmetric_gyrostat,
         _gyrostat,
@@ -202,7 +202,7 @@ FORMS = (
         "symmetric_gyrostat",
         _field_axis("angular_momentum"),
     ),
-    Form(
+    ClosedForm(
         "rotation about one axis",
         lambda scene: _driven_axis(scene) is not None,
         _axial,
@@ -210,7 +210,7 @@ FORMS = (
         "driven_rotation",
         _driven_axis,
     ),
-    Form(
+    ClosedForm(
         "symmetric body driven about its axis, parabolic cylinder functions",
         _is_spun_up,
         _spin_up,
@@ -218,7 +218,7 @@ FORMS = (
         "driven_rotation",
         _driven_symmetry_axis,
     ),
-    Form(
+    ClosedForm(
         "symmetric body driven about its axis, angular velocity alone",
         lambda scene: _driven_symmetry_axis(scene) is not None,
         _axial,
@@ -227,11 +227,11 @@ FORMS = (
         _driven_symmetry_axis,
     ),
 )
-"""The motions in closed form, in the order in which they are looked for."""
+"""The closed forms, in the order in which a scene is compared with them."""
 
 
-def exact_form(scene: Scene) -> Form | None:
-    """Return the form of a scene's exact motion, or None if it has none here."""
+def exact_form(scene: Scene) -> ClosedForm | None:
+    """Return the closed form of a scene's motion, or None if no form of the table applies."""
     if scene.table is not None:  # samples act besides what the forms look at
         return None
-    return next((form for form in FORMS if form.fits(scene)), None)
+    return next((form for form in FORMS if form.applies(scene)), None)

@@ -1,4 +1,4 @@
-"""Equations of motion of a plan: Euler's equations and the quaternion rates, for just the states it keeps.
+"""Equations of motion of a plan: Euler's equations and the quaternion rates, for the states of the plan only.
 
 Everything is derived here from the plan's structure: ``I domega/dt = tau - omega x (I omega + h)`` in body axes
 about the centre of mass or a fixed point, and ``dq/dt = 1/2 q (0, omega_b)``.
@@ -29,7 +29,7 @@ TENSOR_NAMES = (("I_xx", "I_xy", "I_xz"), ("I_xy", "I_yy", "I_yz"), ("I_xz", "I_
 
 @dataclass(frozen=True)
 class AngleMotion(Motion):
-    """A motion whose attitude is a set of Euler angles: vectors are turned by the matrix of the sequence itself."""
+    """A motion whose attitude is a set of Euler angles: vectors are rotated by the matrix of the sequence."""
 
     sequence: str
 
@@ -40,7 +40,7 @@ class AngleMotion(Motion):
 
 @dataclass(frozen=True)
 class Equations:
-    """First-order equations of motion and the quantities they follow."""
+    """First-order equations of motion, and the quantities from which they were derived."""
 
     states: tuple[Symbol, ...]
     rates: tuple[Expr, ...]  # d(states)/dt

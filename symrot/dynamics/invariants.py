@@ -1,7 +1,7 @@
-"""What a motion keeps: candidates from the symmetries of mechanics, each proven along the equations of motion.
+"""Conserved quantities: candidates from the symmetries of mechanics, each proven along the equations of motion.
 
-A candidate F(t, states) is kept if and only if ``dF/dt = dF/dt|_t + grad F . rates`` has normal form zero; nothing
-is taken from a list of known integrals. The others are reported as lost, with what takes them.
+A candidate F(t, states) is conserved if and only if ``dF/dt = dF/dt|_t + grad F . rates`` has normal form zero; no list
+of known integrals is used. The other candidates are reported as lost, with the torques that change them.
 """
 
 from collections.abc import Iterable, Sequence
@@ -47,7 +47,7 @@ def rate_along(expression: Expr, equations: Equations) -> Expr:
 
 
 def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield (name, unit, value, what is differentiated): the same, or its square where the value is a root."""
+    """Yield (name, unit, value, differentiated formula); the formula is the value, or its square if it is a root."""
     momentum, energy = equations.momentum_b, equations.kinetic_energy + equations.potential
     yield "energy", "J", energy, energy
     if equations.motion.quaternion is None:
@@ -68,7 +68,7 @@ def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[st
 
 
 def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield what one torque of the table singles out: the vertical of gravity, the normal of an orbit."""
+    """Yield the candidates from the direction that a torque singles out: the vertical, the normal of an orbit."""
     if not isinstance(torque, FieldTorque):
         return
     if torque.kind == "gravity" and (direction := torque.vector("direction")).count(Pattern.ZERO) < 2:
@@ -105,9 +105,9 @@ def _listed(kinds: Sequence[str]) -> str:
 
 
 def find_invariants(equations: Equations, structure: Structure) -> tuple[Invariant, ...]:
-    """Return the invariants of a motion, then the candidates it does not keep.
+    """Return the invariants of a motion, then the candidates that are not conserved.
 
-    What the plan took as constant is among them.
+    The components that the plan treats as constant are among the invariants.
     """
     kinds = [torque.kind for torque in structure.torques]
     candidates = []

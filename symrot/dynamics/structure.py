@@ -1,4 +1,4 @@
-"""The structure of a motion: what its equations look like, whatever the numbers in them. Standard library only.
+"""The structure of a motion: the form of its equations, independent of their numbers. Standard library only.
 
 A plan (:mod:`symrot.planning.plan`) finds the structure of a scene, and :mod:`symrot.dynamics.equations` derives its
 equations of motion. Scenes of the same structure share one kernel; only the numbers that it is bound to differ.
@@ -18,7 +18,7 @@ __all__ = [
 
 
 class Pattern(Enum):
-    """What the equations may rely on in the value of a constant: an exact number, or nothing."""
+    """The value of a constant on which the equations may rely: an exact number, or none."""
 
     ZERO = "0"
     ONE = "1"
@@ -141,7 +141,7 @@ MOVING = (None, None, None)
 
 @dataclass(frozen=True, slots=True)
 class Structure:
-    """Which equations a motion obeys.
+    """The structure that determines the equations of a motion.
 
     Attributes
     ----------

@@ -10,11 +10,11 @@ from typing import NamedTuple
 __all__ = ["EXPRESSION_NAMES", "TABLE_KIND", "TORQUE_KINDS", "Field", "TorqueKind"]
 
 EXPRESSION_NAMES = ("t", "omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3")
-"""What the text of an ``expression`` torque may name besides its parameters: time (s), omega_b (rad/s), quaternion."""
+"""The names in an ``expression`` torque besides its parameters: time (s), omega_b (rad/s) and quaternion."""
 
 
 class Field(NamedTuple):
-    """One field of a torque; ``shape`` and ``sign`` say what a value is, ``default`` what it is when left out."""
+    """One field of a torque: ``shape`` and ``sign`` of its value, and the ``default`` of a missing value."""
 
     name: str
     shape: str  # scalar | vector | scalar or vector | attitude | formulas | parameters | a choice "x|y"
@@ -130,4 +130,4 @@ TABLE_KIND = TorqueKind(
     "any",
     "a torque given by samples, which is no formula",
 )  # fmt: skip
-"""The one kind that is no formula, so that nothing is derived from it; read by :mod:`symrot.scene.samples`."""
+"""The only kind not given by formulas; read by :mod:`symrot.scene.samples`; no kernel is derived from it."""

@@ -1,7 +1,7 @@
 """The torques of :mod:`symrot.dynamics.torque_kinds` as formulas: one law per kind, in a table.
 
-Each law gives the torque in body components and, where it has one, the potential from which the torque follows;
-:func:`torque_of_potential` derives the torque from the potential, so that neither is believed on its word.
+Each law gives the torque in body components and, if there is one, its potential; :func:`torque_of_potential` derives
+the torque from the potential, so that each is checked against the other.
 """
 
 from collections.abc import Callable, Mapping
@@ -69,7 +69,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class TorqueLaw:
-    """A torque (N m, body components) with what is known of it."""
+    """A torque (N m, body components) with its potential, momentum and named quantities."""
 
     torque: Matrix = field(default_factory=lambda: zeros(3, 1))
     potential: Expr | None = None  # J; None where the torque has none
@@ -174,9 +174,9 @@ def _rational(value: Fraction) -> Rational:
 
 
 def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
-    """Return a formula with a name for each number times a sum such as 1 + tanh(u), whose value joins the known ones.
+    """Return a formula with a name for each product of a number and a sum such as 1 + tanh(u), and the names' values.
 
-    SymPy would write it out, and add its constant to others: where the sum is zero, their rounding would remain.
+    SymPy would expand the product and combine its constant with others; where the sum is zero, rounding would remain.
     """
     if node[0] in ("number", "symbol"):
         return node
@@ -207,7 +207,7 @@ def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:
 
 
 def formula_values(structure: FormulaTorque, motion: Motion) -> dict[str, Expr]:
-    """Return what the names in the formulas of an expression stand for."""
+    """Return the values of the names in the formulas of an expression."""
     values = dict(zip(EXPRESSION_NAMES[:4], (symbols.t, *motion.omega_b), strict=True))
     values.update(zip(EXPRESSION_NAMES[4:], motion.quaternion or (), strict=False))
     values.update({name: constant(f"{structure.prefix}{name}") for name in structure.parameters})

@@ -27,7 +27,7 @@ class EnsembleStats(NamedTuple):
     Attributes
     ----------
     steps, evaluations : array, shape (n,)
-        Of each motion; one evaluation of a series computes all its coefficients.
+        The number of each motion; one evaluation of a series computes all its coefficients.
     seconds : float
         Time of the whole ensemble.
 
@@ -49,15 +49,15 @@ class Ensemble:
     Attributes
     ----------
     t : array, shape (m,) or (n, m)
-        Sample times, s, as they were asked for.
+        Sample times, s, as they were passed.
     omega : array, shape (n, m, 3)
-        Angular velocity, body components, rad/s; not-a-number where a motion was not followed so far.
+        Angular velocity, body components, rad/s; not-a-number at times that a motion did not reach.
     status : array, shape (n,)
-        0 for a motion that reached its last time, -1 for one that broke off (as solve_ivp's).
+        0 for a motion that reached its last time, -1 for one that broke off (as in SciPy's solve_ivp).
     messages : n texts
-        Why a motion broke off, and when; empty for one that did not.
+        The reason why a motion broke off, with its time; empty for the others.
     methods : n texts
-        How each was propagated.
+        The method by which each motion was propagated.
     stats : EnsembleStats
 
     Examples
@@ -111,11 +111,11 @@ def propagate_ensemble(
 ) -> Ensemble:
     """Return n motions of a scene that differ in their initial states and in constants of the scene.
 
-    Each comes out bit by bit the same whatever the others are, in whatever order and number, and on how many threads.
-    ``auto`` follows each by the faster method: in closed form where there is one, with the very bits that
-    :func:`symrot.propagate` gives alone; by Taylor series with one trajectory in each SIMD lane where there is none, or
-    where steps were measured to be faster (see :func:`symrot.ensemble.exact.choose`). A motion
-    that cannot be followed to its last time does not disturb the others: its ``status`` and message say so.
+    The samples of each motion are the same to the last bit whatever the other motions, their number, their order and
+    the number of threads are. ``auto`` takes the faster method for each: a closed form if there is one, with the same
+    bits that :func:`symrot.propagate` returns; else, or where steps were measured to be faster
+    (:func:`symrot.ensemble.exact.choose`), Taylor series with one trajectory in each SIMD lane. A motion that does not
+    reach its last time does not disturb the others: its ``status`` and message tell.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""Ensembles in closed form: which trajectories have one, and all of a form in one call.
+"""Ensembles in closed form: the choice of a form for each trajectory, and one call for all trajectories of a form.
 
-Trajectories whose numbers are unusual (beyond 1e205, products of inertia that vary and hardly differ from zero) are
-made one by one, each as a motion alone; where no constant varies, they share what the body and its torques give.
+Trajectories with unusual numbers (beyond 1e205, or varying products of inertia close to zero) are evaluated one by
+one, each as a single motion; if no constant varies, these motions share the constants of the body and its torques.
 """
 
 from collections.abc import Callable, Hashable, Iterator, Sequence
@@ -16,7 +16,7 @@ from symrot.build import cache as library
 from symrot.closed_form.arithmetic import double_double as dd
 from symrot.closed_form.arithmetic.pairs import LARGEST, SMALLEST, attitude, pair
 from symrot.closed_form.build import loaded
-from symrot.closed_form.registry import Exact, Form, exact_form
+from symrot.closed_form.registry import ClosedForm, Exact, exact_form
 from symrot.ensemble.variation import PRINCIPAL, PRODUCTS, Variation
 from symrot.errors import InputError
 from symrot.propagation.steppers.stepping import Floats
@@ -32,16 +32,17 @@ MOST_BITS = 59  # of a pattern, beside those of angular velocity
 
 
 class Kind(NamedTuple):
-    """The form of a motion, and the axis of the body that it is about, if there is one."""
+    """The closed form of a motion, and the axis of the body that the form refers to, if any."""
 
-    form: Form | None
+    form: ClosedForm | None
     axis: int | None
 
 
 def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
-    """Return the forms of an ensemble, each with its trajectories; one look at a scene for each pattern of zeros.
+    """Return the closed forms of an ensemble, each with its trajectories.
 
-    A form is chosen by which components are zero and which moments and coefficients are equal: never by other numbers.
+    The form depends only on which components are zero and which moments and coefficients are equal, so that one scene
+    is examined for each such pattern.
     """
     chosen: dict[Kind, list[Rows]] = {}
     known: dict[Hashable, Kind] = variation.cached("forms", dict)
@@ -58,7 +59,7 @@ def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
 
 
 def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
-    """Return the trajectories in groups with the same zeros and the same equal constants, each with what they share."""
+    """Return the trajectories in groups with the same zeros and the same equal constants, each with its pattern."""
     columns, n = variation.columns, len(variation)
     code = (variation.omega != 0) @ np.array([1, 2, 4])
     if not columns:
@@ -89,16 +90,16 @@ ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
 
 
 class Solved(NamedTuple):
-    """Trajectories of one closed form, as arrays if there are such."""
+    """Trajectories of one closed form, as arrays if the form has arrays."""
 
-    form: Form
+    form: ClosedForm
     rows: Rows
     batch: "Batch | None"
     usual: Any  # which rows the arrays are good for
 
 
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
-    """Return the trajectories to be followed in closed form: with ``faster``, those for which steps take longer.
+    """Return the trajectories to evaluate in closed form: with ``faster``, only those for which steps take longer.
 
     Measured for 0.01 to 10^4 rad, tolerances of 1e-6 and 1e-12 and 400 trajectories of 101 samples (``python -m
     symrot.bench.starts --ensembles`` prints the same for the scenes' own spans), in microseconds per trajectory:
@@ -132,7 +133,7 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
 
 
 def _angles(variation: Variation, times: Floats, start: float) -> Floats:
-    """Return the angles that bodies turn about at the rate of their start and under constant torques, rad, (n,)."""
+    """Return the angles, rad, (n,), by which bodies rotate at the rate of their start and under constant torques."""
     n = len(variation)
     span = np.broadcast_to(abs(times - start).max(axis=-1, initial=0.0), (n,))
     push: Any = np.zeros(n)
@@ -183,7 +184,7 @@ def follow_exact(
 def _put_starts(
     variation: Variation, rows: Rows, at_start: NDArray[np.bool_], omega: Floats, quaternion: Floats | None
 ) -> None:
-    """Write the initial states where times are that of the start: to the last bit, as every method has them."""
+    """Write the initial states, bit by bit, at sample times equal to the initial time, as every method does."""
     if not at_start.any():
         return
     states = variation.initial_states
@@ -201,9 +202,9 @@ def _put_starts(
 
 
 class _Alone:
-    """Motions one by one; those of the same form and pattern of zeros share what does not depend on the start."""
+    """Motions one by one; motions of the same form and pattern share the constants that do not depend on the start."""
 
-    def __init__(self, variation: Variation, form: Form) -> None:
+    def __init__(self, variation: Variation, form: ClosedForm) -> None:
         self._variation, self._form = variation, form
         self._starts: dict[tuple[bool, ...], Callable[[Initial], Exact]] = {}
 
@@ -224,7 +225,7 @@ Usual = NDArray[np.bool_] | bool
 
 
 class _Part(NamedTuple):
-    """Trajectories of one form about one axis, with what all forms take of them."""
+    """Trajectories of one form about one axis, with the constants that all forms use."""
 
     variation: Variation
     axis: int | None
@@ -232,7 +233,7 @@ class _Part(NamedTuple):
     omega: Floats  # (n, 3)
 
     def of(self, chosen: NDArray[np.bool_]) -> "_Part":
-        """Return the same of some of the trajectories."""
+        """Return the part of some of the trajectories."""
         return self._replace(rows=self.rows[chosen], omega=self.omega[chosen])
 
     @property
@@ -245,7 +246,7 @@ class _Part(NamedTuple):
         return attitudes if len(self.rows) == len(variation) else attitudes[self.rows]
 
     def constant(self, name: str) -> Any:
-        """Return a constant as a Fraction, or of each trajectory."""
+        """Return a constant as one Fraction, or as an array with a value for each trajectory."""
         value = self.variation.constant(name)
         return value if isinstance(value, Fraction) else value[self.rows]
 
@@ -256,7 +257,7 @@ class _Part(NamedTuple):
 
 
 def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
-    """Yield motions as arrays, or None where they are made one by one; and which rows the arrays are good for."""
+    """Yield motions as arrays, or None where they are evaluated one by one; and the rows for which the arrays hold."""
     make = BATCHES.get(kind.form.library) if kind.form else None
     if make is None:
         yield rows, None, None
@@ -281,7 +282,7 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
 
 
 def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
-    """Yield the trajectories of a form; of tops, those whose centre lies on either side of the fixed point apart."""
+    """Yield the trajectories of a form; tops are split by the side of the fixed point on which their centre lies."""
     groups = [rows]
     if kind.form and kind.form.library == "heavy_top" and variation.columns:
         height = variation.constant(f"{variation.prefix(0)}center_of_mass_{(kind.axis or 0) + 1}")
@@ -294,11 +295,11 @@ def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
 
 def _free(part: _Part) -> tuple["Batch | None", Usual]:
     from symrot.closed_form import batches
-    from symrot.closed_form.free_body.motion import Body
+    from symrot.closed_form.free_body.motion import FreeRigidBody
 
     variation = part.variation
     if not variation.columns:
-        body = variation.cached("free body", lambda: Body(variation.scene.body.principal))
+        body = variation.cached("free body", lambda: FreeRigidBody(variation.scene.body.principal))
         return batches.free_bodies(body, part.omega, part.start), True
     if not variation.in_principal_axes:
         entries = [part.constant(name) for name in (*PRINCIPAL, *PRODUCTS)]

@@ -1,9 +1,9 @@
 """Taylor series with one trajectory in each SIMD lane: the C of :file:`lanes.c` driven from Python.
 
 The counterpart of :mod:`symrot.propagation.steppers.taylor` for many motions: the same series, step rule and
-compensated states, four or eight motions to one instruction, each with a step of its own. A lane whose motion ends
-takes the next. Lanes do not touch each other: a motion comes out bit by bit the same whatever its neighbours, its lane
-and the number of threads, and one that breaks off leaves the rest alone.
+compensated states, four or eight motions per instruction, each with its own step. A lane whose motion has ended takes
+the next motion. Lanes are independent: the samples of a motion are the same to the last bit for any neighbours, lane
+and number of threads, and a motion that breaks off does not affect the others.
 """
 
 import ctypes
@@ -24,7 +24,17 @@ from symrot.propagation.steppers.integration_stopped import IntegrationStopped, 
 from symrot.propagation.steppers.stepping import DONE, NOT_FINITE, UNDERFLOW, Floats, PathLike, is_sorted
 from symrot.propagation.steppers.taylor import step_tail
 
-__all__ = ["FLAGS", "Lanes", "Outcome", "Task", "around", "follow", "lanes", "order_for", "translation_unit"]
+__all__ = [
+    "FLAGS",
+    "LaneIntegration",
+    "Lanes",
+    "Outcome",
+    "follow",
+    "lanes",
+    "order_for",
+    "translation_unit",
+    "wrap_translation_unit",
+]
 
 Integers = NDArray[np.int64]
 
@@ -48,7 +58,7 @@ ORDERS = (
 
 
 def order_for(tolerance: float) -> int:
-    """Return the order that is fastest for a tolerance; measured by ``python -m symrot.bench.ensemble --orders``."""
+    """Return the fastest order for a tolerance, as measured by ``python -m symrot.bench.ensemble --orders``."""
     return next(order for least, order in ORDERS if tolerance >= least)
 
 
@@ -71,10 +81,10 @@ def translation_unit(
     """
     from symrot.codegen.taylor.ensemble_source import lane_definitions
 
-    return around(lane_definitions(program, blocks, scales, order), width)
+    return wrap_translation_unit(lane_definitions(program, blocks, scales, order), width)
 
 
-def around(definitions: str, width: int | None = None) -> str:
+def wrap_translation_unit(definitions: str, width: int | None = None) -> str:
     """Return the C source of a library from the text of its system; see :func:`translation_unit`."""
     head = "" if width is None else "#define SYMROT_PLAIN\n" if width == 1 else f"#define SYMROT_LANES {width}\n"
     paths = ("ensemble/lanes.h", "propagation/steppers/series.h", "ensemble/lanes.c")
@@ -99,9 +109,9 @@ class _Job(ctypes.Structure):
 
 
 class Outcome(NamedTuple):
-    """What came of n motions: states (n, m, N), not-a-number where one was not followed so far; one entry per motion.
+    """The result of n motions: states (n, m, N), with not-a-number at times that a motion did not reach.
 
-    ``messages`` says why a motion broke off, and is empty for one that did not.
+    ``messages`` holds the reasons why motions broke off, empty for the others.
     """
 
     states: Floats
@@ -177,8 +187,8 @@ def _legs(t0: float, times: Floats, n: int) -> _Legs:
     return _Legs(table.ravel(), np.ascontiguousarray(rows[:, rows[2] > 0]), None if in_order else order)
 
 
-class Task:
-    """Motions bound to numbers and sample times: prepared once, run as often as one likes.
+class LaneIntegration:
+    """Motions bound to numbers and sample times: prepared once, run any number of times.
 
     Parameters
     ----------
@@ -193,11 +203,11 @@ class Task:
     tolerance : float
         Error of each trajectory to aim for, see :func:`symrot.propagation.steppers.taylor.step_tail`.
     max_steps : int
-        Most steps of one motion.
+        Largest number of steps of one motion.
     workers : int
         Threads; each steps its share in lanes of its own.
     epoch : float
-        What messages add to times, s: what other clocks show where that of t0 and of the times shows 0.
+        Time, s, that messages add to times: the time of the scene at which the clock of t0 and the times shows 0.
     """
 
     def __init__(
@@ -245,7 +255,7 @@ class Task:
         return Outcome(grid, counted[0], counted[1], messages)
 
     def _messages(self, status: Integers, reached: Floats) -> tuple[str, ...]:
-        """Return why motions broke off."""
+        """Return the reasons why motions broke off."""
         motion, first, samples, _ = self.legs.rows
         messages = [""] * len(self.y)
         for leg in np.flatnonzero(status != DONE).tolist():
@@ -258,12 +268,12 @@ class Task:
 
 
 def follow(*arguments: Any, **options: Any) -> Outcome:
-    """Follow n motions through their sample times; arguments as :class:`Task` takes them."""
-    return Task(*arguments, **options).run()
+    """Follow n motions through their sample times; arguments as :class:`LaneIntegration` takes them."""
+    return LaneIntegration(*arguments, **options).run()
 
 
 def _share(library: Lanes, jobs: list[Any]) -> None:
-    """Do the jobs, each in a thread; an interrupt stops them all."""
+    """Run the jobs, each in a thread; an interrupt stops them all."""
     if len(jobs) == 1:
         library.work(jobs[0])
         return

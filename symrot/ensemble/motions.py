@@ -44,7 +44,7 @@ QUATERNION = tuple(f"q{i} of t" for i in range(4))
 
 
 class Followed(NamedTuple):
-    """n motions at m times each; not-a-number where one was not followed so far."""
+    """The samples of n motions at m times each; not-a-number at times that a motion did not reach."""
 
     omega: Floats  # (n, m, 3)
     quaternion: Floats | None  # (n, m, 4)
@@ -55,7 +55,7 @@ class Followed(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """What is to be followed, and how well."""
+    """The trajectories to follow, their times, tolerance and number of threads."""
 
     variation: Variation
     plan: Plan
@@ -119,7 +119,7 @@ def follow(problem: Problem, method: str) -> Followed:
 def _switched(
     problem: Problem, method: str, stepped: Sequence[int], omega: Floats, quaternion: Floats | None
 ) -> Followed:
-    """Follow motions under torques with switches, each as it would be alone."""
+    """Follow motions under torques with switches, each by the method for a single motion."""
     from symrot.propagation.propagate import propagator
 
     count, messages, methods = len(stepped), list[str](), list[str]()
@@ -153,7 +153,7 @@ def _solved(problem: Problem, method: str) -> list[Solved]:
 
 
 def _stepping_method(problem: Problem) -> str:
-    """Return how motions without a closed form are followed."""
+    """Return the name of the method by which motions without a closed form are followed."""
     if not problem.plan.states:
         return "constant"
     if missing_compiler():
@@ -172,7 +172,7 @@ def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
 
         system = lane_definitions(kernel.rates, *error_blocks(plan), order)
         library.store(key, system)
-    return library.build(lanes.around(system), "lanes", lanes.FLAGS)
+    return library.build(lanes.wrap_translation_unit(system), "lanes", lanes.FLAGS)
 
 
 class _Stepped:
@@ -227,7 +227,7 @@ class _Stepped:
             quaternion[chosen] /= size
 
     def _parameters_of(self, outputs: Sequence[str]) -> Any:
-        """Return the parameters that stand in some quantities."""
+        """Return the parameters that some quantities depend on."""
         program, parameters = self.kernel.quantities, self.kernel.quantity_parameters
         needed = set().union(*(names(node) for name, node in program.outputs if name in outputs))
         for name, node in reversed(program.temporaries):
@@ -235,7 +235,7 @@ class _Stepped:
         return tuple([(name, node) for name, node in parameters if name in needed])
 
     def one_by_one(self, integrate: Callable[[int, Floats], tuple[Floats, Any]]) -> lanes.Outcome:
-        """Follow each with a stepper of one motion."""
+        """Follow each trajectory with the stepper for a single motion."""
         samples = self.times.shape[-1]
         states = np.full((len(self.chosen), samples, len(self.plan.states)), np.nan)
         steps, evaluations = (np.zeros(len(self.chosen), dtype=np.int64) for _ in range(2))
@@ -264,7 +264,7 @@ def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
 
 
 def _enclosed(stepped: _Stepped) -> lanes.Outcome:
-    """Follow motions whose steps are held by an enclosure, or checked, one after the other: lanes do neither."""
+    """Follow motions whose steps need an enclosure or a check one after the other, since lanes do neither."""
     problem, (plan, kernel) = stepped.problem, stepped.moved
     path = taylor_library(plan, kernel, problem.tolerance, projected=False)
 
@@ -315,4 +315,4 @@ STEPPERS: dict[str, Callable[[_Stepped, str], lanes.Outcome]] = {
     "scipy": _scipy,
     "constant": _constant,
 }
-"""How motions without a closed form are followed, by method."""
+"""Name of a method -> the function that follows motions without a closed form by it."""

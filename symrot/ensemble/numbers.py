@@ -1,4 +1,4 @@
-"""The parameters of kernels for each trajectory of an ensemble: what does not vary is evaluated once."""
+"""The parameters of kernels for each trajectory of an ensemble: constants that do not vary are evaluated once."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
@@ -26,9 +26,9 @@ class Numbers:
     ----------
     variation : Variation
     plan : Plan
-        That covers them all.
+        A plan that covers all trajectories.
     chosen : whole numbers
-        Which trajectories.
+        The numbers of the trajectories.
     """
 
     def __init__(self, variation: Variation, plan: Plan, chosen: Sequence[int]) -> None:
@@ -51,7 +51,7 @@ class Numbers:
         Raises
         ------
         OverflowError
-            If one is beyond all doubles.
+            If a parameter exceeds all doubles.
         """
         scene = Plan(self._variation.scene, self._plan.structure, ()).constants
         known = {"pi": number.PI, EPOCH: Fraction(epoch), **scene}

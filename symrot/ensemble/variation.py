@@ -1,4 +1,4 @@
-"""What differs between the trajectories of an ensemble, read and checked, and the least structure that covers all."""
+"""The variation of an ensemble: its arrays, read and checked, and the plan that covers all trajectories."""
 
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, replace
@@ -37,7 +37,7 @@ GENERAL_START = Initial(  # with no component that any rule of the planner could
     (Fraction(1, 5), Fraction(2, 5), Fraction(4, 5), Fraction(2, 5)),
 )
 BY_ZEROS = {"gravity", "rotor", "constant_body", "damping"}
-"""Torques of whose constants a plan depends on nothing but which are zero."""
+"""Kinds of torques whose constants affect the plan only by being zero or not."""
 
 DISTINCT = (Fraction(4), Fraction(5), Fraction(6))  # admissible moments of a body of any class
 
@@ -46,7 +46,7 @@ _rooms: dict[int, dict[Hashable, Any]] = {}  # of scenes by their ids, as long a
 
 
 class _Place(NamedTuple):
-    """Where a constant stands in a scene: in the inertia tensor, or in a field of a torque."""
+    """The place of a constant in a scene: in the inertia tensor, or in a field of a torque."""
 
     torque: int  # -1: the inertia
     field: str
@@ -67,18 +67,18 @@ class Variation:
         return len(self.omega)
 
     def scene_of(self, i: int) -> Scene:
-        """Return the scene of a trajectory, its numbers those of the arrays, exactly."""
+        """Return the scene of a trajectory, with the exact values of the numbers in the arrays."""
         return self._with(self.initial(i), {name: Fraction(float(column[i])) for name, column in self.columns.items()})
 
     def initial(self, i: int) -> Initial:
-        """Return the initial state of a trajectory, its numbers those of the arrays, exactly."""
+        """Return the initial state of a trajectory, with the exact values of the numbers in the arrays."""
         x, y, z = map(Fraction, self.omega[i].tolist())
         if self.quaternion is None:
             return Initial((x, y, z), self.scene.initial.quaternion)
         return Initial((x, y, z), _unit(self.quaternion[i].tolist()))
 
     def cached(self, key: Hashable, make: Callable[[], Any]) -> Any:
-        """Return what the scene alone gives: found once, for all ensembles of the same scene."""
+        """Return a value that depends on the scene alone: made once for all ensembles of the same scene."""
         place = id(self.scene)
         room = _rooms.get(place)
         if room is None:
@@ -90,7 +90,7 @@ class Variation:
 
     @cached_property
     def attitudes(self) -> Floats | None:
-        """The unit quaternions as pairs of doubles, shape (n, 8); None: the scene's own."""
+        """The unit quaternions as pairs of doubles, shape (n, 8); None if all have the attitude of the scene."""
         from symrot.closed_form.batches import attitudes
 
         return None if self.quaternion is None else attitudes(self.quaternion)
@@ -121,12 +121,12 @@ class Variation:
         return self.scene.torques[torque].constant(*_constant_place(field, entry))
 
     def prefix(self, torque: int) -> str:
-        """Return what stands before the names of the constants of a torque."""
+        """Return the prefix of the names of a torque's constants."""
         structure: Structure = self.cached("structure", lambda: general_structure(self.scene))
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
-        """Return the doubles that a column may equal: constants of the scene of the same field that do not vary."""
+        """Return the fixed constants of the same field as doubles: values of a column may be equal to them."""
         place = self.places[name]
         same = [key for key, other in self.places.items() if other[:2] == place[:2] and key not in self.columns]
         values = {self.constant(key) for key in same if not isinstance(self.places[key].entry, str)}
@@ -134,7 +134,7 @@ class Variation:
 
     @property
     def negligible(self) -> Floats:
-        """The products of inertia, kg m^2, up to which given axes are principal, shape (n,)."""
+        """The largest products of inertia, kg m^2, for which the given axes count as principal, shape (n,)."""
         bounds: Floats = np.ldexp(abs(self.moments).max(axis=1), -200)
         return bounds
 
@@ -165,7 +165,7 @@ class Variation:
         return replace(self.scene, initial=start, body=body, torques=tuple(torques))
 
     def plan(self) -> Plan:
-        """Return a plan that covers all trajectories: a constant is special in it if it is so in each of them."""
+        """Return a plan that covers all trajectories: it relies on a special value only if every trajectory has it."""
         values = {name: _representative(column) for name, column in self.columns.items()}
         if not PLACES.keys().isdisjoint(values):
             values |= self._representative_inertia()
@@ -227,7 +227,7 @@ def _representative(column: Floats) -> Fraction:
 def read_variation(
     scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None, parameters: Mapping[str, ArrayLike] | None
 ) -> Variation:
-    """Return the trajectories asked for; what is not given is the scene's own.
+    """Return the variation that arguments describe; arguments that are None keep the numbers of the scene.
 
     Raises
     ------
@@ -270,9 +270,9 @@ def read_variation(
 
 
 def _check_bodies(variation: Variation) -> None:
-    """Refuse moments of inertia that no body has, or that leave its motion undetermined.
+    """Raise InputError for moments of inertia that no body has, or that leave its motion undetermined.
 
-    Doubles settle it where principal moments clearly fulfil their inequalities; the rest is looked at exactly.
+    Doubles are enough where principal moments clearly satisfy their inequalities; other bodies are checked exactly.
     """
     moments: Any = variation.moments
     if not variation.in_principal_axes:

@@ -1,8 +1,9 @@
-"""A counted budget for one decision: readings of formulas into rings, of which towers of functions ask for many.
+"""A counted budget for one decision: the number of times that formulas are read into rings.
 
-Each root under a root and each inverse function inside another one is read in a ring of its own, and their proofs read
-both sides again. What one reading finds is remembered until the decision ends, no longer: so the count, and with it the
-verdict, is the same on every machine and after any other decisions.
+Each root under a root and each inverse function inside another one is read in a ring of its own, and the proofs about
+them read both sides again, so that nested functions need many readings. The result of a reading is remembered until the
+decision ends, no longer: so the count, and with it the verdict, is the same on every machine and in any order of
+decisions.
 """
 
 from collections.abc import Callable, Hashable, Iterator
@@ -16,12 +17,12 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["MOST_RINGS", "one_decision", "remembered", "spend_ring"]
 
 MOST_RINGS = 2000
-"""Readings that one decision may take: seconds of work; the claims of the campaign take 400 at most."""
+"""Readings that one decision may need, which is seconds of work; claims of the campaigns need 400 at most."""
 
 
 @dataclass
 class _Budget:
-    """Readings that are left to one decision, and the results that it has already."""
+    """The readings that one decision may still do, and the results of those that it has done."""
 
     left: int = MOST_RINGS
     results: dict[Hashable, Any] = field(default_factory=dict)
@@ -32,7 +33,7 @@ _current: ContextVar[_Budget | None] = ContextVar("budget of the decision", defa
 
 @contextmanager
 def one_decision() -> Iterator[None]:
-    """Count the readings inside; a decision inside another one has the budget of the outer one."""
+    """Count the readings of one decision; a decision inside another one shares the budget of the outer one."""
     if _current.get() is not None:
         yield
         return
@@ -44,7 +45,7 @@ def one_decision() -> Iterator[None]:
 
 
 def remembered(key: Hashable, compute: Callable[[], Any]) -> Any:
-    """Return a result that depends on the key alone, computed once in a decision; outside of one, each time."""
+    """Return a result that depends on the key alone: computed once in a decision, outside of one at every call."""
     budget = _current.get()
     if budget is None:
         return compute()

@@ -1,7 +1,8 @@
-"""Inverse functions and logarithms that are proven equal are one: so what holds of them does, wherever they stand.
+"""Congruence closure: inverse functions and logarithms that are proven equal are replaced by one of them.
 
-``sqrt(asin(x))`` and ``sqrt(atan2(x, sqrt(1 - x^2)))`` hold two symbols, about whose values more is known than that
-each is a symbol. A pair with ``f - g = 0``, or ``f + g = pi/2``, is put into the formula, and it is read again.
+To the ring, ``sqrt(asin(x))`` and ``sqrt(atan2(x, sqrt(1 - x^2)))`` contain two independent symbols, although the two
+inverse functions are equal. Where a pair is proven to satisfy ``f - g = 0`` or ``f + g = pi/2``, one is replaced by
+the other in the formula, which is then read again.
 """
 
 from collections.abc import Iterator, Sequence
@@ -19,13 +20,13 @@ __all__ = ["proof_by_congruence"]
 _NAMES = (*INVERSE, log)
 
 MOST_SYMBOLS = 6
-"""Inverse functions and logarithms that are still compared with each other."""
+"""Largest number of inverse functions and logarithms that are compared with each other."""
 
 
 def proof_by_congruence(
     left: Expr, right: Expr, hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> tuple[FormulaRing, ...] | None:
-    """Return the rings by which ``left = right`` is proven, inverse functions compared first; None without a proof."""
+    """Return the rings that prove ``left = right`` once equal inverse functions are merged, or None without a proof."""
     rings: list[FormulaRing] = []
     while True:
         ring = FormulaRing([left, right], hypotheses, domain)
@@ -47,7 +48,7 @@ def proof_by_congruence(
 def _equal_pairs(
     names: Sequence[Expr], hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> Iterator[tuple[Expr, Expr, tuple[FormulaRing, ...]]]:
-    """Yield symbols, each with what it is in terms of another, and the rings that prove it."""
+    """Yield (symbol, its value in terms of another symbol, the rings that prove the value)."""
     for first, second in combinations(names, 2):
         for other in (first, pi / 2 - first):
             if not hypotheses and not seems_zero(second - other, domain):

@@ -1,4 +1,4 @@
-"""Witnesses: exact points at which two formulas differ, made small enough to be read.
+"""Counterexamples: exact points at which two formulas differ, with numbers that are short enough to read.
 
 Two kinds. Where only symbols, free angles and unit vectors occur, the point is rational, ``cos x = 4/5, sin x = 3/5``
 or ``q = (1/2, 1/2, 1/2, 1/2)``, and both sides are rational numbers. Otherwise symbols get rational values, both sides
@@ -32,16 +32,16 @@ ATTEMPTS = 60
 """Random points tried: a nonzero polynomial of degree d vanishes at one with a chance of about d/40."""
 
 SIMPLER_TERMS = 200_000
-"""Terms of the residual that may be evaluated to make a point simpler."""
+"""Number of terms of the residual that may be evaluated in order to simplify a point."""
 
 UNMOVED = 20
-"""Random points that are taken as they are drawn; later ones are moved into the domain first, where they miss it."""
+"""Number of random points that are tried as drawn; later points are first moved into the domain if they are outside."""
 
 MOST_ROOTS_SHORTENED = 6
-"""Roots in a number that is still multiplied out to see whether it is rational: each doubles its terms."""
+"""Largest number of roots in a number that is expanded to see whether it is rational: each root doubles its terms."""
 
 MOST_NESTED = 2
-"""Functions inside each other where SymPy still puts numbers in."""
+"""Largest depth of nested functions into which SymPy substitutes numbers."""
 
 _INVERSE = (asin, acos, atan, atan2)
 _TRIANGLES = [Rational(n, d) for n, d in ((3, 5), (-4, 5), (3, 4), (-4, 3), (1, 1), (-1, 1), (2, 1), (-2, 1), (1, 2))]
@@ -52,8 +52,8 @@ _TURNS = [Rational(n, d) * pi for n, d in ((1, 1), (-1, 1), (2, 1), (1, 2), (-1,
 
 
 @dataclass(frozen=True)
-class Coordinate:
-    """Something that can be chosen: generators that are chosen together, and the choices, the simplest first."""
+class FreeChoice:
+    """Generators whose values are chosen together, and the possible values, the simplest first."""
 
     generators: tuple[int, ...]
     simple: tuple[tuple[Fraction, ...], ...]
@@ -66,7 +66,7 @@ def rational_witness(
 ) -> Counterexample | None:
     """Return a rational point where left and right differ, or None if none was found or the point would not be real.
 
-    The two must be readable in the ring.
+    Both formulas must be readable in the ring.
     """
     if ring.outside_scope or ring.roots or ring.fine or ring.exponentials or not _angles_are_free(ring):
         return None
@@ -115,9 +115,9 @@ def rational_witness(
 
 
 def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[dict[int, Fraction]], bool], int]:
-    """Return whether the sides are defined and differ at values of the generators, and what an answer costs, in terms.
+    """Return a test whether the sides are defined and differ at values of the generators, and its cost in terms.
 
-    The polynomial of the difference is asked, or the formulas as they are written where it is longer or too large.
+    It evaluates the polynomial of the difference, or the formulas as written where the polynomial is longer.
     """
     written = pieces((left, right))
     try:
@@ -142,7 +142,8 @@ def closed_form_witness(
 ) -> Counterexample | None:
     """Return a point with rational symbols where 50-digit intervals of left and right are disjoint, or None.
 
-    Hypotheses are met by rational points of spheres and by solving linear ones, as for :func:`rational_witness`.
+    Hypotheses are satisfied by rational points of spheres and by solving linear equations, as in
+    :func:`rational_witness`.
     """
     places = {number: leaf for leaf, number in ring.symbols.items() if ring.leaves[leaf]}
     if any(number not in places for hypothesis in ring.hypothesis_numerators for number in _occurring(hypothesis)):
@@ -193,7 +194,7 @@ def closed_form_witness(
 def _move_within(
     formulas: Sequence[Expr], values: dict[Expr, Expr], movable: Sequence[Expr], simple: Sequence[Expr]
 ) -> None:
-    """Change one value for each formula that is negative, so that it is not: of the first symbol that can do it."""
+    """For each negative formula, change the value of the first symbol by which it becomes nonnegative."""
     for formula in formulas:
         if _seems_nonnegative(formula, values) and _nonnegative(formula, values):
             continue
@@ -204,14 +205,17 @@ def _move_within(
 
 
 def _pure_angles(ring: FormulaRing) -> set[Expr]:
-    """Return the symbols and functions of time that stand in angles only, each alone but for a number."""
+    """Return the symbols and functions of time that occur only in angles, each alone or times a number."""
     inside = [atom for atom in ring.bases if atom.is_Symbol or isinstance(atom, AppliedUndef)]
     others = [*ring.symbols, *ring.exponent_bases, *(atom for atom in ring.bases if atom not in inside)]
     return {atom for atom in inside if not any(other.has(atom) for other in others)}
 
 
 def _enclosure(formula: Expr, values: dict[Expr, Expr]) -> Any:
-    """Return an interval that holds a formula at a point, put in by SymPy where only that shows it, or None."""
+    """Return an interval that contains the value of a formula at a point, or None.
+
+    Where intervals alone do not succeed, SymPy substitutes the point first.
+    """
     held = enclosure(formula, values)
     return enclosure(formula.xreplace(values)) if held is None and _is_flat(formula) else held
 
@@ -236,13 +240,13 @@ def _nonzero(formula: Expr, values: dict[Expr, Expr]) -> bool:
 
 
 def _is_flat(formula: Expr, deep: int = MOST_NESTED) -> bool:
-    """Return whether functions are nested so little that SymPy may put numbers in: of towers it asks for digits."""
+    """Return whether functions are nested so little that SymPy substitutes numbers fast enough."""
     inside = deep - formula.is_Function
     return inside >= 0 and all(_is_flat(part, inside) for part in formula.args if part.args)
 
 
 def _shortest(number: Expr) -> Expr:
-    """Return a number as a rational where it is one and few roots make it up."""
+    """Return a number as a rational if it is rational and contains few roots, else unchanged."""
     if number.is_Rational or not number.is_number:
         return number
     try:
@@ -263,16 +267,19 @@ def _occurring(poly: PolyElement) -> set[int]:
 # -- rational points ------------------------------------------------------------------------------------------------
 
 
-def _coordinates(ring: FormulaRing) -> tuple[list[Coordinate], list[tuple[int, PolyElement]]]:
-    """Return what can be chosen freely, and the hypotheses that then fix a generator each (linear in it)."""
+def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, PolyElement]]]:
+    """Return the coordinates that can be chosen freely, and the hypotheses that then fix one generator each.
+
+    Such a hypothesis is linear in its generator.
+    """
     fixed: set[int] = set()
-    coordinates: list[Coordinate] = []
+    coordinates: list[FreeChoice] = []
     solved: list[tuple[int, PolyElement]] = []
     leaf_numbers = set(ring.symbols.values())
     for hypothesis in ring.hypothesis_numerators:
         sphere = _sphere(hypothesis)
         if sphere and not fixed & set(sphere):
-            coordinates.append(Coordinate(sphere, _simple_sphere(len(sphere)), _random_sphere(len(sphere))))
+            coordinates.append(FreeChoice(sphere, _simple_sphere(len(sphere)), _random_sphere(len(sphere))))
             fixed |= set(sphere)
             continue
         degrees = hypothesis.degrees() if hypothesis else ()
@@ -282,11 +289,11 @@ def _coordinates(ring: FormulaRing) -> tuple[list[Coordinate], list[tuple[int, P
             fixed.add(linear[0])
     for atom, place in ring.sines.items():
         pair = (place, ring.cosines[atom])
-        coordinates.append(Coordinate(pair, _simple_circle(), _random_sphere(2), atom))
+        coordinates.append(FreeChoice(pair, _simple_circle(), _random_sphere(2), atom))
     for leaf, number in ring.symbols.items():
         if number not in fixed:
             simple = tuple((Fraction(v),) for v in (0, 1, -1, 2, 3) if _assumed(leaf, Fraction(v)))
-            coordinates.append(Coordinate((number,), simple, _random_number(leaf)))
+            coordinates.append(FreeChoice((number,), simple, _random_number(leaf)))
     return coordinates, solved[::-1]
 
 
@@ -390,7 +397,7 @@ def _ratio_value(ring: FormulaRing, ratio: Ratio, values: dict[int, Fraction]) -
 
 
 def _formula_value(ring: FormulaRing, node: Expr, values: dict[int, Fraction], known: dict[Expr, Fraction]) -> Fraction:
-    """Return the value of a formula as it is written; ``ZeroDivisionError`` where it has none."""
+    """Return the value of a formula as it is written; raise ``ZeroDivisionError`` where a divisor is zero."""
     if node in ring.symbols:
         return values[ring.symbols[node]]
     if node not in known:
@@ -407,7 +414,7 @@ def _formula_value(ring: FormulaRing, node: Expr, values: dict[int, Fraction], k
 
 
 def _named(
-    ring: FormulaRing, coordinates: list[Coordinate], values: dict[int, Fraction], used: set[Expr]
+    ring: FormulaRing, coordinates: list[FreeChoice], values: dict[int, Fraction], used: set[Expr]
 ) -> Iterator[tuple[Expr, Expr]]:
     """Yield every symbol and angle in use with its value; quarter turns as angles, others as cosine and sine."""
     zero, one = Fraction(0), Fraction(1)
@@ -434,8 +441,8 @@ def _rational(value: Fraction) -> Rational:
 def _angles_are_free(ring: FormulaRing) -> bool:
     """Return whether the angles can be given any values, whatever the symbols are.
 
-    So it is when each has a symbol, or a function of time, of its own, to which it is proportional. Derivatives in
-    time at one instant can be given any values whatever the function's own value is.
+    They can if each is proportional to a symbol or function of time that occurs in no other angle. Time derivatives at
+    one instant can be given any values, whatever the value of the function is.
     """
     holders = [*ring.bases, *(leaf for leaf in ring.symbols if not leaf.is_Derivative)]
     for atom in ring.bases:

@@ -4,10 +4,11 @@ Scope, with its theorem (``docs/exact_decisions.md``, sections 1 to 3). For rati
 cosines of Q-linear combinations of angles (rational multiples of pi included), of exponentials, of parameters, of
 rates, and of unit-norm groups, the normal form is zero if and only if the identity holds at all real points where both
 sides are defined: circles and spheres are rational, irreducible over the complex numbers, and their real points are
-dense. The same holds when an angle or an exponent also occurs outside (Ax-Schanuel). Numbers made of roots and cosines
-of rational angles are zero or not by proof (:mod:`symrot.exact.angles.constants`). With square roots, inverse functions
-or other hypotheses a zero normal form still proves the identity where all of them are real; a nonzero one proves
-nothing, and "false" is said only with a witness. Nothing is true of sides that are real numbers nowhere.
+dense. The same holds when an angle or an exponent also occurs outside its function (Ax-Schanuel). Whether a number made
+of roots and cosines of rational angles is zero is proven (:mod:`symrot.exact.angles.constants`). With square roots,
+inverse functions or other hypotheses a zero normal form still proves the identity wherever all of them are real; a
+nonzero one proves nothing, and the verdict "false" needs a counterexample. An equation whose sides are real numbers
+nowhere is never "true".
 """
 
 from collections.abc import Sequence
@@ -106,8 +107,7 @@ def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Decision:
     Raises
     ------
     InputError
-        If the shapes differ, for what :func:`normal_form` refuses, or if a side is proven to be no real number
-        anywhere.
+        If the shapes differ, if :func:`normal_form` raises it, or if a side is proven to be no real number anywhere.
     """
     lefts, rights, shape = matched_sides(left, right)
     with one_decision():
@@ -136,8 +136,8 @@ class _FormulaCase(Case):
     def confirmed(self) -> Decision:
         """Return the verdict "true", or "undecided" if no point is known where the sides are defined.
 
-        In the polynomial core the sides are defined on a dense set; with roots, logarithms and inverse functions a
-        point is sought. The caller must know that the hypotheses can hold. Formulas with ``i`` are complex numbers,
+        Without roots, logarithms and inverse functions the sides are defined on a dense set; with them the search for
+        a point decides. The caller must know that the hypotheses can hold. Formulas with ``i`` are complex numbers,
         which are defined wherever no divisor is zero.
         """
         needs = [need for need in needs_of(self.sides) if not need.formula.has(I)]

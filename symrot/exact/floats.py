@@ -1,4 +1,4 @@
-"""Formulas in double precision: a quick look at many points, of which nothing is concluded."""
+"""Formulas in double precision: a quick test at many points that guides searches and proves nothing."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -12,13 +12,13 @@ __all__ = ["NoValue", "float_at", "seems_zero"]
 
 LOOKS = 40
 DIFFERENCES = 3
-"""Points at which a formula is clearly not zero, and after which nobody tries to prove that it is."""
+"""Number of points with a clearly nonzero value after which no proof that the formula is zero is tried."""
 CLEARLY = 1e-4
-"""Of the size of its terms: far above what rounding and cancellation leave."""
+"""Share of the size of its terms above which a value is clearly not zero: far above rounding and cancellation."""
 
 
 class NoValue(ArithmeticError):
-    """No real value here, or a function that is not known."""
+    """A formula has no real value at a point, or contains an unknown function."""
 
 
 def _cosecant(function: Any) -> Any:
@@ -79,9 +79,9 @@ def _computed(node: Expr, values: Mapping[Expr, float], known: dict[Expr, float]
 
 
 def seems_zero(formula: Expr, domain: Sequence[Expr] = ()) -> bool:
-    """Return whether a formula may be zero at all points where ``domain`` is not negative, as far as a few points show.
+    """Return whether a formula is near zero at a few points where the formulas of ``domain`` are not negative.
 
-    To skip proofs that cannot succeed: False costs at most a proof, True costs time.
+    It spares proofs that cannot succeed: a wrong False can only lose a proof, a wrong True only costs time.
     """
     source, differences = Random(11), 0
     leaves = sorted(formula.free_symbols.union(*(each.free_symbols for each in domain)), key=str)

@@ -7,7 +7,7 @@ from sympy.matrices.expressions.matexpr import MatrixElement
 
 from symrot.errors import InputError
 
-__all__ = ["REWRITTEN", "TRIGONOMETRIC", "is_jet"]
+__all__ = ["REWRITTEN", "TRIGONOMETRIC", "is_function_of_time"]
 
 REWRITTEN = {
     sympy.sinh: lambda u: (sympy.exp(u) - sympy.exp(-u)) / 2,
@@ -28,16 +28,16 @@ TRIGONOMETRIC = {
     sympy.sec: (None, "cos"),
     sympy.csc: (None, "sin"),
 }
-"""Function -> (above, below) in the sine and cosine of its argument; None is 1."""
+"""Function -> (numerator, denominator) in the sine and cosine of its argument; None stands for 1."""
 
 
-def is_jet(node: Expr) -> bool:
+def is_function_of_time(node: Expr) -> bool:
     """Return whether a leaf is free: a function of time, a derivative of one, a matrix entry.
 
     Raises
     ------
     InputError
-        If it is no finite exact scalar at all.
+        If the leaf is not a finite exact scalar.
     """
     if node.is_Float:
         raise InputError(f"exact decision takes exact numbers, such as Rational(1, 2); got the float {node}")

@@ -1,8 +1,8 @@
 """Closed-form real numbers in intervals of 50 digits, by mpmath's interval arithmetic; formulas at real points.
 
-What is rational stays an exact fraction, so that zero is told from a small number. A value is given only where the
-formula is proven to be a real number: under an even or odd root nothing negative, in a logarithm something positive,
-nothing zero below a fraction line. The work is bounded: a number beyond 2^1000 has no enclosure here.
+Rational numbers stay exact fractions, so that zero can be told from a small number. A value is returned only where the
+formula is proven to be a real number: radicands of even and odd roots are not negative, arguments of logarithms are
+positive, denominators are not zero. The work is bounded: a number beyond 2^1000 has no enclosure here.
 """
 
 from collections.abc import Mapping
@@ -18,10 +18,10 @@ __all__ = ["DIGITS", "Undefined", "enclosure", "is_negative_at", "is_nonnegative
 DIGITS = 50
 
 MOST_BITS = 1000
-"""Of the whole part of a number, the argument of an exponential or a sine say: digits to compute grow with it."""
+"""Largest number of bits of the integer part, for example of the argument of a sine: more need more digits."""
 
 MOST_BITS_EXACT = 4000
-"""Of a fraction that is still exact."""
+"""Largest number of bits of a numerator or denominator that is kept exact."""
 
 Value = Any  # Fraction or an interval of mpmath
 
@@ -140,7 +140,7 @@ def enclosure(formula: Expr, values: Mapping[Expr, Any] | None = None) -> Any:
     -------
     interval or None
         None where the formula is not proven to be real, where a function is unknown, or where the digits would be too
-        many. What SymPy has cancelled is not looked at.
+        many. Terms that SymPy has cancelled are not checked.
     """
     iv.dps = DIGITS
     try:

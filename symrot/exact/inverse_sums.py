@@ -1,5 +1,6 @@
-"""Sums of inverse trigonometric functions, or of logarithms, that are zero: proven by what sine, cosine and exp make of
-them, and by the range of their values.
+"""Proofs that sums of inverse trigonometric functions, or of logarithms, are zero.
+
+The proof takes the sine and cosine, or the exponential, of the sum, and bounds the range of its values.
 
 ``D = 0`` for a rational combination D of ``asin``, ``acos``, ``atan``, ``atan2`` and ``pi``, if ``sin D = 0``,
 ``cos D = 1`` and D keeps strictly between -2 pi and 2 pi; or the same of D/2 and 4 pi. For real D with logarithms,
@@ -22,31 +23,31 @@ from symrot.exact.floats import seems_zero
 from symrot.exact.intervals import enclosure
 from symrot.exact.ring.ring import FormulaRing
 
-__all__ = ["Lift", "Principal", "lifts", "principal", "proof", "vanishes"]
+__all__ = ["Lift", "PrincipalValueProof", "lifts", "principal", "proof", "vanishes"]
 
 MOST_TERMS = 60
-"""Of a residual that is still factored."""
+"""Largest number of terms of a residual that is factored."""
 
 _NAMES = (*INVERSE, log)
 
 
 @dataclass(frozen=True)
 class Lift:
-    """A factor of a residual is zero where all ``numerators``, in a ring of their own, are."""
+    """A sufficient condition for a factor of a residual to be zero: all ``numerators``, in another ring, are zero."""
 
     ring: FormulaRing
     numerators: tuple[PolyElement, ...]
 
 
 def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
-    """Return whether a numerator is proven to be zero: by the relations, or by a factor that is."""
+    """Return whether a numerator is proven to be zero, by the relations or by one of its factors."""
     return proof(ring, numerator) is not None
 
 
 def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] | None:
-    """Return the further rings by which a numerator is proven to be zero, none where the relations suffice.
+    """Return the further rings that prove a numerator to be zero (an empty tuple if the relations suffice), or None.
 
-    The proof holds where nothing vanishes that those rings divide by. None: there is no proof.
+    The proof holds where no divisor of those rings vanishes. None means that no proof was found.
     """
     numerator = ring.reduce(numerator)
     if not numerator:
@@ -59,7 +60,7 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
 
 
 def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) -> Iterator[Lift]:
-    """Yield, for factors of a reduced numerator, what suffices for them to vanish.
+    """Yield sufficient conditions for the factors of a reduced numerator to vanish.
 
     With ``only_zero``, factors that are not zero at a few points in double precision are left out.
     """
@@ -89,18 +90,18 @@ def _lifts_of(ring: FormulaRing, factor: PolyElement, used: set[int]) -> Iterato
 
 
 @dataclass(frozen=True)
-class Principal:
-    """A residual is zero where ``least`` and ``most``, formulas, are not negative, as ``rings`` prove."""
+class PrincipalValueProof:
+    """The proof by ``rings`` that a residual is zero wherever the formulas ``least`` and ``most`` are not negative."""
 
     least: Expr
     most: Expr
     rings: tuple[FormulaRing, ...]
 
 
-def principal(ring: FormulaRing, numerator: PolyElement) -> Principal | None:
-    """Return where a residual is zero that says ``asin(S) = w`` for a proven ``S = sin w``, and so of acos and atan.
+def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
+    """Return where a residual of the form ``asin(S) - w``, with ``S = sin w`` proven, is zero; also for acos and atan.
 
-    That is so exactly where w is a principal value: between -pi/2 and pi/2 for asin and atan, 0 and pi for acos.
+    It is zero exactly where w is a principal value: between -pi/2 and pi/2 for asin and atan, 0 and pi for acos.
     """
     names = {number: leaf for leaf, number in ring.symbols.items() if type(leaf) in _PRINCIPAL}
     if not names or len(numerator) > MOST_TERMS:
@@ -120,12 +121,12 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> Principal | None:
             other = FormulaRing([function(angle), leaf.args[0]], ring.hypotheses, ring.domain)
             further = proof(other, other.difference(function(angle), leaf.args[0]).numerator)
             if further is not None:
-                return Principal(angle - least, most - angle, (other, *further))
+                return PrincipalValueProof(angle - least, most - angle, (other, *further))
     return None
 
 
 _PRINCIPAL = {asin: (sin, -pi / 2, pi / 2), acos: (cos, Integer(0), pi), atan: (tan, -pi / 2, pi / 2)}
-"""Inverse function -> what it inverts, and its least and greatest value, or their bounds."""
+"""Inverse function -> (the function that it inverts, its least value or lower bound, its greatest or upper bound)."""
 
 
 def _lifted(ring: FormulaRing, equations: Sequence[tuple[Expr, Expr]]) -> Lift:
@@ -147,7 +148,7 @@ def _combination(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr])
 
 
 def _keeps_within(terms: Sequence[tuple[Expr, Fraction]], period: int) -> bool:
-    """Return whether a combination is strictly between -period and period half-turns."""
+    """Return whether the value of a combination lies strictly between -period and period half-turns."""
     low, high = Fraction(0), Fraction(0)
     low_taken = high_taken = True
     for leaf, coefficient in terms:

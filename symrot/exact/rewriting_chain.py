@@ -1,8 +1,8 @@
-"""The way from one side of an equation to the other, in steps that the engine takes itself.
+"""The chain of rewritings from one side of an equation to the other, in the steps of the decision itself.
 
-Each side is rewritten until nothing is left to rewrite: angles in base angles, products multiplied out, each relation
-put in, common factors cancelled. Both ways end in one normal form; the chain is one way forwards, then the other
-backwards, and every expression in it is equal to the next.
+Each side is rewritten to its normal form: angles in base angles, products multiplied out, each relation put in, common
+factors cancelled. Both sides have one normal form; the chain is the rewriting of the left side followed by the
+rewriting of the right side backwards, and every expression in it is equal to the next.
 """
 
 from collections.abc import Iterator, Sequence
@@ -24,9 +24,9 @@ __all__ = ["Chain", "Link", "chains"]
 
 @dataclass(frozen=True)
 class Link:
-    """One expression of a chain, and why it is equal to the one before; ``rule`` is (left, right) of a relation.
+    """One expression of a chain, and why it equals the expression before; ``rule`` is (left, right) of a relation.
 
-    ``cofactors`` pairs polynomials with the hypotheses' consequences whose multiples were taken away.
+    ``cofactors`` pairs polynomials with consequences of the hypotheses: the products were subtracted.
     """
 
     expression: Expr
@@ -37,14 +37,14 @@ class Link:
 
 @dataclass(frozen=True)
 class Chain:
-    """The way from left to right in one entry, (row, column) from 1, or None for a scalar."""
+    """The chain from left to right in one entry, which is (row, column) from 1, or None for a scalar."""
 
     entry: tuple[int, int] | None
     links: tuple[Link, ...]
 
 
 def chains(left: Any, right: Any, relations: Sequence[Any] = ()) -> tuple[Chain, ...]:
-    """Return the way from left to right in every entry; none for entries that are one expression already.
+    """Return the chain from left to right of every entry whose two sides are different expressions.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def _chain(left: Expr, right: Expr, hypotheses: list[Expr]) -> tuple[Link, ...]:
 
 
 def _reversed(start: Expr, way: list[Link]) -> Iterator[Link]:
-    """Yield a way from its end to its start; each reason stays with its pair of expressions."""
+    """Yield a chain from its end to its start; each reason stays with its pair of expressions."""
     places = [start, *(link.expression for link in way)]
     for number in range(len(way) - 1, -1, -1):
         yield Link(places[number], way[number].reason, way[number].rule, way[number].cofactors)

@@ -8,7 +8,7 @@ __all__ = ["pieces"]
 
 
 def pieces(entries: Iterable[Expr]) -> int:
-    """Return how many pieces expressions are made of, written out; common parts are visited once."""
+    """Return the number of subexpressions when expressions are written out; common parts are visited once."""
     known: dict[Expr, int] = {}
 
     def count(node: Expr) -> int:

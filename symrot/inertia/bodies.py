@@ -9,12 +9,12 @@ from typing import Any, NamedTuple, Protocol
 from symrot.inertia import tensor
 from symrot.inertia.tensor import IDENTITY, Tensor, Vector
 
-__all__ = ["Body", "MassProperties", "compose", "place"]
+__all__ = ["HasInertia", "MassProperties", "compose", "place"]
 
 _ORIGIN = (0, 0, 0)
 
 
-class Body(Protocol):
+class HasInertia(Protocol):
     """Anything with a mass (kg), a centre of mass (m) and an inertia tensor about it (kg m^2)."""
 
     @property
@@ -38,14 +38,14 @@ class MassProperties(NamedTuple):
         return tensor.about_point(self.inertia, self.mass, offset)
 
 
-def place(body: Body, at: Any = _ORIGIN, rotation: Any = IDENTITY) -> MassProperties:
+def place(body: HasInertia, at: Any = _ORIGIN, rotation: Any = IDENTITY) -> MassProperties:
     """Return a body turned by ``rotation`` about the origin, then moved by ``at`` (m), in the axes of the whole."""
     turned = tensor.apply(rotation, body.center_of_mass)
     center = tuple(a + c for a, c in zip(tensor.vector(at), turned, strict=True))
     return MassProperties(body.mass, tensor.vector(center), tensor.rotate(body.inertia, rotation))
 
 
-def compose(added: Iterable[Body], subtracted: Iterable[Body] = ()) -> MassProperties:
+def compose(added: Iterable[HasInertia], subtracted: Iterable[HasInertia] = ()) -> MassProperties:
     """Return the mass properties of several bodies taken together, less the subtracted ones (holes).
 
     All are in the same axes. Works over any numbers, SymPy expressions included; the total mass must not be zero.

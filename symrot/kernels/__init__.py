@@ -1,1 +1,1 @@
-"""The library of kernels: what each computes, derived from its name; :mod:`symrot.codegen` prints them."""
+"""The library of kernels, whose formulas are derived from their names; :mod:`symrot.codegen` prints them."""

@@ -1,4 +1,4 @@
-"""What a kernel of the library is before it is printed: arguments, formulas, domain, laws of its outputs."""
+"""Definitions of kernels, from which code is printed: arguments, formulas, domain, and laws of the outputs."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -16,10 +16,10 @@ Box = dict[str, tuple[Fraction, Fraction]]  # name of an input component -> leas
 
 @dataclass(frozen=True)
 class Law:
-    """Something that the outputs obey whatever the inputs: ``vanishing`` is zero where ``relations`` are.
+    """A law that the outputs satisfy for all inputs: the formulas ``vanishing`` are zero where ``relations`` are.
 
-    The expressions hold inputs and outputs by their symbols. A law characterises the kernel independently of how its
-    formulas were found: a certificate proves it from the formulas.
+    The expressions contain inputs and outputs by their symbols. A law characterises the kernel independently of the
+    derivation of its formulas: a certificate proves it from the formulas.
     """
 
     text: str
@@ -29,7 +29,7 @@ class Law:
 
 @dataclass(frozen=True)
 class Definition:
-    """A kernel: its arguments in order, formulas for the outputs, where it holds, and its laws."""
+    """A kernel: its arguments in order, the formulas of its outputs, its domain, and its laws."""
 
     name: str
     title: str

@@ -64,7 +64,7 @@ def _symbols(name: str, count: int = 3) -> tuple[Symbol, ...]:
 
 
 def _solved(inertia: Matrix, omega: Matrix, torque: Matrix) -> tuple[Named, Matrix]:
-    """Return named quantities and the angular acceleration in them."""
+    """Return named quantities and the angular acceleration in terms of them."""
     if inertia.is_diagonal():
         return (), angular_acceleration(inertia, omega, torque)
     momentum, moment = Matrix(_symbols("L")), Matrix(_symbols("M"))
@@ -166,7 +166,7 @@ def _heavy_top(name: str, body: str) -> Definition:
 
 
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
-    """Return twice the weight times the centre of mass as symbols, zero where that is zero, and what they are."""
+    """Return twice the weight times the centre of mass as symbols (zero where it is zero), and their definitions."""
     components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
     return Matrix(components), tuple(
         (symbol, 2 * _WEIGHT * c) for symbol, c in zip(components, center, strict=True) if c

@@ -56,9 +56,9 @@ def _regular_box(sequence: str) -> Box:
 
 
 def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
-    """Return the products of functions of the first and of the last angle as named quantities, and entries by them.
+    """Return products of functions of the first and the last angle as named quantities, and the entries in them.
 
-    What they are multiplied by, a function of the middle angle, is taken out of the sums.
+    Their factor, a function of the middle angle, is collected out of the sums.
     """
     named: dict[Expr, Symbol] = {}
     formulas = []
@@ -161,7 +161,7 @@ def _quaternion(name: str, sequence: str) -> Definition:
 
 
 def _wrapped(angle: Expr) -> Expr:
-    """Return an angle in (-2 pi, 2 pi) as the same one in [-pi, pi]."""
+    """Return an angle in (-2 pi, 2 pi) reduced to [-pi, pi]."""
     return select_ge(pi, angle, select_ge(angle, -pi, angle, angle + 2 * pi), angle - 2 * pi)
 
 

@@ -9,12 +9,12 @@ from symrot.kernels.definition import Definition
 
 __all__ = ["definition", "kernel_names"]
 
-_SHELVES = (euler, quaternion, rotation_vector, rodrigues, dynamics, torques, inertia)
+_GROUPS = (euler, quaternion, rotation_vector, rodrigues, dynamics, torques, inertia)
 
 
 @cache
 def _table() -> dict[str, Callable[[], Definition]]:
-    return dict(item for shelf in _SHELVES for item in shelf.definitions())
+    return dict(item for group in _GROUPS for item in group.definitions())
 
 
 def kernel_names() -> tuple[str, ...]:

@@ -54,7 +54,7 @@ def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -
 
 
 def halved(omega: Sequence[Expr]) -> tuple[Named, tuple[Symbol, ...]]:
-    """Return half an angular velocity as named quantities, and their symbols."""
+    """Return the components of half an angular velocity as named quantities, and their symbols."""
     half = tuple(Symbol(f"half_{i}", real=True) for i in "123")
     return tuple(zip(half, (w / 2 for w in omega), strict=True)), half
 

@@ -1,8 +1,8 @@
 """Functions with a removable singularity, as kernels compute them: accurate on the whole line, no epsilon to tune.
 
-``sin(x)/x`` loses nothing but at zero, where a choice gives its limit. A difference of nearly equal terms,
-``(x - sin x)/x^3``, is summed as its Taylor series near zero, to a truncation that is proven below half the last bit,
-and computed as it stands where the terms differ: which of the two is a property of the function, not a setting.
+``sin(x)/x`` is accurate except at zero, where a conditional returns its limit. A difference of nearly equal terms,
+``(x - sin x)/x^3``, is summed as its Taylor series near zero, with a truncation error proven below half the last bit,
+and computed directly elsewhere: where the two meet is a property of the function, not a setting.
 
 What holds, measured by ``python -m symrot.bench.ulps`` in double and float, fused or not:
 
@@ -45,10 +45,10 @@ _x = Symbol("x", real=True)
 
 @dataclass(frozen=True)
 class Removable:
-    """A function of x that is even and analytic, ``numerator / x^power``, which is undefined at zero as it stands.
+    """A function of x that is even and analytic, ``numerator / x^power``, whose quotient is undefined at zero.
 
-    ``split`` is the square of the |x| below which the series is summed; the terms alternate and fall there. Beyond it
-    ``scaled/x/x`` is computed, the same quotient in a form without a power of x that overflows before it does.
+    ``split`` is the square of the |x| below which the series is summed; its terms alternate and decrease there. Beyond
+    it ``scaled/x/x`` is computed, the same quotient without a power of x that would overflow before the result does.
     """
 
     name: str
@@ -65,8 +65,8 @@ class Removable:
     def coefficients(self, precision: str = "binary64") -> tuple[Fraction, ...]:
         """Return the Taylor coefficients in x^2 that are summed for a precision.
 
-        As many as make the first one left out, times the power of ``split``, less than a quarter of a unit in the
-        last place of the least value there: the series alternates, so that this bounds the rest.
+        There are so many that the first omitted one, times its power of ``split``, is less than a quarter of a unit in
+        the last place of the least value there: the series alternates, so that this bounds the remainder.
         """
         return _summed(self, precision)
 
@@ -118,7 +118,7 @@ _EXPLICIT: dict[str, Callable[..., Any]] = {
 
 
 def explicit(expr: Expr) -> Expr:
-    """Return an expression with the removable functions as quotients, which hold everywhere but at zero."""
+    """Return an expression with the removable functions written as quotients, which are valid except at zero."""
     for name, formula in _EXPLICIT.items():
         expr = expr.replace(
             lambda e, name=name: getattr(e.func, "__name__", "") == name, lambda e, formula=formula: formula(*e.args)

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from symrot.build import cache as library
-from symrot.closed_form.registry import FORMS, Form, exact_form
+from symrot.closed_form.registry import FORMS, ClosedForm, exact_form
 from symrot.errors import CompilerError, InputError
 from symrot.planning.plan import Plan
 from symrot.propagation.steppers.smoothness import non_smooth_torque
@@ -26,7 +26,7 @@ class Choice(NamedTuple):
 
     method: str
     reason: str
-    form: Form | None = None
+    form: ClosedForm | None = None
 
 
 def _automatic(plan: Plan) -> Choice:

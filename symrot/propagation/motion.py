@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symrot.closed_form.registry import Exact, Form, Starts
+from symrot.closed_form.registry import ClosedForm, Exact, Starts
 from symrot.errors import PropagationError
 from symrot.planning.plan import Plan, RuleOutcome
 from symrot.planning.scene_kernel import EPOCH, SceneKernel
@@ -52,7 +52,7 @@ def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
     return function if kernel.rate_parameters else lambda t, y, p: function(t, y)
 
 
-def with_full_state(plan: Plan, form: Form) -> Plan:
+def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
     """Return the plan of a motion in closed form: it has all components of the state and skips the stepping."""
     structure = plan.structure.unreduced()
     rows, before = [], structure.reductions
@@ -180,7 +180,7 @@ def _stepped_on_own_clock(setup: Setup) -> SteppedSetup:
 class ClosedFormSetup:
     """The part that motions in closed form share: the setup, and the form."""
 
-    def __init__(self, setup: Setup, form: Form) -> None:
+    def __init__(self, setup: Setup, form: ClosedForm) -> None:
         self.setup, self.form = setup, form
 
     @cached_property
@@ -395,7 +395,7 @@ class ClosedFormMotion(RestartableMotion):
         return ClosedFormMotion(self._shared, self.setup.plan.from_start(initial))
 
     @property
-    def form(self) -> Form:
+    def form(self) -> ClosedForm:
         """The class of motions in closed form that this one belongs to."""
         return self._shared.form
 

@@ -1,1 +1,1 @@
-"""What people and other programs read of a motion: summaries, tables, files, plots, health."""
+"""Reports for people and for other programs: summaries, tables, files and plots."""

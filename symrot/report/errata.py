@@ -1,4 +1,4 @@
-"""What documents get right and wrong, as a table for the terminal and as the page ``generated/errata.md``."""
+"""The true and false claims of documents, as a table for the terminal and as the page ``generated/errata.md``."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -31,7 +31,7 @@ def _total(items: Sequence[Finding]) -> str:
 
 
 def lines(survey: Survey) -> list[str]:
-    """Return the findings as text: a line for each claim, more for those that do not hold, and a summary."""
+    """Return the findings as text: a line for each claim, more lines for one that does not hold, and a summary."""
     text: list[str] = []
     for source, items in survey:
         text += [f"{source.title} [{source.name}]", ""]
@@ -74,7 +74,7 @@ def facts(survey: Survey) -> list[dict[str, Any]]:
 
 
 def page(survey: Survey) -> str:
-    """Return ``errata.md``: for each document what does not hold, its right form, the reason and the proof."""
+    """Return ``errata.md``: for each document the claims that do not hold, with right form, reason and proof."""
     text = [
         "# Errata",
         "",
@@ -100,7 +100,7 @@ def _entry(item: Finding) -> list[str]:
 
 
 def _code(words: str) -> str:
-    """Return words as inline code, on one line, whatever they hold."""
+    """Return any text as inline code on one line."""
     flat = " ".join(words.split())
     fence = "``" if "`" in flat else "`"
     return f"{fence}{flat}{fence}"

@@ -1,4 +1,4 @@
-"""A plan as a table: what is kept, what is skipped, the rule, the derivation behind it, and the operations it saves."""
+"""A plan as a table: each item kept or skipped, the rule, the derivation behind it, and the operations it saves."""
 
 from collections import Counter
 from typing import TYPE_CHECKING
@@ -32,7 +32,7 @@ def _row(item: str, skipped: bool, why: str, derivation: str = "", operations: C
 
 
 def _ladder(plan: Plan) -> "list[PlanRow]":
-    """Return the rows of the rules, from the general structure down, with what each leaves and saves."""
+    """Return the rows of the rules, from the general structure down, with the operations each leaves and saves."""
     from symrot.planning.plan import general_structure
 
     general = _operations(general_structure(plan.scene, bool(plan.switches)))
@@ -73,7 +73,7 @@ BENDS = frozenset({"abs", "min", "max", "clip"})
 
 
 def _formulas(plan: Plan, method: str) -> "list[PlanRow]":
-    """Return the rows of what is done so that no narrow feature and no switch of a formula is stepped over."""
+    """Return the rows on the measures by which no narrow feature and no switch of a formula is stepped over."""
     from symrot.propagation.compiled_models import has_formulas
 
     if not has_formulas(plan):
@@ -101,7 +101,7 @@ def _narrow_features(plan: Plan) -> "PlanRow":
 
 
 def _switches(functions: list[str]) -> "PlanRow":
-    """Return the row of functions that jump or bend."""
+    """Return the row of functions with jumps or kinks."""
     named = [(text, text.partition("(")[0] in BENDS) for text in dict.fromkeys(functions)]
     parts = [
         f"{', '.join(text for text, bent in named if bent is bends)} {verb}"
@@ -116,7 +116,7 @@ def _switches(functions: list[str]) -> "PlanRow":
 
 
 def _samples(plan: Plan) -> "list[PlanRow]":
-    """Return the row of a torque by samples, whose operations are not among those counted."""
+    """Return the row of a torque given by samples, whose operations are not counted."""
     table = plan.scene.table
     if table is None:
         return []
@@ -127,7 +127,7 @@ def _samples(plan: Plan) -> "list[PlanRow]":
 
 
 def facts(plan: Plan) -> "PlanReport":
-    """Return the table as data for JSON: ``operations`` are those left after a row, by kind, ``saved`` their change."""
+    """Return the table as data for JSON: ``operations`` counts by kind after a row, ``saved`` is the change."""
     scene = plan.scene
     ladder = _ladder(plan)
     rows = [*ladder, *_others(plan)]
@@ -150,7 +150,7 @@ def _counts_text(counts: dict[str, int] | None) -> str:
 
 
 def lines(report: "PlanReport") -> list[str]:
-    """Return the lines for people that say what :func:`facts` says; the first is the title."""
+    """Return the data of :func:`facts` as lines of text; the first is the title."""
     rows = [HEAD]
     for row in report["rows"]:
         changed = row["saved"] != 0

@@ -1,4 +1,4 @@
-"""Text for people: any text on one line, numbers, durations, aligned columns, bold where a terminal shows it."""
+"""Layout of text for people: single lines, numbers, durations, aligned columns, bold text in terminals."""
 
 import math
 import os
@@ -20,17 +20,17 @@ SEEN = 0.001  # of a distance: to so much of it its ends are shown
 
 
 def one_line(text: str) -> str:
-    """Return text as one printable line: no control characters, whatever a scene file holds."""
+    """Return text as one printable line, without the control characters that a scene file may contain."""
     return "".join(c if c.isprintable() else "?" for c in " ".join(text.split()))
 
 
 def number_text(value: float | Fraction, digits: int = 6) -> str:
-    """Return a number for people."""
+    """Return a number as text with few digits."""
     return f"{float(value):.{digits}g}"
 
 
 def apart(*values: float) -> list[str]:
-    """Return numbers as :func:`shown` does, with the digits it takes to see how far apart the nearest are."""
+    """Return numbers as :func:`number_text` does, with enough digits to tell the two nearest apart."""
     ordered = sorted({float(value) for value in values})
     nearest = min((after - before for before, after in pairwise(ordered)), default=math.inf)
     digits = 6
@@ -40,12 +40,12 @@ def apart(*values: float) -> list[str]:
 
 
 def exact(value: Fraction) -> str:
-    """Return a number for machines: exact text, ``"51/80"``, where that is short; else the nearest double."""
+    """Return a number for programs: exact text such as ``"51/80"`` if that is short, else the nearest double."""
     return str(value) if value.denominator <= LONGEST_DENOMINATOR else repr(float(value))
 
 
 def duration(seconds: float) -> str:
-    """Return a time with a unit that suits it."""
+    """Return a duration with a suitable unit."""
     for unit, size in (("s", 1.0), ("ms", 1e-3)):
         if seconds >= size:
             return f"{seconds / size:.3g} {unit}"
@@ -53,13 +53,13 @@ def duration(seconds: float) -> str:
 
 
 def emphasis(text: str, stream: TextIO) -> str:
-    """Return text bold, if the stream is a terminal that wants it (https://no-color.org)."""
+    """Return text in bold if the stream is a terminal and NO_COLOR is not set (https://no-color.org)."""
     bold = stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
     return f"\x1b[1m{text}\x1b[0m" if bold else text
 
 
 def room(most: int = WIDTH) -> int:
-    """Return how wide lines may be: the width of the terminal, at most ``most``, which a pipe or a file always gets."""
+    """Return the width of lines: that of the terminal, at most ``most``; for a pipe or a file ``most``."""
     if not sys.stdout.isatty():
         return most
     from shutil import get_terminal_size  # slow to import, and a pipe needs none
@@ -94,8 +94,8 @@ def columns(
     rows : sequence of rows of text
         The first may be the head.
     width : int, optional
-        Of a line, kept by wrapping columns of text; a table of numbers that is wider goes on below itself. Default:
-        what :func:`room` says.
+        Width of a line, for which columns of text are wrapped; a wider table of numbers is continued below itself.
+        Default: the width that :func:`room` returns.
     wrap : int
         The column that is wrapped first; others only where that is not enough.
     right : sequence of int
@@ -122,7 +122,7 @@ def columns(
 
 
 def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequence[int]) -> list[int]:
-    """Return the widths of columns: that of their widest text, less for those that are wrapped."""
+    """Return the widths of columns: the width of their widest text, and less for wrapped columns."""
     count = len(rows[0])
     widths = [max(len(row[i]) for row in rows) for i in range(count)]
     left = width - 2 * (count - 1) - sum(size for i, size in enumerate(widths) if i != wrap)
@@ -140,7 +140,7 @@ def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequenc
 
 
 def _parts(widths: Sequence[int], width: int, right: Sequence[int]) -> list[list[int]]:
-    """Return the columns in the parts of a table that stand below one another; each has the first column."""
+    """Return the columns of each part of a table; parts are printed below one another, each with the first column."""
     parts = [[0]]
     for i in range(1, len(widths)):
         full = sum(widths[j] + 2 for j in parts[-1]) + widths[i] > width

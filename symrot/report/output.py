@@ -1,4 +1,4 @@
-"""A trajectory as a file, NPZ or CSV, with labels, units, conventions and source inside. Same motion, same bytes."""
+"""Files of trajectories, NPZ or CSV, with labels, units, conventions and source. Equal motions give equal bytes."""
 
 import json
 from collections.abc import Callable, Iterator
@@ -22,7 +22,7 @@ ROWS_AT_ONCE = 4096
 
 
 def metadata(trajectory: "Trajectory", arrays: list[Labelled], tolerance: float) -> "FileRecord":
-    """Return what a file says of its numbers: scene, method, what each array holds, conventions."""
+    """Return the description of a file: scene, method, the content of each array, conventions."""
     scene, stats = trajectory.scene, trajectory.stats
     return {
         "symrot": __version__,
@@ -103,9 +103,9 @@ def save(trajectory: "Trajectory", path: Path, tolerance: float) -> list[str]:
     trajectory : Trajectory
         The motion.
     path : Path
-        Its suffix, one of :data:`FORMATS`, decides.
+        Its suffix, one of :data:`FORMATS`, decides the format.
     tolerance : float
-        That it was propagated with.
+        The tolerance of the propagation.
     """
     arrays = labelled(trajectory)
     about = metadata(trajectory, arrays, tolerance)

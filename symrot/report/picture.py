@@ -1,4 +1,4 @@
-"""Write a drawn page into a file: PNG with a palette of its own, a quarter of the size, PDF or SVG; undated."""
+"""Write a matplotlib page into a file, PDF, SVG or PNG with a palette (a quarter of the size), without a date."""
 
 from io import BytesIO
 from pathlib import Path
@@ -18,7 +18,7 @@ def save_page(page: Any, path: Path, dpi: int) -> None:
     Raises
     ------
     InputError
-        If the disk refuses.
+        If the file cannot be written.
     """
     suffix = path.suffix.lower()
 
@@ -29,7 +29,7 @@ def save_page(page: Any, path: Path, dpi: int) -> None:
 
 
 def _palette(page: Any, dpi: int, stream: BinaryIO) -> None:
-    """Write a PNG of few colours, by Pillow, which matplotlib brings along."""
+    """Write a PNG of few colours with Pillow, on which matplotlib depends."""
     from PIL import Image
     from PIL.PngImagePlugin import PngInfo
 

@@ -1,6 +1,6 @@
-"""One page that shows a motion: angular velocity, attitude, what is conserved, and the paths on the sphere.
+"""One page that shows a motion: angular velocity, attitude, conserved quantities, and the paths on the sphere.
 
-Drawn with matplotlib's objects and the Agg canvas: no window, no global figure. Same motion, same bytes.
+It is drawn with matplotlib's objects and the Agg canvas: no window, no global figure. Equal motions give equal bytes.
 """
 
 from importlib.util import find_spec
@@ -41,7 +41,7 @@ UNDATED: dict[str, dict[str, Any]] = {
 
 
 def require_matplotlib() -> None:
-    """Refuse a plot where matplotlib is missing."""
+    """Raise InputError if matplotlib is missing."""
     if find_spec("matplotlib") is None:
         raise InputError("--plot: expected matplotlib, which is not installed: pip install 'symrot[plot]'")
 
@@ -53,7 +53,7 @@ def _times(trajectory: Any) -> tuple[Floats, str]:
 
 
 def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -> None:
-    """Draw components over time; a steady one that would flatten the others is told in the legend instead."""
+    """Draw components over time; a steady component that would flatten the others goes to the legend instead."""
     low, high = columns.min(axis=0), columns.max(axis=0)
     largest = np.maximum(np.abs(low), np.abs(high))
     steady = high - low <= QUIET * largest
@@ -70,7 +70,7 @@ def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -
 
 
 def _unwrapped(angles: Floats, turn: float) -> Floats:
-    """Return angles with a gap where they jump by a turn, so that no line is drawn there."""
+    """Return angles with a gap where they jump by 360 degrees, so that no line is drawn there."""
     gaps = np.zeros_like(angles, dtype=bool)
     gaps[1:] = np.abs(np.diff(angles)) > 0.5 * turn
     return np.where(gaps, np.nan, angles)
@@ -131,7 +131,7 @@ def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
 
 
 def _body_sphere(axes: Any, trajectory: Any) -> None:
-    """Draw the angular momentum of a free body among the curves it may follow, or the axis of rotation of another."""
+    """Draw the angular momentum of a free body among its possible curves, or the axis of rotation of another body."""
     torques = trajectory.scene.torques
     if any(kind != "rotor" for kind in trajectory.scene.torque_kinds):
         draw_directions(axes, trajectory.omega, ("1", "2", "3"))
@@ -186,7 +186,7 @@ def figure(trajectory: Any, tolerance: float) -> Any:
 
 
 def _literal(text: str) -> str:
-    """Return text as matplotlib shows it unchanged: a dollar would begin a formula."""
+    """Return text with dollars escaped, since matplotlib would begin a formula at a dollar."""
     return one_line(text).replace("\\", "/").replace("$", r"\$")
 
 
@@ -207,7 +207,7 @@ def save(propagator: Any, trajectory: Any, path: Path) -> None:
     Parameters
     ----------
     propagator, trajectory : Propagator, Trajectory
-        What ran, and its motion at the scene's own times.
+        The propagator, and its motion at the times of the scene.
     path : Path
         Its suffix, one of :data:`SUFFIXES`, decides the format.
     """

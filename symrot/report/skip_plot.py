@@ -1,4 +1,4 @@
-"""What specialisation saves, as one figure: each motion of the ladder, from the general kernel to the scene's own."""
+"""A figure of the savings by specialisation: each motion of the ladder, from the general kernel to its own kernel."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -21,7 +21,7 @@ LEAST = 0.6  # where no operation at all is drawn
 
 
 def figure(ladder: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of what :func:`symrot.bench.skip.measure` found."""
+    """Return a matplotlib Figure of the result of :func:`symrot.bench.skip.measure`."""
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 

@@ -1,4 +1,4 @@
-"""Paths of a direction, drawn on a sphere seen from afar, or on the plane that touches it where the path is small."""
+"""Paths of a direction, drawn on a sphere seen from afar, or on its tangent plane where the path is small."""
 
 from collections.abc import Callable
 from typing import Any
@@ -22,13 +22,13 @@ MOST_VECTORS = 6000  # segments drawn as vectors in a PDF or SVG; beyond, as an 
 
 
 def prefixed(size: float, unit: str) -> tuple[float, str]:
-    """Return what to divide numbers of a size by, so that they are easy to read, and their unit then."""
+    """Return a divisor that makes numbers of a size easy to read, and their unit after the division."""
     factor, prefix = next((pair for pair in PREFIXES if size >= 0.1 * pair[0]), PREFIXES[-1])
     return (factor, f"{prefix}{unit}") if size > 0 else (1.0, unit)
 
 
 def _unit(vectors: Floats) -> Floats:
-    """Return the directions of the vectors, shape (n, 3), those that have one."""
+    """Return the directions of the vectors, shape (n, 3), without those of vectors close to zero."""
     length = np.sqrt(np.sum(vectors * vectors, axis=1))
     has_direction = length > 1e-9 * np.max(length, initial=0.0)
     directions: Floats = vectors[has_direction] / length[has_direction, None]
@@ -130,9 +130,9 @@ def draw_directions(
     Parameters
     ----------
     axes : matplotlib Axes
-        Where; it loses its frame when a sphere is drawn.
+        The axes to draw into; they lose their frame when a sphere is drawn.
     vectors : array, shape (n, 3)
-        Of any length; those without one are left out.
+        Vectors of any length; zero vectors are left out.
     labels : tuple of 3 str
         Names of the three axes.
     value : callable, optional

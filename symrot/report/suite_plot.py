@@ -1,4 +1,4 @@
-"""The suite as two figures: how many times longer each peer takes, by motion and decade of the error; all curves."""
+"""Two figures of a suite: the ratio of the times of each peer by motion and decade of the error, and all curves."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What a run was and how it went: facts as plain data, and the same facts on one screen."""
+"""The report of a run: its settings and results as plain data, and the same as text on one screen."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -26,12 +26,12 @@ ABOUT = {"center_of_mass": "its centre of mass", "fixed_point": "a fixed point"}
 
 
 def facts(propagator: "Propagator", trajectory: "Trajectory", preparation: float) -> "RunReport":
-    """Return what there is to say of a run, as data for JSON.
+    """Return the settings and results of a run as data for JSON.
 
     Parameters
     ----------
     propagator, trajectory : Propagator, Trajectory
-        What ran, and its motion at the scene's own times.
+        The propagator, and its motion at the times of the scene.
     preparation : float
         Seconds to derive and compile the kernel, or to load it.
     """
@@ -146,7 +146,7 @@ def _settings(report: "RunReport") -> list[tuple[str, str]]:
 
 
 def _switches(times: list[float], switchings: "list[SwitchingRecord]", start: str, stop: str) -> list[tuple[str, str]]:
-    """Return a row of each function that switches: when it is passed, holds the motion, lets it go."""
+    """Return a row for each switching function: the times at which it is crossed, holds the motion or releases it."""
     by_function: dict[str, list[tuple[float, str]]] = {}
     for item in switchings:
         by_function.setdefault(f"{one_line(item['function'])} ", []).append((item["t"], HOW[item["how"]]))
@@ -184,7 +184,7 @@ def _conserved(report: "RunReport") -> list[str]:
 
 
 def _lost(candidates: "list[LostRecord]") -> list[tuple[str, str]]:
-    """Return what is not conserved, those of one reason on one line."""
+    """Return the quantities that are not conserved, one line for each reason."""
     names: dict[str, list[str]] = {}
     for item in candidates:
         names.setdefault(item["reason"], []).append(item["name"])
@@ -215,7 +215,7 @@ def _holding(item: "WrittenRecord") -> str:
 
 
 def summary(report: "RunReport") -> list[str]:
-    """Return the lines for people that say what :func:`facts` says; the first is the title."""
+    """Return the data of :func:`facts` as lines of text; the first is the title."""
     scene = report["scene"]
     source = [f"  {line}" for line in fields([("", one_line(scene["source"]))])] if scene["source"] else []
     settings = [f"  {line}" for line in fields(_settings(report) + _skipped(report))]

@@ -1,4 +1,4 @@
-"""Verdicts as text: one claim in full, a file of claims as a list with what failed in full and a count."""
+"""Verdicts as text: a single claim in full, a file of claims as a list with failed claims in full and a count."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -19,12 +19,12 @@ def check(
     repair: bool,
     progress: Callable[[str], None] = lambda text: None,
 ) -> list[Verdict]:
-    """Return the verdicts on a claim as text or LaTeX, or on the claims of a file, ``"refused"`` on the bad ones.
+    """Return the verdicts on a claim as text or LaTeX, or on the claims of a file, where bad claims are ``"refused"``.
 
     Raises
     ------
     InputError
-        For a text that :func:`symrot.check` refuses, a file that is not one of claims, and hypotheses beside a file.
+        For a text that :func:`symrot.check` refuses, a file that holds no claims, and hypotheses together with a file.
     """
     from symrot.checker.interface import check as check_text
     from symrot.checker.interface import verdicts_of_file
@@ -34,9 +34,9 @@ def check(
     if not source.endswith(".toml") and not Path(source).is_file():
         raise InputError(f"expected a claim 'left == right' or the path of a file of claims, got {source[:60]!r}")
     if units:
-        raise InputError("--unit: expected a claim as text beside it; a file states its own units")
+        raise InputError("--unit: expected a claim as text with it; a file states its own units")
     if assumptions:
-        raise InputError("--given: expected a claim as text beside it; a file states its own hypotheses")
+        raise InputError("--given: expected a claim as text with it; a file states its own hypotheses")
     return list(verdicts_of_file(source, repair, progress))
 
 
@@ -50,12 +50,12 @@ def _units(words: Sequence[str]) -> dict[str, str]:
 
 
 def _is_file(source: str) -> bool:
-    """Return whether the words of a user mean a file: no formula without ``=`` is a claim."""
+    """Return whether an argument names a file: a text without ``=`` is no claim."""
     return "=" not in source or (source.endswith(".toml") and "==" not in source and Path(source).is_file())
 
 
 def lines(verdicts: Sequence[Verdict], source: str) -> list[str]:
-    """Return verdicts as lines: a single text in full; of a file what is not true in full, then the count."""
+    """Return verdicts as lines: a single claim in full; of a file the claims that are not true in full, and a count."""
     if len(verdicts) == 1 and not _is_file(source):
         return _full(verdicts[0], verdicts[0].verdict)
     text: list[str] = []

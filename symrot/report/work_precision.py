@@ -1,4 +1,4 @@
-"""A work-precision study as lines for people, and two of them side by side."""
+"""A work-precision study as lines of text, and the comparison of two studies."""
 
 import json
 import math
@@ -25,7 +25,7 @@ def _number(value: float) -> str:
 
 
 def _decades(study: Mapping[str, Any]) -> list[str]:
-    """Return a column for each decade, a row for each method: its time over the least, which stands in the first."""
+    """Return a table with a column for each decade: first the least time, then each method's time over the least."""
     table = study["decades"]
     names = list(dict.fromkeys(name for row in table for name in row["methods"]))
     rows = [["error <=", *(f"{row['error']:.0e}" for row in table)]]
@@ -37,7 +37,7 @@ def _decades(study: Mapping[str, Any]) -> list[str]:
 
 
 def _short(value: float) -> str:
-    """Return a number in five places at most."""
+    """Return a number as text of at most five characters."""
     if not math.isfinite(value):
         return "-"
     return (
@@ -73,7 +73,7 @@ def _against(study: Mapping[str, Any]) -> list[str]:
 
 
 def lines(study: Mapping[str, Any]) -> list[str]:
-    """Return the lines about a study (:func:`symrot.bench.comparison.work_precision.study`) for people, title first."""
+    """Return a study (:func:`symrot.bench.comparison.work_precision.study`) as lines of text, the title first."""
     scene, reference, machine = study["scene"], study["reference"], study["machine"]
     others = [f"{other['name']} within {max(other['difference'], ROUNDING):.0e}" for other in reference["others"]]
     versions = [f"{name} {machine[name]}" for name in ("python", "numpy", "scipy", "heyoka") if machine[name]]
@@ -108,7 +108,7 @@ def read_study(path: Path) -> dict[str, Any]:
     Raises
     ------
     InputError
-        For a file that is none.
+        If the file is not a study.
     """
     label = repr(str(path))
     try:
@@ -130,7 +130,7 @@ def read_study(path: Path) -> dict[str, Any]:
 
 
 def _positive(study: Mapping[str, Any]) -> bool:
-    """Whether every time of a study is a number above zero, and every error one that is not below."""
+    """Return whether every time of a study is positive, and no error negative."""
     times = [cell["seconds"] for row in study["decades"] for cell in (row, *row["methods"].values())]
     errors = [run["error"] for run in study["runs"]] + [row["error"] for row in study["decades"]]
     times += [run["seconds"] for run in study["runs"]]
@@ -138,12 +138,12 @@ def _positive(study: Mapping[str, Any]) -> bool:
 
 
 def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the second study against the first: ratios of the seconds, decade by decade, and of the least errors.
+    """Return the comparison of a second study with a first: ratios of seconds by decade, and the least errors.
 
     Raises
     ------
     InputError
-        If they are of two scenes.
+        If the studies are of different scenes.
     """
     names = [study["scene"]["name"] for study in (first, second)]
     if names[0] != names[1]:
@@ -183,7 +183,7 @@ def _least_errors(study: Mapping[str, Any]) -> dict[str, float]:
 
 
 def lines_of_comparison(comparison: Mapping[str, Any]) -> list[str]:
-    """Return the lines for people that say what :func:`compared` found."""
+    """Return the result of :func:`compared` as lines of text."""
     errors = sorted(
         {error for item in comparison["ratios"].values() for error in item["decades"]}, key=float, reverse=True
     )

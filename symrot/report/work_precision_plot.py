@@ -58,7 +58,7 @@ METHOD_LABELS = {
 
 
 def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
-    """Return the runs that none beats in error and seconds, by error, and the others."""
+    """Return the runs that no other run beats in both error and seconds, ordered by error, and the remaining runs."""
     points = sorted((max(float(run["error"]), LEAST_ERROR), float(run["seconds"])) for run in runs)
     points = [point for point in points if point[0] < OUTERMOST]
     best: list[tuple[float, float]] = []
@@ -71,7 +71,7 @@ def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float
 
 
 def _names(axes: Any, ends: list[tuple[float, str, str]]) -> None:
-    """Write names beside the right edge, each as near the height of its curve's end as the others let it."""
+    """Write names at the right edge, each as close to the height of its curve's end as the other names allow."""
     low, high = np.log10(axes.get_ylim())
     ends = sorted(ends)
     heights = [(np.log10(value) - low) / (high - low) for value, *_ in ends]
@@ -134,7 +134,7 @@ def figure(study: Mapping[str, Any]) -> Any:
 
 
 def _leaders(axes: Any, study: Mapping[str, Any]) -> None:
-    """Lead the eye from the last point of each curve to the right edge, where its name is."""
+    """Draw a faint line from the last point of each curve to its name at the right edge."""
     right = axes.get_xlim()[1]
     for name in dict.fromkeys(run["method"] for run in study["runs"]):
         best, _ = frontier([run for run in study["runs"] if run["method"] == name])
@@ -145,7 +145,7 @@ def _leaders(axes: Any, study: Mapping[str, Any]) -> None:
 
 
 def _literal(text: str) -> str:
-    """Return text as matplotlib shows it unchanged: a dollar would begin a formula."""
+    """Return text with dollars escaped, since matplotlib would begin a formula at a dollar."""
     return one_line(text).replace("\\", "/").replace("$", r"\$")
 
 
@@ -167,7 +167,7 @@ def save(study: Mapping[str, Any], path: Path) -> None:
     Parameters
     ----------
     study : mapping
-        What :func:`symrot.bench.comparison.work_precision.study` returned, or a file of it.
+        The result of :func:`symrot.bench.comparison.work_precision.study`, or the content of its file.
     path : Path
         Its suffix, ``.png``, ``.pdf`` or ``.svg``, decides the format.
     """

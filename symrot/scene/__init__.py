@@ -1,1 +1,1 @@
-"""Scenes: read, checked and kept as exact numbers."""
+"""Scenes: problems as data, read, checked and stored as exact numbers."""

@@ -1,7 +1,7 @@
 """An attitude of a scene: quaternion, Euler sequence, axis and angle, or direction cosine matrix, read exactly.
 
-Everything is in Fractions, so a right angle turns a part of a body by exactly a right angle, and the quaternion of an
-initial attitude is a unit one to 2^-200 whatever was typed. Conventions: :mod:`symrot.conventions`.
+All numbers are Fractions, so that a right angle rotates a part of a body by exactly a right angle, and the quaternion
+of an initial attitude has unit norm to 2^-200 for any input. Conventions: :mod:`symrot.conventions`.
 """
 
 from collections.abc import Callable, Mapping
@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 from symrot.conventions import parse_sequence
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import Angle, equal, read_angle, sqrt
-from symrot.scene.reader import Entry, Reader, expected, flag, number, read_table, table, vector
+from symrot.scene.reader import Entry, Reader, fail, flag, number, read_table, table, vector
 
 __all__ = ["ORTHOGONAL", "Attitude", "read_attitude", "read_sequence", "to_body", "to_space"]
 
 ORTHOGONAL = Fraction(1, 10**9)
-"""Largest difference from the identity of R R^T for a typed matrix R; what is nearer is made a rotation exactly."""
+"""Largest difference of R R^T from the identity for a typed matrix R; R is then replaced by an exact rotation."""
 
 FORMS = '{quaternion = [..]}, {sequence = "ZXZ", angles = [..]}, {axis = [..], angle = ..} or {dcm = [[..], ..]}'
 
@@ -26,7 +26,7 @@ Matrix = tuple[Vector, Vector, Vector]
 
 
 class Attitude(NamedTuple):
-    """An attitude in both forms: the unit quaternion, and ``dcm_sb``, exact where the angles are."""
+    """An attitude in both forms: the unit quaternion, and ``dcm_sb``, which is exact if the angles are."""
 
     quaternion: Quaternion
     dcm: Matrix
@@ -116,10 +116,10 @@ def _of_dcm(rows: Matrix, value: object, where: str) -> Attitude:
     product = _matrix_product(rows, tuple(zip(*rows, strict=True)))  # type: ignore[arg-type]
     worst = max(abs(product[i][j] - (i == j)) for i in range(3) for j in range(3))
     if worst > ORTHOGONAL:
-        expected(where, "a rotation: orthonormal rows, to 1e-9", value, f"its rows miss that by {float(worst):.2g}")
+        fail(where, "a rotation: orthonormal rows, to 1e-9", value, f"its rows miss that by {float(worst):.2g}")
     (a, b, c), (d, e, f), (g, h, i) = rows
     if a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0:
-        expected(where, "a rotation, of determinant +1", value, "this is a reflection, of determinant -1")
+        fail(where, "a rotation, of determinant +1", value, "this is a reflection, of determinant -1")
     candidates = {
         1 + a + e + i: (1 + a + e + i, h - f, c - g, d - b),
         1 + a - e - i: (h - f, 1 + a - e - i, b + d, c + g),
@@ -142,11 +142,11 @@ def _angle(degrees: bool) -> Reader:
 
 def _four(value: Any, where: str) -> Quaternion:
     if not isinstance(value, list | tuple) or len(value) != 4:
-        expected(where, "four numbers (q0, q1, q2, q3), scalar first", value)
+        fail(where, "four numbers (q0, q1, q2, q3), scalar first", value)
     component = number()
     w, x, y, z = (component(item, f"{where}[{index}]") for index, item in enumerate(value))
     if not (w or x or y or z):
-        expected(where, "a quaternion that is not zero", value)
+        fail(where, "a quaternion that is not zero", value)
     return w, x, y, z
 
 
@@ -158,7 +158,7 @@ def _read_quaternion(value: Any, where: str) -> Attitude:
 
 def _rows(value: Any, where: str) -> Matrix:
     if not isinstance(value, list | tuple) or len(value) != 3:
-        expected(where, "three rows of three numbers", value)
+        fail(where, "three rows of three numbers", value)
     row = vector("1")
     first, second, third = (row(item, f"{where}[{index}]") for index, item in enumerate(value))
     return first, second, third
@@ -169,7 +169,7 @@ def read_sequence(value: Any, where: str) -> str:
     try:
         parse_sequence(value)
     except InputError:
-        expected(where, "an Euler sequence: three axis letters, neighbours different, all upper case (intrinsic) or "
+        fail(where, "an Euler sequence: three axis letters, neighbours different, all upper case (intrinsic) or "
                  "all lower case (extrinsic), such as \"ZXZ\" or \"zyx\"", value)  # fmt: skip
     return str(value)
 
@@ -179,7 +179,7 @@ def _three_angles(degrees: bool) -> Reader:
 
     def reader(value: Any, where: str) -> tuple[Angle, ...]:
         if not isinstance(value, list | tuple) or len(value) != 3:
-            expected(where, f"three angles in {'degrees' if degrees else 'rad'}, in the order of the sequence", value)
+            fail(where, f"three angles in {'degrees' if degrees else 'rad'}, in the order of the sequence", value)
         return tuple(one(item, f"{where}[{index}]") for index, item in enumerate(value))
 
     return reader
@@ -233,5 +233,5 @@ def read_attitude(value: Any, where: str) -> Attitude:
     entries = table(value, where, f"an attitude: {FORMS}")
     form = next((reader for key, reader in _FORMS.items() if key in entries), None)
     if form is None:
-        expected(where, f"an attitude: {FORMS}", value)
+        fail(where, f"an attitude: {FORMS}", value)
     return form(entries, where)

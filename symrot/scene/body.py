@@ -1,7 +1,7 @@
-"""The body of a scene: exactly one way of giving its inertia, the point it turns about, and whether it can turn.
+"""The body of a scene: exactly one source of its inertia, the point about which it rotates, and its admissibility.
 
-Ways: ``shape`` with its dimensions and mass or density; ``[[body.part]]``, a composite; ``principal`` moments;
-``inertia``, the tensor. The result is exact (Fractions) and in the axes in which the body was given.
+The sources are ``shape`` with dimensions and mass or density; ``[[body.part]]``, a composite; ``principal`` moments;
+and ``inertia``, the tensor. The result is exact (Fractions) and in the axes in which the body was given.
 """
 
 from collections.abc import Callable, Mapping
@@ -14,7 +14,7 @@ from symrot.inertia.principal import Principal, principal_axes, require_admissib
 from symrot.inertia.shapes import SHAPES, Shape, check_dimensions
 from symrot.inertia.tensor import about_point
 from symrot.scene.attitude import Matrix, Vector, read_attitude
-from symrot.scene.reader import Entry, Reader, choice, expected, flag, nearest, number, read_table, table, text, vector
+from symrot.scene.reader import Entry, Reader, choice, fail, flag, nearest, number, read_table, table, text, vector
 
 __all__ = ["Body", "read_body"]
 
@@ -37,7 +37,7 @@ _NEGLIGIBLE = Fraction(1, 2**200)  # as symrot.formula.exact_numbers.equal
 
 
 class Body(NamedTuple):
-    """A rigid body about the point it turns about, in the axes in which it was given.
+    """A rigid body about its point of rotation, in the axes in which it was given.
 
     ``inertia`` (kg m^2) is about that point; ``center_of_mass`` (m) is relative to it, None when it is unknown;
     ``mass`` (kg) is None when it is unknown. ``principal`` holds the class of the body, its moments and axes.
@@ -79,15 +79,15 @@ def read_body(value: Any, where: str) -> Body:
     Raises
     ------
     InputError
-        Naming file, key, value and expectation: none or several sources of giving the inertia, unknown shapes and keys,
+        Naming file, key, value and expectation: none or several sources of the inertia, unknown shapes and keys,
         dimensions out of range, an inertia that no body has, a body that cannot turn freely (a needle, a point).
     """
     entries = table(value, where, f"a table with {EXPECTED_SOURCE}")
     sources = [way for way in INERTIA_SOURCES if way in entries]
     if len(sources) != 1:
         if not sources:
-            expected(where, EXPECTED_SOURCE, entries, _nearest_source(entries) or "none of them is given")
-        expected(where, EXPECTED_SOURCE, entries, f"{' and '.join(sources)} are given")
+            fail(where, EXPECTED_SOURCE, entries, _nearest_source(entries) or "none of them is given")
+        fail(where, EXPECTED_SOURCE, entries, f"{' and '.join(sources)} are given")
     body = _READERS[sources[0]](entries, where)
     _require_turnable(body, entries.get(sources[0]), f"{where}.{sources[0]}")
     return body
@@ -108,10 +108,10 @@ def _require_turnable(body: Body, value: object, where: str) -> None:
     require_admissible(body.principal, where)
     reason = why_not_propagable(body.principal)
     if reason:
-        expected(where, "a body with three positive moments of inertia", value, reason)
+        fail(where, "a body with three positive moments of inertia", value, reason)
     if not 1 / LARGEST_MOMENT <= min(body.principal.moments) <= max(body.principal.moments) <= LARGEST_MOMENT:
         moments = [float(moment) for moment in body.principal.moments]
-        expected(where, "moments of inertia between 1e-120 and 1e120 kg m^2", moments)
+        fail(where, "moments of inertia between 1e-120 and 1e120 kg m^2", moments)
 
 
 # --- given moments ----------------------------------------------------------------------------------------------------
@@ -130,7 +130,7 @@ _product = number("a product of inertia in kg m^2 (I_xy = -integral of x y dm)")
 
 def _three_moments(value: Any, where: str) -> tuple[Fraction, ...]:
     if not isinstance(value, list | tuple) or len(value) != 3:
-        expected(where, "three principal moments [A, B, C] in kg m^2", value)
+        fail(where, "three principal moments [A, B, C] in kg m^2", value)
     return tuple(_moment(item, f"{where}[{index}]") for index, item in enumerate(value))
 
 
@@ -144,11 +144,11 @@ def _tensor(value: Any, where: str) -> Matrix:
 
 
 def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return a body whose moments, about the point it turns about, were typed."""
+    """Return a body from typed moments about its point of rotation."""
     about, center = values["about"], values["center_of_mass"]
     if about == "center_of_mass":
         if center is not None and any(center):
-            expected(f"{where}.center_of_mass", 'about = "fixed_point", which it is measured from', center)
+            fail(f"{where}.center_of_mass", 'about = "fixed_point", which it is measured from', center)
         center = _ZERO
     description = f"{values['name'] or 'body'} with {source}"
     return Body(values["mass"], inertia, center, about, description, principal_axes(inertia, where))
@@ -172,7 +172,7 @@ def _read_tensor(value: Mapping[str, Any], where: str) -> Body:
 
 def _no_fixed_point(value: Mapping[str, Any], where: str) -> None:
     if "fixed_point" in value:
-        expected(f"{where}.fixed_point", 'a body given by shapes; typed moments are about the fixed point itself '
+        fail(f"{where}.fixed_point", 'a body given by shapes; typed moments are about the fixed point itself '
                  'already, say only about = "fixed_point"', value["fixed_point"])  # fmt: skip
 
 
@@ -183,7 +183,7 @@ _PLACED = {**_ABOUT, "fixed_point": Entry(vector("m")), "name": Entry(text, defa
 
 def _shape_name(value: Any, where: str) -> Shape:
     if not isinstance(value, str) or value not in SHAPES:
-        expected(where, f"one of the shapes {', '.join(SHAPES)}", value, nearest(value, SHAPES))
+        fail(where, f"one of the shapes {', '.join(SHAPES)}", value, nearest(value, SHAPES))
     return SHAPES[value]
 
 
@@ -210,7 +210,7 @@ def _density(unit: str) -> Reader:
             names = expression.names(expression.parse(value, where))
             if names <= _POSITION:
                 return value
-            expected(where, f"a density in {unit}, a number or a polynomial in x, y, z", value)
+            fail(where, f"a density in {unit}, a number or a polynomial in x, y, z", value)
         return uniform(value, where)
 
     return reader
@@ -219,7 +219,7 @@ def _density(unit: str) -> Reader:
 def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str, Entry]) -> tuple[Part, dict[str, Any]]:
     """Return the part that a table with ``shape`` describes, and the table's other values."""
     if "shape" not in value:
-        expected(f"{where}.shape", f"one of the shapes {', '.join(SHAPES)}, the key is missing")
+        fail(f"{where}.shape", f"one of the shapes {', '.join(SHAPES)}, the key is missing")
     shape = _shape_name(value["shape"], f"{where}.shape")
     dimensions = [dimension.name for dimension in shape.dimensions]
     values = read_table(value, where, {
@@ -232,9 +232,7 @@ def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str,
     if shape.kind != "points" and len(amounts) != 1:
         expectation = f"exactly one of mass (kg) and density ({shape.density_unit}) of a {shape.name}"
         amounts_by_name = {key: value[key] for key in amounts}
-        expected(
-            f"{where}.mass", expectation if amounts_by_name else f"{expectation}, got neither", amounts_by_name or ...
-        )
+        fail(f"{where}.mass", expectation if amounts_by_name else f"{expectation}, got neither", amounts_by_name or ...)
     for name in dimensions:
         _bounded(values[name], f"{where}.{name}")
     part = Part(
@@ -253,7 +251,7 @@ _length = number("a number in m")
 
 
 def _bounded(value: Any, where: str) -> None:
-    """Refuse a dimension that is no number or out of range, before anything is computed with it."""
+    """Raise InputError for a dimension that is not a number or is out of range, before anything is computed from it."""
     if isinstance(value, list | tuple):
         for index, item in enumerate(value):
             _bounded(item, f"{where}[{index}]")
@@ -265,9 +263,9 @@ def _placed(properties: MassProperties, values: Mapping[str, Any], where: str, s
     """Return a composed body about its centre of mass, or about a fixed point given in its axes."""
     about, point = values["about"], values["fixed_point"]
     if about == "center_of_mass" and point is not None:
-        expected(f"{where}.fixed_point", 'about = "fixed_point" beside it, for the body to turn about it', point)
+        fail(f"{where}.fixed_point", 'about = "fixed_point" beside it, for the body to turn about it', point)
     if about == "fixed_point" and point is None:
-        expected(f"{where}.fixed_point", "three numbers [x, y, z] in m, in the axes of the body: it turns "
+        fail(f"{where}.fixed_point", "three numbers [x, y, z] in m, in the axes of the body: it turns "
                  "about a fixed point, the key is missing")  # fmt: skip
     inertia, center = properties.inertia, _ZERO
     if about == "fixed_point":
@@ -296,9 +294,9 @@ _PART = {
 
 def _parts(value: Any, where: str) -> list[Part]:
     if not isinstance(value, list) or not all(isinstance(item, Mapping) for item in value):
-        expected(where, "a list of parts, each written as [[body.part]]", value)
+        fail(where, "a list of parts, each written as [[body.part]]", value)
     if not 1 <= len(value) <= MOST_PARTS:
-        expected(where, f"1 to {MOST_PARTS} parts", len(value))
+        fail(where, f"1 to {MOST_PARTS} parts", len(value))
     return [_read_shape_table(item, f"{where}[{index}]", _PART)[0] for index, item in enumerate(value)]
 
 

@@ -1,4 +1,4 @@
-"""From a name or a path to the table of a scene file: which file, is it text, is it TOML."""
+"""Scene files: the file of a name or path, checked to be text and TOML, as a table."""
 
 import re
 from decimal import Decimal
@@ -28,9 +28,9 @@ def shipped_names() -> list[str]:
 
 
 def names_with_kernels() -> list[str]:
-    """Return those with one set of equations, which can be emitted and certified.
+    """Return the names of the scenes with a single set of equations, which can be emitted and certified.
 
-    A table of samples has none, and functions that jump or bend have one in each of their modes.
+    A scene with a table of samples has no such equations; functions with jumps or kinks have one set in each mode.
     """
     return [name for name in shipped_names() if all(map(_has_kernel, _torques(name)))]
 
@@ -75,7 +75,7 @@ def find_scene(source: str | Path) -> Path:
 
 
 def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
-    """Return the table of a TOML file, of a scene or whatever it holds; numbers with a point are Decimal, as written.
+    """Return the table of a TOML file, of a scene or of other content; numbers with a point are Decimal, as written.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
 
 
 def _longest_key(text: str) -> int:
-    """Return the number of parts of the longest dotted key; tomllib needs the square of that, in time and memory."""
+    """Return the number of parts of the longest dotted key: tomllib needs time and memory quadratic in it."""
     longest = run = 0
     for part in text.split("."):
         run = run + 1 if _KEY.fullmatch(part.strip(" \t")) else 1

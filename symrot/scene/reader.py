@@ -1,4 +1,4 @@
-"""Readers of one value of a scene, and of a table of them, with the place of it in every complaint.
+"""Readers of the values and tables of a scene; every error names the place of its value.
 
 A reader is a function ``(value, where) -> result`` that raises :class:`symrot.errors.InputError` with one sentence:
 file, key, expectation, value. ``where`` reads ``"tumbling.toml: body.mass"``. Standard library only.
@@ -12,39 +12,49 @@ from symrot.errors import InputError
 from symrot.formula.exact_numbers import read, show
 
 __all__ = [
-    "LARGEST", "Entry", "Reader", "choice", "expected", "flag", "nearest", "number", "read_table", "text",
-    "under", "vector",
+    "LARGEST",
+    "Entry",
+    "Reader",
+    "choice",
+    "fail",
+    "flag",
+    "key_path",
+    "nearest",
+    "number",
+    "read_table",
+    "text",
+    "vector",
 ]  # fmt: skip
 
 Reader = Callable[[Any, str], Any]
 
 LARGEST = Fraction(10) ** 100
-"""Largest magnitude of a quantity of a scene, and the inverse of the smallest: so that their products stay doubles."""
+"""Largest magnitude of a quantity of a scene, and the inverse of the smallest: so products are finite doubles."""
 
 
 class Entry(NamedTuple):
-    """One key of a table: its reader, whether it must be there, what it is when left out."""
+    """One key of a table: its reader, whether it is required, and its default value."""
 
     read: Reader
     required: bool = False
     default: Any = None
 
 
-def under(where: str, key: str) -> str:
+def key_path(where: str, key: str) -> str:
     """Return the place of a key in the table at ``where``: mass in ``"f.toml: body"`` is ``"f.toml: body.mass"``."""
     printable = str(key)[:80] if str(key).isprintable() else repr(key)[:80]
     return f"{where}{printable}" if where.endswith(": ") or not where else f"{where}.{printable}"
 
 
-def expected(where: str, expectation: str, value: object = ..., reason: str = "") -> NoReturn:
-    """Raise the InputError of one value: where, what was expected, what arrived, and why that is not it."""
+def fail(where: str, expectation: str, value: object = ..., reason: str = "") -> NoReturn:
+    """Raise the InputError for one value: its place, the expectation, the value, and the reason."""
     place = where.removesuffix(": ")
     got = "" if value is ... else f", got {show(value)}"
     raise InputError(f"{place}: expected {expectation}{got}" + (f" ({reason})" if reason else ""))
 
 
 def nearest(word: object, known: Iterable[str]) -> str:
-    """Return ``"did you mean 'x'?"`` for the known word nearest to a mistyped one, or nothing."""
+    """Return ``"did you mean 'x'?"`` for the known word nearest to a mistyped one, or an empty text."""
     from difflib import get_close_matches  # only on the way to an error
 
     matches = get_close_matches(str(word)[:80], list(known), 1, 0.5)
@@ -54,22 +64,22 @@ def nearest(word: object, known: Iterable[str]) -> str:
 def table(value: object, where: str, expectation: str = "a table") -> Mapping[str, Any]:
     """Return a value that is a table."""
     if not isinstance(value, Mapping):
-        expected(where, expectation, value)
+        fail(where, expectation, value)
     return value
 
 
 def read_table(value: object, where: str, entries: Mapping[str, Entry], what: str = "a table") -> dict[str, Any]:
-    """Return the values of a table by key: every key known, every required one there, defaults filled in."""
+    """Return the values of a table by key, with defaults; raise InputError for unknown or missing keys."""
     entries_by_key = table(value, where, f"{what} with the keys {', '.join(entries)}")
     for key in entries_by_key:
         if key not in entries:
             reason = ", ".join(filter(None, ("unknown key", nearest(key, entries))))
-            expected(under(where, key), f"one of the keys {', '.join(entries)} of {what}", entries_by_key[key], reason)
+            fail(key_path(where, key), f"one of the keys {', '.join(entries)} of {what}", entries_by_key[key], reason)
     for key, entry in entries.items():
         if entry.required and key not in entries_by_key:
-            expected(under(where, key), f"a value, the key is missing ({what} needs it)")
+            fail(key_path(where, key), f"a value, the key is missing ({what} needs it)")
     return {
-        key: entry.read(entries_by_key[key], under(where, key)) if key in entries_by_key else entry.default
+        key: entry.read(entries_by_key[key], key_path(where, key)) if key in entries_by_key else entry.default
         for key, entry in entries.items()
     }
 
@@ -85,9 +95,9 @@ def number(expectation: str = "a number", sign: str = "any") -> Reader:
     def reader(value: Any, where: str) -> Fraction:
         value_read = read(value, where, expected_number)
         if value_read and not 1 / LARGEST <= abs(value_read) <= LARGEST:
-            expected(where, f"{expectation} of a magnitude between 1e-100 and 1e100", value)
+            fail(where, f"{expectation} of a magnitude between 1e-100 and 1e100", value)
         if (sign == "positive" and value_read <= 0) or (sign == "nonnegative" and value_read < 0):
-            expected(where, expected_number, value)
+            fail(where, expected_number, value)
         return value_read
 
     return reader
@@ -100,10 +110,10 @@ def vector(unit: str, sign: str = "any") -> Reader:
 
     def reader(value: Any, where: str) -> tuple[Fraction, Fraction, Fraction]:
         if not isinstance(value, list | tuple) or len(value) != 3:
-            expected(where, expectation, value)
+            fail(where, expectation, value)
         x, y, z = (component(item, f"{where}[{index}]") for index, item in enumerate(value))
         if sign == "nonzero" and not (x or y or z):
-            expected(where, f"{expectation}, not all zero", value)
+            fail(where, f"{expectation}, not all zero", value)
         return x, y, z
 
     return reader
@@ -112,14 +122,14 @@ def vector(unit: str, sign: str = "any") -> Reader:
 def text(value: Any, where: str) -> str:
     """Read a line of text: at most 1000 characters, none of which could disturb a terminal."""
     if not isinstance(value, str) or len(value) > 1000 or not value.isprintable():
-        expected(where, "a line of text of at most 1000 characters", value)
+        fail(where, "a line of text of at most 1000 characters", value)
     return value
 
 
 def flag(value: Any, where: str) -> bool:
     """Read true or false."""
     if not isinstance(value, bool):
-        expected(where, "true or false", value)
+        fail(where, "true or false", value)
     return value
 
 
@@ -128,7 +138,7 @@ def choice(*options: str) -> Reader:
 
     def reader(value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in options:
-            expected(where, "one of " + ", ".join(f'"{option}"' for option in options), value, nearest(value, options))
+            fail(where, "one of " + ", ".join(f'"{option}"' for option in options), value, nearest(value, options))
         return value
 
     return reader

@@ -1,4 +1,4 @@
-"""A torque of a scene that is a table of samples: written in the scene, or in a CSV file beside it."""
+"""Torques given by samples: a table in the scene itself, or a CSV file in its folder."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, NoReturn
 from symrot.dynamics.torque_kinds import TABLE_KIND
 from symrot.errors import InputError
 from symrot.files.reading import read_input
-from symrot.scene.reader import Entry, choice, expected, number, read_table, text, vector
+from symrot.scene.reader import Entry, choice, fail, number, read_table, text, vector
 
 __all__ = ["COLUMNS", "LARGEST_FILE", "MOST_SAMPLES", "Table", "read_samples"]
 
@@ -26,9 +26,9 @@ _STEEPEST = 1e100
 
 
 class Table(NamedTuple):
-    """Samples of a torque: ``times`` (s, rising; twice the same at a switching time) and ``moments`` (N m).
+    """Samples of a torque: ``times`` (s, increasing, each switching time twice) and ``moments`` (N m).
 
-    Between switching times a cubic spline goes through the samples; outside of them the torque is not known.
+    Between switching times a cubic spline interpolates the samples; outside of the samples the torque is not defined.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Table(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """As of the torques that are formulas."""
+        """The kind, as for torques given by formulas."""
         return TABLE_KIND.kind
 
 
@@ -64,19 +64,19 @@ _moment = vector("N m")
 
 
 def _plain(value: Any) -> bool:
-    """Return whether a number is a double that needs no reading, as of many samples nearly all do not."""
+    """Return whether a number is a plain double that needs no further check, as most samples are."""
     return type(value) is float and (1e-99 < abs(value) < 1e99 or value == 0.0)
 
 
 def _times(value: Any, where: str) -> tuple[float, ...]:
     if not isinstance(value, list | tuple):
-        expected(where, "a list of times in s", value)
+        fail(where, "a list of times in s", value)
     return tuple(item if _plain(item) else float(_time(item, f"{where}[{index}]")) for index, item in enumerate(value))
 
 
 def _moments(value: Any, where: str) -> tuple[tuple[float, ...], ...]:
     if not isinstance(value, list | tuple):
-        expected(where, "a list of torques, each three numbers [x, y, z] in N m", value)
+        fail(where, "a list of torques, each three numbers [x, y, z] in N m", value)
     return tuple(
         tuple(item)
         if isinstance(item, list | tuple) and len(item) == 3 and all(map(_plain, item))
@@ -128,13 +128,13 @@ def read_samples(
     written = [key for key in ("t", "moment") if values[key] is not None]
     if (values["file"] is None) == (not written) or len(written) == 1:
         present = [key for key in ("t", "moment", "file") if values[key] is not None]
-        expected(where, f"t and moment, or file, got {' and '.join(present) or 'none of them'}")
+        fail(where, f"t and moment, or file, got {' and '.join(present) or 'none of them'}")
     if written:
         times, moments, place, rows = values["t"], values["moment"], f"{where}.t", 0
         if len(times) != len(moments):
-            expected(f"{where}.moment", f"one torque for each of the {len(times)} times, got {len(moments)}")
+            fail(f"{where}.moment", f"one torque for each of the {len(times)} times, got {len(moments)}")
         if len(times) > MOST_SAMPLES:
-            expected(place, f"at most {MOST_SAMPLES} samples", len(times))
+            fail(place, f"at most {MOST_SAMPLES} samples", len(times))
     else:
         place, rows = f"{where}.file: {values['file']}", 2
         times, moments = _read_file(_allowed_file(values["file"], folder, table_folders, f"{where}.file"), place)
@@ -143,59 +143,59 @@ def read_samples(
     twice = {after for before, after in pairwise(times) if after == before}
     for switch in values["switching_times"]:
         if switch not in twice:
-            expected(f"{where}.switching_times", "times that the samples have twice, before and after the jump, got "
+            fail(f"{where}.switching_times", "times that the samples have twice, before and after the jump, got "
                      f"{switch!r} s")  # fmt: skip
     first, last = map(float, span)
     if times[0] > first or times[-1] < last:
-        expected(place, f"samples that cover the span of the scene, {first!r} to {last!r} s, got {times[0]!r} to "
+        fail(place, f"samples that cover the span of the scene, {first!r} to {last!r} s, got {times[0]!r} to "
                  f"{times[-1]!r} s")  # fmt: skip
     return Table(times, moments, values["frame"], tuple(sorted(set(values["switching_times"]))))
 
 
 def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, rows: int) -> None:
-    """Check that times rise, twice the same at switching times alone, with two samples or more in every piece."""
+    """Check that times increase, that only switching times occur twice, and that each piece has two samples or more."""
     if len(times) < 2:
-        expected(place, f"two samples or more, got {len(times)}")
+        fail(place, f"two samples or more, got {len(times)}")
     length = 1
     for index, (before, after) in enumerate(pairwise(times), start=1):
         at = f"{place}, line {index + rows}" if rows else f"{place}[{index}]"
         if after < before:
-            expected(at, f"rising times, got {after!r} s after {before!r} s")
+            fail(at, f"rising times, got {after!r} s after {before!r} s")
         if after == before and after not in switching:
-            expected(at, "rising times, twice the same only where it is one of switching_times (the samples before and "
+            fail(at, "rising times, twice the same only where it is one of switching_times (the samples before and "
                      f"after the jump), got {after!r} s twice")  # fmt: skip
         if after == before and length < 2:
-            expected(at, f"two samples or more between switching times, got one at {after!r} s")
+            fail(at, f"two samples or more between switching times, got one at {after!r} s")
         length = 1 if after == before else length + 1
     if length < 2:
-        expected(place, f"two samples or more between switching times, got one at {times[-1]!r} s")
+        fail(place, f"two samples or more between switching times, got one at {times[-1]!r} s")
 
 
 def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ...], place: str) -> None:
-    """Check that the coefficients of a spline are doubles."""
+    """Check that the coefficients of a spline are finite doubles."""
     for (before, here), (after, there) in pairwise(zip(times, moments, strict=True)):
         gap, change = after - before, max(abs(y - x) for x, y in zip(here, there, strict=True))
         if gap and not (gap >= 1 / _STEEPEST and change <= gap * _STEEPEST):
-            expected(place, f"a torque that changes by at most {_STEEPEST:g} N m/s between samples at least "
+            fail(place, f"a torque that changes by at most {_STEEPEST:g} N m/s between samples at least "
                      f"{1 / _STEEPEST:g} s apart, got {change!r} N m within {gap!r} s after {before!r} s")  # fmt: skip
 
 
 def _allowed_file(file: str, folder: Path, table_folders: str | Path | Sequence[str | Path], where: str) -> Path:
-    """Return the file of samples that a scene names, links followed; refuse one outside the folders for it.
+    """Return the file of samples that a scene names, links resolved; raise InputError outside the allowed folders.
 
-    A scene may come from a stranger: it must not make symrot open, and quote, another file of the user.
+    A scene may come from an untrusted source: it must not make symrot open, and quote, another file of the user.
     """
     if isinstance(table_folders, str | Path):
         table_folders = (table_folders,)
     if not file.strip() or "\\" in file:
-        expected(where, "the name of a CSV file, with / between folders", file)
+        fail(where, "the name of a CSV file, with / between folders", file)
     try:
         path = (folder / file).resolve()
         inside = any(path.is_relative_to(Path(each).resolve()) for each in (folder, *table_folders))
     except (OSError, RuntimeError, ValueError) as reason:  # RuntimeError: links that lead in a circle
-        expected(where, f"the name of a CSV file, got {getattr(reason, 'strerror', None) or reason}")
+        fail(where, f"the name of a CSV file, got {getattr(reason, 'strerror', None) or reason}")
     if not inside:
-        expected(where, "a file in the folder of the scene or below it", file, "`--table-folder DIR`, in Python "
+        fail(where, "a file in the folder of the scene or below it", file, "`--table-folder DIR`, in Python "
                  "load_scene(.., table_folders=[DIR]), allows those of a folder elsewhere")  # fmt: skip
     return path
 
@@ -206,18 +206,18 @@ def _read_file(path: Path, place: str) -> tuple[tuple[float, ...], tuple[tuple[f
     try:
         content = read_input(path, LARGEST_FILE)
     except OSError as reason:
-        expected(place, f"{expectation}, at most {LARGEST_FILE // 1_000_000} MB, got {reason.strerror or reason}")
+        fail(place, f"{expectation}, at most {LARGEST_FILE // 1_000_000} MB, got {reason.strerror or reason}")
     try:
         lines = content.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError as reason:
-        expected(place, f"UTF-8 text, got another byte at position {reason.start}")
+        fail(place, f"UTF-8 text, got another byte at position {reason.start}")
     if not any(line.strip() for line in lines):
-        expected(place, f"{expectation}, got an empty file")
+        fail(place, f"{expectation}, got an empty file")
     if tuple(cell.strip() for cell in lines[0].split(",")) != COLUMNS:
-        expected(f"{place}, line 1", f"the columns {', '.join(COLUMNS)}, got another line")
+        fail(f"{place}, line 1", f"the columns {', '.join(COLUMNS)}, got another line")
     rows = [_row(line, f"{place}, line {index}") for index, line in enumerate(lines[1:], start=2) if line.strip()]
     if len(rows) > MOST_SAMPLES:
-        expected(place, f"at most {MOST_SAMPLES} samples, got {len(rows)}")
+        fail(place, f"at most {MOST_SAMPLES} samples, got {len(rows)}")
     return tuple(row[0] for row in rows), tuple((row[1], row[2], row[3]) for row in rows)
 
 

@@ -1,7 +1,7 @@
 """A scene: the problem as data. A TOML file (or a dict) in, exact numbers out; no SymPy.
 
-The format is the table :data:`TOP` and the readers it names. Everything that a scene says is checked here, and every
-complaint is one sentence with file, key, expectation and value (:class:`symrot.errors.InputError`).
+The format is the table :data:`TOP` with the readers that it names. Everything in a scene is checked here, and every
+error is one sentence with file, key, expectation and value (:class:`symrot.errors.InputError`).
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ from symrot.dynamics.torque_kinds import TABLE_KIND
 from symrot.scene.attitude import Vector, read_attitude, read_sequence, to_body
 from symrot.scene.body import Body, read_body
 from symrot.scene.file import SHIPPED, find_scene, read_toml, shipped_names
-from symrot.scene.reader import Entry, choice, expected, flag, number, read_table, table, text, vector
+from symrot.scene.reader import Entry, choice, fail, flag, number, read_table, table, text, vector
 from symrot.scene.samples import Table, read_samples
 from symrot.scene.torque import Torque, read_torque
 
@@ -162,7 +162,7 @@ class Scene:
 
     @property
     def torque_kinds(self) -> tuple[str, ...]:
-        """The kinds of all that acts: the formulas, then the table."""
+        """The kinds of all torques: first those given by formulas, then the table."""
         table = () if self.table is None else (self.table.kind,)
         return (*(torque.kind for torque in self.torques), *table)
 
@@ -247,7 +247,7 @@ def shipped_scenes() -> list[tuple[str, str, str]]:
 
 def _schema(value: Any, where: str) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or value != SCHEMA:
-        expected(where, f"{SCHEMA}, the format this symrot reads", value)
+        fail(where, f"{SCHEMA}, the format this symrot reads", value)
     return SCHEMA
 
 
@@ -258,7 +258,7 @@ def _read_initial(value: Any, where: str) -> Initial:
     if len(present) != 1:
         expectation = "exactly one of omega (body axes) and omega_space, three numbers in rad/s"
         both = {key: value[key] for key in present}
-        expected(f"{where}.omega", expectation if both else f"{expectation}, got neither", both or ...)
+        fail(f"{where}.omega", expectation if both else f"{expectation}, got neither", both or ...)
     attitude = values["attitude"] or read_attitude({"quaternion": [1, 0, 0, 0]}, where)
     omega_b = values["omega"] if present == ["omega"] else to_body(attitude.dcm, values["omega_space"])
     return Initial(omega_b, attitude.quaternion)
@@ -268,7 +268,7 @@ def _samples(value: Any, where: str) -> int:
     expectation = f"a whole number of samples from 2 to {MOST_SAMPLES}"
     count = number(expectation)(value, where)
     if count.denominator != 1 or not 2 <= count <= MOST_SAMPLES:
-        expected(where, expectation, value)
+        fail(where, expectation, value)
     return int(count)
 
 
@@ -277,12 +277,12 @@ _time = number("a time in s")
 
 def _times(value: Any, where: str) -> tuple[Fraction, Fraction]:
     if not isinstance(value, list | tuple) or len(value) != 2:
-        expected(where, "the first and the last time, [start, stop] in s", value)
+        fail(where, "the first and the last time, [start, stop] in s", value)
     start, stop = (_time(item, f"{where}[{index}]") for index, item in enumerate(value))
     if float(start) == float(stop):
-        expected(where, "a span of positive length, [start, stop] in s", value)
+        fail(where, "a span of positive length, [start, stop] in s", value)
     if start > stop:
-        expected(where, "start before stop", value, "a scene runs forward; in Python, a propagator takes times in any "
+        fail(where, "start before stop", value, "a scene runs forward; in Python, a propagator takes times in any "
                  "order")  # fmt: skip
     return start, stop
 
@@ -299,11 +299,11 @@ _quantity = choice(*QUANTITIES)
 
 def _quantities(value: Any, where: str) -> tuple[str, ...]:
     if not isinstance(value, list | tuple) or not value:
-        expected(where, f"a list of quantities among {', '.join(QUANTITIES)}", value)
+        fail(where, f"a list of quantities among {', '.join(QUANTITIES)}", value)
     names = tuple(_quantity(item, f"{where}[{index}]") for index, item in enumerate(value))
     for index, name in enumerate(names):
         if name in names[:index]:
-            expected(f"{where}[{index}]", "each quantity once", name)
+            fail(f"{where}[{index}]", "each quantity once", name)
     return names
 
 
@@ -314,10 +314,10 @@ def _read_output(value: Any, where: str) -> Output:
         "degrees": Entry(flag, default=False),
     }, "the output")  # fmt: skip
     if "euler" in values["quantities"] and values["sequence"] is None:
-        expected(f"{where}.sequence", 'an Euler sequence for the quantity euler, such as "ZXZ", the key is missing')
+        fail(f"{where}.sequence", 'an Euler sequence for the quantity euler, such as "ZXZ", the key is missing')
     for key in ("sequence", "degrees"):
         if "euler" not in values["quantities"] and key in value:
-            expected(f"{where}.{key}", "euler among the quantities, which alone uses it", value[key])
+            fail(f"{where}.{key}", "euler among the quantities, which alone uses it", value[key])
     return Output(values["quantities"], values["sequence"], values["degrees"])
 
 
@@ -327,7 +327,7 @@ def _read_tolerance(value: Any, where: str) -> Fraction:
     if not smallest <= tolerance <= largest:
         reason = "it is a relative error" if tolerance <= 0 else "a double carries no more digits"
         reason = "a motion with such errors means nothing" if tolerance > largest else reason
-        expected(where, "a tolerance from 1e-15 to 1e-2", value, reason)
+        fail(where, "a tolerance from 1e-15 to 1e-2", value, reason)
     return tolerance
 
 
@@ -359,13 +359,13 @@ def _read_torques(
     value: Any, body: Body, span: Span, folder: Path, where: str, table_folders: str | Path | Sequence[str | Path]
 ) -> tuple[tuple[Torque, ...], Table | None]:
     if not isinstance(value, list | tuple):
-        expected(where, "a list of torques, each written as [[torque]]", value)
+        fail(where, "a list of torques, each written as [[torque]]", value)
     if len(value) > MOST_TORQUES:
-        expected(where, f"at most {MOST_TORQUES} torques", len(value))
+        fail(where, f"at most {MOST_TORQUES} torques", len(value))
     word = TABLE_KIND.kind
     tables = [index for index, item in enumerate(value) if isinstance(item, Mapping) and item.get("kind") == word]
     if len(tables) > 1:
-        expected(f"{where}[{tables[1]}].kind", "at most one torque of kind table: add their samples up", word)
+        fail(f"{where}[{tables[1]}].kind", "at most one torque of kind table: add their samples up", word)
     formulas = [read_torque(value[i], body, f"{where}[{i}]") for i in range(len(value)) if i not in tables]
     times = span.start, span.stop
     samples = [read_samples(value[i], folder, f"{where}[{i}]", times, table_folders) for i in tables]

@@ -13,7 +13,7 @@ from symrot.formula.float_functions import FLOAT_FUNCTIONS
 from symrot.formula.switches import condition_error
 from symrot.scene.attitude import Vector, read_attitude
 from symrot.scene.body import Body
-from symrot.scene.reader import Entry, Reader, choice, expected, number, read_table, table, under, vector
+from symrot.scene.reader import Entry, Reader, choice, fail, key_path, number, read_table, table, vector
 
 __all__ = ["Torque", "Value", "read_torque"]
 
@@ -67,7 +67,7 @@ class Torque(NamedTuple):
         return value
 
     def constant(self, name: str, component: int | None) -> Fraction:
-        """Return a number by the name of its constant and, if that is a vector, its place in it."""
+        """Return a number by the name of its constant and, for a component of a vector, its index."""
         return self.number(name) if component is None else self.vector(name)[component]
 
     def with_constant(self, name: str, component: int | None, value: Fraction) -> "Torque":
@@ -112,14 +112,14 @@ def _formula(value: Any, where: str) -> str:
     if not isinstance(value, str):
         return str(read(value, where, 'a formula as text, such as "-k*omega_1", or a number'))
     if len(value) > LONGEST_FORMULA:
-        expected(where, f"a formula of at most {LONGEST_FORMULA} characters", value, f"it has {len(value)}")
+        fail(where, f"a formula of at most {LONGEST_FORMULA} characters", value, f"it has {len(value)}")
     node = expression.parse(value, where, switching=True)
     if _depth(node) > DEEPEST_FORMULA:
-        expected(where, f"a formula of at most {DEEPEST_FORMULA} levels", value, "put brackets around groups of terms")
+        fail(where, f"a formula of at most {DEEPEST_FORMULA} levels", value, "put brackets around groups of terms")
     if error := condition_error(node):
-        expected(where, error, value)
+        fail(where, error, value)
     if _divides_by_zero(node):
-        expected(where, "a formula with finite values", value, "it divides by zero")
+        fail(where, "a formula with finite values", value, "it divides by zero")
     return value.strip()
 
 
@@ -138,7 +138,7 @@ def _divides_by_zero(node: expression.Node) -> bool:
 
 def _formulas(value: Any, where: str) -> tuple[str, ...]:
     if not isinstance(value, list | tuple) or len(value) != 3:
-        expected(where, "three formulas, one for each component", value)
+        fail(where, "three formulas, one for each component", value)
     return tuple(_formula(item, f"{where}[{index}]") for index, item in enumerate(value))
 
 
@@ -148,7 +148,7 @@ _parameter = number("a number")
 def _parameters(value: Any, where: str) -> dict[str, Fraction]:
     entries = table(value, where, "a table of numbers by name, such as {k = 0.1}")
     if len(entries) > MOST_PARAMETERS:
-        expected(where, f"at most {MOST_PARAMETERS} parameters", len(entries))
+        fail(where, f"at most {MOST_PARAMETERS} parameters", len(entries))
     reserved = {*EXPRESSION_NAMES, *expression.FUNCTIONS, *expression.SWITCHING, *expression.LOGIC, "not", "pi"}
     for name in entries:
         if (
@@ -157,7 +157,7 @@ def _parameters(value: Any, where: str) -> dict[str, Fraction]:
             or len(name) > 40
             or name in reserved
         ):
-            expected(under(where, name), "a parameter named by letters, digits and underscores, and not as what a "
+            fail(key_path(where, name), "a parameter named by letters, digits and underscores, and not as what a "
                      f"formula knows already ({', '.join(sorted(reserved))})", name)  # fmt: skip
     return {name: _parameter(item, f"{where}.{name}") for name, item in entries.items()}
 
@@ -188,22 +188,22 @@ def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, An
     """Return weight, centre of mass and unit direction, from the body where the scene leaves them to it."""
     weight, acceleration, center = values["weight"], values["gravity"], values["center_of_mass"]
     if weight is not None and acceleration is not None:
-        expected(f"{where}.gravity", "weight or gravity, not both", acceleration)
+        fail(f"{where}.gravity", "weight or gravity, not both", acceleration)
     if weight is None and acceleration is None:
-        expected(f"{where}.weight", "the weight in N, or gravity in m/s^2 for a body with a mass, both are missing")
+        fail(f"{where}.weight", "the weight in N, or gravity in m/s^2 for a body with a mass, both are missing")
     if weight is None and body.mass is None:
-        expected(f"{where}.gravity", "the weight in N: the mass of the body is unknown", acceleration)
+        fail(f"{where}.gravity", "the weight in N: the mass of the body is unknown", acceleration)
     if center is not None and body.center_of_mass is not None and center != body.center_of_mass:
         known = [float(item) for item in body.center_of_mass]
-        expected(f"{where}.center_of_mass", f"no value, or that of the body, {show(known)} m from the fixed point",
+        fail(f"{where}.center_of_mass", f"no value, or that of the body, {show(known)} m from the fixed point",
                  [float(item) for item in center])  # fmt: skip
     if center is None:
         center = body.center_of_mass
     if center is None:
-        expected(f"{where}.center_of_mass", "three numbers [x, y, z] in m from the fixed point: the moments of the "
+        fail(f"{where}.center_of_mass", "three numbers [x, y, z] in m from the fixed point: the moments of the "
                  "body were typed, its centre of mass is unknown")  # fmt: skip
     if not any(center):
-        expected(where, "a fixed point away from the centre of mass, where alone the weight has a torque",
+        fail(where, "a fixed point away from the centre of mass, where alone the weight has a torque",
                  [float(item) for item in center])  # fmt: skip
     x, y, z = values["direction"]
     length = sqrt(x * x + y * y + z * z)
@@ -216,7 +216,7 @@ def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, An
 
 def _fit_damping(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
     if not any(values["linear"]) and not values["quadratic"]:
-        expected(where, "a damping with linear or quadratic > 0, got neither")
+        fail(where, "a damping with linear or quadratic > 0, got neither")
     return values
 
 
@@ -234,7 +234,7 @@ def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str,
                 from symrot.formula.advice import name_advice  # only on the way to an error
 
                 reason = ", ".join(filter(None, (f"'{name}' has no number in parameters", name_advice(name, known))))
-                expected(f"{where}.torque[{index}]", f"a formula in {allowed}", formula, reason)
+                fail(f"{where}.torque[{index}]", f"a formula in {allowed}", formula, reason)
             if name == "pi":
                 parameters["pi"] = PI
         _check_clips(node, {name: float(value) for name, value in parameters.items()} | {"pi": math.pi}, where, index)
@@ -255,7 +255,7 @@ def _check_clips(node: expression.Node, values: Mapping[str, float], where: str,
     except (KeyError, ArithmeticError, ValueError):  # a function that jumps; no value
         return
     if bounds[0] > bounds[1]:
-        expected(f"{where}.torque[{index}]", "clip(u, low, high) with low <= high", expression.text(node),
+        fail(f"{where}.torque[{index}]", "clip(u, low, high) with low <= high", expression.text(node),
                  f"low is {show(bounds[0])}, high is {show(bounds[1])}")  # fmt: skip
 
 
@@ -284,13 +284,13 @@ def read_torque(value: Any, body: Body, where: str) -> Torque:
     kinds = (*TORQUE_KINDS, TABLE_KIND.kind)
     entries = table(value, where, f"a table with a kind, one of {', '.join(kinds)}")
     if "kind" not in entries:
-        expected(f"{where}.kind", f"one of {', '.join(kinds)}, the key is missing")
+        fail(f"{where}.kind", f"one of {', '.join(kinds)}, the key is missing")
     name = choice(*kinds)(entries["kind"], f"{where}.kind")
     kind = TORQUE_KINDS[name]
     values = read_table(entries, where, _entries(kind), f"a torque of kind {name}")
     del values["kind"]
     if kind.about not in ("any", body.about):
-        expected(f"{where}.kind", _ABOUT_ADVICE[kind.about], name)
+        fail(f"{where}.kind", _ABOUT_ADVICE[kind.about], name)
     fit = _FITS.get(name)
     try:
         fields = fit(values, body, where) if fit else values

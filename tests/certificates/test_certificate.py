@@ -560,7 +560,7 @@ def test_a_rotation_that_recheck_draws_is_one():
     with localcontext(Context(prec=90)):
         names = [f"R_{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)]
         values = recheck.Names(recheck.Decimals())
-        recheck.draw_given(names, values)
+        recheck.draw_hypothesis(names, values)
         rows = [*map(values.get, names)]
         a, b, c = (rows[start : start + 3] for start in (0, 3, 6))
         products = [sum(x * y for x, y in zip(p, q, strict=True)) for p in (a, b, c) for q in (a, b, c)]

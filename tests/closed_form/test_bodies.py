@@ -13,7 +13,7 @@ from symrot.build.cache import compiler
 from symrot.closed_form import build as library
 from symrot.closed_form.arithmetic.pairs import quotient
 from symrot.closed_form.free_body import bodies
-from symrot.closed_form.free_body.motion import Body, Defect
+from symrot.closed_form.free_body.motion import Defect, FreeRigidBody
 from symrot.inertia.principal import principal_axes
 from symrot.propagation.propagate import propagator
 from tests.propagation.test_changed_start import SCENES
@@ -69,7 +69,7 @@ def rates():
 def of_fractions(columns, omega):
     """Return the same from the exact path of one motion."""
     xx, yy, zz, xy, xz, yz = map(Fraction, columns.tolist())
-    body = Body(principal_axes([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
+    body = FreeRigidBody(principal_axes([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
     integers, shared = body.along(omega.tolist())
     along = [part for x in integers for part in quotient(x, shared)]
     return body.moments, along, [*body.gaps, *body.defect(integers)], body.axes
@@ -127,7 +127,7 @@ def test_constants_that_all_share_are_fractions():
     for i in range(N):
         xx, yy, zz, xy, xz = shared
         yz = Fraction(float(varied[i]))
-        body = Body(principal_axes([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
+        body = FreeRigidBody(principal_axes([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
         assert body.moments == found.moments[i].tolist() and body.axes == found.axes[i].tolist()
 
 

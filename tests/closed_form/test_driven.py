@@ -234,7 +234,7 @@ def test_what_the_loops_do_not_know_is_done_in_integers(motion):
     rate, push, damping, times = motion
     found = axial.motion((2, 2, 2), 2, push, (0, 0, rate), damping=damping)
     raw = np.empty((len(times), 4))
-    assert found._loops(np.array(times), None, raw) == axial_compiled.LOST and np.isnan(raw).any()
+    assert found._loops(np.array(times), None, raw) == axial_compiled.TOO_MANY_TURNS and np.isnan(raw).any()
     assert worst([motion])[1] <= BAR
 
 

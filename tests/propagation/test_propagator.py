@@ -448,7 +448,7 @@ def test_what_has_no_taylor_series_is_refused():
 def test_the_closed_form_of_a_motion_is_looked_up_once(monkeypatch):
     asked = []
     first = registry.FORMS[0]
-    counted = first._replace(fits=lambda scene: asked.append(scene.name) or first.fits(scene))
+    counted = first._replace(applies=lambda scene: asked.append(scene.name) or first.applies(scene))
     monkeypatch.setattr(registry, "FORMS", (counted, *registry.FORMS[1:]))
     exact = propagator("tumbling_prism")
     exact()

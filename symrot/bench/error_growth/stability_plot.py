@@ -44,7 +44,7 @@ def figure(results: Any) -> Any:
     return page
 
 
-def _shown(values: Any) -> Any:
+def _plottable(values: Any) -> Any:
     return np.array([np.nan if value is None else max(value, FLOOR) for value in values])
 
 
@@ -72,9 +72,9 @@ def _curves(axes: Any, data: Any, what: str) -> None:
     linear, at = data["variable"] == "t", np.array(data["at"])
     for curve in data["curves"]:
         if what == "attitude":
-            values = _shown(curve["attitude"])
+            values = _plottable(curve["attitude"])
         else:
-            drifts = [_shown(v) for name, v in curve["invariants"].items() if name != "quaternion norm"]
+            drifts = [_plottable(v) for name, v in curve["invariants"].items() if name != "quaternion norm"]
             if not drifts:
                 continue
             values = np.max(drifts, axis=0)

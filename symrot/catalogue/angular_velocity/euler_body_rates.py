@@ -70,7 +70,7 @@ def _sequence(d: Derivation, sequence: str) -> None:
         f"The angles lock {_values(body)}.",
         body.det(),
         body.determinant,
-        because="there the three axes lie in one plane, and no rates give the angular velocity across it",
+        because="the three axes lie in one plane there, and no rates give an angular velocity across that plane",
         named=r"\det B_b",
     )
 

@@ -47,7 +47,7 @@ def _sequence(d: Derivation, sequence: str) -> None:
         f"{_latex(angle_cosine)}$ is the cosine between the first axis and the last.",
         (SCALE * eye(3) - gram).det(method="berkowitz"),
         (SCALE - 1) * (SCALE - 1 - angle_cosine) * (SCALE - 1 + angle_cosine),
-        because="the middle axis is at right angles to both others",
+        because="the middle axis is at right angles to the other two",
         named=r"\det \left( \lambda - B^{\mathsf T} B \right)",
     )
     adjugate = jacobian.adjugate(method="berkowitz")
@@ -55,7 +55,7 @@ def _sequence(d: Derivation, sequence: str) -> None:
         "The determinant times the inverse has no denominator, at any angle.",
         jacobian.determinant * jacobian.inverse,
         adjugate,
-        because="it is the matrix of cofactors",
+        because="the product is the matrix of cofactors",
         named=r"\det B \; B^{-1}",
         display=r"\mathrm{adj}\,B",
     )
@@ -76,7 +76,7 @@ def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) 
         f"At ${where}$ the attitude depends on ${_latex(point.combination)}$ alone.",
         silent[0] * outer[0] + silent[2] * outer[1],
         0,
-        because="the first and the last turn are about one line",
+        because="the first and the last rotation are about one line",
         named=rf"\left( \partial_\phi {'-' if silent[2] < 0 else '+'} \partial_\psi \right) R",
     )
     d.define("The direction across the axes of the turns there, in the body:", "n", lost)
@@ -84,7 +84,7 @@ def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) 
         "No rates turn the body about it; its length is 1.",
         Matrix([*(jacobian.T * lost), squared(lost)]),
         Matrix([0, 0, 0, 1]),
-        because="it is across all three axes of the turns",
+        because="this direction is perpendicular to all three axes of rotation",
         named=r"\begin{bmatrix} B^{\mathsf T} n \\ n \cdot n \end{bmatrix}",
     )
     strength = normal_form((adjugate.subs(at) * lost).dot(silent) / silent.dot(silent))
@@ -93,7 +93,7 @@ def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) 
         rf"s\,(n \cdot \omega)$ along the silent combination $s$, however the attitude is approached.",
         adjugate.subs(at),
         strength * silent * lost.T,
-        because="there the matrix of cofactors has rank one",
+        because="the matrix of cofactors has rank one there",
         named=r"\lim\, \det B\; B^{-1}",
         display=rf"{_sign(strength)}s\,n^{{\mathsf T}},\quad s = {_latex(silent)}",
     )

@@ -47,7 +47,7 @@ def derive() -> Derivation:
         "It is a rotation, not a reflection.",
         dcm_sb.det(),
         1,
-        because=r"its determinant is $|q|^6$",
+        because="the determinant of the matrix is $|q|^6$",
         relations=unit,
         named=r"\det R",
     )

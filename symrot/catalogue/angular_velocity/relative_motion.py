@@ -71,7 +71,7 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         "Its second part points to the axis through $P$, and is $|\\omega|^2$ times the distance from it.",
         OMEGA.cross(OMEGA.cross(D)),
         OMEGA * OMEGA.dot(D) - squared(OMEGA) * D,
-        because="of the double cross product",
+        because="the double cross product is expanded",
         named=r"\omega_b \times (\omega_b \times d)",
         display=r"\omega_b\,(\omega_b \cdot d) - |\omega_b|^2\,d",
     )
@@ -110,7 +110,7 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
         "The acceleration: that of the place, Coriolis' part, and the relative one.",
         dcm_sb.T * (rate(velocity, moving) - A),
         DOMEGA.cross(D) + OMEGA.cross(OMEGA.cross(D)) + 2 * OMEGA.cross(U) + W,
-        because="$u$ is turned by the body, and it changes the place: each gives $\\omega \\times u$ once",
+        because=r"the body rotates $u$, and $u$ changes the place in the body: each gives $\omega \times u$ once",
         relations=UNIT,
         named=r"R^{\mathsf T} (a_Q - a_P)",
         display=r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d) + 2\,\omega_b \times u + w",
@@ -119,7 +119,7 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
         "Coriolis' part does no work on the relative motion.",
         (2 * OMEGA.cross(U)).dot(U),
         0,
-        because="it is at right angles to the relative velocity",
+        because="the Coriolis term is at right angles to the relative velocity",
         named=r"(2\,\omega_b \times u) \cdot u",
     )
 
@@ -134,7 +134,7 @@ def _axis(d: Derivation) -> None:
         r"Its velocity is along $\omega$: every motion of a body is, at each moment, a screw (Chasles, Mozzi).",
         V + OMEGA.cross(center),
         OMEGA * OMEGA.dot(V) / squared(OMEGA),
-        because=r"$\omega \times (\omega \times v)$ takes away what is across $\omega$",
+        because=r"$\omega \times (\omega \times v)$ is $-|\omega|^2$ times the part of $v$ across $\omega$",
         named=r"v + \omega \times d_0",
         display=r"\frac{\omega \cdot v}{|\omega|^2}\,\omega",
     )
@@ -151,7 +151,7 @@ def _axis(d: Derivation) -> None:
         "Around it, velocities are as in a turn about a fixed axis.",
         (V + OMEGA.cross(D)).subs(plane),
         OMEGA.cross(D - center).subs(plane),
-        because="its own velocity is zero",
+        because="the velocity of this point is zero",
         named=r"v + \omega \times d",
         display=r"\omega \times (d - d_0)",
     )

@@ -15,7 +15,7 @@ ONE = eye(3)
 
 
 @dataclass(frozen=True)
-class Form:
+class ProjectionForm:
     """The formulas claimed for one set of parameters, each as an expression and as LaTeX for a reader."""
 
     title: str
@@ -26,10 +26,10 @@ class Form:
     inverse: tuple[Matrix, str]
 
 
-def _classical() -> Form:
+def _classical() -> ProjectionForm:
     p = Matrix(symbols.rodrigues)
     k, below = Matrix(skew(p)), 1 + squared(p)
-    return Form(
+    return ProjectionForm(
         "Classical: axis times the tangent of half the angle",
         "g",
         symbols.rodrigues_rates,
@@ -39,11 +39,11 @@ def _classical() -> Form:
     )
 
 
-def _modified() -> Form:
+def _modified() -> ProjectionForm:
     p = Matrix(symbols.mrp)
     k, square = Matrix(skew(p)), squared(p)
     below, inner = (1 + square) ** 2, (1 - square) * ONE + 2 * p * p.T
-    return Form(
+    return ProjectionForm(
         "Modified: axis times the tangent of a quarter of the angle",
         "s",
         symbols.mrp_rates,
@@ -80,14 +80,14 @@ def derive() -> Derivation:
         "The shadow set is the same attitude.",
         MODIFIED.dcm(shadow()),
         MODIFIED.dcm(),
-        because="it is the projection of the opposite quaternion",
+        because="the shadow set is the projection of $-q$",
         named=r"R\left(-s/|s|^2\right)",
         display="R(s)",
     )
     return d
 
 
-def _projection(d: Derivation, which: Projection, form: Form) -> None:
+def _projection(d: Derivation, which: Projection, form: ProjectionForm) -> None:
     dcm_sb, rates = which.dcm(), Matrix(form.rates)
     dcm_rate = rate(dcm_sb, pairs(which.parameters, form.rates))
     body, space = which.rate_matrix("body"), which.rate_matrix("space")
@@ -107,7 +107,7 @@ def _projection(d: Derivation, which: Projection, form: Form) -> None:
         named="R",
         display=form.dcm[1],
     )
-    d.step("It is a rotation.", dcm_sb * dcm_sb.T, ONE, because="it is that of a unit quaternion",
+    d.step("It is a rotation.", dcm_sb * dcm_sb.T, ONE, because="the matrix is that of a unit quaternion",
            named=r"R R^{\mathsf T}")  # fmt: skip
     d.step(
         "The angular velocity in the body, from the rate of the matrix.",
@@ -121,7 +121,7 @@ def _projection(d: Derivation, which: Projection, form: Form) -> None:
         "The same matrix, collected.",
         body.as_immutable(),
         form.omega[0],
-        because="its entries are quadratic at most",
+        because="the entries are polynomials of degree two at most",
         named="B_b",
         display=form.omega[1],
     )

@@ -73,6 +73,6 @@ def derive() -> Derivation:
            r"\left(1 + \tfrac12 [v]_\times + \frac{1 - \tfrac a2 \cot \tfrac a2}{a^2}[v]_\times^2\right)")  # fmt: skip
     d.step("It is singular at whole turns, $a = 2\\pi, 4\\pi, \\ldots$, and nowhere else.",
            body.det(method="berkowitz"), body.determinant,
-           because="there every axis gives the same attitude", named=r"\det B_b",
+           because="every axis gives the same attitude at whole turns", named=r"\det B_b",
            display=r"\left(\frac{\sin (a/2)}{a/2}\right)^2")  # fmt: skip
     return d

@@ -50,7 +50,7 @@ def _skewness(d: Derivation) -> None:
         r"In three dimensions a skew matrix is a vector $\omega$, and multiplying by it is the cross product.",
         skew(OMEGA_S) * U,
         OMEGA_S.cross(U),
-        because="it has $3 \\cdot 2 / 2 = 3$ entries",
+        because=r"a skew matrix has $3 \cdot 2 / 2 = 3$ independent entries",
         named=r"[\omega]_\times u",
         display=r"\omega \times u",
     )
@@ -58,7 +58,7 @@ def _skewness(d: Derivation) -> None:
         "The vector is read off the matrix.",
         vee(skew(OMEGA_S)),
         OMEGA_S,
-        because="of the places of the three entries",
+        because="the places of the three entries in the matrix are known",
         named=r"\mathrm{vee}\,[\omega]_\times",
         display=r"\omega",
     )
@@ -122,7 +122,7 @@ def _points(d: Derivation) -> None:
         "The velocity of a point of the body.",
         rate(dcm_sb * point, motion),
         (dcm_sb * OMEGA).cross(dcm_sb * point),
-        because="its components in the body are constant",
+        because="the components of the position in the body are constant",
         relations=unit,
         named=r"\frac{d}{dt}\,(R\,d)",
         display=r"\omega_s \times R\,d",

@@ -62,7 +62,7 @@ def _forward(d: Derivation) -> None:
         "Rodrigues' formula: in this plane the vector turns as in any plane.",
         turned,
         dcm_of_axis_angle() * V,
-        because=r"a turn by $\alpha$ takes $v_\perp$ to $\cos\alpha\;v_\perp + \sin\alpha\;n \times v$",
+        because=r"a rotation by $\alpha$ takes $v_\perp$ to $\cos\alpha\;v_\perp + \sin\alpha\;n \times v$",
         relations=UNIT,
         named=r"v_\parallel + \cos\alpha\;v_\perp + \sin\alpha\;n \times v",
         display=r"\left( 1 + \sin\alpha\,[n]_\times + (1 - \cos\alpha)\,[n]_\times^2 \right) v = R\,v",
@@ -80,7 +80,7 @@ def _forward(d: Derivation) -> None:
         "It is a rotation.",
         dcm_of_axis_angle().T * dcm_of_axis_angle(),
         eye(3),
-        because="lengths are kept along the axis and across it",
+        because="the lengths along the axis and across it do not change",
         relations=UNIT,
         named=r"R^{\mathsf T} R",
     )

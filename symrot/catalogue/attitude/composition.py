@@ -107,7 +107,7 @@ def _order(d: Derivation) -> None:
         "A quarter turn about $x$ and then one about $z$, or first about $z$.",
         Matrix.hstack(quarter_z * quarter_x, quarter_x * quarter_z),
         Matrix.hstack(*(dcm_of_axis_angle(Matrix([1, s, 1]) / sqrt(3), 2 * pi / 3) for s in (1, -1))),
-        because=r"both are a third of a turn, one about $(1, 1, 1)$, the other about $(1, -1, 1)$",
+        because="both products are rotations by a third of a turn, one about $(1, 1, 1)$, the other about $(1, -1, 1)$",
         named=r"\begin{bmatrix} R_z R_x & R_x R_z \end{bmatrix}_{\alpha = \pi/2}",
     )
     d.step(
@@ -124,7 +124,7 @@ def _order(d: Derivation) -> None:
         "So can two half turns about axes at right angles.",
         half_n * half_k - half_k * half_n,
         0,
-        because="then the two quaternions differ by their sign alone, and $q$ and $-q$ are one attitude",
+        because="the two products differ only in sign, and $q$ and $-q$ are one attitude",
         relations=[*AXES, N.dot(K)],
         named=r"R(n, \pi)\,R(k, \pi) - R(k, \pi)\,R(n, \pi)",
     )
@@ -183,7 +183,7 @@ def _frames(d: Derivation) -> None:
         "Turning about $z$ and then about the carried $x$ is turning about the fixed $x$ and then about the fixed $z$.",
         dcm_of_axis_angle(second_axis, symbols.theta) * intrinsic[0],
         intrinsic[0] * intrinsic[1],
-        because="of the first of these steps; an intrinsic sequence is the extrinsic one read backwards",
+        because="the first of these steps is put in; an intrinsic sequence is the extrinsic one read backwards",
         named=r"R(R_z(\phi)\,e_x, \theta)\,R_z(\phi)",
         display=r"R_z(\phi)\,R_x(\theta)",
     )

@@ -53,7 +53,7 @@ def _precession(d: Derivation) -> None:
         "It has unit norm.",
         squared(q),
         1,
-        because="each factor has",
+        because="each factor has unit norm",
         named="|q|^2",
     )
     tilt = dict(zip(Q, q, strict=True))
@@ -69,7 +69,8 @@ def _precession(d: Derivation) -> None:
         r"\mathrm{atan2}(q_2, q_1)$.",
         Matrix([Q[3] * cos(total) - Q[0] * sin(total), Q[2] * cos(difference) - Q[1] * sin(difference)]).subs(tilt),
         0,
-        because="of the first step, wherever the parameters are not both zero",
+        because="the parameters of the first step are put in; an angle is defined where its two parameters are not "
+        "both zero",
         named=r"\begin{bmatrix} q_3 \cos\frac{\phi+\psi}{2} - q_0 \sin\frac{\phi+\psi}{2} \\"
         r" q_2 \cos\frac{\phi-\psi}{2} - q_1 \sin\frac{\phi-\psi}{2} \end{bmatrix}",
     )
@@ -109,7 +110,7 @@ def _all(d: Derivation) -> None:
         "An extrinsic sequence is the intrinsic one read backwards, and so are its parameters.",
         quaternion_of_euler("zyx"),
         Matrix(quaternion_of_euler("XYZ")).subs({PHI: PSI, PSI: PHI}, simultaneous=True),
-        because="a turn about an axis of space is a factor on the left",
+        because="a rotation about an axis of space is a factor on the left",
         named=r"q_{\mathrm{zyx}}(\phi, \theta, \psi)",
         display=r"q_{\mathrm{XYZ}}(\psi, \theta, \phi)",
     )

@@ -113,7 +113,7 @@ def _count(d: Derivation) -> None:
     d.positive(
         "A rotation of the plane has one angle. In three dimensions there are three, as many as axes; in four, six.",
         freedom.subs(symbols.D, 3),
-        because="of the formula",
+        because="$D (D - 1) / 2 = 1, 3, 6$ for $D = 2, 3, 4$",
         named=r"\left. \frac{D (D - 1)}{2} \right|_{D=3}",
     )
 
@@ -143,7 +143,7 @@ def _angle(d: Derivation) -> None:
             "It is a rotation.",
             turn.T * turn,
             eye(3),
-            because="one axis stays, the plane across it turns",
+            because="one axis stays, and the plane across it rotates",
             named=rf"R_{name}^{{\mathsf T}} R_{name}",
         )
     cayley = _cayley()

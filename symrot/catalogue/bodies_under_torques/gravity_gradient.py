@@ -79,7 +79,7 @@ def derive() -> Derivation:
         r"Seen from the body, the radius turns with the orbit less the body; $k$ is the normal of the orbit.",
         rate(seen, attitude_rates() | {symbols.t: S.One}),
         seen.cross(OMEGA - n * dcm_sb.T * normal_s),
-        because=r"in space it turns about the normal at the rate $n$",
+        because="in space the radius rotates about the normal at the rate $n$",
         relations=[unit_relation()],
         named=r"\dot r",
         display=r"r \times (\omega - n\,k)",
@@ -111,7 +111,7 @@ def derive() -> Derivation:
         "So the energy in axes that turn with the orbit is kept (the Jacobi integral).",
         rate(kinetic + potential - n * K.dot(TENSOR * OMEGA), motion),
         0,
-        because="in those axes the tide is at rest",
+        because="the tide is at rest in the axes of the orbit",
         named=r"\frac{d}{dt} \left( \tfrac12\,\omega \cdot I\,\omega + \tfrac32 n^2\, r \cdot I\,r"
         r" - n\, k \cdot I\,\omega \right)",
     )

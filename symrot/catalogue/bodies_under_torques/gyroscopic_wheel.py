@@ -121,7 +121,7 @@ def _level(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix) -> Non
         "nodes.",
         (weight - torque.subs(level)).dot(line),
         W * ARM - C * SPIN * PRECESSION,
-        because="of the two moments",
+        because="the rate of the angular momentum is subtracted from the torque of the weight",
         named=r"\left( \tau_s - \dot L_s \right) \cdot e",
     )
 

@@ -32,7 +32,7 @@ def derive() -> Derivation:
         "Its rate in space, along the axes of the body.",
         dcm_sb.T * rate(dcm_sb * momentum_b, attitude_rates() | pairs(symbols.omega_b, domega)),
         TENSOR * domega + OMEGA.cross(momentum_b),
-        because=r"$h$ turns with the body",
+        because="$h$ rotates with the body",
         relations=[unit_relation()],
         named=r"R^{\mathsf T} \dot L_s",
         display=r"I\,\dot\omega_b + \omega_b \times (I\,\omega_b + h)",

@@ -186,7 +186,7 @@ def _steady(d: Derivation, potential: Expr) -> None:
         r"p_\psi$.",
         Matrix([fast + slow, fast * slow]),
         Matrix([P_PSI, W * ARM]) / (A * cos(THETA)),
-        because="of the coefficients (Vieta)",
+        because="the coefficients of the quadratic equation give both (Vieta)",
         named=r"\begin{bmatrix} n_+ + n_- \\ n_+\,n_- \end{bmatrix}",
     )
     d.step(

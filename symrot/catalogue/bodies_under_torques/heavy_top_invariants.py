@@ -32,7 +32,7 @@ def derive() -> Derivation:
         "The direction of gravity turns backwards in the body (Poisson's equation).",
         rate(Matrix(quaternion_to_dcm()).T * fixed, attitude_rates()),
         (Matrix(quaternion_to_dcm()).T * fixed).cross(OMEGA),
-        because=r"it is fixed in space, and $\dot R = R\,[\omega_b]_\times$",
+        because=r"the direction is fixed in space, and $\dot R = R\,[\omega_b]_\times$",
         relations=[unit_relation()],
         named=r"\dot\gamma",
         display=r"\gamma \times \omega",
@@ -60,7 +60,7 @@ def derive() -> Derivation:
         "The direction stays a unit vector.",
         rate(squared(DOWN), motion),
         0,
-        because="it only turns",
+        because="the rate of the direction is at right angles to it",
         named=r"\frac{d}{dt}\,|\gamma|^2",
     )
     d.section("The symmetric top")

@@ -126,7 +126,7 @@ def _willis(d: Derivation, contacts: Matrix) -> None:
         "All turning as one is a motion of the train.",
         contacts.subs(dict.fromkeys((*RATES, CARRIER), symbols.Omega), simultaneous=True),
         0,
-        because="then nothing moves relative to the carrier",
+        because="nothing moves relative to the carrier then",
         named=r"\begin{bmatrix} v_S - v_P \\ v_P - v_R \end{bmatrix}",
     )
 
@@ -153,6 +153,6 @@ def _torques(d: Derivation) -> None:
         "Their sum is zero: the train as a whole is in balance.",
         sun + balance[ring] + balance[carrier],
         0,
-        because="all turning as one is a motion of the train",
+        because="the rotation of the whole train as one body is a motion of the train",
         named=r"\tau_1 + \tau_2 + \tau_3",
     )

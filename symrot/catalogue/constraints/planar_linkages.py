@@ -117,7 +117,7 @@ def _four_bars(d: Derivation) -> None:
         "They fail where coupler and rocker are in line.",
         closure.jacobian([THETA, PSI]).det(),
         b * c * sin(THETA - PSI),
-        because="there the determinant of the equations is zero: the linkage may go on in two ways",
+        because="the determinant of the equations is zero there: the linkage may go on in two ways",
         named=r"\det \frac{\partial\,\text{closure}}{\partial (\theta, \psi)}",
     )
     coupler = _bar(c, PSI) + Matrix([ground, 0]) - _bar(a, PHI)
@@ -134,7 +134,7 @@ def _four_bars(d: Derivation) -> None:
         rate(freudenstein, {PHI: DPHI, PSI: DPSI}),
         2 * a * DPHI * (ground * sin(PHI) + c * sin(PHI - PSI))
         - 2 * c * DPSI * (ground * sin(PSI) + a * sin(PHI - PSI)),
-        because="of the chain rule",
+        because="the chain rule is applied",
         named=r"\frac{d}{dt} \left( |c\,e_\psi + h\,e_x - a\,e_\phi|^2 - b^2 \right)",
     )
     square = {b: ground, c: a, THETA: 0, PSI: PHI}

@@ -43,14 +43,14 @@ def _ball(d: Derivation) -> None:
         "With this velocity of the centre the point of contact is at rest.",
         velocity + OMEGA_S.cross(contact),
         0,
-        because=r"it is at $-R\,n$ from the centre",
+        because=r"the point of contact is at $-R\,n$ from the centre",
         named=r"v + \omega \times (-R\,n)",
     )
     d.step(
         "The top moves twice as fast.",
         velocity + OMEGA_S.cross(R * UP),
         2 * velocity,
-        because="it is twice as far from the point of contact",
+        because="the top is twice as far from the point of contact as the centre",
         named=r"v + \omega \times R\,n",
         display="2 v",
     )
@@ -66,7 +66,7 @@ def _ball(d: Derivation) -> None:
         "The force of contact does no work.",
         force.dot(velocity) + contact.cross(force).dot(OMEGA_S),
         0,
-        because="it acts on a point at rest",
+        because="the force acts on a point at rest",
         named=r"F \cdot v + (-R\,n \times F) \cdot \omega",
     )
 
@@ -89,7 +89,7 @@ def _wheel(d: Derivation) -> None:
         "Where it touches, it is at rest, but not without acceleration: that is towards the centre.",
         Matrix.hstack(velocity, rate(velocity, motion)).subs(THETA, 0),
         Matrix([[0, 0], [0, R * symbols.dtheta**2]]),
-        because=r"the centre goes straight on, and the point turns about it",
+        because="the centre moves on a straight line, and the point rotates about the centre",
         named=r"\left. \begin{bmatrix} \dot r & \ddot r \end{bmatrix} \right|_{\theta = 0}",
     )
 

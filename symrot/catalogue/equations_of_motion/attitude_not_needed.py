@@ -50,7 +50,7 @@ def derive() -> Derivation:
         "Its rate of change with the attitude is of the size of the torque itself.",
         squared(torque.jacobian([Q[1]]).subs(dict(zip(Q, (1, 0, 0, 0), strict=True)))),
         4 * (force[1] ** 2 + force[2] ** 2),
-        because="a small turn about axis 1 turns what lies across it",
+        because="a small rotation about axis 1 moves every vector that is not along axis 1",
         named=r"\left| \frac{\partial \tau_b}{\partial q_1} \right|^2_{q = 1}",
         display=r"4 \left( \tau_{s,2}^2 + \tau_{s,3}^2 \right)",
     )

@@ -38,7 +38,7 @@ def derive() -> Derivation:
         "The rate of angular momentum in space, with its components along the axes of the body.",
         dcm_sb.T * rate(dcm_sb * momentum_b, motion),
         moving,
-        because=r"the axes of the body turn with $\dot R = R\,[\omega_b]_\times$",
+        because=r"the axes of the body rotate with $\dot R = R\,[\omega_b]_\times$",
         relations=unit,
         named=r"R^{\mathsf T} \dot L_s",
         display=r"I\,\dot\omega_b + \omega_b \times I\,\omega_b",

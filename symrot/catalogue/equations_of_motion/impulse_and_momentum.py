@@ -64,7 +64,7 @@ def _place(d: Derivation, change: Matrix) -> None:
         "And positive: the place gives way to every blow.",
         J.dot(MOBILITY * J),
         squared(J) / M + PLACE.cross(J).dot(INERTIA.inv() * PLACE.cross(J)),
-        because="both parts are positive",
+        because="both terms are positive",
         named=r"J \cdot K J",
         display=r"\tfrac1m\,|J|^2 + (d \times J) \cdot I^{-1} (d \times J)",
     )
@@ -141,7 +141,7 @@ def _percussion(d: Derivation) -> None:
         "The two distances have a constant product: either point is the centre of percussion of the other.",
         -rest * h,
         symbols.C / M,
-        because="it is the square of the radius of gyration",
+        because="the product is the square of the radius of gyration",
         named=r"-x\,h",
     )
     rod = {symbols.C: M * symbols.L**2 / 12}

@@ -52,7 +52,7 @@ def _transposition(d: Derivation) -> None:
             f"{sequence}.",
             lagrange(MOMENTUM.dot(omega)),
             body.T * omega.cross(MOMENTUM),
-            because="the columns of $B$ are axes that turn with the body's own turns",
+            because="the columns of $B$ are axes that the rotations of the sequence carry along",
             named=r"E[\mu \cdot \omega]",
             display=r"B^{\mathsf T} \left( \omega \times \mu \right)",
         )

@@ -53,7 +53,7 @@ def derive() -> Derivation:
         "The axis keeps its direction in space.",
         rate(dcm_start * turning * axis, {theta: dtheta}),
         0,
-        because="it is the axis of the turn",
+        because="the body rotates about this axis",
         relations=[unit_relation()],
         named=r"\frac{d}{dt}\,R\,e_3",
     )

@@ -40,7 +40,7 @@ def _forces(d: Derivation) -> None:
         "A force at $r$ from a point that moves with $v$.",
         FORCE.dot(V + OMEGA.cross(POINT)),
         FORCE.dot(V) + POINT.cross(FORCE).dot(OMEGA),
-        because="a triple product may be turned round",
+        because="the factors of a triple product may be permuted cyclically",
         named=r"F \cdot (v + \omega \times r)",
         display=r"F \cdot v + (r \times F) \cdot \omega",
     )
@@ -118,7 +118,7 @@ def _kinds(d: Derivation) -> None:
         "A weight: its power is the loss of potential energy, so their sum is kept.",
         rate(-symbols.W * arm.dot(down), attitude_rates()),
         -(symbols.W * arm.cross(down)).dot(OMEGA),
-        because=r"the direction of gravity $\gamma$ turns backwards in the body, $\dot\gamma = \gamma \times \omega$",
+        because=r"the direction of gravity $\gamma$ rotates backwards in the body, $\dot\gamma = \gamma \times \omega$",
         relations=[unit_relation()],
         named=r"\dot V = -\frac{d}{dt}\,W\,c \cdot \gamma",
         display=r"-\left( W\,c \times \gamma \right) \cdot \omega",
@@ -129,7 +129,7 @@ def _kinds(d: Derivation) -> None:
         "A rotor that turns at a constant rate relative to the body: no power.",
         (-OMEGA.cross(rotor)).dot(OMEGA),
         0,
-        because="its torque on the body is at right angles to the angular velocity",
+        because="the torque of the rotor on the body is at right angles to the angular velocity",
         named=r"-(\omega \times h) \cdot \omega",
     )
     linear = diag(*symbols.damping)
@@ -137,6 +137,6 @@ def _kinds(d: Derivation) -> None:
         "Damping with positive coefficients takes energy at every motion.",
         (-linear * OMEGA).dot(OMEGA),
         -sum(b * w**2 for b, w in zip(symbols.damping, OMEGA, strict=True)),
-        because="it is a sum of squares with one sign",
+        because="the power is minus a sum of squares",
         named=r"\tau \cdot \omega = -b\,\omega \cdot \omega",
     )

@@ -55,7 +55,7 @@ def _pushed(d: Derivation) -> None:
         "The rate obeys the equation of motion.",
         C * STEADY.diff(T),
         PUSH,
-        because="it is linear in time",
+        because="the rate is linear in time",
         named=r"C\,\dot\omega_3(t)",
     )
     d.step(
@@ -107,7 +107,7 @@ def _braked(d: Derivation) -> None:
         "It is the rate of the angle.",
         angle.diff(T),
         speed,
-        because="of the same derivative",
+        because="the exponential is differentiated in the same way",
         named=r"\dot\theta(t)",
         display=r"\omega_3(t)",
     )
@@ -241,7 +241,7 @@ def _by_kummer(d: Derivation) -> None:
         r"$\beta = 0$. From any other start the attitude is a constant quaternion times this one.",
         rate(Matrix([first, second]), motion),
         HALF * Matrix([I * sweep * first - across * second, across * first - I * sweep * second]),
-        because="of Kummer's equation",
+        because="Kummer's equation gives $dN/dz$",
         relations=[imaginary()],
         named=r"\begin{bmatrix} \dot\alpha \\ \dot\beta \end{bmatrix}",
         display=r"\tfrac12 \begin{bmatrix} i \Omega\,\alpha - \omega_1\,\beta \\ \omega_1\,\alpha - i \Omega\,\beta "
@@ -293,7 +293,7 @@ def _far(d: Derivation) -> None:
         "it by the phase above, but for a small angle.",
         rate(n, motion),
         n.cross(Matrix([kappa, 0, x])),
-        because="a vector at rest in space turns backwards in the body",
+        because="a vector at rest in space rotates backwards in the body",
         relations=[r**2 - x**2 - kappa**2],
         named=r"\frac{dn}{dx}",
         display=r"n \times (\kappa, 0, x)",

@@ -133,7 +133,7 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         r"The attitude satisfies its equation, all nine entries: $R = R_3(\psi)\,P$, with both put in.",
         rate(rotation, _share(SPEED) | {PSI: H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2])}),
         rotation * skew(omega),
-        because="of the steps before",
+        because="the rates of the steps before are put in",
         relations=RELATIONS,
         named=r"\dot R",
         display=r"R\,[\omega]_\times",

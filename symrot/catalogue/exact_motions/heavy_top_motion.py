@@ -122,7 +122,7 @@ def _rates(d: Derivation) -> None:
         "Each alone has both.",
         dphi,
         (P_PHI + P_PSI) / (2 * A * (1 + u)) + (P_PHI - P_PSI) / (2 * A * (1 - u)),
-        because="half of the sum of the two",
+        because="half the sum of the two rates is taken",
         named=r"\dot\phi",
     )
 
@@ -204,7 +204,7 @@ def _theta(d: Derivation) -> None:
             r"$\mathrm{cn}_w^2$ and $\mathrm{dn}_w^2$ are these.",
             Matrix([1 - s2, 1 - PARAMETER * s2]),
             Matrix([c2, d2]),
-            because="of the two quadratic relations",
+            because="the two quadratic relations between sn, cn and dn give both",
             named=r"\begin{bmatrix} 1 - \mathrm{sn}_w^2 \\ 1 - \mu\,\mathrm{sn}_w^2 \end{bmatrix}",
         )
         d.step(

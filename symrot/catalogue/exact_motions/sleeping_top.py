@@ -36,7 +36,7 @@ def _through(d: Derivation) -> None:
         r"if $p_\phi = -p_\psi$.",
         Matrix([DIFFERENCE.subs(U2, 1), DIFFERENCE.subs(U3, 1), SUM.subs(U1, -1)]),
         0,
-        because="of the momenta in terms of the three zeros",
+        because="the momenta are written in terms of the three zeros",
         named=r"\begin{bmatrix} p_\phi - p_\psi |_{u_2 = 1} \\ p_\phi - p_\psi |_{u_3 = 1} \\ "
         r"p_\phi + p_\psi |_{u_1 = -1} \end{bmatrix}",
     )

@@ -64,7 +64,7 @@ def _functions(d: Derivation) -> None:
         r"So $\mathrm{dn}$ and $\mathrm{cn}$ are one function at $\mu = 1$, where they do not oscillate.",
         DN**2 - CN**2,
         (1 - MU) * SN**2,
-        because="of the two sums",
+        because="the two sums of squares are subtracted",
         relations=squares,
         named=r"\mathrm{dn}^2 - \mathrm{cn}^2",
     )
@@ -114,7 +114,7 @@ def _solution(d: Derivation) -> None:
         "So is the length of angular momentum.",
         squared(INERTIA * omega),
         A**2 * FIRST**2 + C**2 * THIRD**2,
-        because="of the same relations",
+        because="the same two relations are put in",
         relations=squares,
         named="L^2",
     )
@@ -136,7 +136,7 @@ def _constants(d: Derivation) -> None:
                 (twice * A - square) / (C * (A - C)),
             ]
         ),
-        because="two linear equations for the squares of the first and the third",
+        because="energy and angular momentum give two linear equations for the squares of the amplitudes",
         named=r"\begin{bmatrix} a_1^2 \\ a_2^2 \\ a_3^2 \end{bmatrix}",
         display=r"\begin{bmatrix} \frac{L^2 - 2 T C}{A (A - C)} \\ \frac{2 T A - L^2}{B (A - B)} \\ "
         r"\frac{2 T A - L^2}{C (A - C)} \end{bmatrix}",
@@ -205,7 +205,7 @@ def _attitude(d: Derivation) -> None:
         "The nutation swings unless two moments are equal.",
         rates[1],
         h * (1 / A - 1 / B) * sin(theta) * sin(psi) * cos(psi),
-        because="of the second row",
+        because="the second row of the rates is written out",
         named=r"\dot\theta",
     )
 

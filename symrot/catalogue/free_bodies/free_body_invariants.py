@@ -39,7 +39,7 @@ def derive() -> Derivation:
         "All three components of angular momentum in space are kept.",
         rate(Matrix(quaternion_to_dcm()) * momentum_b, motion),
         0,
-        because="there is no torque, and Euler's equations say so in turning axes",
+        because="there is no torque, and Euler's equations state this in rotating axes",
         relations=[unit_relation()],
         named=r"\frac{d}{dt}\,R\,I\,\omega_b",
     )
@@ -66,7 +66,7 @@ def derive() -> Derivation:
         "It is kept as well.",
         rate(squared(inertia * OMEGA) - c * doubled, along),
         0,
-        because="both parts are",
+        because="both of its terms are constant",
         named=r"\frac{d}{dt} \left( |L|^2 - 2 C E \right)",
     )
     d.section("The herpolhode")

@@ -73,7 +73,7 @@ def _rolling(d: Derivation) -> None:
         "slip.",
         OMEGA.cross(OMEGA),
         0,
-        because=r"it is on the axis of rotation",
+        because="the point is on the axis of rotation",
         named=r"\omega \times \omega",
     )
     axis = Matrix(symbols.axis)

@@ -26,7 +26,7 @@ def derive() -> Derivation:
         "The tensor is the same in all axes.",
         dcm_sb * inertia * dcm_sb.T,
         inertia,
-        because="it is a multiple of 1",
+        because="the tensor is a multiple of the unit matrix",
         relations=[unit_relation()],
         named=r"R\,I\,R^{\mathsf T}",
     )

@@ -77,7 +77,7 @@ def derive() -> Derivation:
         "So the symmetry axis turns about the fixed angular momentum, at the constant rate $|L|/A$.",
         OMEGA.cross(AXIS),
         (momentum / a).cross(AXIS),
-        because="the other part is along the axis and does not move it",
+        because=r"the other part of $\omega$ is along the axis and does not move it",
         named=r"\omega \times e_3",
         display=r"\frac{L}{A} \times e_3",
     )
@@ -92,7 +92,7 @@ def derive() -> Derivation:
         "Angular velocity, angular momentum and axis lie in one plane: the cones touch.",
         OMEGA.dot(momentum.cross(AXIS)),
         0,
-        because="the first is a combination of the other two",
+        because="the angular velocity is a linear combination of the other two",
         named=r"\omega \cdot (L \times e_3)",
     )
     d.step(
@@ -100,7 +100,8 @@ def derive() -> Derivation:
         "momentum to the axis.",
         squared(Matrix(momentum[:2])) / momentum[2] ** 2,
         (a / c) ** 2 * squared(Matrix(OMEGA[:2])) / symbols.omega_3**2,
-        because="the transverse part of $L$ is $A$ times that of $\\omega$, the axial part $C$ times",
+        because=r"the transverse part of $L$ is $A$ times the transverse part of $\omega$, the axial part is $C$ times "
+        "the axial part",
         named=r"\tan^2 \angle(L, e_3)",
         display=r"\left( \frac{A}{C} \right)^2 \tan^2 \angle(\omega, e_3)",
     )

@@ -72,7 +72,7 @@ def _sum(d: Derivation) -> None:
         "The tensor is symmetric.",
         tensor - tensor.T,
         0,
-        because=r"$r\,r^{\mathsf T}$ is",
+        because=r"$r\,r^{\mathsf T}$ is symmetric",
         named=r"I - I^{\mathsf T}",
     )
 
@@ -120,7 +120,7 @@ def _properties(d: Derivation) -> None:
         "No moment exceeds the sum of the other two.",
         tensor[0, 0] + tensor[1, 1] - tensor[2, 2],
         2 * sum(m * p[2] ** 2 for m, p in zip(MASSES, POINTS, strict=True)),
-        because="$x^2$ and $y^2$ are in one of them each and in the third both",
+        because="one of the two moments holds $x^2$, the other $y^2$, and the third moment holds both",
         named=r"I_{xx} + I_{yy} - I_{zz}",
     )
     d.step(
@@ -144,6 +144,6 @@ def _properties(d: Derivation) -> None:
         "Of bodies, it is a needle along axis 3 that meets the bound: its moment about itself is zero.",
         Matrix(inertia_of_point(symbols.m, Matrix([0, 0, symbols.z]))) * Matrix([0, 0, 1]),
         0,
-        because="all its particles are on the axis",
+        because="all particles of a needle are on the axis",
         named=r"I\,e_3\ \text{for}\ r = z\,e_3",
     )

@@ -69,7 +69,8 @@ def _sum(d: Derivation) -> None:
         "If a point of the body is fixed, all energy is of turning about it, with the tensor about that point.",
         HALF * symbols.m * squared(OMEGA.cross(ARM)) + HALF * OMEGA.dot(TENSOR * OMEGA),
         HALF * OMEGA.dot(Matrix(about_point(TENSOR, symbols.m, ARM)) * OMEGA),
-        because=r"the centre of mass, at $c$ from the fixed point, moves with $\omega \times c$; parallel axes",
+        because=r"the centre of mass, at $c$ from the fixed point, moves with $\omega \times c$, and the tensor is "
+        "moved by the theorem of parallel axes",
         named=r"\tfrac12\,m\,|\omega \times c|^2 + \tfrac12\,\omega \cdot I\,\omega",
         display=r"\tfrac12\,\omega \cdot I_O\,\omega",
     )

@@ -38,7 +38,7 @@ def derive() -> Derivation:
         r"The linear part is additive, so summed over the body it is the linear part at $\sum m\,r = 0$.",
         linear.subs(dict(zip(R, R + second, strict=True)), simultaneous=True),
         linear + linear.subs(dict(zip(R, second, strict=True)), simultaneous=True),
-        because="it is linear",
+        because="this part is linear in the positions",
         named="F(r + r')",
         display="F(r) + F(r')",
     )
@@ -60,14 +60,14 @@ def derive() -> Derivation:
         "The way back.",
         Matrix(about_center_of_mass(about_point(TENSOR, mass, D), mass, D)),
         TENSOR,
-        because="the same term is taken away",
+        because="the same term is subtracted",
         named=r"I_O - m \left( |d|^2\,\mathbf{1} - d\,d^{\mathsf T} \right)",
     )
     d.step(
         "No axis through the centre of mass has a parallel one with a smaller moment.",
         (Matrix(about_point(TENSOR, mass, D)) - TENSOR)[2, 2],
         mass * (symbols.d_x**2 + symbols.d_y**2),
-        because="what is added on the diagonal is the mass times the squared distance of the axes",
+        because="the term added on the diagonal is the mass times the squared distance of the axes",
         named=r"(I_O - I)_{zz}",
     )
     return d

@@ -132,7 +132,7 @@ def _tensor(d: Derivation, body: Solid, moments: Moments) -> None:
         "The tensor of inertia about the centre of mass.",
         about_origin - body.mass * (center.dot(center) * eye(3) - center * center.T),
         body.inertia,
-        because="moments are sums of two squares, products carry the minus sign; parallel axes",
+        because="moments sum two squares, products carry a minus sign, and the theorem of parallel axes is applied",
         named="I",
     )
 

@@ -38,7 +38,7 @@ def _vector(d: Derivation) -> None:
         "The second gives how far $b$ is from $a$.",
         coefficient({"b": {0: S.One}, "a": {0: -S.One}, "c": {0: 3 * V**2, 1: 2 * V**3}}, V, K),
         b - a - (2 * K - 1) * (2 * K - 3) * older,
-        because="of the first, for the last index but one",
+        because="the first equation gives $c_{k-2}$",
         relations=[indexed("c", K, -2) + (2 * K - 3) * older],
         named=r"[v^k] \left( b - a + v^2 (3 c + 2 v c') \right)",
     )
@@ -46,7 +46,7 @@ def _vector(d: Derivation) -> None:
         "The third gives the next $b$ from that distance. These are all coefficients, one after another.",
         coefficient({"b": {1: 2 * (1 - KAPPA**2 * V), 0: -(KAPPA**2)}, "c": {0: -(KAPPA**2)}}, V, K),
         2 * (K + 1) * indexed("b", K, 1) - KAPPA**2 * (2 * K + 1) * (b - a),
-        because="of the first",
+        because="the first equation gives $c_k$",
         relations=[c + (2 * K + 1) * a],
         named=r"[v^k] \left( 2 (1 - \kappa^2 v) b' - \kappa^2 (b + c) \right)",
     )
@@ -66,7 +66,7 @@ def _vector(d: Derivation) -> None:
                 (KAPPA**2 * first + X**2 * second) / R**2,
             ]
         ),
-        because="of the second equation",
+        because="the second equation gives $b - a$",
         relations=[second - first + (3 * third + 2 * slope / R**2) / R**4],
         named="m",
     )
@@ -248,7 +248,7 @@ def between(d: Derivation) -> None:
         r"The root $w$ of $1 + z^2$ is $(S + S_0)/(2 D)$, which is positive.",
         1 + z**2,
         root**2,
-        because=r"of $S^2 = \Omega^2 + W^2$ and $S_0^2 = \Omega_0^2 + W^2$",
+        because=r"$S^2 = \Omega^2 + W^2$ and $S_0^2 = \Omega_0^2 + W^2$",
         relations=squares,
         named="1 + z^2",
         display=r"\left( \frac{S + S_0}{2 D} \right)^2",
@@ -258,7 +258,7 @@ def between(d: Derivation) -> None:
         r"\Omega_0 S)/W^2$.",
         2 * across**2 * z * root,
         omega * there - start * speed,
-        because=r"of the double argument, and $\Omega / W$ and $S / W$ are hyperbolic sine and cosine of $Z$",
+        because=r"$\sinh 2x = 2 \sinh x \cosh x$, and $\Omega / W = \sinh Z$, $S / W = \cosh Z$",
         relations=squares,
         named=r"2\,W^2\,z\,w",
     )
@@ -267,7 +267,7 @@ def between(d: Derivation) -> None:
         "nothing cancels: both terms are positive.",
         together * z * root,
         (omega * speed - start * there) / 2,
-        because="of the same, and $t / (2 D) = z / s$",
+        because="the same two relations are put in, and $t / (2 D) = z / s$",
         relations=squares,
         named=r"E\,z\,w",
         display=r"\tfrac12 \left( \Omega S - \Omega_0 S_0 \right)",

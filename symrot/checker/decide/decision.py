@@ -381,7 +381,7 @@ def _multiple(argument: Expr) -> int:
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
         number, atom = term.as_coeff_Mul()
-        constant = atom is pi and cyclotomic.is_fine(int(number.q))
+        constant = atom is pi and cyclotomic.needs_cyclotomic_field(int(number.q))
         total += abs(int(number.p)) * int(number.q) if number.is_Rational and not constant else 1
     return total
 

@@ -1,1 +1,1 @@
-"""Pairs of doubles, in C and in Python, and what the closed forms share."""
+"""Arithmetic on pairs of doubles, in C and in Python, and the functions that all closed forms share."""

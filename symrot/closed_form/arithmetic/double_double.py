@@ -1,6 +1,6 @@
 """Arithmetic on arrays of pairs of doubles, ``high + low``, to about 2^-104, and the exponential in it.
 
-Every rounding counts: NumPy rounds each operation as written. Sums and products: Dekker, Numer. Math. 18 (1971) 224;
+The algorithms need every rounding as written, which NumPy does. Sums and products: Dekker, Numer. Math. 18 (1971) 224;
 Knuth, The Art of Computer Programming, vol. 2, section 4.2.2. The exponential: 2^(j/8) from a table times a series.
 """
 
@@ -21,7 +21,7 @@ Pair = tuple[Any, Any]
 """High and low, each an array or a float."""
 
 NEAR = 1 / 16
-"""The series of :func:`second` holds its digits up to here."""
+"""Largest argument for which the series of :func:`second` is accurate."""
 
 _SPLITTER = 134217729.0  # 2^27 + 1
 _PARTS = 8  # of an octave, in the table of the exponential

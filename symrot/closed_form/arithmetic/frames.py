@@ -37,7 +37,7 @@ def product(a: Sequence[Exact], b: Sequence[Exact]) -> tuple[Exact, Exact, Exact
 
 
 def to_axis(direction: Sequence[Fraction]) -> tuple[tuple[Fraction, ...], ...]:
-    """Return a rotation whose third column is the unit vector along ``direction``; no axis moves that need not."""
+    """Return a rotation whose third column is the unit vector along ``direction``; an axis along it is not moved."""
     third = unit(direction)
     if third[0] == third[1] == 0:
         sign = 1 if third[2] > 0 else -1

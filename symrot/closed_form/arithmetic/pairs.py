@@ -9,26 +9,36 @@ from symrot.errors import InputError
 from symrot.formula.exact_numbers import equal, show
 
 __all__ = [
-    "GRID", "LARGEST", "SMALLEST", "Number", "attitude", "common", "numbers", "on_grid", "pair", "quotient", "same",
-    "spread",
+    "GRID",
+    "LARGEST",
+    "SMALLEST",
+    "Number",
+    "attitude",
+    "flatten_pairs",
+    "numbers",
+    "on_grid",
+    "over_common_denominator",
+    "pair",
+    "quotient",
+    "same",
 ]  # fmt: skip
 
 Number = float | int | Fraction
 
 LARGEST = 1e205
-"""Of the numbers that give a motion, in their units: the constants made of them stay doubles."""
+"""Largest number that may define a motion, in its unit: so all constants of the motion are finite doubles."""
 
 SMALLEST = 1e-205
-"""Of the moments of inertia, kg m^2."""
+"""Smallest moment of inertia, kg m^2."""
 
 GRID = 2.0**-33
-"""Of the last bit of hi: what lo of an attitude is a multiple of."""
+"""Step of lo in the last bit of hi: lo of an attitude is rounded to a multiple of it."""
 
 _BITS = 600  # 2^600 and its inverse lie inside these bounds
 
 
 def quotient(numerator: int, denominator: int) -> tuple[float, float]:
-    """Return numerator/denominator as hi, lo. An integer division of Python's rounds correctly."""
+    """Return numerator/denominator as hi, lo. Python's division of integers rounds correctly."""
     hi = numerator / denominator
     top, bottom = hi.as_integer_ratio()
     rest = numerator * bottom - top * denominator
@@ -40,7 +50,7 @@ def pair(value: Number) -> tuple[float, float]:
     return (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
 
 
-def spread(values: Sequence[Number]) -> list[float]:
+def flatten_pairs(values: Sequence[Number]) -> list[float]:
     """Return hi, lo of each number in one list."""
     result: list[float] = []
     for value in values:
@@ -51,7 +61,7 @@ def spread(values: Sequence[Number]) -> list[float]:
 def attitude(values: Sequence[Number]) -> list[float]:
     """Return hi, lo of each component of a quaternion in one list, to 2^-86 of the component.
 
-    An attitude needs no more, and arithmetic in pairs of doubles finds the same numbers for many attitudes at once.
+    An attitude needs no more digits, and arithmetic on arrays of pairs gives the same numbers for many attitudes.
     """
     return on_grid([value.as_integer_ratio() for value in values])
 
@@ -73,7 +83,7 @@ def same(a: Number, b: Number) -> bool:
     return a == b or (not (isinstance(a, float) and isinstance(b, float)) and equal(Fraction(a), Fraction(b)))
 
 
-def common(values: Sequence[Number]) -> tuple[list[int], int]:
+def over_common_denominator(values: Sequence[Number]) -> tuple[list[int], int]:
     """Return integers and the denominator that they share."""
     ratios = [value.as_integer_ratio() for value in values]
     shared = ratios[0][1]
@@ -84,12 +94,12 @@ def common(values: Sequence[Number]) -> tuple[list[int], int]:
 
 
 def numbers(what: str, values: Sequence[Number], length: int, least: float = -LARGEST) -> list[Number]:
-    """Return numbers, each a float (NumPy's too), an int or a Fraction, as they are.
+    """Check numbers, each a float (also of NumPy), an int or a Fraction, and return them unchanged.
 
     Raises
     ------
     InputError
-        If there is another count of them, or one is no real number, beyond :data:`LARGEST`, or below ``least``.
+        If their number is not ``length``, or one is not a real number, beyond :data:`LARGEST`, or below ``least``.
     """
     entries = _listed(what, values, length)
     if (
@@ -112,7 +122,7 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
 
 
 def _moderate(value: Fraction, least: float) -> bool:
-    """Return whether a fraction surely lies within the bounds of :func:`numbers`, by its length in bits alone."""
+    """Return whether the length in bits proves that a fraction lies within the bounds of :func:`numbers`."""
     top, bottom = value.as_integer_ratio()
     size = top.bit_length() - bottom.bit_length()  # of the power of two next to it, or one more
     return size < _BITS and (least < 0 or (top > 0 and size > -_BITS))

@@ -1,10 +1,10 @@
-"""The angle turned about one axis under constant torque and linear damping, in turns, whole turns left out.
+"""The angle of rotation about one axis under constant torque and linear damping, in turns, without whole turns.
 
-Between ``t`` and the start lie ``rate t (exp(x) - 1)/x + push t^2 (exp(x) - 1 - x)/x^2`` turns, ``x = -decay t``; away
-from ``x = 0`` the same is ``(push/decay) t + (rate - push/decay) (1 - exp(x))/decay``. Doubles hold it to 1e-16 of the
-angle, which is enough for a small one alone. Others take pairs of doubles, to 1e-20 of a turn. A few at once, and
-angles of more than 1e10 turns, take integers of as many bits as the motion needs: a few of them are done before NumPy
-has begun. Pairs and integers end in the same double.
+At time t it is ``rate t (exp(x) - 1)/x + push t^2 (exp(x) - 1 - x)/x^2`` turns from the start, with ``x = -decay t``;
+away from ``x = 0`` the same is ``(push/decay) t + (rate - push/decay) (1 - exp(x))/decay``. Doubles compute it with a
+relative error of 1e-16, which is enough for small angles only. Larger angles take pairs of doubles, with an error of
+1e-20 of a turn. A few times at once, and angles of more than 1e10 turns, take integers with as many bits as the motion
+needs: for a few times these are faster than a call of NumPy. Pairs and integers round to the same double.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -19,16 +19,16 @@ from symrot.closed_form.build import Floats
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
 
-__all__ = ["FEW", "LARGE", "SMALL", "Turning", "fallen"]
+__all__ = ["FEW", "LARGE", "SMALL", "Turning", "exp_and_expm1"]
 
 FEW = 64
-"""So many times at once are a matter of integers."""
+"""Number of times up to which integers are used."""
 
 SMALL = 1 / 16
-"""Turns: up to here doubles suffice, to 2e-16 rad."""
+"""Largest angle, in turns, for which doubles suffice; their error is 2e-16 rad."""
 
 LARGE = 1e10
-"""Turns: from here on pairs of doubles would not do."""
+"""Angle, in turns, from which on pairs of doubles do not suffice."""
 
 _BLOCK = 4096  # times at once: what they need stays in the caches
 _BITS = 192  # behind the point of a turn, with 64 for the size of the time
@@ -38,7 +38,7 @@ _GUARD = 16  # bits for what they lose
 _TERMS = 20  # of the series of (exp(x) - 1 - x)/x^2 for |x| <= 1, whose next is 2^-70
 
 
-def fallen(high: Floats, low: Floats) -> tuple[Floats, Floats]:
+def exp_and_expm1(high: Floats, low: Floats) -> tuple[Floats, Floats]:
     """Return exp(x) and exp(x) - 1 of pairs, rounded to doubles."""
     grown = np.exp(high)
     return grown * (1.0 + low), np.expm1(high) + grown * low
@@ -64,13 +64,13 @@ class Turning:
     Parameters
     ----------
     share : Fraction
-        How many times the angle is meant.
+        The factor by which the angle is multiplied.
     rate : Fraction
         rad/s, at the start.
     push : Fraction
-        rad/s^2, of the constant torque.
+        Angular acceleration by the constant torque, rad/s^2.
     decay : Fraction
-        1/s, of the damping.
+        Decay rate by the damping, 1/s.
     """
 
     def __init__(self, share: Fraction, rate: Fraction, push: Fraction, decay: Fraction) -> None:
@@ -128,7 +128,7 @@ class Turning:
         return _less_whole_turns(dd.add(dd.multiply(dd.multiply(time, self._rate), first), pushed))
 
     def _far(self, t: Floats) -> Floats:
-        """Return the turns in pairs, by the steady part and what the transient leaves."""
+        """Return the turns in pairs, as the sum of the steady and the transient part."""
         time = t, np.zeros_like(t)
         high, low = dd.exponential(dd.multiply(time, self._decay))
         left = dd.multiply(dd.add((1.0, 0.0), (-high, -low)), self._rest)
@@ -138,7 +138,7 @@ class Turning:
         return np.array([self._exactly(time) for time in t.tolist()])
 
     def _integers(self, bits: int) -> tuple[int, int, int, int]:
-        """Return final and rest in turns, the decay and ln 2, with so many bits behind the point (ln 2: and guards)."""
+        """Return the final rate and the rest in turns, the decay and ln 2, as fixed-point integers of ``bits`` bits."""
         if bits not in self._scaled:
             from mpmath import mp
 
@@ -173,7 +173,7 @@ class Turning:
 
 
 def _exponential(x: int, bits: int, octave: int) -> int:
-    """Return exp(x), both of so many bits behind the point."""
+    """Return exp(x) in fixed point, with as many bits behind the point as x has."""
     if x < -bits << bits:
         return 0
     octaves, rest = divmod(x << _GUARD, octave)

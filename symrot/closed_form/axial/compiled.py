@@ -1,7 +1,7 @@
 """Rotation about one axis by compiled loops: :file:`axial_at.c`, with constants from exact integers.
 
-The angle of a driven body grows with the square of time: the phase at 1e15 s takes 212 bits of its constants. They are
-elementary, so that Python's integers give as many as it takes, at once; nothing of them is left to C.
+The angle of a driven body grows with the square of time: its phase at 1e15 s needs constants of 212 bits. The constants
+are quotients, so that Python's integers compute them with any number of bits and C receives them complete.
 """
 
 import ctypes
@@ -17,13 +17,13 @@ from symrot.closed_form.build import Floats
 from symrot.errors import CompilerError, InputError
 from symrot.formula import exact_numbers as number
 
-__all__ = ["EARLY", "LOST", "Constants", "Loops", "Ratio", "available", "functions", "parts"]
+__all__ = ["OUT_OF_RANGE", "TOO_MANY_TURNS", "Constants", "Loops", "Ratio", "available", "functions", "parts"]
 
 Ratio = tuple[int, int]
 """Numerator and positive denominator."""
 
-LOST, EARLY = 1, 2
-"""What the loops return where samples have more turns than they know, and where a time lies before the doubles."""
+TOO_MANY_TURNS, OUT_OF_RANGE = 1, 2
+"""Return values of the loops: a sample has too many turns, or the numbers at a time leave the range of doubles."""
 
 _LARGEST = 200  # 2^200 stands for what is larger: whatever it multiplies is more turns than the loops know
 _BITS = 260  # more than four doubles hold
@@ -36,7 +36,10 @@ _bound: dict[str, tuple[Any, Any]] = {}
 
 
 def parts(top: int, bottom: int, count: int) -> list[float]:
-    """Return top/bottom as so many doubles, each the rounded rest of those before it; of equal ratios the same."""
+    """Return top/bottom as the sum of ``count`` doubles, each the rounded remainder of the ones before.
+
+    Equal ratios give the same doubles.
+    """
     sign, top = (-1, -top) if top < 0 else (1, top)
     size = top.bit_length() - bottom.bit_length()
     shift, doubles = _BITS - size, []
@@ -54,16 +57,17 @@ def parts(top: int, bottom: int, count: int) -> list[float]:
 
 
 class Loops(NamedTuple):
-    """The constants of one motion, and the compiled loops that take them."""
+    """The constants of one motion, and the compiled loops that compute its samples."""
 
     evaluate: Any
     constants: Any
     place: int
 
     def __call__(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> int:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times, where an array is given; return how it went.
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times, where an array is given; return a status.
 
-        0; :data:`LOST`, with NaN in the rows that are not known; :data:`EARLY`, with nothing written.
+        The status is 0; or :data:`TOO_MANY_TURNS`, with NaN in the rows of these samples; or :data:`OUT_OF_RANGE`, with
+        nothing written.
         """
         status: int = self.evaluate(self.place, len(times), address(times), address(omega), address(quaternion))
         return status
@@ -95,7 +99,7 @@ def functions() -> tuple[Any, Any]:
 
 
 class Constants:
-    """The constants of a driven body; a call returns those of one start, as the record of axial.h.
+    """The constants of a driven body; a call returns the constants of one start as a record of axial.h.
 
     Parameters
     ----------
@@ -127,11 +131,14 @@ class Constants:
         self._turns: dict[bool, tuple[int, int, list[float]]] = {}
 
     def head(self, turned: bool) -> list[float]:
-        """Return what stands before the numbers of :meth:`moving`; ``turned``: the body turns across the axis too."""
+        """Return the first numbers of the record; ``turned`` if the body also rotates across the axis."""
         return [float(bool(self._decay)), 1.0, float(turned), *self._head]
 
     def moving(self, rate: Fraction | float, turned: bool) -> list[float]:
-        """Return `axial` of axial.h and the one `turning` that a motion needs, `half` or `lag`, for a rate, rad/s."""
+        """Return the numbers of the record `axial` of axial.h for a rate, rad/s, with the `turning` that it needs.
+
+        That is `half` for the attitude or `lag` for a rate across the axis.
+        """
         turn, bits, fixed = self._turns.get(turned) or self._turning(turned)
         top, bottom = rate.as_integer_ratio()
         if not self._decay:
@@ -149,7 +156,7 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, turned: bool) -> tuple[int, int, list[float]]:
-        """Return the share of the angle in turns to a radian, its bits behind the point, and what all starts share."""
+        """Return the factor of the angle in turns per radian, its bits behind the point, and the shared constants."""
         turn, bits = _HALF
         if turned:
             (a, over_a), (c, over_c) = self._moments
@@ -170,7 +177,7 @@ class Constants:
         rates : 3 Fractions
             Angular velocity at the start, rad/s.
         attitude : 2 lists of 4 floats
-            What cosine and sine of half the angle multiply.
+            The two quaternions that are multiplied by cosine and sine of half the angle.
         """
         evaluate, record = functions()
         one, other = rates[self.axis - 2], rates[self.axis - 1]
@@ -192,7 +199,7 @@ class Constants:
 
 
 def _turns_of(top: int, bottom: int) -> tuple[int, int]:
-    """Return so many times the turns in a radian, as an integer with bits behind its point."""
+    """Return top/bottom radians in turns, as (an integer, its number of bits behind the point)."""
     top, bottom = top * _PI_BOTTOM, 2 * bottom * _PI_TOP
     bits = max(0, _TURN_BITS + bottom.bit_length() - top.bit_length())
     return (top << bits) // bottom, bits

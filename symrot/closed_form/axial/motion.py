@@ -1,13 +1,13 @@
 """Rotation driven and damped about one axis, at any time, in closed form: C dw/dt = N - c w.
 
-About a principal axis that nothing else disturbs this is the whole motion. In a symmetric body that also turns across
-its axis, the transverse angular velocity follows by a turn through ``(C - A)/A`` of the angle about the axis, and
-decays by its own damping. Its attitude then takes parabolic cylinder functions, see
-:mod:`symrot.closed_form.spin_up.motion`; with damping it has no closed form here.
+For a rotation about one principal axis this is the whole motion. If a symmetric body also rotates across its axis, the
+transverse angular velocity rotates in the body by ``(C - A)/A`` times the angle about the axis, and decays by its own
+damping. The attitude then needs parabolic cylinder functions, see :mod:`symrot.closed_form.spin_up.motion`; with
+damping it has no closed form here.
 
-Angles are carried in turns, as pairs of doubles: errors of the attitude stay at a few 1e-16 however many turns have
-passed, with damping or without. C does it where there is a compiler (:file:`axial_at.c`), and hands back the samples
-of more than 1e10 turns of transient, or 1e30 in all; NumPy and Python's integers do those, and all without a compiler.
+Angles are represented in turns, as pairs of doubles: the error of the attitude stays at a few 1e-16 for any number of
+turns, with damping or without. With a compiler, C computes the samples (:file:`axial_at.c`), except those of more than
+1e10 turns of transient or 1e30 turns in all; NumPy and Python's integers compute these, and all without a compiler.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 from symrot.closed_form.arithmetic.double_double import two_product
 from symrot.closed_form.arithmetic.pairs import LARGEST, SMALLEST, Number, numbers, pair
 from symrot.closed_form.axial import compiled as axial_compiled
-from symrot.closed_form.axial.angle import Turning, fallen
+from symrot.closed_form.axial.angle import Turning, exp_and_expm1
 from symrot.closed_form.build import Floats, times_of
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
@@ -32,7 +32,7 @@ __all__ = ["AxialMotion", "Driven", "motion", "starts", "turned_about"]
 
 
 class AxialMotion:
-    """One motion. Times are counted from that of the initial state."""
+    """One motion. Times are counted from the initial state."""
 
     regime = "steady"  # see symrot.closed_form.motion.REGIMES: no series of its own
 
@@ -47,7 +47,7 @@ class AxialMotion:
 
     @property
     def has_attitude(self) -> bool:
-        """Whether the attitude is known in closed form: nothing turns across the axis."""
+        """Whether the attitude is known in closed form, since the body does not turn across the axis."""
         return not any(self._across)
 
     def evaluate(
@@ -58,8 +58,8 @@ class AxialMotion:
         Raises
         ------
         InputError
-            If a time is not finite, or the damped angular velocity at it is beyond all doubles, or the attitude is
-            asked for and :attr:`has_attitude` is false.
+            If a time is not finite, or the damped angular velocity at it exceeds all doubles, or the attitude is
+            requested although :attr:`has_attitude` is false.
         """
         if quaternion and not self.has_attitude:
             raise InputError(
@@ -74,9 +74,9 @@ class AxialMotion:
         rates = np.empty((len(times), 3)) if omega else None
         attitudes = np.empty((len(times), 4)) if quaternion else None
         status = self._loops(times, rates, attitudes)
-        if status == axial_compiled.EARLY:
+        if status == axial_compiled.OUT_OF_RANGE:
             self._refuse(times)
-        if status == axial_compiled.LOST:
+        if status == axial_compiled.TOO_MANY_TURNS:
             for values, way in ((rates, self._rates), (attitudes, self._quaternions)):
                 if values is not None and (lost := np.isnan(values).any(axis=1)).any():
                     values[lost] = way(times[lost])
@@ -89,7 +89,7 @@ class AxialMotion:
         )
 
     def _angle(self, t: Floats, share: Fraction) -> tuple[Floats, Floats]:
-        """Return sine and cosine of so many times the angle turned about the axis."""
+        """Return sine and cosine of a multiple of the angle about the axis."""
         turning = self._known.get(share)
         if turning is None:
             turning = self._known[share] = Turning(share, self._rate, self._push, self._decay)
@@ -115,7 +115,7 @@ class AxialMotion:
         if not high:
             return spin
         x, error = two_product(t, high)
-        left, lost = fallen(x, error + t * low)
+        left, lost = exp_and_expm1(x, error + t * low)
         spin = rate * left + push * (lost / high)
         early = x > 1.0
         if early.any():  # where rate and push would all but cancel
@@ -159,7 +159,7 @@ def motion(
     Raises
     ------
     InputError
-        If the body turns across the axis and is not symmetric about it, or a number is not of this domain.
+        If the body turns across the axis without being symmetric about it, or a number is outside its domain.
     """
     return Driven(inertia, axis, torque, damping, damping_across).motion(omega0, quaternion0)
 
@@ -167,13 +167,13 @@ def motion(
 def starts(
     inertia: Sequence[Number], axis: int, torque: Number, damping: Number = 0.0, damping_across: Number = 0.0
 ) -> Callable[[Initial], AxialMotion]:
-    """Return what gives the motion from an initial state; see :func:`motion`."""
+    """Return a function of the initial state that returns its motion; see :func:`motion`."""
     body = Driven(inertia, axis, torque, damping, damping_across)
     return lambda start: body.moving(start.omega_b, [float(x) for x in start.quaternion])
 
 
 class Driven:
-    """A driven body with what its motions share: the quotients of its constants, exact."""
+    """A driven body with the exact quotients of constants that all its motions share."""
 
     def __init__(
         self, inertia: Sequence[Number], axis: int, torque: Number, damping: Number, damping_across: Number
@@ -211,7 +211,7 @@ class Driven:
         return self.moving(rates, [float(x) for x in number.unit([Fraction(x) for x in components])])
 
     def moving(self, rates: Sequence[Number], attitude: list[float]) -> AxialMotion:
-        """Return the motion from an initial state that the body can have, with a unit quaternion."""
+        """Return the motion from an admissible initial state with a unit quaternion."""
         exact = [Fraction(x) for x in numbers("omega", rates, 3)]
         return AxialMotion(self, exact, (attitude, turned_about(self.axis, attitude)))
 

@@ -1,6 +1,7 @@
-"""What many free bodies are made of, in one call of C: each pair of doubles is that of exact fractions, or in doubt.
+"""The constants of many free bodies, computed in one call of C (:file:`bodies_at.c`).
 
-The functions of :file:`bodies_at.c`. Where their 248 bits leave a pair in doubt, fractions are to settle it.
+Each pair of doubles is the correctly rounded one, or marked as doubtful if 248 bits do not decide it; the caller
+then computes it with fractions.
 """
 
 from collections.abc import Sequence
@@ -48,7 +49,7 @@ def _functions() -> tuple[Any, Any, Any]:
 
 
 def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray[np.uint64]:
-    """Return moments, the largest 1/2 to 1 in their unit, and axes in units of 2^-248, as C reads them."""
+    """Return moments, scaled so that the largest is between 1/2 and 1, and axes, both in units of 2^-248 for C."""
     largest = max(moments)
     length = largest.numerator.bit_length() - largest.denominator.bit_length()  # the power of two, or one more
     if largest >= Fraction(2) ** length:
@@ -59,7 +60,7 @@ def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray
 
 
 def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floats, Doubtful]:
-    """Return rates along principal axes (n, 6), defects (n, 2), and which are in doubt, of a :func:`fixed_body`."""
+    """Return rates along principal axes (n, 6), defects (n, 2) and the doubtful rows of a :func:`fixed_body`."""
     n = len(omega)
     rates, exact, doubtful = np.empty((n, 6)), np.empty((n, 8)), np.empty(n, np.uint8)
     omega = np.ascontiguousarray(omega)
@@ -68,7 +69,7 @@ def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floa
 
 
 def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
-    """Return defects (n, 2) for principal moments (n, 3), and which are in doubt."""
+    """Return defects (n, 2) for principal moments (n, 3), and the doubtful rows."""
     n = len(omega)
     exact, doubtful = np.empty((n, 8)), np.empty(n, np.uint8)
     moments, omega = np.ascontiguousarray(moments), np.ascontiguousarray(omega)
@@ -77,7 +78,7 @@ def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
 
 
 class PrincipalBodies(NamedTuple):
-    """What symrot_free_body_prepare takes of each body; and which bodies are left to fractions."""
+    """The arguments of symrot_free_body_prepare for each body, and the bodies that need fractions."""
 
     moments: Floats  # (n, 6)
     rates: Floats  # (n, 6)
@@ -87,9 +88,9 @@ class PrincipalBodies(NamedTuple):
 
 
 def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodies | None:
-    """Return the principal bodies of tensors: xx, yy, zz, xy, xz and yz, kg m^2, of each or the same of all.
+    """Return the principal bodies of tensors from their xx, yy, zz, xy, xz and yz, kg m^2: arrays, or one for all.
 
-    None where a constant of all is so large or small that sums of doubles do not hold it.
+    Return None if a constant of all bodies is too large or small for a sum of doubles.
     """
     n, tensors, arrays = len(omega), _Tensors(terms=_TERMS), []
     for k, entry in enumerate(entries):
@@ -110,7 +111,7 @@ def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodie
 
 
 def _sum_of_doubles(value: Fraction) -> tuple[Floats, bool]:
-    """Return doubles whose sum a fraction is, and whether it is so exactly."""
+    """Return doubles whose sum is nearest to a fraction, and whether the sum is exact."""
     terms = np.zeros(_TERMS)
     for k in range(_TERMS):
         terms[k] = float(value)

@@ -14,12 +14,20 @@ from functools import cached_property
 from typing import Any
 
 from symrot.closed_form.arithmetic.frames import quaternion_of
-from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, attitude, common, numbers, quotient, spread
+from symrot.closed_form.arithmetic.pairs import (
+    SMALLEST,
+    Number,
+    attitude,
+    flatten_pairs,
+    numbers,
+    over_common_denominator,
+    quotient,
+)
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.inertia.principal import Principal, principal_axes
 from symrot.scene.scene import Initial
 
-__all__ = ["NEGLIGIBLE", "Body", "Defect", "gaps", "motion", "motion_of_tensor", "starts"]
+__all__ = ["NEGLIGIBLE", "Defect", "FreeRigidBody", "gaps", "motion", "motion_of_tensor", "starts"]
 
 NEGLIGIBLE = 200  # bits: what is smaller is taken for zero, as in number.equal
 
@@ -52,7 +60,7 @@ def motion(
     moments, rates = numbers("inertia", inertia, 3, SMALLEST), numbers("omega", omega0, 3)
     start = attitude(numbers("quaternion", quaternion0, 4))
     exact = None if all(isinstance(x, float) for x in (*moments, *rates)) else _differences(moments, rates)
-    return _prepared(spread(moments), spread(rates), start, exact, None)
+    return _prepared(flatten_pairs(moments), flatten_pairs(rates), start, exact, None)
 
 
 def motion_of_tensor(
@@ -65,42 +73,42 @@ def motion_of_tensor(
     The principal axes are found to 110 digits and turn into the constants of the motion before anything is rounded to a
     double. Arguments as :func:`motion`, but ``inertia`` is a symmetric 3x3 tensor (kg m^2).
     """
-    return Body(principal_axes([list(row) for row in inertia])).motion(omega0, quaternion0)
+    return FreeRigidBody(principal_axes([list(row) for row in inertia])).motion(omega0, quaternion0)
 
 
 def starts(principal: Principal) -> Callable[[Initial], ExactMotion]:
-    """Return what gives the motion of a body from an initial state; see :func:`motion_of_tensor`."""
-    body = Body(principal)
+    """Return a function of the initial state that returns the body's motion; see :func:`motion_of_tensor`."""
+    body = FreeRigidBody(principal)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
-class Body:
-    """A free body with what its motions share: moments, their differences, and axes where they are not principal."""
+class FreeRigidBody:
+    """A free body with the constants that its motions share: moments, their differences, and its principal axes."""
 
     def __init__(self, body: Principal) -> None:
-        integers, shared = common(body.moments)
-        self.moments, self.gaps, self.defect = spread(body.moments), gaps(integers, shared), Defect(integers)
+        integers, shared = over_common_denominator(body.moments)
+        self.moments, self.gaps, self.defect = flatten_pairs(body.moments), gaps(integers, shared), Defect(integers)
         entries = [x for row in body.axes for x in row]
-        self._axes, self._unit = common(entries)
+        self._axes, self._unit = over_common_denominator(entries)
         self._rates: tuple[Sequence[Number], list[float], list[float]] = (
             (),
             [],
             [],
         )  # the last, which the next may share
         self._attitude: tuple[Sequence[Number], list[float]] = (), []
-        self.axes = None if body.given_axes else spread([*entries, *quaternion_of(body.axes)])
+        self.axes = None if body.given_axes else flatten_pairs([*entries, *quaternion_of(body.axes)])
         self._principal = body
 
     @cached_property
     def fixed(self) -> Any:
-        """Moments and axes as C reads them to find many motions' angular velocity along the axes."""
+        """Moments and axes as C takes them to compute the angular velocities of many motions along the axes."""
         from symrot.closed_form.free_body.bodies import fixed_body
 
         return fixed_body(self._principal.moments, [x for row in self._principal.axes for x in row])
 
     def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
         """Return angular velocity along the principal axes, as integers over one denominator."""
-        rates, shared = common(omega0)
+        rates, shared = over_common_denominator(omega0)
         x, y, z = rates
         largest = max(abs(x), abs(y), abs(z))
         if self.axes is not None:
@@ -128,8 +136,8 @@ class Body:
 
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
     """Return I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid, scaled as free_body.c takes it, as hi, lo."""
-    integers, shared = common(moments)
-    return [*gaps(integers, shared), *Defect(integers)(common(omega)[0])]
+    integers, shared = over_common_denominator(moments)
+    return [*gaps(integers, shared), *Defect(integers)(over_common_denominator(omega)[0])]
 
 
 def gaps(i: list[int], shared: int) -> list[float]:

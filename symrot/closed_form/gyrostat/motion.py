@@ -7,7 +7,7 @@ Proof: ``derivations/symmetric_gyrostat.md``.
 
 from collections.abc import Callable, Sequence
 
-from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, attitude, numbers, same, spread
+from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, attitude, flatten_pairs, numbers, same
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.errors import InputError
 from symrot.scene.scene import Initial
@@ -41,13 +41,13 @@ def motion(
 
 
 def starts(inertia: Sequence[Number], rotor: Sequence[Number]) -> Callable[[Initial], ExactMotion]:
-    """Return what gives the motion from an initial state; see :func:`motion`."""
+    """Return a function of the initial state that returns its motion; see :func:`motion`."""
     body = Gyrostat(inertia, rotor)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
 class Gyrostat:
-    """A gyrostat with what its motions share."""
+    """A gyrostat with the constants that all its motions share."""
 
     def __init__(self, inertia: Sequence[Number], rotor: Sequence[Number]) -> None:
         self._inertia = moments = numbers("inertia", inertia, 3, SMALLEST)
@@ -61,12 +61,12 @@ class Gyrostat:
             )
         axis = fitting[0]
         self.named = [(axis + 1) % 3, (axis + 2) % 3, axis]
-        self.moments, self.rotor = spread([moments[axis - 2], moments[axis]]), spread([momentum[axis]])
+        self.moments, self.rotor = flatten_pairs([moments[axis - 2], moments[axis]]), flatten_pairs([momentum[axis]])
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
         """Return the motion from an initial state."""
         rates, start = numbers("omega", omega0, 3), attitude(numbers("quaternion", quaternion0, 4))
-        named = spread([rates[k] for k in self.named])
+        named = flatten_pairs([rates[k] for k in self.named])
         return prepared(
             "gyrostat",
             (self.moments, self.rotor, named, start, [*map(float, self.named), 0.0]),

@@ -1,8 +1,8 @@
 """The symmetric heavy top at any time, exactly: Lagrange's top, spherical and physical pendulums, spinning or not.
 
-Hanging, upright, through the vertical, started exactly there, near and on the separatrix of the sleeping top. Each
-sample costs the same however far it lies from the start and carries an error of a few 1e-16. The formulas are in
-:file:`heavy_top.c`.
+All starts are covered: hanging, upright, exactly vertical, passing through the vertical, near and on the separatrix of
+the sleeping top. Each sample takes the same time however far it is from the start, with an error of a few 1e-16. The
+formulas are in :file:`heavy_top.c`.
 
 Source: Klein & Sommerfeld, Theory of the Top, vol. 2, chapter 6; Whittaker, Analytical Dynamics, 4th ed., section 72.
 
@@ -13,7 +13,16 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 from symrot.closed_form.arithmetic.frames import product, quaternion_of, to_axis
-from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, attitude, common, numbers, on_grid, same, spread
+from symrot.closed_form.arithmetic.pairs import (
+    SMALLEST,
+    Number,
+    attitude,
+    flatten_pairs,
+    numbers,
+    on_grid,
+    over_common_denominator,
+    same,
+)
 from symrot.closed_form.free_body import motion as free_body
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.errors import InputError
@@ -49,7 +58,7 @@ def motion(
     quaternion0 : 4 numbers
         Attitude, body to space, scalar first; it is normalised.
     direction : 3 numbers
-        Of gravity, in space; any length but zero.
+        Direction of gravity in space; any length except zero.
 
     Raises
     ------
@@ -67,13 +76,16 @@ def motion(
 def starts(
     inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number] = _DOWN
 ) -> Callable[[Initial], ExactMotion]:
-    """Return what gives the motion from an initial state; what all starts share is found once. See :func:`motion`."""
+    """Return a function of the initial state that returns its motion; it computes shared constants once.
+
+    See :func:`motion`.
+    """
     top = Top(inertia, weight, center_of_mass, direction)
     return lambda start: top.motion(start.omega_b, start.quaternion)
 
 
 class Top:
-    """A heavy top with what its motions share: its moments, its pull, and its axes."""
+    """A heavy top with the constants that all its motions share: its moments, its pull, and its axes."""
 
     def __init__(
         self, inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number]
@@ -96,7 +108,7 @@ class Top:
             return
         axis = along[0]
         pull = Fraction(force) * Fraction(center[axis])
-        self.moments, self.pull = spread([moments[axis - 2], moments[axis]]), spread([abs(pull)])
+        self.moments, self.pull = flatten_pairs([moments[axis - 2], moments[axis]]), flatten_pairs([abs(pull)])
         self.frame = Frame(axis, [-Fraction(x) if pull > 0 else Fraction(x) for x in down])
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
@@ -108,7 +120,7 @@ class Top:
         named = [rates[k] for k in frame.named]
         return prepared(
             "heavy_top",
-            (self.moments, self.pull, spread(named), frame.start(attitude), frame.space, frame.axes),
+            (self.moments, self.pull, flatten_pairs(named), frame.start(attitude), frame.space, frame.axes),
             lambda: (
                 "a heavy top has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
                 f"not zero, got moments {[float(x) for x in self._inertia]}, omega {[float(x) for x in named]}"
@@ -117,14 +129,14 @@ class Top:
 
 
 class Frame:
-    """The axes of space and body that the formulas of a heavy top count from: the third ones up and along the axis.
+    """The axes of space and body in which the formulas of a heavy top hold: up and the symmetry axis are the third.
 
     Parameters
     ----------
     axis : 0, 1 or 2
-        Of the body.
+        The symmetry axis of the body.
     up : 3 Fractions
-        Against the pull of a weight in front of the fixed point, in space.
+        The direction in space opposite to the pull on a centre of mass at a positive distance from the fixed point.
     """
 
     def __init__(self, axis: int, up: Sequence[Fraction]) -> None:
@@ -133,23 +145,25 @@ class Frame:
         self.before, self.after = None, None  # what an attitude is multiplied by
         if up[0] or up[1] or up[2] < 0:  # turned so that the third axis points up
             turn = quaternion_of(to_axis(up))
-            self.space, self.before = spread(turn), (turn[0], -turn[1], -turn[2], -turn[3])
+            self.space, self.before = flatten_pairs(turn), (turn[0], -turn[1], -turn[2], -turn[3])
         if axis != 2:
             matrix = [[Fraction(int(self.named[k] == i)) for k in range(3)] for i in range(3)]
             self.after = quaternion_of(matrix)
-            self.axes = spread([*(x for row in matrix for x in row), *self.after])
-        self._before, self._after = (None if q is None else common(q) for q in (self.before, self.after))
+            self.axes = flatten_pairs([*(x for row in matrix for x in row), *self.after])
+        self._before, self._after = (
+            None if q is None else over_common_denominator(q) for q in (self.before, self.after)
+        )
 
     @property
     def plain(self) -> bool:
-        """Whether these axes are the given ones, so that no attitude need be turned."""
+        """Whether these axes are the given ones, so that no attitude has to be rotated."""
         return self._before is self._after is None
 
     def start(self, quaternion: Sequence[Number]) -> list[float]:
         """Return an attitude between these axes, as :func:`symrot.closed_form.arithmetic.pairs.attitude` has it."""
         if self.plain:
             return attitude(quaternion)
-        integers, shared = common(quaternion)
+        integers, shared = over_common_denominator(quaternion)
         if self._before is not None:
             integers, shared = list(product(self._before[0], integers)), shared * self._before[1]
         if self._after is not None:

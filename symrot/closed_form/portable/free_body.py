@@ -10,13 +10,13 @@ from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import DIGITS, TERMS, Phase, multiples, number, power_of_two, turned_by, vector
 from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, matrix_quaternion, product, unit
 
-__all__ = ["FreeBody"]
+__all__ = ["PortableFreeBody"]
 
 SWITCH = 0.7  # the modulus from which on the imaginary transforms are summed
 NEGLIGIBLE = mpf(10) ** -150  # of the largest component of omega
 
 
-class FreeBody:
+class PortableFreeBody:
     """One motion; arguments as ``symrot_free_body_prepare`` takes them, in lists of hi, lo."""
 
     def __init__(
@@ -209,7 +209,7 @@ class FreeBody:
         )
 
         def pair(weight: float, order: float) -> tuple[Floats, Floats]:
-            """Return nome**weight times cosh and sinh of order*v, never a product of something huge and tiny."""
+            """Return nome**weight times cosh and sinh of order*v, without overflow of a factor."""
             log = self.log_nome * weight if weight else 0.0
             up, down = np.exp(log + order * v), np.exp(log - order * v)
             return 0.5 * (up + down), (np.sinh(order * v) if log == 0.0 else 0.5 * (up - down))
@@ -243,7 +243,7 @@ def _rounded(x: Fraction) -> Any:
 def _canonical(
     moments: list[Any], w: list[Any], differences: list[Any], defect: Any
 ) -> tuple[list[int], list[int], int]:
-    """Return which axes e1, e2, e3 are, along or against them, and the sign of I3 - I2."""
+    """Return the numbers of the axes e1, e2, e3, their directions along them, and the sign of I3 - I2."""
     above = [differences[2] >= 0, differences[0] >= 0, differences[1] >= 0]  # I_i >= I_(i+1)
     largest = 0 if above[0] and not above[2] else 1 if above[1] else 2
     a, b = (largest + 1) % 3, (largest + 2) % 3

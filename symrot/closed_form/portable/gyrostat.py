@@ -7,10 +7,10 @@ from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import DIGITS, Phase, number, power_of_two, vector
 from symrot.closed_form.portable.quaternions import conjugate, mapping, matrix_quaternion, product, unit
 
-__all__ = ["Gyrostat"]
+__all__ = ["PortableGyrostat"]
 
 
-class Gyrostat:
+class PortableGyrostat:
     """One motion; arguments as ``symrot_gyrostat_prepare`` takes them, in lists of hi, lo."""
 
     regime = "steady"

@@ -1,6 +1,6 @@
 """A symmetric heavy top by mpmath and NumPy; the formulas are those of :file:`heavy_top.h`.
 
-With 120 digits, differences may cancel: the constants are found from the roots of the cubic as they stand.
+With 120 digits, differences may cancel, so that the constants follow directly from the roots of the cubic.
 """
 
 from typing import Any
@@ -12,7 +12,7 @@ from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import DIGITS, TERMS, Phase, multiples, number, power_of_two, vector
 from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, product, unit
 
-__all__ = ["HeavyTop"]
+__all__ = ["PortableHeavyTop"]
 
 SWITCH = 0.7  # the modulus from which on the imaginary transforms are summed
 EQUAL = (
@@ -21,7 +21,7 @@ EQUAL = (
 NOTHING = mpf(10) ** -31  # of alpha or beta
 
 
-class HeavyTop:
+class PortableHeavyTop:
     """One motion; arguments as ``symrot_heavy_top_prepare`` takes them, in lists of hi, lo."""
 
     def __init__(
@@ -184,7 +184,7 @@ class HeavyTop:
         across: Any,
         spin: Any,
     ) -> None:
-        """Find what multiplies the series: from the initial value, or where that is small, from its rate."""
+        """Compute the factors of the series from the initial values or, where these are small, from their rates."""
         alpha, beta = start
         initial_rates = [
             mpc(0, spin / 2) * alpha - beta * mp.conj(across) / 2,
@@ -237,7 +237,7 @@ class HeavyTop:
             quaternion[:] = np.stack([a.real, a.imag, b.real, b.imag], axis=1) @ self.attitude.T
 
     def _values(self, t: Floats) -> tuple[Any, Any, Floats]:
-        """Return alpha and beta but for the turning and a common factor, their rates, and the phase in half turns."""
+        """Return alpha and beta without their phase factors and norm, their rates, and the phase in half turns."""
         none = np.zeros_like(t)
         if self.regime == "steady":
             a, b = (np.full(t.shape, x, dtype=complex) for x in self.steady)
@@ -253,7 +253,7 @@ class HeavyTop:
         whole, flip, v = self.axial.argument_once(t) if separatrix else self.axial.argument(t, self.stretch)
 
         def term(weight: int, order: int) -> tuple[Any, ...]:
-            """Return nome**weight times cosh and sinh of order*v, never a product of something huge and tiny."""
+            """Return nome**weight times cosh and sinh of order*v, without overflow of a factor."""
             log = self.log_nome * weight if weight else 0.0
             up, down = np.exp(log + order * v), np.exp(log - order * v)
             c, s = 0.5 * flip * (up + down), flip * (np.sinh(order * v) if log == 0.0 else 0.5 * (up - down))

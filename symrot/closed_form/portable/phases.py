@@ -21,7 +21,7 @@ def number(high: float, low: float) -> Any:
 
 
 def vector(pairs: list[float]) -> list[Any]:
-    """Return the numbers of a list that holds hi, lo of each."""
+    """Return the numbers of a list of pairs hi, lo."""
     return [number(high, low) for high, low in zip(pairs[::2], pairs[1::2], strict=True)]
 
 
@@ -31,7 +31,7 @@ def power_of_two(value: Any) -> Any:
 
 
 class Phase(NamedTuple):
-    """A phase that grows evenly with time, in turns: rate and start, each as hi, lo."""
+    """A phase that grows linearly with time, in turns: rate and start, each as hi, lo."""
 
     rate: tuple[float, float]
     start: tuple[float, float]
@@ -44,7 +44,7 @@ class Phase(NamedTuple):
         return cls((high[0], float(rate - high[0])), (high[1], float(start - high[1])))
 
     def rest(self, t: Floats, parts: int, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
-        """Return the phase less whole parts of a turn, and how many parts were taken off, but for whole turns."""
+        """Return the phase without whole parts of a turn, and the number of these parts, up to whole turns."""
         product, error = two_product(t, self.rate[0])
         small = error + t * self.rate[1]
         small = (small - np.rint(small)) + self.start[1] + more
@@ -53,7 +53,7 @@ class Phase(NamedTuple):
         return (high - steps / parts) + (low + small), steps
 
     def whole(self, t: Floats) -> Floats:
-        """Return the phase itself, of what is not periodic."""
+        """Return the phase itself, for functions that are not periodic."""
         product, error = two_product(t, self.rate[0])
         high, low = two_sum(product, self.start[0])
         phase: Floats = high + (low + (error + t * self.rate[1] + self.start[1]))
@@ -76,7 +76,7 @@ class Phase(NamedTuple):
         return whole, flip, np.clip(stretch * whole, -LARGEST, LARGEST)
 
     def argument_once(self, t: Floats) -> tuple[Floats, Floats, Floats]:
-        """The same of what never repeats."""
+        """Return the same as :meth:`argument` for a phase that is not periodic."""
         return np.zeros_like(t), np.ones_like(t), np.clip(self.whole(t), -LARGEST, LARGEST)
 
 

@@ -48,7 +48,7 @@ def matrix_quaternion(r: Sequence[Sequence[Any]]) -> list[Any]:
 
 
 class Axes:
-    """From the axes of a motion to those in which it is returned: v_given = matrix*v, from 26 numbers or None."""
+    """The rotation from the axes of a motion to the given axes, v_given = matrix*v, from 26 numbers or None."""
 
     def __init__(self, axes: list[float] | None) -> None:
         values = vector(axes) if axes else [mpf(int(i % 4 == 0)) for i in range(9)] + UNIT

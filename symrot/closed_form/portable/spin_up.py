@@ -13,7 +13,7 @@ from symrot.closed_form.spin_up.resonance import PIECES
 from symrot.closed_form.spin_up.series import DEGREE
 from symrot.formula import exact_numbers as number
 
-__all__ = ["SpinUp"]
+__all__ = ["PortableSpinUp"]
 
 _QUARTER = pair(1 / (4 * number.PI))
 _TERMS = 10  # of atanh, for arguments to 1/60
@@ -50,7 +50,7 @@ def _atanh_ratio(x: dd.Pair) -> dd.Pair:
 
 
 def _asinh_ratio(z: dd.Pair, root: dd.Pair) -> dd.Pair:
-    """Return asinh(z)/z: half the argument as often as it takes."""
+    """Return asinh(z)/z; the argument is halved until the series converges."""
     size = (np.abs(z[0]), np.where(z[0] < 0.0, -z[1], z[1]))
     small, above, times = size, dd.add(root, (1.0, 0.0)), np.ones_like(z[0])
     while (large := small[0] > _SMALL).any():
@@ -70,8 +70,8 @@ def _circle(turns: dd.Pair) -> tuple[Floats, Floats]:
     return np.sin(2.0 * np.pi * whole), np.cos(2.0 * np.pi * whole)
 
 
-class SpinUp:
-    """One motion, from its constants, which integers find, and the table near resonance, if it is needed."""
+class PortableSpinUp:
+    """One motion, from its constants, which are computed in integers, and the table near resonance if needed."""
 
     def __init__(self, constants: Sequence[float], table: Floats | None) -> None:
         values = iter(constants)
@@ -115,7 +115,7 @@ class SpinUp:
                 quaternion[chosen] = np.stack([a.real, b.real, b.imag, a.imag], axis=1) @ mapping.T
 
     def _far(self, side: Any, t: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
-        """Return q0 + i q3 and q1 + i q2 of the turning axes, from where a side is counted."""
+        """Return q0 + i q3 and q1 + i q2 of the rotating axes, from the origin of a side of resonance."""
         time, start, delta, _ = side
         square = dd.multiply(self._across, self._across)
         here, there = (dd.add(dd.multiply(x, x), square) for x in (omega, start))
@@ -151,7 +151,7 @@ class SpinUp:
         )
 
     def _close(self, _: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
-        """The same near resonance, from x = 0, by Taylor's polynomials."""
+        """Return the same near resonance, from x = 0, by Taylor polynomials."""
         assert self._table is not None
         sign = np.where(omega[0] < 0.0, -1.0, 1.0)
         high, low = dd.multiply((sign * omega[0], sign * omega[1]), self._inverse)

@@ -32,7 +32,7 @@ _bound: list[_Functions] = []
 
 
 def limits() -> tuple[float, float, float]:
-    """Return what the third argument of ``symrot_spin_up_prepare`` holds."""
+    """Return the numbers of the third argument of ``symrot_spin_up_prepare``."""
     return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
 
@@ -42,7 +42,7 @@ def available() -> bool:
 
 
 def functions() -> _Functions:
-    """Return the compiled functions, and the types of what they take.
+    """Return the compiled functions, with the types of their arguments.
 
     Raises
     ------
@@ -64,13 +64,13 @@ def functions() -> _Functions:
 class Compiled:
     """The constants of one motion, found by C, and its loops over samples.
 
-    ``longest`` is the time, s, from which on pairs of doubles may not count the turns.
+    ``longest`` is the time, s, beyond which pairs of doubles may be too short for the number of turns.
 
     Parameters
     ----------
     axis : 0, 1 or 2
     numbers : 20 floats
-        What ``symrot_spin_up_prepare`` takes.
+        The numbers that ``symrot_spin_up_prepare`` takes.
 
     Raises
     ------
@@ -85,7 +85,7 @@ class Compiled:
         self.longest: float = constants[1] / constants[0]
 
     def _prepared(self, table: Floats | None) -> tuple[Any, int, Floats | None]:
-        """Return the constants, where they are, and the table, which is filled if there is one."""
+        """Return the record of constants, its address, and the table, which is filled if there is one."""
         bound = functions()
         constants = bound.record()
         place = ctypes.addressof(constants)
@@ -94,7 +94,7 @@ class Compiled:
         return constants, place, table
 
     def fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> bool:
-        """Write samples where an array is given; return whether some are beyond :attr:`longest`, which are wrong."""
+        """Write samples where an array is given; return whether some are beyond :attr:`longest` and so not valid."""
         samples = len(times), address(times), address(omega), address(quaternion)
         _, place, table = self._known
         status: int = self._evaluate(place, address(table), *samples)

@@ -1,8 +1,8 @@
-"""A symmetric body under a constant torque about its axis, in integers: any number of turns, any machine.
+"""A symmetric body under a constant torque about its axis, in integers: for any number of turns, without a compiler.
 
-Rotations far from resonance by :mod:`~symrot.closed_form.spin_up.off_resonance`, near it by
-:mod:`~symrot.closed_form.spin_up.resonance`, joined at its edge. What pairs of doubles cannot count is written from
-here sample by sample; where there is no C compiler, NumPy takes its constants from here. The formulas are in
+The rotation far from resonance (:mod:`~symrot.closed_form.spin_up.off_resonance`) and the rotation near it
+(:mod:`~symrot.closed_form.spin_up.resonance`) are joined at the edge. This module writes samples of too many turns for
+pairs of doubles one by one; without a C compiler, NumPy takes its constants from here. The formulas are in
 :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
 
@@ -16,7 +16,7 @@ import numpy as np
 from symrot.closed_form.arithmetic import frames
 from symrot.closed_form.arithmetic.pairs import pair
 from symrot.closed_form.build import Floats
-from symrot.closed_form.portable.spin_up import SpinUp as Portable
+from symrot.closed_form.portable.spin_up import PortableSpinUp as Portable
 from symrot.closed_form.spin_up.off_resonance import (
     ONE,
     Quaternion,
@@ -63,9 +63,9 @@ class Integers:
     torque : Fraction
         N m, about the axis.
     rates : 3 Fractions
-        Angular velocity at the start, rad/s, not all along the axis.
+        Angular velocity at the start, rad/s, not parallel to the axis.
     attitude : 4 Fractions
-        At the start, not zero.
+        Attitude at the start, not zero.
     """
 
     def __init__(
@@ -98,7 +98,7 @@ class Integers:
 
     @staticmethod
     def _body_axes(axis: int, sign: int, first: Fraction, second: Fraction) -> Quaternion:
-        """Return the turn from e1, e2, e3 to the body's axes: e3 along the torque, e1 along what turns across it."""
+        """Return the rotation from e1, e2, e3 to the body's axes: e3 along the torque, e1 along the transverse rate."""
         columns = [[Fraction(0)] * 3 for _ in range(3)]
         columns[0][axis - 2], columns[0][axis - 1] = first, second
         columns[1][axis - 2], columns[1][axis - 1] = -sign * second, sign * first
@@ -129,14 +129,14 @@ class Integers:
         return product(leaving, conjugate(self._near.quaternion(Fraction(side * int(NEAR)))))
 
     def _begin(self, side: int) -> tuple[Fraction, Fraction, Quaternion]:
-        """Return from where a side is counted: the time, Omega, and the rotation of the body until then."""
+        """Return the origin of a side of resonance: its time, Omega, and the rotation of the body up to it."""
         if self._side(self._start) == side:
             return Fraction(0), self._start, ONE
         edge, crossed = side * self._edge, self._near.quaternion(Fraction(side * int(NEAR)))
         return rounded((edge - self._start) / self._sweep.s), edge, product(self._resonance, crossed)
 
     def _constants(self, near: bool) -> list[float]:
-        """Return what NumPy takes; without what only samples near resonance or beyond it need, or with it."""
+        """Return the constants for NumPy, with or without those that only samples near or beyond resonance need."""
         sweep, back, wide = self._sweep, conjugate(self._axes), self._sweep.series.wide
         turns = [x / (4 * number.PI) for x in self._turn]
         inverse = self._scale / self._root if near else Fraction(0)
@@ -160,21 +160,21 @@ class Integers:
 
     @cached_property
     def longest(self) -> float:
-        """The time, s, from which on pairs of doubles may not count the turns."""
+        """The time, s, beyond which pairs of doubles may be too short for the number of turns."""
         values = self._start, self._sweep.across, self._turn[0], self._sweep.s, self._turn[1]
         start, across, turn, s, growth = (abs(float(x)) for x in values)
         even = start + across + turn
         return 2.0 * MOST / (even + math.sqrt(even * even + 4.0 * (s + growth) * MOST)) / float(self._scale)
 
     def _far(self, first: float, last: float) -> bool:
-        """Return whether all times between two are surely on one side of resonance, however doubles round."""
+        """Return whether all times between two are on one side of resonance for any rounding of doubles."""
         start, s, scale = float(self._start), float(self._sweep.s), float(self._scale)
         ends, edge = (start + s * first * scale, start + s * last * scale), float(self._edge)
         edge += _DOUBT * (edge + max(map(abs, (start, *ends))))
         return self._sweep.series.wide or ends[1] <= -edge or ends[0] >= edge
 
     def fill(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> bool:
-        """Write samples by NumPy; return whether some are beyond :attr:`longest`, which are wrong."""
+        """Write samples by NumPy; return whether some are beyond :attr:`longest` and so not valid."""
         first, last = min(0.0, float(times.min())), max(0.0, float(times.max()))
         near = attitudes is not None and not self._far(first, last)
         if near not in self._kinds:
@@ -183,7 +183,7 @@ class Integers:
         return not max(last, -first) <= self.longest
 
     def finite(self, time: float) -> bool:
-        """Return whether the angular velocity at a time is one of doubles."""
+        """Return whether the angular velocity at a time is within the range of doubles."""
         return abs(self._spin[0] + self._spin[1] * Fraction(time) * self._scale) < number.LARGEST
 
     def put(self, i: int, time: float, rates: Floats | None, attitudes: Floats | None) -> None:

@@ -1,12 +1,13 @@
 """A symmetric body under a constant torque about its axis, at any time, in closed form: spin up, down, and through.
 
-The transverse angular velocity keeps its length W and turns in the body by a phase quadratic in time. In axes that turn
-with it the body turns at ``(W, 0, Omega)``, with Omega linear in time: the equation of a two-level system swept through
-resonance (Zener, Proc. R. Soc. A 137 (1932) 696), solved by parabolic cylinder functions of ``x = Omega/sqrt(s)``, s
-the sweep, and of the one parameter ``kappa = W/sqrt(s)``. Far from resonance, or for a large kappa, their asymptotic
-series hold to the last bit, in the form of a slowly turning vector and the phase about it; near it Taylor's series at
-40 places. Phases are carried in turns, as pairs of doubles: errors of the attitude stay at a few 1e-16 however many
-turns have passed. A sample costs the same at any time; those beyond 1e13 rad take integers.
+The transverse angular velocity keeps its length W and rotates in the body by a phase quadratic in time. In axes that
+rotate with it the body rotates at ``(W, 0, Omega)``, with Omega linear in time: the equation of a two-level system
+swept through resonance (Zener, Proc. R. Soc. A 137 (1932) 696). Its solutions are parabolic cylinder functions of
+``x = Omega/sqrt(s)``, with the sweep rate s and the only parameter ``kappa = W/sqrt(s)``. Far from resonance, or for a
+large kappa, asymptotic series are exact to the last bit, in the form of a slowly rotating vector and the phase about
+it; near resonance Taylor series at 40 places are. Phases are represented in turns, as pairs of doubles: the error of
+the attitude stays at a few 1e-16 for any number of turns. A sample takes the same time at any t; samples beyond 1e13
+rad are computed in integers.
 
 The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
@@ -19,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, numbers, same, spread
+from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, flatten_pairs, numbers, same
 from symrot.closed_form.arithmetic.pairs import attitude as pairs_of
 from symrot.closed_form.build import Floats, times_of
 from symrot.closed_form.spin_up import compiled as spin_up_compiled
@@ -31,7 +32,7 @@ from symrot.scene.scene import Initial
 if TYPE_CHECKING:
     from symrot.closed_form.spin_up.integers import Integers
 
-__all__ = ["Body", "SpinUp", "motion", "starts"]
+__all__ = ["SpinUp", "SpunBody", "motion", "starts"]
 
 
 class SpinUp:
@@ -39,20 +40,20 @@ class SpinUp:
 
     Parameters
     ----------
-    body : Body
+    body : SpunBody
     rates : 3 numbers
-        Angular velocity at the start, rad/s, not all along the axis.
+        Angular velocity at the start, rad/s, not parallel to the axis.
     attitude : 4 numbers
-        At the start, not zero.
+        Attitude at the start, not zero.
     """
 
     regime = "circular"
 
-    def __init__(self, body: "Body", rates: Sequence[Number], attitude: Sequence[Number]) -> None:
+    def __init__(self, body: "SpunBody", rates: Sequence[Number], attitude: Sequence[Number]) -> None:
         self._initial_state, axis = (body, rates, attitude), body.axis
         turned = rates[axis - 2], rates[axis - 1], rates[axis]
         self._source = (
-            Compiled(axis, [*body.shared, *spread(turned), *pairs_of(attitude)])
+            Compiled(axis, [*body.shared, *flatten_pairs(turned), *pairs_of(attitude)])
             if spin_up_compiled.available()
             else self.integers
         )
@@ -75,7 +76,7 @@ class SpinUp:
         Raises
         ------
         InputError
-            If a time is not finite, or the angular velocity at it is beyond all doubles.
+            If a time is not finite, or the angular velocity at it exceeds all doubles.
         """
         times = times_of(t)
         rates = np.empty((len(times), 3)) if omega else None
@@ -85,7 +86,7 @@ class SpinUp:
         return rates, attitudes
 
     def _by_integers(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Write the samples of more turns than pairs of doubles count."""
+        """Write the samples of too many turns for pairs of doubles."""
         for time in (float(times.min()), float(times.max())):
             if not self.integers.finite(time):
                 raise InputError(f"expected times at which the angular velocity is a finite number, got {time!r} s")
@@ -118,17 +119,20 @@ def motion(
     InputError
         If the body is not symmetric about the axis, turns about it alone, or a number is not of this domain.
     """
-    return Body(inertia, axis, torque).motion(omega0, quaternion0)
+    return SpunBody(inertia, axis, torque).motion(omega0, quaternion0)
 
 
 def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[Initial], SpinUp]:
-    """Return what gives the motion from an initial state; what all starts share is read once. See :func:`motion`."""
-    body = Body(inertia, axis, torque)
+    """Return a function of the initial state that returns its motion; it reads shared constants once.
+
+    See :func:`motion`.
+    """
+    body = SpunBody(inertia, axis, torque)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
-class Body:
-    """A symmetric body and its torque, as what its motions share."""
+class SpunBody:
+    """A symmetric body and its torque, with the constants that all its motions share."""
 
     def __init__(self, inertia: Sequence[Number], axis: int, torque: Number) -> None:
         self._inertia, (self.torque,) = numbers("inertia", inertia, 3, SMALLEST), numbers("torque", [torque], 1)
@@ -136,7 +140,7 @@ class Body:
             raise InputError(f"expected an axis 0, 1 or 2, got {show(axis)}")
         self.axis, self.moments = axis, (self._inertia[axis - 2], self._inertia[axis])
         self._symmetric = same(self._inertia[axis - 2], self._inertia[axis - 1])
-        self.shared = spread([*self.moments, self.torque])
+        self.shared = flatten_pairs([*self.moments, self.torque])
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> SpinUp:
         """Return the motion from an initial state."""

@@ -1,7 +1,7 @@
 """Far from resonance, to 90 digits: rotations of the body between two times, in Fractions.
 
-In axes that turn with its transverse angular velocity the body turns at ``(W, 0, Omega)``, ``Omega = Omega0 + s t``.
-From ``Omega0`` on the integral of ``S = sqrt(Omega^2 + W^2)`` over a time t is
+In axes that rotate with its transverse angular velocity the body rotates at ``(W, 0, Omega)``, with
+``Omega = Omega0 + s t``. The integral of ``S = sqrt(Omega^2 + W^2)`` over a time t, from ``Omega0`` on, is
 
     t/(2 D) (E sqrt(1 + z^2) + W^2 asinh(z)/z),  E = S0 S + Omega0 Omega,  D^2 = (W^2 + E)/2,  z = s t/(2 D):
 
@@ -20,7 +20,7 @@ from symrot.formula import exact_numbers as number
 __all__ = ["FIXED", "ONE", "Quaternion", "Sweep", "about_third", "conjugate", "fixed", "product", "rounded"]
 
 FIXED = 144
-"""Bits behind the point of unit quaternions, which are integers here: with Fractions they take four times as long."""
+"""Number of bits behind the point of unit quaternions in fixed point, which is four times as fast as Fractions."""
 
 Quaternion = tuple[int, int, int, int]
 
@@ -65,7 +65,7 @@ def conjugate(q: Quaternion) -> Quaternion:
 
 
 def about_third(angle: Fraction) -> Quaternion:
-    """Return the turn through an angle, rad, about the third axis."""
+    """Return the rotation by an angle, rad, about the third axis."""
     return fixed([number.cos(angle / 2), Fraction(0), Fraction(0), number.sin(angle / 2)])
 
 
@@ -93,7 +93,7 @@ def _polynomial(coefficients: Floats, y: float) -> float:
 
 
 class Sweep:
-    """The turning axes of a motion: W, s and the series of its kappa^2 = W^2/s."""
+    """The rotating axes of a motion: W, s and the series of its kappa^2 = W^2/s."""
 
     def __init__(self, across: Fraction, s: Fraction, series: Series) -> None:
         self.across, self.s, self.series = across, s, series
@@ -115,7 +115,7 @@ class Sweep:
         return cosine * _polynomial(self.series.e, y)
 
     def axes(self, omega: Fraction) -> Quaternion:
-        """Return the turn that takes the third axis to the vector at rest that follows the rotation."""
+        """Return the rotation of the third axis to the vector at rest in space that follows the axis of rotation."""
         sine, cosine, y = self._places(omega)
         g, c = _polynomial(self.series.g, y), _polynomial(self.series.c, y)
         m1, m2 = Fraction(sine * cosine * y * y * g), Fraction(sine * y * c)
@@ -127,7 +127,7 @@ class Sweep:
         return product(turn, fixed(number.unit((m3, -m2, m1, Fraction(0)))))
 
     def angle(self, start: Fraction, time: Fraction) -> Fraction:
-        """Return the angle that the body turns about that vector within a time, from Omega = start."""
+        """Return the angle of the body's rotation about that vector within a time, from Omega = start."""
         omega = start + self.s * time
         here, there, product = self.speed(omega), self.speed(start), rounded(omega * start)
         if product >= 0:
@@ -141,6 +141,6 @@ class Sweep:
         return rounded(steady) + Fraction(self.delta(omega)) - Fraction(self.delta(start))
 
     def rotation(self, start: Fraction, time: Fraction) -> Quaternion:
-        """Return the rotation of the body within a time, seen from it, all of which is far."""
+        """Return the rotation of the body, in body axes, within a time that lies wholly far from resonance."""
         end = conjugate(self.axes(start + self.s * time))
         return product(self.axes(start), about_third(self.angle(start, time)), end)

@@ -1,6 +1,6 @@
-"""The attitude near resonance: Taylor's series at evenly spaced places, in integers, rounded once.
+"""The attitude near resonance: Taylor series at evenly spaced places, in integers, rounded once.
 
-A body at rest in the axes of space at ``x = 0`` that turns at ``(kappa, 0, x)`` has the attitude ``(alpha, beta)``,
+A body that rotates at ``(kappa, 0, x)`` and is aligned with space at ``x = 0`` has the attitude ``(alpha, beta)``,
 ``alpha = q0 + i q3``, ``beta = q1 + i q2``, with
 
     2 alpha' = i x alpha - kappa beta,  2 beta' = kappa alpha - i x beta,
@@ -22,10 +22,10 @@ from symrot.closed_form.spin_up.series import NEAR
 __all__ = ["DEGREE", "PIECES", "Near"]
 
 PIECES = 4
-"""In a unit of x."""
+"""Number of Taylor polynomials for one unit of x."""
 
 DEGREE = 19
-"""Of the polynomials: (r/2)^20/20!/8^20 < 1e-20 for r < 13.5."""
+"""Degree of the polynomials: (r/2)^20/20!/8^20 < 1e-20 for r < 13.5."""
 
 _TERMS = 34  # of a series in integers
 

@@ -33,10 +33,10 @@ WIDE = 9.0
 """From this kappa on the series holds for every x."""
 
 MOST = 1e13
-"""rad, from here on pairs of doubles would not count a phase."""
+"""Phase, rad, from which on pairs of doubles are too short."""
 
 DEGREE = 12
-"""Of the polynomials that stand for the series."""
+"""Degree of the polynomials that replace the series."""
 
 _ORDERS = 14  # powers of v^2
 _SMALL = 0.2  # kappa^2/radius2: below it the angle is counted from infinity

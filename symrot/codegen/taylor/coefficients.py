@@ -19,7 +19,7 @@ class _Run(NamedTuple):
 
     constant: Callable[[Node], Any]
     functions: Mapping[str, Callable[..., Any]]
-    found: list[list[Any]]
+    coefficients: list[list[Any]]
     t: Any
 
 
@@ -48,13 +48,13 @@ def coefficients(
         lambda node: evaluate(node, values, functions, number), functions or {}, [[] for _ in system.series],
         values.get("t", number(Fraction(0))),
     )  # fmt: skip
-    state = {series.number: run.found[i] for i, series in enumerate(system.series) if series.rule == "state"}
+    state = {series.number: run.coefficients[i] for i, series in enumerate(system.series) if series.rule == "state"}
     for i, name in enumerate(system.states):
         state.setdefault(i, []).append(values[name])
     for i, seed in enumerate(system.seeds, start=len(system.states)):
         state[i].append(run.constant(seed))
     for n in range(order):
-        for series, own in zip(system.series, run.found, strict=True):
+        for series, own in zip(system.series, run.coefficients, strict=True):
             if series.rule != "state":
                 own.append(_RULES[series.rule](run, series, n, own))
         for i, rate in enumerate(system.rates):
@@ -70,12 +70,12 @@ def _sum_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
     *weights, constant = series.weights
     total = run.constant(constant if n == 0 and constant is not None else ZERO)
     for operand, weight in zip(series.operands, weights, strict=True):
-        total = total + run.constant(weight) * run.found[operand][n]  # type: ignore[arg-type]
+        total = total + run.constant(weight) * run.coefficients[operand][n]  # type: ignore[arg-type]
     return total
 
 
 def _product_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
-    u, v = (run.found[i] for i in series.operands)
+    u, v = (run.coefficients[i] for i in series.operands)
     if u is not v:
         return _convolution(u, v, n, 0, n)
     pairs = 2 * _convolution(u, u, n, 0, (n - 1) // 2)
@@ -83,27 +83,27 @@ def _product_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
 
 
 def _quotient_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
-    *top, v = (run.found[i] for i in series.operands)
+    *top, v = (run.coefficients[i] for i in series.operands)
     upper = top[0][n] if top else run.constant(ONE) if n == 0 else 0
     return (upper - _convolution(v, own, n, 1, n)) / v[0]
 
 
 def _root_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
-    (u,) = (run.found[i] for i in series.operands)
+    (u,) = (run.coefficients[i] for i in series.operands)
     return run.functions["sqrt"](u[0]) if n == 0 else (u[n] - _convolution(own, own, n, 1, n - 1)) / (2 * own[0])
 
 
 def _seed(run: _Run, series: Series, first: int) -> Any:
-    return run.functions[series.function](*(run.found[i][0] for i in series.operands[first:]))
+    return run.functions[series.function](*(run.coefficients[i][0] for i in series.operands[first:]))
 
 
 def _driven_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
-    e, v = (run.found[i] for i in series.operands[:2])
+    e, v = (run.coefficients[i] for i in series.operands[:2])
     return _seed(run, series, 2) if n == 0 else series.sign * _convolution(e, v, n, 1, n) / n
 
 
 def _primitive_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
-    g, e, v = (run.found[i] for i in series.operands[:3])
+    g, e, v = (run.coefficients[i] for i in series.operands[:3])
     return _seed(run, series, 3) if n == 0 else (g[n] - _convolution(e, v, n, 1, n - 1)) / (n * v[0])
 
 
@@ -111,7 +111,7 @@ def _clock_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
     rate, offset = (0 if weight is None else run.constant(weight) for weight in series.weights)
     if n == 0:
         return run.functions[series.function](rate * run.t + offset)
-    return series.sign * rate * run.found[series.operands[0]][n - 1] / n
+    return series.sign * rate * run.coefficients[series.operands[0]][n - 1] / n
 
 
 _RULES: dict[str, Callable[[_Run, Series, int, list[Any]], Any]] = {
@@ -120,7 +120,7 @@ _RULES: dict[str, Callable[[_Run, Series, int, list[Any]], Any]] = {
     "product": _product_rule,
     "quotient": _quotient_rule,
     "root": _root_rule,
-    "theta": lambda run, series, n, own: n * run.found[series.operands[0]][n],
+    "theta": lambda run, series, n, own: n * run.coefficients[series.operands[0]][n],
     "driven": _driven_rule,
     "primitive": _primitive_rule,
     "clock": _clock_rule,

@@ -16,7 +16,7 @@ from sympy import Expr, Rational, cos, pi, sin, sqrt
 from symrot.errors import InputError
 
 PARTS = 24
-"""Multiples of pi/24, the halves of those of pi/12, have sines and cosines in Q(sqrt 2, sqrt 3, cos(pi/8))."""
+"""Constant angles are counted in pi/24: all their sines and cosines lie in Q(sqrt 2, sqrt 3, cos(pi/8))."""
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,9 @@ class LinearForm:
 
 
 def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
-    """Return the Q-linear form of an angle (rad); products are expanded, anything not a number is an atom.
+    """Return the Q-linear form of an angle (rad); products are expanded, every factor that is no number is an atom.
 
-    Without ``turns``, of an exponent say, ``pi`` is an atom like any other.
+    Without ``turns``, as for the exponent of an exponential, ``pi`` is an atom like any other.
 
     Raises
     ------
@@ -72,8 +72,8 @@ def base_coefficients(forms: Iterable[LinearForm]) -> dict[Expr, Fraction]:
 def constant_cosine_sine(half_turns: Fraction) -> tuple[Expr, Expr]:
     """Return the exact cosine and sine of ``half_turns * pi`` (a multiple of 1/24) in square roots.
 
-    Odd multiples are those of pi/12 turned by pi/8, where ``sin(pi/8) = (sqrt(2) - 1) cos(pi/8)``: one root, not two
-    that depend on each other.
+    An odd multiple is a multiple of pi/12 plus pi/8, and ``sin(pi/8) = (sqrt(2) - 1) cos(pi/8)``: so one new root is
+    enough, where sin(pi/8) and cos(pi/8) would be two roots that depend on each other.
     """
     odd = half_turns * PARTS % 2 == 1
     rest = half_turns - Fraction(1, 8) if odd else half_turns

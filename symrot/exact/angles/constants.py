@@ -1,4 +1,4 @@
-"""Is a number made of roots and of cosines of rational angles zero? Decided by a bound, not by digits.
+"""Decide by a separation bound whether a number made of roots and of cosines of rational angles is zero.
 
 A sum of products of algebraic integers is one itself. If it is not zero, the product of its conjugates is a whole
 number other than zero, so it is at least ``B^(1 - D)`` in size, where B bounds all its conjugates and D is the degree
@@ -17,7 +17,7 @@ from sympy.polys.rings import PolyElement
 __all__ = ["MOST_BITS", "Number", "cosine_number", "root_number", "vanishes"]
 
 MOST_BITS = 40_000
-"""Of the interval; a sum that would need more counts as not known to vanish."""
+"""Largest number of bits of the interval; a sum that would need more is not known to vanish."""
 
 Monomial = tuple[int, ...]
 
@@ -41,7 +41,7 @@ class Number:
 
 
 class NotReal(ArithmeticError):
-    """An even root of what is negative."""
+    """An even root of a negative number."""
 
 
 def cosine_number(place: int, degree: int, order: int) -> Number:

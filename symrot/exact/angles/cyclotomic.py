@@ -1,4 +1,4 @@
-"""Sines and cosines of rational multiples of pi that are no multiples of pi/24, as polynomials in one number.
+"""Sines and cosines of rational multiples of pi other than multiples of pi/24, as polynomials in one number.
 
 With ``g = 2 cos(pi/N)``, N even, ``2 cos(k pi/N)`` is a polynomial in g with integer coefficients, and the sine is the
 cosine of the complement. The minimal polynomial of g comes from the cyclotomic polynomial of order 2N, which reads
@@ -11,10 +11,20 @@ from functools import cache
 from sympy import Poly, cyclotomic_poly, totient
 from sympy.abc import x
 
-__all__ = ["LARGEST_DEGREE", "degree", "doubled_cosine", "is_fine", "minimal_polynomial", "multiples", "order"]
+__all__ = [
+    "LARGEST_DEGREE",
+    "degree",
+    "doubled_cosine",
+    "minimal_polynomial",
+    "multiples",
+    "needs_cyclotomic_field",
+    "order",
+]
 
 LARGEST_DEGREE = 160
-"""Of the minimal polynomial: multiples of pi/180 need 48, of pi/360 need 96; beyond it a constant stays a symbol."""
+"""Largest degree of a minimal polynomial: multiples of pi/180 need 48, multiples of pi/360 need 96.
+
+Beyond it a constant stays a symbol."""
 
 
 def order(denominator: int) -> int:
@@ -22,7 +32,7 @@ def order(denominator: int) -> int:
     return denominator if denominator % 2 == 0 else 2 * denominator
 
 
-def is_fine(denominator: int) -> bool:
+def needs_cyclotomic_field(denominator: int) -> bool:
     """Return whether sines of multiples of pi/denominator are within the limit."""
     return order(denominator) <= 12 * LARGEST_DEGREE and degree(order(denominator)) <= LARGEST_DEGREE
 

@@ -1,7 +1,7 @@
 """Inverse trigonometric functions as angles: the sine and cosine of each, on its branch, and the range of its values.
 
-``asin``, ``acos``, ``atan`` and ``atan2`` have their principal values. So ``cos(asin(u)) = +sqrt(1 - u^2)``, and the
-half of any of them lies in [-pi/2, pi/2], where the cosine is not negative. ``atan2(y, x)`` is undefined at (0, 0).
+``asin``, ``acos``, ``atan`` and ``atan2`` have their principal values. So ``cos(asin(u)) = +sqrt(1 - u^2)``, and half
+the value of each lies in [-pi/2, pi/2], where the cosine is not negative. ``atan2(y, x)`` is undefined at (0, 0).
 """
 
 from collections.abc import Callable
@@ -55,13 +55,13 @@ def cosine_sine(angle: Expr, halvings: int) -> Pair:
 
 
 Range = tuple[Fraction, Fraction, bool, bool]
-"""Least and greatest value, in half-turns, and whether each is taken."""
+"""Least and greatest value, in half-turns, and whether the function attains each of them."""
 
 _QUARTER = Fraction(1, 2)
 
 
 def range_of(angle: Expr) -> Range:
-    """Return a range that holds all values of an inverse function, the smaller where the signs of arguments show it."""
+    """Return a range that contains all values of an inverse function; known signs of the arguments narrow it."""
     first, second = (*angle.args, Integer(1))[:2]
     closed = not isinstance(angle, atan)
     if isinstance(angle, acos):

@@ -12,7 +12,10 @@ __all__ = ["halved", "is_bound", "parts_of", "unbound"]
 
 
 def is_bound(atom: Expr, coefficient: Fraction) -> bool:
-    """Return whether the sine and cosine of a multiple of an atom are known: of inverse functions, whole and halved."""
+    """Return whether the sine and cosine of a multiple of an atom are known.
+
+    They are for an inverse function times an integer, or divided by a power of two.
+    """
     return type(atom) in INVERSE and coefficient.denominator in (1, 2, 4, 8)
 
 
@@ -22,7 +25,7 @@ def unbound(form: LinearForm) -> LinearForm:
 
 
 def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
-    """Yield (number of halvings, how many such angles) that make up a multiple."""
+    """Yield pairs (h, n) such that a multiple of an angle is the sum of n times the angle halved h times."""
     left, halvings = coefficient, 0
     while left:
         times = int(left)
@@ -32,5 +35,5 @@ def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
 
 
 def parts_of(atom: Expr, coefficient: Fraction) -> list[Expr]:
-    """Return the cosines and sines by which those of a multiple of an inverse function are read."""
+    """Return the cosines and sines from which the cosine and sine of a multiple of an inverse function are formed."""
     return [part for halvings, _ in halved(coefficient) for part in cosine_sine(atom, halvings)]

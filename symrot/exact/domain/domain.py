@@ -1,4 +1,4 @@
-"""Where a formula is defined: what must not vanish, and what must not be negative."""
+"""Where a formula is defined: the divisors, which must not vanish, and the radicands, which must not be negative."""
 
 from collections.abc import Container, Iterable
 
@@ -12,9 +12,9 @@ __all__ = ["divisors", "is_dense", "radicands", "signs", "split_radicands"]
 
 
 def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
-    """Return what must not vanish, as it was divided by and as the factor found in it, less the ``granted`` factors.
+    """Return the divisors, which must not vanish, as (divisor as written, its factor), without ``granted`` factors.
 
-    A root is shown by what stands under it.
+    In place of a root its radicand is returned.
     """
     roots = {place: root for root, place in ring.roots.items()}
     pairs: list[tuple[Expr, Expr]] = []
@@ -34,7 +34,7 @@ def _inside(root: Root) -> Expr:
 
 
 def radicands(ring: FormulaRing) -> list[Expr]:
-    """Return what must not be negative: under roots, in logarithms, 1 - x^2 for asin(x) and acos(x)."""
+    """Return the formulas that must not be negative: radicands, arguments of logarithms, 1 - x^2 of asin and acos."""
     bases = [radical.base for node, radical in ring.radicals.items() if isinstance(node, Pow)]
     formulas = [base for base in bases if not _is_square(base)]
     formulas += [formula for leaf in _leaves(ring) for formula in _nonnegative(leaf)]
@@ -43,19 +43,19 @@ def radicands(ring: FormulaRing) -> list[Expr]:
 
 
 def split_radicands(ring: FormulaRing) -> list[Expr]:
-    """Return what is not negative where proofs hold although the formulas are real elsewhere too.
+    """Return the radicands that must not be negative for proofs to hold, although the formulas are real elsewhere too.
 
-    ``sqrt(P f^2)`` is read as ``|f| sqrt(P)``, which says nothing where f is zero and P is negative.
+    ``sqrt(P f^2)`` is read as ``|f| sqrt(P)``, which is not real where f is zero and P is negative.
     """
     loose = [root for radical in ring.radicals.values() if radical.loose for root in radical.roots]
     return list(dict.fromkeys(root.power_expression for root in loose if not root.power_expression.is_positive))
 
 
 def is_dense(ring: FormulaRing) -> bool:
-    """Return whether the points at which nothing vanishes that was divided by are dense: so it is in the core.
+    """Return whether the points at which no divisor vanishes are known to be dense.
 
-    Not with roots, numbers that are not algebraic, or angles and exponents that may depend on each other as
-    ``x log(4)`` and ``x log(2)`` do.
+    They are dense in the decidable core, but not with roots, with numbers that are not algebraic, or with angles and
+    exponents that may depend on each other as ``x log(4)`` and ``x log(2)`` do.
     """
     return not ring.roots and not ring.outside_scope and all(map(_is_plain, (*ring.bases, *ring.exponent_bases)))
 
@@ -70,13 +70,13 @@ def _is_plain(atom: Expr) -> bool:
 
 
 def signs(ring: FormulaRing) -> list[Expr]:
-    """Return what is not negative wherever the formulas are defined, in as many forms as are known."""
+    """Return formulas that are not negative wherever the given ones are defined, in all forms that are known."""
     sides = [1 + sign * leaf.args[0] for leaf in _leaves(ring) if isinstance(leaf, asin | acos) for sign in (1, -1)]
     return [*radicands(ring), *sides]
 
 
 def _leaves(ring: FormulaRing) -> Iterable[Expr]:
-    """Return inverse functions and logarithms: those that stand alone, and those inside sines and cosines."""
+    """Return the inverse functions and logarithms of a ring, alone or inside sines and cosines."""
     return [*ring.symbols, *(atom for form in ring.forms.values() for atom, _ in form.terms)]
 
 

@@ -22,7 +22,7 @@ Range = tuple[Bound, Bound]
 
 REALS: Range = (-inf, inf)
 MOST_BITS = 2000
-"""Of a bound; one with more says nothing."""
+"""Largest size of a bound, in bits; a larger one is replaced by an infinite bound."""
 
 
 def fails_everywhere(need: Need) -> bool:
@@ -114,7 +114,7 @@ def _power(base: Range, exponent: Expr) -> Range:
 
 
 def _monotone(function: Callable[[Expr], Expr], least: Bound, most: Bound) -> Callable[[Range], Range]:
-    """Return the range of a function that grows, between its limits at the ends of its domain."""
+    """Return the range of an increasing function, between its limits at the ends of its domain."""
 
     def of(argument: Range) -> Range:
         low, high = (_at(function, end) for end in argument)

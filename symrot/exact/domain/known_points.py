@@ -1,8 +1,8 @@
-"""Points at which formulas are proven to be real numbers, so that what is proven of them is true of something.
+"""Points at which formulas are proven to be real numbers, so that no verdict "true" is vacuous.
 
-A claim about formulas that are defined nowhere, or under hypotheses that nothing obeys, follows from anything. The
-search looks at points in double precision; what it gives away is proven by interval arithmetic, with fractions for the
-unknowns, or boxes that hold a solution of the hypotheses (:mod:`symrot.exact.domain.newton_box`).
+Any claim about formulas that are defined nowhere, or under hypotheses that no point satisfies, would be "true". The
+search runs in double precision; the point that it returns is then proven by interval arithmetic, with fractions for the
+unknowns or with a box that contains a solution of the hypotheses (:mod:`symrot.exact.domain.newton_box`).
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,17 +13,17 @@ from typing import Any
 from sympy import Expr
 
 from symrot.exact.domain.needs import Need, assumptions_of, leaves_of
-from symrot.exact.domain.newton_box import Equations
+from symrot.exact.domain.newton_box import EquationSystem
 from symrot.exact.floats import NoValue, float_at
 from symrot.exact.intervals import enclosure
 
 __all__ = ["holds", "known_point"]
 
 STARTS = 160
-"""Points drawn."""
+"""Number of random points from which the search starts."""
 
 MOST_LOOKS = 60_000
-"""Values of needs that one search may ask for, so that it ends."""
+"""Number of evaluations after which a search gives up."""
 
 SIMPLE = tuple(Fraction(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1), (3, 1), (1, 3), (-1, 2), (0, 1), (-2, 1)))
 WIDER = (*SIMPLE, *(Fraction(sign * n, d) for n, d in ((1, 10), (5, 1), (10, 1), (3, 7), (1, 100), (50, 1), (3, 2),
@@ -51,9 +51,9 @@ def known_point(needs: Sequence[Need], equations: Sequence[Expr] = ()) -> Point 
     Parameters
     ----------
     needs : sequence of Need
-        What must hold; signs that symbols are assumed to have come on top.
+        Conditions to satisfy, in addition to the assumed signs of the symbols.
     equations : sequence of Expr
-        What must vanish.
+        Formulas that must vanish.
 
     Returns
     -------
@@ -72,7 +72,7 @@ def known_point(needs: Sequence[Need], equations: Sequence[Expr] = ()) -> Point 
 class _Search:
     def __init__(self, needs: Sequence[Need], equations: Sequence[Expr], leaves: Sequence[Expr]) -> None:
         self.needs, self.leaves, self.looks = needs, leaves, 0
-        self.equations = Equations(equations, leaves) if equations else None
+        self.equations = EquationSystem(equations, leaves) if equations else None
         self.own = {need: leaves_of([need.formula]) for need in needs}
 
     def point(self) -> Point | None:
@@ -94,7 +94,7 @@ class _Search:
         return None
 
     def whole(self, point: Point) -> bool:
-        """Return whether symbols that stand for integers have such values."""
+        """Return whether all symbols that are assumed to be integers have integer values."""
         return all(not leaf.is_integer or getattr(value, "denominator", 0) == 1 for leaf, value in point.items())
 
     def starts(self, source: Random) -> Iterator[Point]:
@@ -121,12 +121,12 @@ class _Search:
         return value >= -TOLERANCE if need.sign == ">= 0" else value > 0 if need.sign == "> 0" else value != 0
 
     def moved(self, point: Point) -> Point:
-        """Return a point with one value after the other changed, as long as fewer needs are broken by it."""
+        """Return a point improved one value at a time, as long as each change reduces the number of broken needs."""
         point = self.jumped(point)
         return self.climbed(point) if self.broken(point) else point
 
     def climbed(self, point: Point) -> Point:
-        """Return a point at which the needs are broken by less, reached in steps that are halved where none helps."""
+        """Return a point at which the needs are violated by less; a step that does not help is halved."""
         size, depth = Fraction(1), self.depth(point)
         while depth < 0 and size > SMALLEST_STEP and self.looks < MOST_LOOKS:
             trials = ({**point, leaf: point[leaf] + sign * size}
@@ -139,7 +139,7 @@ class _Search:
         return point
 
     def depth(self, point: Point) -> float:
-        """Return by how much needs are broken in double precision, as a number below zero; zero where all hold."""
+        """Return by how much needs are violated in double precision, as a negative number; zero where all hold."""
         values = {leaf: float(value) for leaf, value in point.items()}
         known: dict[Expr, float] = {}
         self.looks += len(self.needs)

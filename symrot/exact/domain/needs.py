@@ -1,8 +1,8 @@
-"""What a formula needs to be a real number, read off its pieces: signs of radicands, of logarithms, divisors.
+"""The needs of a formula: the conditions on its radicands, logarithms and divisors under which it is a real number.
 
 All functions have real values of real arguments, on their principal branch. A power ``u^(p/q)`` with a fraction in
 lowest terms, odd q included, is real for u >= 0 only, for u > 0 if p < 0: SymPy's cube root of -8 is ``1 + sqrt(3) i``.
-What SymPy cancelled while a formula was built (``0*log(x)``) is not seen here; whoever reads a text notes it there.
+A term that SymPy cancelled while the formula was built (``0*log(x)``) is not seen here; the reader of claims notes it.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -20,7 +20,7 @@ __all__ = ["Need", "assumptions_of", "is_leaf", "leaves_of", "needs_of"]
 
 @dataclass(frozen=True)
 class Need:
-    """``formula sign 0`` with the sign ``">= 0"``, ``"> 0"`` or ``"!= 0"``; ``"real"`` for what no table knows."""
+    """``formula sign 0`` with the sign ``">= 0"``, ``"> 0"`` or ``"!= 0"``; ``"real"`` for a function in no table."""
 
     formula: Expr
     sign: str
@@ -43,8 +43,9 @@ _NEEDS: dict[type, Callable[..., list[tuple[Expr, str]]]] = {
     sympy.sign: lambda u: [(u, "!= 0")],
     sympy.atan2: lambda y, x: [(x**2 + y**2, "!= 0")],
 }
-"""Function -> what its arguments must be; functions of :data:`symrot.exact.intervals.INTERVAL` beside these need
-nothing. A sign comes from the derivative of an absolute value, which has none at zero."""
+"""Function -> the needs of its arguments; other functions of :data:`symrot.exact.intervals.INTERVAL` have no needs.
+
+The function ``sign`` is the derivative of an absolute value, which does not exist at zero."""
 
 
 def is_leaf(node: Expr) -> bool:
@@ -68,7 +69,7 @@ def assumptions_of(leaf: Expr) -> list[Need]:
 
 
 def needs_of(formulas: Iterable[Expr]) -> list[Need]:
-    """Return what formulas need to be real numbers, the needs of needs included, less what their form alone grants."""
+    """Return the needs of formulas, the needs of these needs included, without those that hold by their form alone."""
     needs: dict[Need, None] = {}
     for node in _pieces(formulas):
         for need in _needs(node):
@@ -96,7 +97,7 @@ def _needs(node: Expr) -> Iterator[Need]:
 
 
 def _granted(need: Need) -> bool:
-    """Return whether SymPy knows a need of the assumptions on symbols; of constants nothing is taken on trust."""
+    """Return whether a need follows from the assumptions on symbols; needs of constants are always proven."""
     formula = need.formula
     if need.sign == "real" or not (formula.is_Rational or formula.free_symbols):
         return False
@@ -105,7 +106,7 @@ def _granted(need: Need) -> bool:
 
 
 def _pieces(formulas: Iterable[Expr]) -> Iterator[Expr]:
-    """Yield every piece once, without recursion; the insides of leaves are their own."""
+    """Yield every subexpression once, without recursion; leaves are not entered."""
     stack, seen = list(formulas), set()
     while stack:
         node = stack.pop()

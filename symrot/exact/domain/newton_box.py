@@ -17,21 +17,21 @@ from symrot.exact.floats import NoValue, float_at
 from symrot.exact.intervals import enclosure
 from symrot.exact.size import pieces
 
-__all__ = ["Equations"]
+__all__ = ["EquationSystem"]
 
 MOST_STEPS = 40
 MOST_EQUATIONS = 24
 MOST_PIECES = 4000
-"""Of all equations together; more are not solved here."""
+"""Largest number of subexpressions of all equations together; larger systems are not solved."""
 
 SMALLEST_PIVOT = 1e-7
 RADII = (1e-11, 1e-8, 1e-6)
-"""Of the box, relative to the size of the unknown."""
+"""Half widths of the boxes that are tried, relative to the size of the unknown."""
 
 Row = list[float]
 
 
-class Equations:
+class EquationSystem:
     """Equations ``formula = 0`` in given unknowns, to be solved from a start.
 
     Parameters
@@ -49,7 +49,7 @@ class Equations:
         self.slopes = [[formula.diff(name) for name in self.names.values()] for formula in self.formulas]
 
     def solved(self, start: Mapping[Expr, float]) -> dict[Expr, float] | None:
-        """Return where Newton's method with the shortest steps ends, or None where it does not converge."""
+        """Return the point to which Newton's method with shortest steps converges, or None if it does not converge."""
         values = {self.names[leaf]: float(start[leaf]) for leaf in self.leaves}
         for _ in range(MOST_STEPS if self.small else 0):
             try:

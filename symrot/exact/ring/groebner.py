@@ -1,7 +1,7 @@
 """Groebner bases by Buchberger's algorithm within a counted budget.
 
-The algorithm may need more work than anybody has; here it stops after a stated number of products of terms, the same
-on every machine, instead of running on.
+The algorithm may need more work than any machine can do; here it stops after a stated number of products of terms,
+which is the same on every machine.
 """
 
 from collections.abc import Callable, Sequence
@@ -73,7 +73,7 @@ class _Basis:
         return self.reduced()
 
     def add(self, terms: Terms, pairs: list[tuple[Any, ...]]) -> None:
-        """Take a reduced polynomial into the basis, with its pairs, those of small lcm first."""
+        """Add a reduced polynomial to the basis, and its pairs to the queue, pairs with a small lcm first."""
         if not terms:
             return
         lead = max(terms, key=self.key)
@@ -89,7 +89,7 @@ class _Basis:
             pairs.clear()  # the whole ring
 
     def idle(self, i: int, j: int) -> bool:
-        """Return whether a third member makes a pair superfluous: Buchberger's chain criterion, pairs by age."""
+        """Return whether a third member makes a pair superfluous, by Buchberger's chain criterion on older pairs."""
         both = tuple(map(max, self.leads[i], self.leads[j]))
         return any(
             k < i and _divides(lead, both) and tuple(map(max, lead, self.leads[i])) != both
@@ -118,7 +118,7 @@ class _Basis:
                 del total[place]
 
     def normal(self, terms: Terms, members: Sequence[Terms]) -> Terms:
-        """Return what is left of a polynomial when no leading term divides any of its terms."""
+        """Return the remainder of a polynomial: no leading term divides any of its terms."""
         leads = self.leads if members is self.members else [max(member, key=self.key) for member in members]
         left: Terms = {}
         while terms:

@@ -1,4 +1,4 @@
-"""What stands under a square root, taken apart: squares leave it, and roots of products are products of roots.
+"""Radicands of square roots: squares are extracted, and roots of products are expressed by products of roots.
 
 ``sqrt(x^2 y) = |x| sqrt(y)``. Of several square roots whose radicands multiply to a square, say ``a``, ``b`` and
 ``a b``, one is expressed by the others, ``sqrt(a b) = sqrt(a) sqrt(b)``: true wherever all of them are real.
@@ -17,7 +17,7 @@ from symrot.exact.ring.roots import Root, absolute, sign_of, written
 __all__ = ["Dependence", "dependences", "take_squares"]
 
 MOST_TERMS = 60
-"""Of a radicand that is still taken apart."""
+"""Largest number of terms of a radicand that is factored."""
 
 
 Outside = tuple[tuple[Root | Expr, int], ...]
@@ -26,7 +26,7 @@ Outside = tuple[tuple[Root | Expr, int], ...]
 def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Expr]) -> tuple[Expr, Outside, bool]:
     """Return (P, outside, loose) with ``above/below = P * product(factor^(2 n))``; P a polynomial, no factor negative.
 
-    It is loose if a factor may be zero where P is negative: the root of ``P f^2`` is real there, that of P is not.
+    The result is loose if a factor f may be zero where P is negative: there ``sqrt(P f^2)`` is real, ``sqrt(P)`` not.
     """
     whole = above.ring.clone(domain=ZZ)
     above, below = above.set_ring(whole), below.set_ring(whole)
@@ -66,7 +66,7 @@ def _irreducible(poly: PolyElement) -> list[tuple[PolyElement, int]]:
 
 @dataclass(frozen=True)
 class Dependence:
-    """A root that is ``sqrt(number) * product(roots) / product(factor^n)``, the factors as those outside a radical."""
+    """A root that equals ``sqrt(number) * product(roots) / product(factor^n)``, with the factors of a Radical."""
 
     number: Rational
     roots: tuple[Root, ...]
@@ -74,7 +74,7 @@ class Dependence:
 
 
 def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr]) -> dict[Root, Dependence]:
-    """Return the square roots that are products of others, by what they are.
+    """Return, for each square root that is a product of others, its dependence on them.
 
     Linear algebra over the field of two elements: a root is the set of irreducible factors that its radicand has an
     odd number of times.
@@ -82,9 +82,9 @@ def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr
     Parameters
     ----------
     radicands : mapping
-        What stands under each square root, in one ring.
+        The polynomial under each square root, all in one ring.
     generators : sequence of Expr
-        Of that ring.
+        The generators of that ring.
     """
     factored = {root: _factored(poly) for root, poly in radicands.items()}
     odd = {root: frozenset(f for f, n in powers.items() if n % 2) for root, (_, powers) in factored.items()}
@@ -114,7 +114,7 @@ def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr
 
 
 def _factored(poly: PolyElement) -> tuple[Rational, dict[PolyElement, int]]:
-    """Return a polynomial as a rational number times powers of irreducible factors; of itself where it is large."""
+    """Return a polynomial as a rational number times powers of irreducible factors; a large one is left as it is."""
     if poly.is_ground or len(poly) > MOST_TERMS:
         return (_rational(poly.LC), {}) if poly.is_ground else (Rational(1), {poly: 1})
     constant, pairs = poly.factor_list()

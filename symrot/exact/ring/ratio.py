@@ -1,8 +1,8 @@
 """Fractions over a polynomial ring whose denominators are products of known factors.
 
-Formulas of rotation divide by few things (``sin(theta)``, a moment of inertia, ``1 + q0``), many times. Each is
-learnt once and carried as an exponent, so sums of equal denominators are sums of polynomials, and every factor is
-remembered with the expression by which somebody divided: the condition under which the formula means something.
+Formulas of rotation divide many times by a few factors (``sin(theta)``, a moment of inertia, ``1 + q0``). Each factor
+is stored once and represented by an exponent, so that sums over equal denominators are sums of polynomials. Every
+factor is stored with the expression in which it first was a divisor: the condition under which the formula is defined.
 """
 
 from collections.abc import Callable, Sequence
@@ -46,7 +46,7 @@ class Ratios:
     ring : PolyRing
         Over the integers or the rationals.
     generators : sequence of Expr
-        What the generators of the ring stand for.
+        The expressions that the generators of the ring represent.
     reduce : function
         The normal form of a polynomial modulo the relations.
     """
@@ -68,7 +68,7 @@ class Ratios:
         return Ratio(self.ring.ground_new(self.ring.domain(numerator)), denominator)
 
     def add(self, terms: Sequence[Ratio]) -> Ratio:
-        """Return the sum; terms of equal denominator are added before anything is cross-multiplied."""
+        """Return the sum; terms with equal denominators are added before any cross-multiplication."""
         groups: dict[tuple[int, tuple[tuple[int, int], ...]], PolyElement] = {}
         for term in terms:
             key = (term.constant, term.factors)
@@ -113,7 +113,7 @@ class Ratios:
         return Ratio(base.numerator**exponent, base.constant**exponent, below)
 
     def invert(self, value: Ratio, source: Expr) -> Ratio:
-        """Return 1/value; the factors of its numerator are remembered as coming from ``source``.
+        """Return 1/value; the new factors of its numerator are stored with the expression ``source``.
 
         Raises
         ------
@@ -140,7 +140,7 @@ class Ratios:
             raise TooLarge(f"expanding the formula takes more than {MOST_PRODUCTS} products of terms")
 
     def _split(self, poly: PolyElement, source: Expr) -> tuple[Fraction, tuple[tuple[int, int], ...]]:
-        """Return a polynomial as a rational constant times known factors, learning the ones that are new."""
+        """Return a polynomial as a rational constant times known factors; new factors are stored."""
         constant, poly = _primitive(poly)
         powers: dict[int, int] = {}
         shared = [min(column) for column in zip(*poly, strict=True)]
@@ -171,9 +171,10 @@ class Ratios:
         )
 
     def _may_divide(self, number: int, value: int) -> bool:
-        """Return whether a factor may divide a polynomial, by their values; a division that leaves a rest is long.
+        """Return whether a factor may divide a polynomial, judged by integer values of both: a vain division is slow.
 
-        Both have integer coefficients without a common divisor, so by Gauss's lemma the quotient has such too.
+        Both have integer coefficients without a common divisor, so by Gauss's lemma the quotient has integer
+        coefficients too.
         """
         own = self.values[number]
         return own == 0 or value % own == 0
@@ -189,7 +190,7 @@ class Ratios:
 
 
 def _most_terms(poly: PolyElement, exponent: int) -> int:
-    """Return a bound on the number of terms of a power: by choosing terms, and by the degrees."""
+    """Return an upper bound on the number of terms of a power, from its number of terms and from its degrees."""
     if len(poly) < 2 or exponent == 1:
         return len(poly)
     by_degrees = prod(int(degree) * exponent + 1 for degree in poly.degrees())

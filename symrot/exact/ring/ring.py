@@ -35,7 +35,7 @@ from symrot.exact.angles.constants import Number, cosine_number, root_number, va
 from symrot.exact.angles.inverse import INVERSE, cosine_sine
 from symrot.exact.angles.known_angles import halved, is_bound, parts_of, unbound
 from symrot.exact.budget import remembered, spend_ring
-from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC, is_jet
+from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC, is_function_of_time
 from symrot.exact.ring.radicands import Dependence, dependences, take_squares
 from symrot.exact.ring.ratio import Ratio, Ratios, TooLarge
 from symrot.exact.ring.relations import Relations, Rule, relate
@@ -44,17 +44,17 @@ from symrot.exact.ring.roots import Radical, Radicand, Root, is_root, radical, s
 __all__ = ["FormulaRing", "as_zero"]
 
 MOST_MULTIPLES = 240
-"""Of a base angle."""
+"""Largest multiple of a base angle."""
 
 MOST_ANGLE_TERMS = 4096
-"""Of a sine or cosine in those of the base angles: a sum of twelve angles has 2048."""
+"""Largest number of terms of a sine or cosine expanded in base angles: a sum of twelve angles has 2048."""
 
 MOST_NESTED_TERMS = 40
-"""Of a radicand that holds roots itself: each further nesting multiplies the work."""
+"""Largest number of terms of a radicand that contains roots: each level of nesting multiplies the work."""
 
 
 def as_zero(relation: Any) -> Expr:
-    """Return the expression that a hypothesis puts to zero: an expression itself, or left - right of an equation.
+    """Return the expression that is zero by a hypothesis: an expression itself, or left - right of an equation.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def as_zero(relation: Any) -> Expr:
 
 
 class NeedsFractions(ArithmeticError):
-    """A relation has coefficients that are no integers."""
+    """A relation has coefficients that are not integers."""
 
 
 class FormulaRing:
@@ -85,13 +85,13 @@ class FormulaRing:
     relations : sequence of Expr
         Hypotheses, each an expression that is zero.
     domain : sequence of Expr
-        What is not negative wherever the formulas are defined, as far as they no longer show it themselves.
+        Formulas that are not negative wherever the expressions are defined, such as radicands that SymPy cancelled.
 
     Raises
     ------
     InputError
-        If an expression holds a floating point number, an infinity, or something that is not a scalar formula, if it
-        divides by what is zero everywhere, or if the hypotheses contradict each other.
+        If an expression contains a floating point number, an infinity, or a term that is not a scalar formula, if a
+        divisor is zero everywhere, or if the hypotheses contradict each other.
     TooLarge
         When the decision that asks for the ring has spent its budget (:mod:`symrot.exact.budget`).
     """
@@ -146,7 +146,7 @@ class FormulaRing:
             (self.fine_place,) = self._number([(pi, 2 * cos(pi / self.fine))]).values()
 
     def _number(self, named: Iterable[tuple[Any, Expr]]) -> dict[Any, int]:
-        """Append generators; return their numbers by what they stand for."""
+        """Append generators and return the number of each by its key."""
         numbers = {}
         for key, expression in named:
             numbers[key] = len(self.generators)
@@ -156,7 +156,7 @@ class FormulaRing:
     # -- what occurs ------------------------------------------------------------------------------------------------
 
     def _collect(self, expressions: Iterable[Expr]) -> None:
-        """Find angles, roots and leaves; constants of angles bring their own square roots."""
+        """Collect the angles, roots and leaves of expressions; constant angles add the square roots of their sines."""
         stack, seen = list(expressions), set()
         while stack:
             node = stack.pop()
@@ -189,7 +189,7 @@ class FormulaRing:
             elif node is S.Exp1:
                 self.exponents[Integer(1)] = linear_form(Integer(1))
             else:
-                self.leaves[node] = is_jet(node)
+                self.leaves[node] = is_function_of_time(node)
 
     def _radicand(self, base: Expr, index: int) -> Radicand:
         """Return a radicand in lowest terms, reduced by those hypotheses that hold no roots themselves."""
@@ -206,7 +206,7 @@ class FormulaRing:
         return dependences({root: self._polynomial(root) for root in places}, self.generators)
 
     def _without_circles(self, dependences: dict[Root, Dependence]) -> dict[Root, Dependence]:
-        """Return those dependences by which no root comes to be expressed by itself, through others."""
+        """Return the dependences by which no root is expressed by itself, directly or through others."""
         accepted: dict[Root, Dependence] = {}
         for root, dependence in dependences.items():
             stack, seen = _named(dependence), set()
@@ -220,14 +220,14 @@ class FormulaRing:
         return accepted
 
     def _take_fine_constants(self) -> int:
-        """Return N of the generator 2 cos(pi/N) for constants of angles that are no multiples of pi/24; 0 for none."""
-        if pi not in self.bases or not cyclotomic.is_fine(self.bases[pi].denominator):
+        """Return N of the generator 2 cos(pi/N) for constant angles that are not multiples of pi/24; 0 without any."""
+        if pi not in self.bases or not cyclotomic.needs_cyclotomic_field(self.bases[pi].denominator):
             return 0
         return cyclotomic.order(self.bases.pop(pi).denominator)
 
     @property
     def outside_scope(self) -> tuple[Expr, ...]:
-        """Functions about which the ring knows less than mathematics does: a nonzero normal form proves nothing."""
+        """Functions between which relations may hold that the ring does not know: a nonzero form proves nothing."""
         atoms = [atom for atom in self.bases if atom.is_number or atom.has(*INVERSE, sympy.log)]
         return tuple(sorted([*atoms, *(leaf for leaf, known in self.leaves.items() if not known)], key=_order))
 
@@ -256,7 +256,7 @@ class FormulaRing:
         return relate(rules, self.hypothesis_numerators)
 
     def _polynomial(self, root: Root) -> PolyElement:
-        """Return the polynomial to which a power of a root is equal; ``NeedsFractions`` if the integers do not do."""
+        """Return the polynomial that a power of a root equals; ``NeedsFractions`` if it has fractional coefficients."""
         value = self.ratio(root.power_expression)
         above, below = self.reduce(value.numerator).cancel(self.ratios.denominator(value))
         if not below.is_ground:
@@ -268,9 +268,9 @@ class FormulaRing:
         return above.quo_ground(below.LC)
 
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
-        """Return the generators that are numbers if relations may hold between them; square roots of primes have none.
+        """Return the generators that are numbers and between which unknown relations may hold.
 
-        Empty when one of them is imaginary.
+        Square roots of primes have no such relations. The result is empty when one of the numbers is imaginary.
         """
         known: dict[int, Number] = {}
         if self.fine:
@@ -303,7 +303,7 @@ class FormulaRing:
     # -- reading ----------------------------------------------------------------------------------------------------
 
     def ratio(self, expression: Expr) -> Ratio:
-        """Return the expression as a fraction; ``InputError`` if it divides by what is zero everywhere."""
+        """Return the expression as a fraction; raise ``InputError`` if a divisor is zero everywhere."""
         known = self._read_already.get(expression)
         if known is None:
             known = self._read_already[expression] = self._read(expression)
@@ -358,7 +358,7 @@ class FormulaRing:
         return self.ratios.multiply([number, *map(self._root, (*primes, *dependence.roots)), *divisors])
 
     def _outside(self, factors: Iterable[tuple[Root | Expr, int]]) -> Iterator[Ratio]:
-        """Yield the powers of absolute values, and of what is not negative, in front of roots."""
+        """Yield the powers of the factors in front of roots: absolute values and nonnegative expressions."""
         for factor, times in factors:
             if isinstance(factor, Root):
                 yield self._power(self._root(factor), times, factor.expression)
@@ -374,7 +374,7 @@ class FormulaRing:
         return self.ratios.multiply(factors)
 
     def _cosine_sine(self, argument: Expr) -> tuple[Ratio, Ratio]:
-        """Return the cosine and sine of an angle in those of the base angles (angle addition, Chebyshev)."""
+        """Return the cosine and sine of an angle in terms of the base angles (angle addition, Chebyshev)."""
         known = self._angles_read.get(argument)
         if known is not None:
             return known
@@ -470,7 +470,7 @@ def _taken_apart(base: Expr, index: int, hypotheses: Sequence[Expr]) -> Radicand
 
 
 def _named(dependence: Dependence | None) -> list[Root]:
-    """Return the roots by which a root is expressed."""
+    """Return the roots that occur in the dependence of a root."""
     if dependence is None:
         return []
     return [*dependence.roots, *(factor for factor, _ in dependence.divisors if isinstance(factor, Root))]

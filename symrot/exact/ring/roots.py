@@ -1,11 +1,11 @@
 """Roots: every fractional power as a rational factor times generators ``g`` with a relation ``g^n = P``.
 
 ``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``, and positive rational numbers are taken out as square roots of
-primes: the generator of a square root is never negative. (Of another root, ``(P/Q)^(1/n) = g/Q``.) Squares leave a root
-as absolute values, ``sqrt(x^2 y) = |x| sqrt(y)``, and a radicand that is others' product is no generator of its own
-(:mod:`symrot.exact.ring.radicands`). Roots that depend on each other in other ways, nested ones say, keep a generator
-each: what follows from the relations is true, and what does not may still be true on one branch.
-:func:`symrot.exact.decide.decide` says "undecided" there unless it finds a witness.
+primes: the generator of a square root is never negative. (For other roots, ``(P/Q)^(1/n) = g/Q``.) Squares leave a root
+as absolute values, ``sqrt(x^2 y) = |x| sqrt(y)``, and the root of a product of other radicands gets no generator
+(:mod:`symrot.exact.ring.radicands`). Roots that depend on each other in other ways, nested roots for example, keep one
+generator each: equations that follow from the relations are true, and others may still be true on one branch. In that
+case :func:`symrot.exact.decide.decide` returns "undecided" unless it finds a counterexample.
 """
 
 from collections.abc import Callable, Iterable
@@ -32,7 +32,7 @@ __all__ = [
 ]
 
 MOST_TERMS = 4000
-"""Of the radicand of a root, ``P Q^(n-1)`` for a root of P/Q."""
+"""Largest number of terms of the radicand of a root, which is ``P Q^(n-1)`` for a root of P/Q."""
 
 
 @lru_cache(maxsize=20_000)
@@ -70,8 +70,8 @@ class Radicand:
 class Radical:
     """``(rational * product(roots) * product(factor^n of outside) / below)^power``, a root of ``base``.
 
-    A factor outside is the absolute value of something, which is a root too, or an expression that is not negative.
-    Where the radical is ``loose`` it is real at some points where a root of its own is not, and the factor is zero.
+    A factor outside is an absolute value, which is a root too, or an expression that is not negative. A ``loose``
+    radical is real at some points where one of its roots is not real but a factor is zero.
     """
 
     base: Expr
@@ -89,13 +89,13 @@ class Radical:
 
     @property
     def parts(self) -> tuple[Expr, ...]:
-        """The expressions that must be readable before this one is."""
+        """The expressions that must be read into the ring before this one."""
         insides = [root.power_expression for root in self.generators]
         return (self.rational, self.below, *insides, *(f for f, _ in self.outside if not isinstance(f, Root)))
 
 
 def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
-    """Return what a fractional power, ``i`` or the absolute value of a real expression is made of.
+    """Return the parts of a fractional power, of ``i`` or of the absolute value of a real expression.
 
     Parameters
     ----------
@@ -106,9 +106,9 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
     Raises
     ------
     InputError
-        If a negative power of an expression is asked for which is zero everywhere, or a root that is no real number
-        of a negative one: ``(-8)^(1/3)`` is ``1 + sqrt(3) i`` on the principal branch. Square roots of negative
-        numbers are read as multiples of ``i``.
+        If the node is a negative power of an expression that is zero everywhere, or a root of a negative number that is
+        not real: ``(-8)^(1/3)`` is ``1 + sqrt(3) i`` on the principal branch. Square roots of negative numbers are
+        read as multiples of ``i``.
     """
     if node is I:
         return Radical(Integer(-1), Integer(1), (_imaginary_unit(),), Integer(1), 1)
@@ -157,7 +157,10 @@ def sign_of(value: Expr) -> int:
 
 
 def _is_positive_where_defined(value: Expr) -> bool:
-    """Return whether a formula is made of exponentials and positive numbers: SymPy takes infinite exponents along."""
+    """Return whether a formula consists of exponentials and positive numbers.
+
+    SymPy does not call an exponential positive, since its exponent might be infinite.
+    """
     if isinstance(value, exp):
         return True
     if value.is_Add or value.is_Mul:

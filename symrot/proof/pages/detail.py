@@ -75,11 +75,11 @@ def _chain(chain: Chain) -> list[Passage]:
     first, second = chain.links[0].expression, chain.links[1]
     passages = [Passage(f"{start} {_reason(second)}", ((first, second.expression),))]
     for link in chain.links[2:]:
-        passages.append(Passage(_spoken(_reason(link)), (*_taken(link), ("", link.expression))))
+        passages.append(Passage(_capitalized(_reason(link)), (*_subtracted_multiples(link), ("", link.expression))))
     return passages
 
 
-def _taken(link: Link) -> tuple[tuple[str, str], ...]:
+def _subtracted_multiples(link: Link) -> tuple[tuple[str, str], ...]:
     """Return the multiples of hypotheses that a rewriting subtracts, if they are too long for a line of text."""
     terms = _terms(link)
     return () if _short(terms) else tuple((term, "0") for term in terms)
@@ -93,7 +93,7 @@ def _short(terms: list[str]) -> bool:
     return sum(map(len, terms)) <= LONGEST_IN_TEXT
 
 
-def _spoken(reason: str) -> str:
+def _capitalized(reason: str) -> str:
     return f"{reason[0].upper()}{reason[1:]}" if reason[0] != "$" else reason
 
 
