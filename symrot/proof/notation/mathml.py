@@ -30,7 +30,8 @@ OPERATORS = {
 RELATIONS = {"=", "<", ">", "≤", "≥", "≠", "→", "⇒", "↦", "∈", "≈", ":"}
 LARGE = {"sum": "∑", "prod": "∏", "int": "∫"}
 FUNCTIONS = {
-    "sin", "cos", "tan", "cot", "sec", "csc", "det", "dim", "lim", "log", "exp", "max", "min", "tanh", "ln", "arctan",
+    "sin", "cos", "tan", "cot", "sec", "csc", "det", "dim", "lim", "log", "exp", "max", "min", "sinh", "cosh", "tanh",
+    "ln", "arctan",
     "arcsin", "arg",
 }  # fmt: skip
 SPACES = {",": 0.17, ":": 0.22, ";": 0.28, "!": -0.17, " ": 0.28, "quad": 1.0, "qquad": 2.0}
