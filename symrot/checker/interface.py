@@ -10,6 +10,7 @@ from symrot.checker.claim.claims import Claim, Refusal, claim_of_text, read_entr
 from symrot.checker.claim.size import MOST_NESTED, nesting
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.checker.units.check import check_dimensions, dimensions_of_formulas
 from symrot.checker.verdict import Diagnosis, Verdict
 from symrot.errors import InputError
@@ -17,6 +18,9 @@ from symrot.exact.decision import Decision, flatten
 from symrot.exact.printing import as_text
 
 __all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_readings", "verdicts_of_file"]
+
+MOST_SECONDS = 40
+"""The most processor time for one claim. The slowest claim of the campaigns that is decided needs 10 s."""
 
 
 class RefusedClaims(InputError):
@@ -107,7 +111,11 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
             if nesting(entry) > MOST_NESTED:
                 raise InputError(f"expected at most {MOST_NESTED} functions and roots inside each other")
     start = perf_counter()
-    decision = decide_equation(Equation(left, right, tuple(assume)))
+    try:
+        with processor_seconds(MOST_SECONDS):
+            decision = decide_equation(Equation(left, right, tuple(assume)))
+    except TimeUp:
+        decision = _unfinished()
     verdict = _verdict(decision, f"{as_text(left)} == {as_text(right)}", start)
     return replace(verdict, dimension=dimensions_of_formulas(left, right, units))
 
@@ -186,19 +194,44 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
     A claim of which no reading is true is diagnosed.
     """
     start = perf_counter()
-    decision, verdict = _decide(claim)
-    if not verdict:
-        for relation in claim.alternatives:
-            source = relation_text(relation)
-            other = claim.with_relation(relation, alternatives=(), sources={**claim.sources, "claim": source})
-            _, other_verdict = _decide(other)
-            if other_verdict:
-                return verdict, other_verdict
-    if repair and claim.relation is not None and decision.verdict in ("false", "conditional"):
-        verdict = _diagnosed(claim, decision, verdict)
-    elif repair and claim.relation is not None and verdict and verdict.conditions:
-        verdict = replace(verdict, diagnosis=_domain(claim))
+    verdict: Verdict | None = None
+    try:
+        with processor_seconds(MOST_SECONDS):
+            decision, verdict = _decide(claim)
+            other_verdict = None if verdict else _of_another_reading(claim)
+            if other_verdict is None and repair:
+                verdict = _diagnosed(claim, decision, verdict)
+    except TimeUp:
+        other_verdict = None
+        if verdict is None:
+            unfinished = _verdict(_unfinished(), claim.text, start)
+            verdict = replace(unfinished, id=claim.id, where=claim.where)
+        else:
+            note = f"the search for other readings and for repairs was ended after {MOST_SECONDS} s of processor time"
+            verdict = replace(verdict, notes=(*verdict.notes, note))
+    if other_verdict is not None:
+        return verdict, other_verdict
     return replace(verdict, seconds=perf_counter() - start), None
+
+
+def _unfinished() -> Decision:
+    """Return the decision on a claim that needs more processor time than it may have."""
+    reason = (
+        f"SymPy needs more than {MOST_SECONDS} s of processor time for these formulas; "
+        "check the claim with a letter in place of one of the inner functions"
+    )
+    return Decision("undecided", reason=reason)
+
+
+def _of_another_reading(claim: Claim) -> Verdict | None:
+    """Return the verdict on the first other reading of a claim that is true."""
+    for relation in claim.alternatives:
+        source = relation_text(relation)
+        other = claim.with_relation(relation, alternatives=(), sources={**claim.sources, "claim": source})
+        _, verdict = _decide(other)
+        if verdict:
+            return verdict
+    return None
 
 
 def _decide(claim: Claim) -> tuple[Decision, Verdict]:
@@ -218,6 +251,11 @@ def _decide(claim: Claim) -> tuple[Decision, Verdict]:
 
 
 def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
+    """Return the verdict with a diagnosis: of the fault, or of the side that is not defined everywhere."""
+    if claim.relation is None:
+        return verdict
+    if decision.verdict not in ("false", "conditional"):
+        return replace(verdict, diagnosis=_domain(claim)) if verdict and verdict.conditions else verdict
     from symrot.checker.recognition.identification import named_parts
     from symrot.checker.recognition.nearest import nearest_known
     from symrot.checker.repair.diagnose import diagnose
