@@ -19,7 +19,7 @@ from symrot.exact.printing import as_text
 
 __all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_readings", "verdicts_of_file"]
 
-MOST_SECONDS = 40
+MOST_SECONDS = 20
 """The most processor time for one claim. The slowest claim of the campaigns that is decided needs 10 s."""
 
 
