@@ -80,7 +80,7 @@ def _units(quaternions: Floats) -> dd.Pair:
     high = scaled / root
     back = dd.two_product(high, root)
     low = (((scaled - back[0]) - back[1]) - high * rest) / root
-    return high + low, low - ((high + low) - high)
+    return dd.normalized(high, low)
 
 
 def _sign(i: int, j: int) -> float:
