@@ -30,7 +30,8 @@ void symrot_each(int which, const double *v, double *to)
     case 4: first = dd_exp(a); break;
     case 5: dd_sincos_turns(a, &first, &second); break;
     case 6: first = dd_agm(a); break;
-    default: first = dd_rf(a, b, c); break;
+    case 7: first = dd_rf(a, b, c); break;
+    default: first = dd_add_fast(a, b); break;
     }
     to[0] = first.hi; to[1] = first.lo; to[2] = second.hi; to[3] = second.lo;
 }
@@ -61,6 +62,7 @@ BOUNDS = {  # over u^2: of the value, of 1 for sines and cosines
     "sine, cosine": lambda a: 8,
     "mean": lambda a: 16,
     "R_F": lambda a, b, c: 16,
+    "fast sum": lambda a, b: 3.1,
 }
 OPERATIONS = {
     "sum": ((signed, signed), lambda a, b: [a + b]),
@@ -71,6 +73,7 @@ OPERATIONS = {
     "sine, cosine": ((near_turns,), lambda a: [mp.sin(2 * mp.pi * a), mp.cos(2 * mp.pi * a)]),
     "mean": ((lambda s: decades(s, -30, 0),), lambda a: [mp.agm(1, a)]),
     "R_F": ((lambda s: decades(s, -40, 3),) * 3, lambda a, b, c: [mp.elliprf(a, b, c)]),
+    "fast sum": ((lambda s: decades(s, -8, 8),) * 2, lambda a, b: [a + b]),  # of positive numbers: nothing cancels
 }
 
 
