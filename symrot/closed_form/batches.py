@@ -23,7 +23,7 @@ from symrot.closed_form.axial.compiled import Constants
 from symrot.closed_form.axial.motion import turned_about
 from symrot.closed_form.build import Floats
 from symrot.closed_form.free_body import bodies
-from symrot.closed_form.free_body.motion import NEGLIGIBLE, Defect, FreeRigidBody, gaps
+from symrot.closed_form.free_body.motion import Defect, FreeRigidBody, gaps
 from symrot.closed_form.heavy_top.motion import Frame
 from symrot.closed_form.many import Batch
 from symrot.closed_form.spin_up.compiled import limits
@@ -80,7 +80,7 @@ def _units(quaternions: Floats) -> dd.Pair:
     high = scaled / root
     back = dd.two_product(high, root)
     low = (((scaled - back[0]) - back[1]) - high * rest) / root
-    return high + low, low - ((high + low) - high)
+    return dd.normalized(high, low)
 
 
 def _sign(i: int, j: int) -> float:
@@ -150,7 +150,7 @@ def usual(omega: Floats) -> NDArray[np.bool_]:
 
 def _noticed(omega: Floats) -> Floats:
     """Return angular velocities with zeros for the components that a single motion treats as zero."""
-    return np.where(abs(omega) < np.ldexp(abs(omega).max(axis=1), -NEGLIGIBLE)[:, None], 0.0, omega)
+    return np.where(abs(omega) < np.ldexp(abs(omega).max(axis=1), -number.NEGLIGIBLE_BITS)[:, None], 0.0, omega)
 
 
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:

@@ -135,7 +135,7 @@ class Variation:
     @property
     def negligible(self) -> Floats:
         """The largest products of inertia, kg m^2, for which the given axes count as principal, shape (n,)."""
-        bounds: Floats = np.ldexp(abs(self.moments).max(axis=1), -200)
+        bounds: Floats = np.ldexp(abs(self.moments).max(axis=1), -number.NEGLIGIBLE_BITS)
         return bounds
 
     @property

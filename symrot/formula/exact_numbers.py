@@ -4,7 +4,10 @@ A rational value is exact: ``"1/3"``, ``"0.6375"`` (51/80), ``1e-3`` (1/1000). W
 and the circular functions) is rounded once, to a relative error below 2^-300. Standard library only.
 """
 
-__all__ = ["PI", "Angle", "cos", "equal", "read", "read_angle", "show", "sin", "sqrt", "tan", "unit", "without_turns"]
+__all__ = [
+    "NEGLIGIBLE", "NEGLIGIBLE_BITS", "PI", "Angle", "cos", "equal", "read", "read_angle", "show", "sin", "sqrt", "tan",
+    "unit", "without_turns",
+]  # fmt: skip
 
 from collections.abc import Callable, Sequence
 from decimal import Decimal
@@ -18,6 +21,11 @@ from symrot.formula import tree as expression
 
 BITS = 320
 """Working precision of what is not rational."""
+
+NEGLIGIBLE_BITS = 200
+"""Number of bits: a value below 2^-200 of the values that it is compared with counts as zero."""
+
+NEGLIGIBLE = Fraction(1, 1 << NEGLIGIBLE_BITS)
 
 LARGEST_TEXT = 400
 """Longest text of one number, in characters."""
@@ -181,7 +189,7 @@ def tan(value: Fraction) -> Fraction:
 
 def equal(a: Fraction, b: Fraction) -> bool:
     """Return whether two numbers agree to a relative difference below 2^-200: equal, for anything a scene means."""
-    return a == b or abs(a - b) * 2**200 < max(abs(a), abs(b))
+    return a == b or abs(a - b) * NEGLIGIBLE.denominator < max(abs(a), abs(b))
 
 
 class Angle(NamedTuple):

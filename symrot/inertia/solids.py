@@ -38,11 +38,11 @@ from sympy import (
 from symrot import symbols
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import read, show
+from symrot.formula.polynomial import Polynomial, constant, exact_quotient, generator
 from symrot.formula.tree import evaluate, parse
 from symrot.inertia import tensor
 from symrot.inertia.bodies import compose
 from symrot.inertia.integration import LARGEST_DEGREE, Domain, domain, moments_per_measure
-from symrot.inertia.polynomial import Polynomial, constant, exact_quotient, generator
 from symrot.inertia.shapes import SHAPES, Dimension, Shape, check_names, find_shape, scalar_names
 
 __all__ = ["Integral", "Solid", "closed_forms_text", "solid"]

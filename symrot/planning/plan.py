@@ -26,7 +26,7 @@ from symrot.dynamics.structure import (
 )
 from symrot.errors import InputError
 from symrot.formula import tree as expression
-from symrot.formula.exact_numbers import equal
+from symrot.formula.exact_numbers import NEGLIGIBLE, equal
 from symrot.formula.switches import Switch, blended, has_choices, has_switches, smooth
 from symrot.scene.scene import Initial, Scene
 from symrot.scene.torque import Torque
@@ -489,7 +489,7 @@ CLEARLY = 1e-12  # of a vector: doubles show that a larger component is not zero
 
 
 def _negligible(value: Fraction, vector: tuple[Fraction, ...]) -> bool:
-    return abs(value) <= max(map(abs, vector)) / 2**200
+    return abs(value) <= max(map(abs, vector)) * NEGLIGIBLE
 
 
 def _small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[bool, ...]:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from symrot.conventions import parse_sequence
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import Angle, equal, read_angle, sqrt
+from symrot.kinematics.hamilton import hamilton
 from symrot.scene.reader import Entry, Reader, fail, flag, number, read_table, table, vector
 
 __all__ = ["ORTHOGONAL", "Attitude", "read_attitude", "read_sequence", "to_body", "to_space"]
@@ -30,18 +31,6 @@ class Attitude(NamedTuple):
 
     quaternion: Quaternion
     dcm: Matrix
-
-
-def _product(p: Quaternion, q: Quaternion) -> Quaternion:
-    """Return the Hamilton product p q."""
-    a, b, c, d = p
-    w, x, y, z = q
-    return (
-        a * w - b * x - c * y - d * z,
-        a * x + b * w + c * z - d * y,
-        a * y - b * z + c * w + d * x,
-        a * z + b * y - c * x + d * w,
-    )
 
 
 def _matrix_product(left: Matrix, right: Matrix) -> Matrix:
@@ -106,7 +95,7 @@ def _of_sequence(name: str, angles: tuple[Angle, ...]) -> Attitude:
     turns = [_about(_axis(index), angle) for index, angle in zip(axes, angles, strict=True)]
     first, second, third = turns if intrinsic else reversed(turns)
     return Attitude(
-        _unit(_product(_product(first.quaternion, second.quaternion), third.quaternion)),
+        _unit(hamilton(hamilton(first.quaternion, second.quaternion), third.quaternion)),
         _matrix_product(_matrix_product(first.dcm, second.dcm), third.dcm),
     )
 

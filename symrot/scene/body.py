@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from symrot.formula import tree as expression
+from symrot.formula.exact_numbers import NEGLIGIBLE
 from symrot.inertia.composite import MassProperties, Part, mass_properties
 from symrot.inertia.principal import Principal, principal_axes, require_admissible, why_not_propagable
 from symrot.inertia.shapes import SHAPES, Shape, check_dimensions
@@ -33,7 +34,6 @@ _UNTURNED: Matrix = (
     (Fraction(0), Fraction(1), Fraction(0)),
     (Fraction(0), Fraction(0), Fraction(1)),
 )
-_NEGLIGIBLE = Fraction(1, 2**200)  # as symrot.formula.exact_numbers.equal
 
 
 class Body(NamedTuple):
@@ -99,7 +99,7 @@ def _nearest_source(entries: Mapping[str, Any]) -> str:
 
 def _settled(inertia: Matrix) -> Matrix:
     """Return a tensor without the rounding of irrational rotations: negligible products are zero."""
-    limit = max(abs(inertia[i][i]) for i in range(3)) * _NEGLIGIBLE
+    limit = max(abs(inertia[i][i]) for i in range(3)) * NEGLIGIBLE
     first, second, third = (tuple(Fraction(0) if abs(x) <= limit else x for x in row) for row in inertia)
     return first, second, third  # type: ignore[return-value]
 
@@ -271,7 +271,7 @@ def _placed(properties: MassProperties, values: Mapping[str, Any], where: str, s
     if about == "fixed_point":
         x, y, z = (c - p for c, p in zip(properties.center_of_mass, point, strict=True))
         size = max(map(abs, (*properties.center_of_mass, *point)))
-        x, y, z = (Fraction(0) if abs(item) <= size * _NEGLIGIBLE else item for item in (x, y, z))
+        x, y, z = (Fraction(0) if abs(item) <= size * NEGLIGIBLE else item for item in (x, y, z))
         center = (x, y, z)
         inertia = about_point(inertia, properties.mass, center)
     inertia = _settled(inertia)

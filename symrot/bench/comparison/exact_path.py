@@ -17,6 +17,7 @@ from symrot.codegen.taylor.recurrences import recurrences
 from symrot.errors import InputError, SymrotError
 from symrot.formula import exact_numbers as number
 from symrot.formula.tree import evaluate
+from symrot.kinematics.hamilton import hamilton
 from symrot.planning.scene_kernel import EXACT_FUNCTIONS
 from symrot.propagation.compiled_models import error_blocks, formula_deviations
 from symrot.propagation.enclosures.step_limit import longest_followed
@@ -159,7 +160,7 @@ class ExactPath:
         period = self.period()
         with mpmath.workdps(DIGITS):
             first, last = self.start[self.rates :], self._state(self.t0 + period)[self.rates :]
-            turn = _product(last, [first[0], *(-x for x in first[1:])])
+            turn = hamilton(last, [first[0], *(-x for x in first[1:])])
             length = mpmath.sqrt(sum(x * x for x in turn[1:]))
             half, axis = mpmath.atan2(length, turn[0]), [x / length for x in turn[1:]]
             rows = []
@@ -168,12 +169,5 @@ class ExactPath:
                 count = mpmath.floor(t / period)
                 state = self._state(self.t0 + (t - count * period))
                 whole = [mpmath.cos(count * half), *(mpmath.sin(count * half) * x for x in axis)]
-                rows.append([*state[: self.rates], *_product(whole, state[self.rates :])])
+                rows.append([*state[: self.rates], *hamilton(whole, state[self.rates :])])
             return np.array([[float(x) for x in row] for row in rows])
-
-
-def _product(p: list[Any], q: list[Any]) -> list[Any]:
-    a, b, c, d = p
-    e, f, g, h = q
-    return [a * e - b * f - c * g - d * h, a * f + b * e + c * h - d * g, a * g - b * h + c * e + d * f,
-            a * h + b * g - c * f + d * e]  # fmt: skip

@@ -38,11 +38,6 @@ static inline dd dd_add(dd a, dd b)
     return quick_two_sum(s.hi, s.lo + t.lo);
 }
 
-static inline dd dd_negative(dd a)
-{
-    return dd_pair(-a.hi, -a.lo);
-}
-
 static inline dd dd_sub(dd a, dd b)
 {
     return dd_add(a, dd_negative(b));

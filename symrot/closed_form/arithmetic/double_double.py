@@ -15,7 +15,10 @@ from symrot.closed_form.arithmetic.pairs import pair
 from symrot.closed_form.build import Floats
 from symrot.formula import exact_numbers as number
 
-__all__ = ["NEAR", "Pair", "add", "exponential", "ln2", "multiply", "second", "two_product", "two_sum"]
+__all__ = [
+    "NEAR", "Pair", "add", "divide", "exponential", "ln2", "multiply", "normalized", "second", "square_root",
+    "subtract", "two_product", "two_sum",
+]  # fmt: skip
 
 Pair = tuple[Any, Any]
 """High and low, each an array or a float."""
@@ -46,7 +49,8 @@ def two_product(a: Any, b: Any) -> Pair:
     return product, ((high_a * high_b - product) + high_a * low_b + low_a * high_b) + low_a * low_b
 
 
-def _renewed(high: Any, low: Any) -> Pair:
+def normalized(high: Any, low: Any) -> Pair:
+    """Return the pair of the same sum whose low part is at most half a unit in the last place of its high part."""
     total = high + low
     return total, low - (total - high)
 
@@ -54,13 +58,35 @@ def _renewed(high: Any, low: Any) -> Pair:
 def add(a: Pair, b: Pair) -> Pair:
     """Return a + b, to 2^-104 of the larger of the two."""
     total, error = two_sum(a[0], b[0])
-    return _renewed(total, error + (a[1] + b[1]))
+    return normalized(total, error + (a[1] + b[1]))
+
+
+def subtract(a: Pair, b: Pair) -> Pair:
+    """Return a - b, to 2^-104 of the larger of the two."""
+    return add(a, (-b[0], -b[1]))
 
 
 def multiply(a: Pair, b: Pair) -> Pair:
     """Return a*b."""
     product, error = two_product(a[0], b[0])
-    return _renewed(product, error + (a[0] * b[1] + a[1] * b[0]))
+    return normalized(product, error + (a[0] * b[1] + a[1] * b[0]))
+
+
+def divide(a: Pair, b: Pair) -> Pair:
+    """Return a/b by long division: three quotients of doubles."""
+    first = a[0] / b[0]
+    rest = subtract(a, multiply((first, 0.0), b))
+    second = rest[0] / b[0]
+    rest = subtract(rest, multiply((second, 0.0), b))
+    return add(two_sum(first, second), (rest[0] / b[0], 0.0))
+
+
+def square_root(a: Pair) -> Pair:
+    """Return the square root of positive pairs of arrays: two Newton steps from the square root of the high part."""
+    root: Pair = (np.sqrt(a[0]), 0.0)
+    for _ in range(2):
+        root = add(root, (subtract(a, multiply(root, root))[0] / (2.0 * root[0]), 0.0))
+    return root
 
 
 @cache
@@ -104,7 +130,7 @@ def second(x: Pair) -> Pair:
         rest = lost + (total * low + rest * high) + error
         total = known + product  # of which the known one is larger
         rest = rest + (product - (total - known))
-    return _renewed(total, rest)
+    return normalized(total, rest)
 
 
 def exponential(x: Pair) -> Pair:

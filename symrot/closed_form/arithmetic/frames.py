@@ -2,13 +2,11 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import TypeVar
 
 from symrot.formula.exact_numbers import unit
 
-__all__ = ["Rows", "product", "quaternion_of", "to_axis"]
+__all__ = ["Rows", "quaternion_of", "to_axis"]
 
-Exact = TypeVar("Exact", int, Fraction)
 Rows = Sequence[Sequence[Fraction]]
 
 
@@ -22,18 +20,6 @@ def quaternion_of(r: Rows) -> tuple[Fraction, ...]:
         (r[1][0] - r[0][1], r[2][0] + r[0][2], r[1][2] + r[2][1], 1 + 2 * r[2][2] - trace),
     )
     return unit(max(candidates, key=lambda row: sum(x * x for x in row)))
-
-
-def product(a: Sequence[Exact], b: Sequence[Exact]) -> tuple[Exact, Exact, Exact, Exact]:
-    """Return the product of two quaternions, scalar first, of integers or of fractions."""
-    a0, a1, a2, a3 = a
-    b0, b1, b2, b3 = b
-    return (
-        a0 * b0 - a1 * b1 - a2 * b2 - a3 * b3,
-        a0 * b1 + a1 * b0 + a2 * b3 - a3 * b2,
-        a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1,
-        a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0,
-    )
 
 
 def to_axis(direction: Sequence[Fraction]) -> tuple[tuple[Fraction, ...], ...]:

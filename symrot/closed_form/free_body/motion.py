@@ -24,12 +24,11 @@ from symrot.closed_form.arithmetic.pairs import (
     quotient,
 )
 from symrot.closed_form.motion import ExactMotion, prepared
+from symrot.formula.exact_numbers import NEGLIGIBLE_BITS
 from symrot.inertia.principal import Principal, principal_axes
 from symrot.scene.scene import Initial
 
-__all__ = ["NEGLIGIBLE", "Defect", "FreeRigidBody", "gaps", "motion", "motion_of_tensor", "starts"]
-
-NEGLIGIBLE = 200  # bits: what is smaller is taken for zero, as in number.equal
+__all__ = ["Defect", "FreeRigidBody", "gaps", "motion", "motion_of_tensor", "starts"]
 
 
 def motion(
@@ -115,9 +114,9 @@ class FreeRigidBody:
             xx, xy, xz, yx, yy, yz, zx, zy, zz = self._axes
             rates = [xx * x + yx * y + zx * z, xy * x + yy * y + zy * z, xz * x + yz * y + zz * z]
             largest, shared = largest * self._unit, shared * self._unit
-        if largest.bit_length() <= NEGLIGIBLE:  # not even 1 is
+        if largest.bit_length() <= NEGLIGIBLE_BITS:  # not even 1 is
             return rates, shared
-        return [0 if abs(x) << NEGLIGIBLE < largest else x for x in rates], shared
+        return [0 if abs(x) << NEGLIGIBLE_BITS < largest else x for x in rates], shared
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
         """Return the motion from an initial state along the given axes."""
@@ -145,7 +144,7 @@ def gaps(i: list[int], shared: int) -> list[float]:
     differences: list[float] = []
     for k in range(3):
         difference = i[(k + 1) % 3] - i[(k + 2) % 3]
-        if abs(difference) << NEGLIGIBLE < max(i[(k + 1) % 3], i[(k + 2) % 3]):
+        if abs(difference) << NEGLIGIBLE_BITS < max(i[(k + 1) % 3], i[(k + 2) % 3]):
             difference = 0
         differences += quotient(difference, shared)
     return differences
@@ -167,7 +166,7 @@ class Defect:
         if not defect:
             return 0.0, 0.0
         widest = max(one.bit_length(), two.bit_length(), three.bit_length())
-        if defect.bit_length() + NEGLIGIBLE < widest + 2 and abs(defect) << NEGLIGIBLE < max(
+        if defect.bit_length() + NEGLIGIBLE_BITS < widest + 2 and abs(defect) << NEGLIGIBLE_BITS < max(
             abs(one), abs(two), abs(three)
         ):
             return 0.0, 0.0

@@ -12,7 +12,7 @@ Proof: ``derivations/heavy_top_motion.md``, ``derivations/pendulum.md``, ``deriv
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from symrot.closed_form.arithmetic.frames import product, quaternion_of, to_axis
+from symrot.closed_form.arithmetic.frames import quaternion_of, to_axis
 from symrot.closed_form.arithmetic.pairs import (
     SMALLEST,
     Number,
@@ -26,6 +26,7 @@ from symrot.closed_form.arithmetic.pairs import (
 from symrot.closed_form.free_body import motion as free_body
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.errors import InputError
+from symrot.kinematics.hamilton import hamilton
 from symrot.scene.scene import Initial
 
 __all__ = ["Frame", "Top", "motion", "starts"]
@@ -165,7 +166,7 @@ class Frame:
             return attitude(quaternion)
         integers, shared = over_common_denominator(quaternion)
         if self._before is not None:
-            integers, shared = list(product(self._before[0], integers)), shared * self._before[1]
+            integers, shared = list(hamilton(self._before[0], integers)), shared * self._before[1]
         if self._after is not None:
-            integers, shared = list(product(integers, self._after[0])), shared * self._after[1]
+            integers, shared = list(hamilton(integers, self._after[0])), shared * self._after[1]
         return on_grid([(x, shared) for x in integers])

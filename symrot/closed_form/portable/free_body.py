@@ -1,5 +1,6 @@
 """A free body by mpmath and NumPy; the formulas are those of :file:`free_body.h`."""
 
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -8,7 +9,8 @@ from mpmath import mp, mpf
 
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import DIGITS, TERMS, Phase, multiples, number, power_of_two, turned_by, vector
-from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, matrix_quaternion, product, unit
+from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, matrix_quaternion, unit
+from symrot.kinematics.hamilton import hamilton
 
 __all__ = ["PortableFreeBody"]
 
@@ -45,7 +47,7 @@ class PortableFreeBody:
         self.scale = power_of_two(fastest)
         w = [mpf(0) if abs(x) < NEGLIGIBLE * self.scale else x / self.scale for x in w]
         frame = Axes(axes)
-        start = product(unit(vector(quaternion)), frame.quaternion)
+        start = hamilton(unit(vector(quaternion)), frame.quaternion)
         if exact is None:
             differences, defect = _differences(inertia, omega, w)
             defect /= self.scale**2
@@ -57,20 +59,20 @@ class PortableFreeBody:
             return
         self._elliptic(moments, w, differences, defect, start, frame)
 
-    def _steady(self, w: list[Any], start: list[Any], frame: Axes) -> None:
+    def _steady(self, w: list[Any], start: Sequence[Any], frame: Axes) -> None:
         self.regime = "steady"
         speed = mp.sqrt(sum(x * x for x in w))
         axis = [mpf(0), *(x / speed if speed else mpf(0) for x in w)]
         back = conjugate(frame.quaternion)
         zero = [mpf(0)] * 4
-        self.attitude = mapping([product(start, back), product(product(start, axis), back), zero, zero])
+        self.attitude = mapping([hamilton(start, back), hamilton(hamilton(start, axis), back), zero, zero])
         self.omega = np.array(
             [[float(sum(m * x for m, x in zip(row, w, strict=True)) * self.scale)] for row in frame.matrix]
         )
         self.turning = Phase.of(speed / (4 * mp.pi))
 
     def _elliptic(
-        self, moments: list[Any], w: list[Any], differences: list[Any], defect: Any, start: list[Any], frame: Axes
+        self, moments: list[Any], w: list[Any], differences: list[Any], defect: Any, start: Sequence[Any], frame: Axes
     ) -> None:
         axis, direction, s = _canonical(moments, w, differences, defect)
         inertia = [moments[k] for k in axis]
@@ -105,10 +107,10 @@ class PortableFreeBody:
         ]
         rows = [[direction[k] if axis[k] == j else 0 for j in range(3)] for k in range(3)]
         renaming = matrix_quaternion(rows)
-        left = product(start, conjugate(product(unit(x), renaming)))
-        right = product(renaming, conjugate(frame.quaternion))
+        left = hamilton(start, conjugate(hamilton(unit(x), renaming)))
+        right = hamilton(renaming, conjugate(frame.quaternion))
         basis = [[mpf(int(i == j)) for j in range(4)] for i in range(4)]
-        self.attitude = mapping([product(product(left, e), right) for e in basis])
+        self.attitude = mapping([hamilton(hamilton(left, e), right) for e in basis])
         signs = (1, s, 1)
         self.momentum = [float(signs[i] * amplitudes[i] / total) for i in range(3)]
         rates = [signs[i] * direction[i] * amplitudes[i] / inertia[i] * self.scale for i in range(3)]

@@ -10,7 +10,8 @@ from mpmath import mp, mpc, mpf
 
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import DIGITS, TERMS, Phase, multiples, number, power_of_two, vector
-from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, product, unit
+from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, unit
+from symrot.kinematics.hamilton import hamilton
 
 __all__ = ["PortableHeavyTop"]
 
@@ -215,7 +216,7 @@ class PortableHeavyTop:
         zero, back = mpf(0), conjugate(self.frame.quaternion)
         columns = [[a.real, zero, zero, a.imag], [-a.imag, zero, zero, a.real],
                    [zero, b.real, b.imag, zero], [zero, -b.imag, b.real, zero]]  # fmt: skip
-        self.attitude = mapping([product(product(self.space, x), back) for x in columns])
+        self.attitude = mapping([hamilton(hamilton(self.space, x), back) for x in columns])
         turn, rows = b * mp.conj(a), self.frame.matrix
         self.omega = np.array([[float((r[0] * turn.real + r[1] * turn.imag) * self.scale),
                                 float((r[1] * turn.real - r[0] * turn.imag) * self.scale),

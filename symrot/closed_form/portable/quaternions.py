@@ -9,19 +9,9 @@ from mpmath import mp, mpf
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import vector
 
-__all__ = ["UNIT", "Axes", "conjugate", "mapping", "matrix_quaternion", "product", "unit"]
+__all__ = ["UNIT", "Axes", "conjugate", "mapping", "matrix_quaternion", "unit"]
 
 UNIT = [mpf(1), mpf(0), mpf(0), mpf(0)]
-
-
-def product(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
-    """Return the product of two quaternions, scalar first."""
-    return [
-        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
-        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
-        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
-    ]
 
 
 def conjugate(a: Sequence[Any]) -> list[Any]:

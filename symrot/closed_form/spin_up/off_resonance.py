@@ -16,6 +16,7 @@ from fractions import Fraction
 from symrot.closed_form.build import Floats
 from symrot.closed_form.spin_up.series import NEAR, Series
 from symrot.formula import exact_numbers as number
+from symrot.kinematics.hamilton import hamilton
 
 __all__ = ["FIXED", "ONE", "Quaternion", "Sweep", "about_third", "conjugate", "fixed", "product", "rounded"]
 
@@ -48,14 +49,9 @@ def fixed(values: Sequence[Fraction]) -> Quaternion:
 
 def product(a: Quaternion, *others: Quaternion) -> Quaternion:
     """Return the product of unit quaternions."""
-    for b0, b1, b2, b3 in others:
-        a0, a1, a2, a3 = a
-        a = (
-            a0 * b0 - a1 * b1 - a2 * b2 - a3 * b3 >> FIXED,
-            a0 * b1 + a1 * b0 + a2 * b3 - a3 * b2 >> FIXED,
-            a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1 >> FIXED,
-            a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0 >> FIXED,
-        )
+    for b in others:
+        q0, q1, q2, q3 = hamilton(a, b)
+        a = (q0 >> FIXED, q1 >> FIXED, q2 >> FIXED, q3 >> FIXED)
     return a
 
 

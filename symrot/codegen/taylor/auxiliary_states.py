@@ -15,6 +15,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from symrot.codegen.taylor.recurrences import Recurrences, Series
+from symrot.formula.polynomial import Monomial, Polynomial, constant, generator, products_of_monomials
 from symrot.formula.tree import Node, children
 
 __all__ = ["with_companions"]
@@ -22,9 +23,6 @@ __all__ = ["with_companions"]
 QUATERNION = ("q0", "q1", "q2", "q3")
 MOST_COMPANIONS, MOST_TERMS = 9, 200  # three directions; beyond that nothing is gained
 ONE: Node = ("number", Fraction(1))
-
-Monomial = tuple[tuple[int, int], ...]  # variables with their powers, sorted
-Polynomial = dict[Monomial, Fraction]
 
 
 class _Open(Exception):
@@ -55,24 +53,10 @@ def with_companions(system: Recurrences) -> Recurrences:
 
 
 def _times(a: Polynomial, b: Polynomial) -> Polynomial:
-    product: Polynomial = {}
-    for left, x in a.items():
-        for right, y in b.items():
-            powers = dict(left)
-            for variable, power in right:
-                powers[variable] = powers.get(variable, 0) + power
-            monomial = tuple(sorted(powers.items()))
-            product[monomial] = product.get(monomial, Fraction(0)) + x * y
-    if len(product) > MOST_TERMS:
+    """Return the product; raise _Open if it has more monomials than are worth it, before any of them cancel."""
+    if len(a.terms) * len(b.terms) > MOST_TERMS and len(products_of_monomials(a, b)) > MOST_TERMS:
         raise _Open
-    return {monomial: x for monomial, x in product.items() if x}
-
-
-def _plus(a: Polynomial, b: Polynomial) -> Polynomial:
-    total = dict(a)
-    for monomial, x in b.items():
-        total[monomial] = total.get(monomial, Fraction(0)) + x
-    return {monomial: x for monomial, x in total.items() if x}
+    return a * b
 
 
 class _Closure:
@@ -82,7 +66,7 @@ class _Closure:
         self.polynomials: dict[int, Polynomial | None] = {}
         numbers = [system.states.index(name) for name in QUATERNION]
         self.attitude = {self.variable("state", number) for number in numbers}
-        self.norm: Polynomial = {((q, 2),): Fraction(1) for q in self.attitude}
+        self.norm = Polynomial({((q, 2),): Fraction(1) for q in self.attitude})
         if self.derivative(self.norm):
             raise _Open
         self.companions: list[Polynomial] = []
@@ -98,20 +82,20 @@ class _Closure:
         return self.variables.index((kind, what))
 
     def single(self, kind: str, what: Any) -> Polynomial:
-        return {((self.variable(kind, what), 1),): Fraction(1)}
+        return generator(self.variable(kind, what))
 
     def constant(self, node: Node) -> Polynomial:
         """Return a constant formula as a polynomial; a subformula that is not a polynomial becomes a new variable."""
         if node[0] == "number":
-            return {(): node[1]} if node[1] else {}
+            return constant(node[1])
         if node[0] not in ("neg", "*", "+", "-"):
             return self.single("constant", node)
         parts = [self.constant(child) for child in children(node)]
         if node[0] == "neg":
-            return _times(parts[0], {(): Fraction(-1)})
+            return _times(parts[0], constant(-1))
         if node[0] == "*":
             return _times(*parts)
-        return _plus(parts[0], parts[1] if node[0] == "+" else _times(parts[1], {(): Fraction(-1)}))
+        return parts[0] + (parts[1] if node[0] == "+" else _times(parts[1], constant(-1)))
 
     def polynomial(self, i: int) -> Polynomial | None:
         """Return a series as a polynomial of states, clocks and constants, or None."""
@@ -133,36 +117,36 @@ class _Closure:
     def sum(self, s: Series, only: Iterable[int] | None = None) -> Polynomial | None:
         """Return a sum, or that of some of its operands alone, as a polynomial."""
         *weights, constant = s.weights
-        total = self.constant(constant) if constant is not None and only is None else {}
+        total = self.constant(constant) if constant is not None and only is None else Polynomial({})
         for operand, weight in zip(s.operands, weights, strict=True):
             if only is None or operand in only:
                 part = self.polynomial(operand)
                 if part is None or weight is None:
                     return None
-                total = _plus(total, _times(part, self.constant(weight)))
+                total = total + _times(part, self.constant(weight))
         return total
 
     def rate(self, variable: int) -> Polynomial:
         """Return the rate of a variable along the motion."""
         kind, what = self.variables[variable]
         if kind == "constant":
-            return {}
+            return Polynomial({})
         if kind == "clock":
             s = self.series[what]
             assert s.weights[0] is not None
             partner = _times(self.single("clock", s.operands[0]), self.constant(s.weights[0]))
-            return _times(partner, {(): Fraction(s.sign)})
+            return _times(partner, constant(s.sign))
         polynomial = self.sum(self.system.rates[what])
         if polynomial is None:
             raise _Open
         return polynomial
 
     def derivative(self, form: Polynomial) -> Polynomial:
-        total: Polynomial = {}
-        for monomial, x in form.items():
+        total = Polynomial({})
+        for monomial, x in form.terms.items():
             for variable, power in monomial:
                 rest = tuple((v, p - (v == variable)) for v, p in monomial if (v, p) != (variable, 1))
-                total = _plus(total, _times({rest: x * power}, self.rate(variable)))
+                total = total + _times(Polynomial({rest: x * power}), self.rate(variable))
         return total
 
     def is_inner(self, variable: int) -> bool:
@@ -172,8 +156,8 @@ class _Closure:
         """Return whether a form is made of the attitude, functions of time and constants, and is no mere state."""
         if form is None:
             return False
-        free = [v for monomial in form for v, _ in monomial if self.variables[v][0] != "constant"]
-        return all(map(self.is_inner, free)) and max(map(self.degree, form), default=0) > 1
+        free = [v for monomial in form.terms for v, _ in monomial if self.variables[v][0] != "constant"]
+        return all(map(self.is_inner, free)) and max(map(self.degree, form.terms), default=0) > 1
 
     def degree(self, monomial: Monomial) -> int:
         """Return the degree in the attitude."""
@@ -181,8 +165,8 @@ class _Closure:
 
     def split(self, form: Polynomial) -> list[tuple[Node, int | None, Polynomial]]:
         """Return a form as constants times states times what holds the attitude and functions of time."""
-        groups: dict[Monomial, Polynomial] = {}
-        for monomial, x in form.items():
+        groups: dict[Monomial, dict[Monomial, Fraction]] = {}
+        for monomial, x in form.terms.items():
             outer = tuple((v, p) for v, p in monomial if not self.is_inner(v))
             groups.setdefault(outer, {})[tuple((v, p) for v, p in monomial if self.is_inner(v))] = x
         parts = []
@@ -196,7 +180,7 @@ class _Closure:
                     state = what
                 for _ in range(power if kind == "constant" else 0):
                     constant = what if constant == ONE else ("*", constant, what)
-            parts.append((constant, state, inner))
+            parts.append((constant, state, Polynomial(inner)))
         return parts
 
     # -------------------------------------------------------------------------------------------- closing
@@ -206,25 +190,25 @@ class _Closure:
 
         For a unit quaternion all terms of a form can be given one degree; of degree two, they have a trace to spare.
         """
-        degrees = {self.degree(monomial) for monomial in inner}
+        degrees = {self.degree(monomial) for monomial in inner.terms}
         top = max(degrees)
         if any((top - degree) % 2 for degree in degrees):
             raise _Open
-        whole: Polynomial = {}
-        for monomial, x in inner.items():
-            part: Polynomial = {monomial: x}
+        whole = Polynomial({})
+        for monomial, x in inner.terms.items():
+            part = Polynomial({monomial: x})
             for _ in range((top - self.degree(monomial)) // 2):
                 part = _times(part, self.norm)
-            whole = _plus(whole, part)
+            whole = whole + part
         spare = Fraction(0)
-        if top == 2 and all(variable in self.attitude for monomial in inner for variable, _ in monomial):
-            spare = sum((whole.get(square, Fraction(0)) for square in self.norm), start=Fraction(0)) / 4
-            whole = _plus(whole, _times(self.norm, {(): -spare}))
-            inner = _plus(inner, {(): -spare})
+        if top == 2 and all(variable in self.attitude for monomial in inner.terms for variable, _ in monomial):
+            spare = sum((whole.terms.get(square, Fraction(0)) for square in self.norm.terms), start=Fraction(0)) / 4
+            whole = whole + _times(self.norm, constant(-spare))
+            inner = inner + constant(-spare)
         if not whole:
             return None, Fraction(0), spare
-        lead = whole[min(whole)]
-        key = frozenset((monomial, x / lead) for monomial, x in whole.items())
+        lead = whole.terms[min(whole.terms)]
+        key = frozenset((monomial, x / lead) for monomial, x in whole.terms.items())
         if key not in self.known:
             if len(self.companions) == MOST_COMPANIONS:
                 raise _Open
@@ -235,9 +219,9 @@ class _Closure:
 
     def terms(self, form: Polynomial) -> list[_Term]:
         result = []
-        for constant, state, inner in self.split(form):
+        for weight, state, inner in self.split(form):
             index, number, spare = self.adjoin(inner)
-            result += [_Term(one, x, constant, state) for one, x in ((index, number), (None, spare)) if x]
+            result += [_Term(one, x, weight, state) for one, x in ((index, number), (None, spare)) if x]
         return result
 
     def seek(self, i: int) -> None:
@@ -246,7 +230,7 @@ class _Closure:
         if i in self.replaced or s.rule not in ("sum", "product"):
             return
         if self.of_attitude(self.polynomial(i)):
-            self.replaced[i] = self.terms(self.polynomial(i) or {})
+            self.replaced[i] = self.terms(self.polynomial(i) or Polynomial({}))
         elif s.rule == "sum":
             self.seek_in(s)
         else:
@@ -260,7 +244,7 @@ class _Closure:
             and not any(self.of_attitude(self.polynomial(factor)) for factor in self.series[i].operands)
         }  # fmt: skip
         if alone and s not in self.parts:
-            self.parts[s] = alone, self.terms(self.sum(s, alone) or {})
+            self.parts[s] = alone, self.terms(self.sum(s, alone) or Polynomial({}))
         for operand in s.operands:
             if operand in alone:
                 continue
@@ -283,7 +267,7 @@ class _Closure:
     def seed(self, form: Polynomial) -> Node:
         """Return a form as a formula of states and time: terms of one factor of time together."""
         groups: dict[Monomial, dict[Fraction, list[Node]]] = {}
-        for monomial, x in sorted(form.items()):
+        for monomial, x in sorted(form.terms.items()):
             clocks = tuple((v, p) for v, p in monomial if v not in self.attitude)
             product = _product(self.symbol(v) for v, p in monomial if v in self.attitude for _ in range(p))
             size = abs(x)

@@ -17,7 +17,12 @@ __all__ = ["invariant_definitions", "projectable"]
 
 QUATERNION = tuple(f"q{i}" for i in range(4))
 NORM = "q0*q0 + q1*q1 + q2*q2 + q3*q3"
-IN_PAIRS = {"+", "-", "*", "/", "neg", "sqrt", "number", "symbol"}  # operations that exist for pairs of doubles
+_OPERATIONS = {  # on pairs of doubles, in C
+    "+": "dd_add_fast", "-": "symrot_pair_subtract", "*": "symrot_pair_multiply", "/": "symrot_pair_divide",
+    "neg": "dd_negative", "sqrt": "symrot_pair_root",
+}  # fmt: skip
+IN_PAIRS = {*_OPERATIONS, "number", "symbol"}
+"""Operations and operands that exist for pairs of doubles."""
 
 
 def projectable(program: Program, outputs: Sequence[str]) -> list[str]:
@@ -44,8 +49,8 @@ def invariant_definitions(
     norm = set(QUATERNION) <= set(states)
     tape = tape_of(program, projectable(program, outputs), [parse(NORM)] if norm else [])
     places = {"t": "t", **{name: f"y[{i}]" for i, name in enumerate(states)}}
-    places |= {name: f"symrot_pair_of(p[{2 * i}], p[{2 * i + 1}])" for i, name in enumerate(parameters)}
-    pairs = [f"const symrot_pair v{i} = {_in_pairs(op, places)};" for i, op in enumerate(tape.operations)]
+    places |= {name: f"dd_pair(p[{2 * i}], p[{2 * i + 1}])" for i, name in enumerate(parameters)}
+    pairs = [f"const dd v{i} = {_in_pairs(op, places)};" for i, op in enumerate(tape.operations)]
     lines = [
         f"#define SYMROT_INVARIANTS {len(tape.outputs)}",
         f"#define SYMROT_INVARIANT_PARAMETERS {2 * len(parameters)}",
@@ -54,8 +59,8 @@ def invariant_definitions(
     ]
     if tape.outputs:
         lines += [
-            "static SYMROT_APART void symrot_invariants(symrot_pair t, const symrot_pair *y, const double *p,",
-            "    symrot_pair *value, double (*gradient)[SYMROT_STATES])",
+            "static SYMROT_APART void symrot_invariants(dd t, const dd *y, const double *p,",
+            "    dd *value, double (*gradient)[SYMROT_STATES])",
             "{",
             "    (void)t;",
             "    (void)p;",
@@ -71,11 +76,10 @@ def invariant_definitions(
 def _in_pairs(op: Operation, places: dict[str, str]) -> str:
     if op.kind == "number":
         high = float(op.value)
-        return f"symrot_pair_of({high!r}, {float(op.value - Fraction(high))!r})"
+        return f"dd_pair({high!r}, {float(op.value - Fraction(high))!r})"
     if op.kind == "symbol":
         return places[op.value]
-    name = {"+": "add", "-": "subtract", "*": "multiply", "/": "divide", "neg": "negate", "sqrt": "root"}[op.kind]
-    return f"symrot_pair_{name}({', '.join(f'v{i}' for i in op.operands)})"
+    return f"{_OPERATIONS[op.kind]}({', '.join(f'v{i}' for i in op.operands)})"
 
 
 def _gradient(tape: Tape, output: int, states: Sequence[str]) -> list[str]:
@@ -108,7 +112,7 @@ def _varying(tape: Tape, needed: Sequence[int], states: set[str]) -> set[int]:
 
 def _shares(op: Operation, index: int, own: str) -> list[str]:
     """Return the adjoint that an operation adds to each of its operands, as C."""
-    values = [f"v{i}.high" for i in op.operands]
+    values = [f"v{i}.hi" for i in op.operands]
     if op.kind == "+":
         return [own, own]
     if op.kind == "-":
@@ -118,5 +122,5 @@ def _shares(op: Operation, index: int, own: str) -> list[str]:
     if op.kind == "*":
         return [f"{own}*{values[1]}", f"{own}*{values[0]}"]
     if op.kind == "/":
-        return [f"{own}/{values[1]}", f"-{own}*v{index}.high/{values[1]}"]
-    return [f"0.5*{own}/v{index}.high"]  # sqrt
+        return [f"{own}/{values[1]}", f"-{own}*v{index}.hi/{values[1]}"]
+    return [f"0.5*{own}/v{index}.hi"]  # sqrt

@@ -266,15 +266,15 @@ class _Jet:
             if s.weights not in turns:
                 turn = turns[s.weights] = f"turn_{name}_{lane}"
                 a, b = f"V_LANE({rates}, {lane})", f"V_LANE({offsets}, {lane})" if offsets else "0.0"
-                lines.append(f"const symrot_pair {turn} = symrot_pair_turn({a}, {b}, t, t_low);")
+                lines.append(f"const dd {turn} = symrot_pair_turn({a}, {b}, t, t_low);")
             for function in (s.function, self.layout.series[s.operands[0]].function):
-                value = f"const double {_of(function, turns[s.weights])} = {function}({turns[s.weights]}.high);"
+                value = f"const double {_of(function, turns[s.weights])} = {function}({turns[s.weights]}.hi);"
                 lines += [value] if value not in lines else []
         lanes = []
         for s in series:
             turn, partner = turns[s.weights], self.layout.series[s.operands[0]].function
             sign = "-" if s.sign < 0 else "+"
-            lanes.append(f"{_of(s.function, turn)} {sign} {turn}.low*{_of(partner, turn)}")
+            lanes.append(f"{_of(s.function, turn)} {sign} {turn}.lo*{_of(partner, turn)}")
         return [*lines, f"{name} = V_SET({', '.join(lanes)});"]
 
     def _lane_of(self, series: int) -> str:

@@ -41,6 +41,7 @@ __all__ = ["FLAGS", "integration", "order_for", "refusal", "step_tail", "transla
 FLAGS = (*compiled.FLAGS, *compiled.SCHEDULED)
 STEPS_OF_ALL = 4.0  # a span of so many steps allows each of them the whole tolerance, see step_tail
 FILES = {
+    "error_free.h": "closed_form/arithmetic/error_free.h",
     **{
         name: f"propagation/steppers/{name}" for name in ("taylor.h", "series.h", "pairs.h", "projection.c", "taylor.c")
     },
@@ -136,7 +137,8 @@ def translation_unit(
     stepper = own["taylor.c"].replace(PROJECTION, projection)
     bounds = enclosure_source(program, order, blocks) if enclosed else NO_ENCLOSURE
     stepper = stepper.replace(ENCLOSURE, own["enclosure.h"])
-    parts = (own["taylor.h"], own["pairs.h"], definitions, own["series.h"], invariants, own["disc.h"], bounds, stepper)
+    arithmetic = (own["taylor.h"], own["error_free.h"], own["pairs.h"])
+    parts = (*arithmetic, definitions, own["series.h"], invariants, own["disc.h"], bounds, stepper)
     return "\n".join(parts)
 
 

@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from symrot.closed_form.arithmetic.double_double import normalized, two_sum
+
 __all__ = ["Instant"]
 
 Floats = NDArray[np.float64]
@@ -29,12 +31,9 @@ class Instant(NamedTuple):
         """Return a later instant; several numbers of seconds are added."""
         high, low = self
         for second in seconds:
-            total = high + second
-            part = total - high
-            low += (high - (total - part)) + (second - part)  # the rounding error of the sum
-            high = total
-        total = high + low
-        return Instant(total, low - (total - high))
+            high, error = two_sum(high, second)
+            low += error
+        return Instant(*normalized(high, low))
 
     def __sub__(self, other: "Instant") -> float:
         """Return the seconds from another instant to this one."""
