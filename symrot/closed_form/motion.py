@@ -26,8 +26,9 @@ _bound: dict[str, _Functions] = {}
 
 
 class ExactMotion(ABC):
-    """Interface of a motion in closed form, which is evaluated at any time. Times are counted from the initial state,
-    s.
+    """Interface of a motion in closed form, which is evaluated at any time.
+
+    Times are counted from the initial state, s.
     """
 
     regime: str

@@ -38,7 +38,7 @@ class ClosedForm(NamedTuple):
     starts: Callable[[Scene], Starts]  # its motions share constants
     library: str  # name of its C files, see symrot.closed_form.build; "" if it has no C files
     derivation: str  # the derivation that proves it
-    axis: Callable[[Scene], int | None] = lambda scene: None  # function that returns the body axis of the motion, if the motion has one
+    axis: Callable[[Scene], int | None] = lambda scene: None  # body axis of the motion, if any
 
     def motion(self, scene: Scene) -> Exact:
         """Return the motion of a scene in this closed form, from the scene's initial state."""

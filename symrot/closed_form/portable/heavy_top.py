@@ -16,9 +16,7 @@ from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, pr
 __all__ = ["PortableHeavyTop"]
 
 SWITCH = 0.7  # above this modulus, theta functions are summed by their imaginary transforms
-EQUAL = (
-    mpf(10) ** -45
-)  # closer roots count as equal: inputs have 31 digits, distances of roots half as many
+EQUAL = mpf(10) ** -45  # closer roots count as equal: inputs have 31 digits, distances of roots half as many
 NOTHING = mpf(10) ** -31  # relative to alpha or beta
 
 
