@@ -1,4 +1,4 @@
-"""Choose the method that follows a motion, and give the reason."""
+"""Choice of the method that follows a motion, with the reason for it."""
 
 from typing import NamedTuple
 
@@ -22,7 +22,7 @@ METHODS = {
 
 
 class Choice(NamedTuple):
-    """A method, the reason for it and, if it is ``exact``, the closed form of the motion."""
+    """The chosen method, the reason for it and, for the method ``exact``, the closed form of the motion."""
 
     method: str
     reason: str
@@ -30,7 +30,10 @@ class Choice(NamedTuple):
 
 
 def _automatic(plan: Plan) -> Choice:
-    """Return the first method that fits: none for a constant motion, a closed form, Taylor, Dormand-Prince, SciPy."""
+    """Return the first method that can follow the motion of a plan.
+
+    The order is: constant (no state to integrate), closed form, Taylor series, Dormand-Prince, SciPy.
+    """
     if not plan.states:
         return Choice("constant", "the plan leaves no state to integrate")
     if form := exact_form(plan.scene):
@@ -48,7 +51,12 @@ EXTERNAL_TORQUE = Choice("dop853", "a torque that is no formula has no Taylor se
 
 
 def choose_method(plan: Plan, method: str = "auto") -> Choice:
-    """Return the method for a plan.
+    """Return the method for a plan: the first one that fits for ``"auto"``, otherwise the named one.
+
+    Raises ------ InputError
+        If there is no such method.
+    CompilerError
+        If the method needs a compiler and there is none.
 
     Raises
     ------

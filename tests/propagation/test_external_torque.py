@@ -187,7 +187,7 @@ def test_what_the_function_raises_comes_out():
         (([0, 1], [[1, 2, 3], [1, 2, math.inf]]), "finite numbers"),
         (([0, 2, 1, 3], [[1, 2, 3]] * 4), "rising times"),
         (([0, 1, 1, 3], [[1, 2, 3]] * 4), "twice the same at switching times alone"),
-        (([0, 1], [[1, 2, 3]] * 2), r"the table covers 0.0 to 1.0 s, asked for 3.0 s"),
+        (([0, 1], [[1, 2, 3]] * 2), r"the table covers 0.0 to 1.0 s, got the time 3.0 s"),
     ],
 )  # fmt: skip
 def test_a_torque_that_cannot_be_used_is_refused(torque, words):

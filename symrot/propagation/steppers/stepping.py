@@ -216,7 +216,7 @@ class Recording(ABC):
         outside = ~((flat >= self.span[0]) & (flat <= self.span[1]))
         if outside.any():
             low, high, asked = (time + self.epoch for time in (*self.span, float(flat[outside][0])))
-            raise InputError(f"the motion is known from {low} to {high} s, asked for {asked} s")
+            raise InputError(f"the motion is known from {low} to {high} s, got the time {asked} s")
         states = np.empty((len(flat), len(self._y0)))
         self._fill(flat, states)
         states[flat == self._t0] = self._y0
