@@ -41,7 +41,7 @@ CALLBACK = ctypes.CFUNCTYPE(
 )  # fmt: skip
 SAMPLES_PER_STEP = 8.0  # samples of a table in one step: a longer step could pass over features of the samples
 DEFECT = 1e4  # times the error allowed in a step: a larger deviation shows that the step missed a feature inside
-BEND = 2.0**-50  # relative to the torque: rounding of samples bends their spline by as much, from one sample to the next
+BEND = 2.0**-50  # relative to the torque: rounding of samples bends their spline by as much, sample to sample
 OVERSHOOT = 100.0  # times the largest sample: a spline with larger values does not represent the torque
 MOST_STEPS = 30_000_000  # limit of steps under a table, some 20 s; for functions it is stepping.MAX_STEPS
 UNKNOWN = (

@@ -46,7 +46,7 @@ def _automatic(plan: Plan) -> Choice:
     return Choice("taylor", f"the torque is smooth{between}, and a C compiler is there")
 
 
-EXTERNAL_TORQUE = Choice("dop853", "a torque that is no formula has no Taylor series")
+EXTERNAL_TORQUE = Choice("dop853", "a torque without a formula has no Taylor series")
 """The method for motions under a torque that is no formula."""
 
 
@@ -67,7 +67,7 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
     """
     if plan.scene.table is not None:
         if method not in ("auto", "dop853"):
-            raise InputError(f"method: expected 'auto' or 'dop853' for a torque that is no formula, got {method!r}")
+            raise InputError(f"method: expected 'auto' or 'dop853' for a torque without a formula, got {method!r}")
         return EXTERNAL_TORQUE
     if method == "auto":
         return _automatic(plan)

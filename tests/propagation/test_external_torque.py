@@ -198,7 +198,7 @@ def test_a_torque_that_cannot_be_used_is_refused(torque, words):
 @pytest.mark.parametrize(
     "more, words",
     [
-        ({"method": "taylor"}, "expected 'auto' or 'dop853' for a torque that is no formula, got 'taylor'"),
+        ({"method": "taylor"}, "expected 'auto' or 'dop853' for a torque without a formula, got 'taylor'"),
         ({"switching_times": [math.inf]}, "switching_times: expected finite times"),
         ({"switching_times": "soon"}, "switching_times: expected finite times"),
         ({"torque_frame": "orbit"}, "torque_frame: expected 'body' or 'space', got 'orbit'"),

@@ -221,7 +221,7 @@ class _Search:
         self.library, self.formulas = _library(str(path)), formulas
         self.p = (ctypes.c_double * len(p))(*p)
         self.state = ctypes.create_string_buffer(self.library.bytes)
-        self.arrived: set[tuple[int, float]] = set()  # events that are zero at an edge between two pieces, with the time of the edge
+        self.arrived: set[tuple[int, float]] = set()  # events that are zero at an edge, and its time
         self.again, self.spent, self.allowed = False, 0.0, MOST_OPERATIONS
 
     def entries(self, piece: Piece) -> list[list[float]]:
@@ -420,7 +420,7 @@ def _settled(
         if not before and not after:
             continue  # the formula is zero throughout: no event
         rests = abs(end - start) > LONG * abs(last - t0)
-        arrived = bool(before) and (event, start) in searcher.arrived  # the formula stays zero, as the rate of a wheel that friction stops
+        arrived = bool(before) and (event, start) in searcher.arrived  # the formula stays zero
         near = 4 * NEAR * max(abs(start), abs(last - t0))
         if arrived and any(each.event == event and abs(each.t - start) <= near for each in zeros):
             continue  # the crossing was already listed, within rounding of the edge

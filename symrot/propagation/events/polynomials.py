@@ -139,8 +139,8 @@ def fitted(
     if depth == 0:
         accuracy = accuracy * size.max(axis=0)
     rate = np.abs(values[:, :, : blocks[1]]).max(axis=(1, 2)) if scales[0] == 0.0 else np.zeros(len(half))
-    doubt = EPS * (NOISE + rate * np.abs(times).max(axis=1))[:, None] * size  # a phase cannot be more accurate than the time
-    series[np.abs(series) < 0.25 * EPS * size[:, None, :]] = 0.0  # a coefficient that is only rounding error would grow outside the piece
+    doubt = EPS * (NOISE + rate * np.abs(times).max(axis=1))[:, None] * size  # a phase is as inaccurate as the time
+    series[np.abs(series) < 0.25 * EPS * size[:, None, :]] = 0.0  # rounding errors would grow outside
     powers = np.einsum("mk,nki->nmi", to_powers, series)
     slope = np.abs(powers[:, 1]) / np.abs(half)[:, None]
     doubt = doubt + EPS * np.abs(times).max(axis=1)[:, None] * slope  # the time itself is rounded
