@@ -236,8 +236,9 @@ def _unit(q: list[float]) -> tuple[Fraction, ...]:
 
 
 def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None) -> Initial:
-    """Return the exact initial state for a call of a propagator; an argument that is None has the value of the
-    scene.
+    """Return the exact initial state for a call of a propagator.
+
+    An argument that is None has the value of the scene.
     """
     initial = scene.initial
     if omega is not None:

@@ -66,7 +66,7 @@ class AxialMotion:
         """
         if quaternion and not self.has_attitude:
             raise InputError(
-                "the attitude of a body that is driven about its axis and turns across it too has another closed form, "
+                "the attitude of a body that is driven about its axis and rotates across it too has another closed form, "
                 "that of symrot.closed_form.spin_up.motion, and none with damping"
             )
         times = times_of(t)
@@ -162,7 +162,7 @@ def motion(
     Raises
     ------
     InputError
-        If the body turns across the axis without being symmetric about it, or a number is outside its domain.
+        If the body rotates across the axis without being symmetric about it, or a number is outside its domain.
     """
     return Driven(inertia, axis, torque, damping, damping_across).motion(omega0, quaternion0)
 
@@ -211,7 +211,7 @@ class Driven:
             raise InputError(f"expected a quaternion that is not zero, got {list(quaternion0)}")
         if (rates[axis - 2] or rates[axis - 1]) and not self._symmetric:
             raise InputError(
-                "a body that turns across the driven axis must be symmetric about it, got moments "
+                "a body that rotates across the driven axis must be symmetric about it, got moments "
                 f"{[float(x) for x in self._moments]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
             )
         return self.moving(rates, [float(x) for x in number.unit([Fraction(x) for x in components])])
