@@ -57,13 +57,6 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
 
     Those motions leave the range of the batch arithmetic and have to be evaluated one by one.
 
-    Parameters ---------- batch : Batch times : array, shape (m,) or (n, m)
-        s, from the start.
-    omega, quaternion : arrays, shapes (n, m, 3) and (n, m, 4), or None
-        Written, one motion after the other in memory.
-    workers : int
-        Number of threads; each computes a part of the motions.
-
     Parameters
     ----------
     batch : Batch
@@ -72,7 +65,7 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
     omega, quaternion : arrays, shapes (n, m, 3) and (n, m, 4), or None
         Written, one motion after the other in memory.
     workers : int
-        Threads; each does its share.
+        Number of threads; each computes a part of the motions.
     """
     run, prepare, at, record, table = _linked(batch)
     arguments = [None if values is None else np.ascontiguousarray(values) for values in batch.arguments]

@@ -87,8 +87,8 @@ class Ensemble:
         """Attitude, unit, scalar first, body to space, shape (n, m, 4)."""
         if self._quaternion is None:
             raise InputError(
-                "the attitude was not computed, since neither a torque nor the output of the scene asks for it: "
-                'expected "quaternion" among output.quantities'
+                "the attitude was not computed, since neither a torque nor the output of the scene needs it: "
+                'add "quaternion" to output.quantities'
             )
         return self._quaternion
 

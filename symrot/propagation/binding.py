@@ -29,24 +29,12 @@ def two_doubles(top: int, bottom: int) -> tuple[float, ...]:
 class Binding:
     """Parameters of a kernel as functions of the initial state; all other numbers are evaluated once.
 
-    Parameters ---------- parameters : pairs of name and formula
-        Parameters of a :class:`symrot.planning.scene_kernel.SceneKernel`.
-    plan : Plan
-        Plan of the scene, with any initial state.
-    rounded : function
-        From a ratio of integers to the doubles that represent it.
-    known : mapping
-        More constants of the formulas, by name.
-
-    Raises ------ OverflowError
-        If a parameter is beyond all doubles; a call raises it too.
-
     Parameters
     ----------
     parameters : pairs of name and formula
         Parameters of a :class:`symrot.planning.scene_kernel.SceneKernel`.
     plan : Plan
-        Of the structure, with any start.
+        Plan of the scene, with any initial state.
     rounded : function
         From a ratio of integers to the doubles that represent it.
     known : mapping

@@ -54,23 +54,14 @@ FORMS = "a function of (t, omega, quaternion), a C function of ctypes, or a tabl
 class TorqueSource(ABC):
     """Interface of a torque without a formula: a function in Python, a function in C, or a table.
 
-    Attributes ---------- samples : bool
+    Attributes
+    ----------
+    samples : bool
         Whether the torque is known by samples, which limit the length of a step.
     longest_step, most_steps : float, int
         Limits of the steps, s, and of their number.
     knots : sequence of float
         Times, s, at which a step ends since a derivative of the torque jumps there.
-    user : array or None
-        The argument ``user`` of the function in C.
-
-    Attributes
-    ----------
-    samples : bool
-        Whether the torque is known by samples, which say how long a step may be.
-    longest_step, most_steps : float, int
-        Limits of the steps, s, and of their number.
-    knots : sequence of float
-        Times, s, at which a step ends since the torque bends there.
     user : array or None
         The argument ``user`` of the function in C.
     """
@@ -276,17 +267,6 @@ def _address(pointer: Any) -> int:
 @dataclass(frozen=True, eq=False)
 class ExternalSetup:
     """Parts that all motions under one torque without a formula share, whatever their initial states.
-
-    Attributes ---------- setup : Setup library : Path
-        Kernel and stepper; the kernel calls the torque.
-    source : TorqueSource
-        The source of the torque.
-    torque_parameters : tuple of float
-        The parameters of the kernel after those of the rates: two addresses, the frame, the inverse of the inertia.
-    breaks : tuple of float
-        Times at which a step ends, s: switching times, and times at which an interpolated table bends.
-    longest_step : float
-        s.
 
     Attributes
     ----------

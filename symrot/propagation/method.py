@@ -53,11 +53,6 @@ EXTERNAL_TORQUE = Choice("dop853", "a torque without a formula has no Taylor ser
 def choose_method(plan: Plan, method: str = "auto") -> Choice:
     """Return the method for a plan: the first one that fits for ``"auto"``, otherwise the named one.
 
-    Raises ------ InputError
-        If there is no such method.
-    CompilerError
-        If the method needs a compiler and there is none.
-
     Raises
     ------
     InputError

@@ -74,23 +74,6 @@ def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
 class Setup:
     """Parts that all motions of one plan share, whatever their initial states: method, kernel, numbers of the scene.
 
-    Attributes ---------- plan : Plan
-        With any start of the structure.
-    choice : Choice
-        The method, and why.
-    tolerance : float
-        Error of the trajectory to aim for.
-    start : float
-        Initial time, s, on the clock of the motions.
-    load_kernel : function
-        Returns the kernel. It is called when the kernel is first needed, which an exact motion may never do.
-    epoch : float
-        Time of the scene, s, at which the clock of the motions shows 0.
-    allows_time_shift : bool
-        Whether stepped motions may take another clock.
-    warnings : tuple of str
-        Sentences about accuracy that cannot be guaranteed.
-
     Attributes
     ----------
     plan : Plan

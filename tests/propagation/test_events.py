@@ -208,7 +208,7 @@ def test_what_is_no_event_is_refused(events, words):
 def test_an_event_of_an_attitude_that_is_left_out_is_refused():
     motion = scene(output={"quantities": ["omega"]})
     assert len(run(motion, ["omega_2"]).t_events[0])
-    with pytest.raises(InputError, match=r'expected "quaternion" among output\.quantities'):
+    with pytest.raises(InputError, match=r'add "quaternion" to output\.quantities'):
         run(motion, ["q0"])
 
 

@@ -63,21 +63,12 @@ def _less_whole_turns(turns: dd.Pair) -> Floats:
 class Turning:
     """Multiple of the angle of rotation of a driven body, as a function of time; its constants are rounded once.
 
-    Parameters ---------- share : Fraction
-        The factor by which the angle is multiplied.
-    rate : Fraction
-        Angular velocity at the start, rad/s.
-    push : Fraction
-        Angular acceleration by the constant torque, rad/s^2.
-    decay : Fraction
-        Decay rate by the damping, 1/s.
-
     Parameters
     ----------
     share : Fraction
         The factor by which the angle is multiplied.
     rate : Fraction
-        rad/s, at the start.
+        Angular velocity at the start, rad/s.
     push : Fraction
         Angular acceleration by the constant torque, rad/s^2.
     decay : Fraction

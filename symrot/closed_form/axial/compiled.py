@@ -103,14 +103,6 @@ def functions() -> tuple[Any, Any]:
 class Constants:
     """Constants of a body driven about one axis; a call with an initial state returns the compiled :class:`Loops`.
 
-    Parameters ---------- axis : 0, 1 or 2 moments : 2 ratios
-        Across the axis and about it, kg m^2. A ratio is a pair of integers, the second positive.
-    torque, damping, damping_across : ratios
-        N m and N m s.
-
-    Raises ------ InputError
-        If a rate or an acceleration is beyond all doubles; a call raises it too.
-
     Parameters
     ----------
     axis : 0, 1 or 2
@@ -185,11 +177,6 @@ class Constants:
 
     def __call__(self, rates: Sequence[Fraction], attitude: tuple[list[float], list[float]]) -> Loops:
         """Return the compiled loops of the motion from one initial state.
-
-        Parameters ---------- rates : 3 Fractions
-            Angular velocity at the start, rad/s.
-        attitude : 2 lists of 4 floats
-            The two quaternions that are multiplied by cosine and sine of half the angle.
 
         Parameters
         ----------

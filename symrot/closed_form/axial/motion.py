@@ -66,7 +66,7 @@ class AxialMotion:
         """
         if quaternion and not self.has_attitude:
             raise InputError(
-                "the attitude of a body that is driven about its axis and rotates across it too has another closed form, "
+                "the attitude of a body that is driven about its axis and rotates across it has another closed form, "
                 "that of symrot.closed_form.spin_up.motion, and none with damping"
             )
         times = times_of(t)

@@ -134,11 +134,6 @@ class Frame:
 
     The third axis in space points up, and the third axis of the body is the symmetry axis.
 
-    Parameters ---------- axis : 0, 1 or 2
-        The symmetry axis of the body.
-    up : 3 Fractions
-        The direction in space opposite to the pull on a centre of mass at a positive distance from the fixed point.
-
     Parameters
     ----------
     axis : 0, 1 or 2

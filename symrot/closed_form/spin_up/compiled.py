@@ -68,9 +68,6 @@ class Compiled:
 
     Beyond the time ``longest``, s, double-double numbers may be too short for the number of turns.
 
-    Parameters ---------- axis : 0, 1 or 2 numbers : 20 floats
-        The numbers that ``symrot_spin_up_prepare`` takes.
-
     Parameters
     ----------
     axis : 0, 1 or 2

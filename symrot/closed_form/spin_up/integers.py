@@ -55,15 +55,6 @@ def _map(left: Quaternion, right: Quaternion) -> list[float]:
 class Integers:
     """Motion of a body driven about its axis, in integers. Times are counted from the initial state, s.
 
-    Parameters ---------- moments : 2 Fractions
-        A across the axis and C about it, kg m^2.
-    axis : 0, 1 or 2 torque : Fraction
-        N m, about the axis.
-    rates : 3 Fractions
-        Angular velocity at the start, rad/s, not parallel to the axis.
-    attitude : 4 Fractions
-        Attitude at the start, not zero.
-
     Parameters
     ----------
     moments : 2 Fractions

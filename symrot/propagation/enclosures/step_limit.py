@@ -202,16 +202,11 @@ def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
 class Deviations:
     """Bounds of the deviation of each rate from a constant, when time and states vary within discs.
 
-    Parameters ---------- enclosure : Enclosure parameters : mapping of str to number
-        Parameters of the right-hand side, by name.
-    bounds : function, optional
-        The enclosure as one function, where it is known.
-
     Parameters
     ----------
     enclosure : Enclosure
     parameters : mapping of str to number
-        Of the right-hand side, by name.
+        Parameters of the right-hand side, by name.
     bounds : function, optional
         The enclosure as one function, where it is known.
     """
@@ -304,17 +299,6 @@ def longest_followed(
     """Return the longest step of at most h that provably misses no more than the allowed error; see
     :file:`enclosure.h`.
 
-    Parameters ---------- y : N numbers
-        States at t.
-    path : N sequences
-        Sizes of the coefficients 1, 2, .. of the polynomial that each state follows, in units of h.
-    allowed : one number per block
-        Error allowed in the step.
-    edges : sequence of int
-        Edges of the blocks.
-    order : int
-        Order of the polynomials.
-
     Parameters
     ----------
     y : N numbers
@@ -326,7 +310,7 @@ def longest_followed(
     edges : sequence of int
         Edges of the blocks.
     order : int
-        To which the states are followed.
+        Order of the polynomials.
     """
     length, reaches = h, REACHES[order < LOW_ORDER]
     likely = getattr(deviations, "likely", 0)  # the reach that proved the last step most often proves the next one

@@ -36,7 +36,9 @@ SAMPLES_OF_RATE = 257  # samples from which the largest rate of such a motion is
 class EventResult(NamedTuple):
     """Samples of a motion together with its events.
 
-    Attributes ---------- t, states : arrays, shapes (n,) and (n, N)
+    Attributes
+    ----------
+    t, states : arrays, shapes (n,) and (n, N)
         Samples at the requested times; one sample at a terminal event replaces all samples beyond it.
     t_events, y_events : lists of arrays, shapes (k,) and (k, N)
         Per event, in rising order of time: its times, and the states at these times.
@@ -44,17 +46,6 @@ class EventResult(NamedTuple):
         Per event: ``"rising"``, ``"falling"`` or ``"touching"``, seen along the motion away from its start.
     ended : bool
         Whether a terminal event ended the motion, on either side of the start.
-
-    Attributes
-    ----------
-    t, states : arrays, shapes (n,) and (n, N)
-        Samples at the requested times; a single sample at a terminal event replaces all samples beyond it.
-    t_events, y_events : lists of arrays, shapes (k,) and (k, N)
-        Per event, in rising order of time: when it happened, and the states there.
-    kinds : list of lists of str
-        Per event: ``"rising"``, ``"falling"`` or ``"touching"``, as the motion goes away from its start.
-    ended : bool
-        Whether a terminal event ended the motion, on either side.
     """
 
     t: Floats
@@ -91,8 +82,8 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
     began, plan = perf_counter(), motion.plan
     if uses_attitude(events) and not plan.structure.attitude:
         raise InputError(
-            "events: the attitude is not computed, since neither a torque nor the output of the scene asks for it: "
-            'expected "quaternion" among output.quantities'
+            "events: the attitude is not computed, since neither a torque nor the output of the scene needs it: "
+            'add "quaternion" to output.quantities'
         )
     if not plan.states:
         raise InputError(f"events: expected a motion with states that change, got the scene {plan.scene.name!r}")

@@ -227,9 +227,6 @@ class _Search:
     def entries(self, piece: Piece) -> list[list[float]]:
         """Return the candidates for zeros in a piece of the motion, as the rows that :file:`events.c` describes.
 
-        Raises ------ PropagationError
-            If the search takes more operations than a motion of so many rows may.
-
         Raises
         ------
         PropagationError

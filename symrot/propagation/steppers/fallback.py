@@ -93,21 +93,6 @@ def method_name(text: str) -> str:
 class Options:
     """Method and limits with which SciPy follows a motion.
 
-    Attributes ---------- method : str
-        As :func:`method_name` takes it.
-    blocks, scales
-        As :func:`symrot.propagation.steppers.dop853.translation_unit` takes them; the last edge may lie beyond N.
-    breaks, max_step
-        As :func:`symrot.propagation.steppers.dop853.integration` takes them.
-    max_steps : int
-        Most evaluations of the right-hand side.
-    deviations : Deviations, optional
-        Bounds of the terms of the right-hand side that may hide a feature: they limit the steps.
-    clock : callable, optional
-        The clock of the right-hand side, if it can be moved.
-    whole : WholeMotion, optional
-        The whole motion, if only a part of it is followed. Then ``max_steps`` limits the whole.
-
     Attributes
     ----------
     method : str
@@ -298,7 +283,7 @@ class _Integration:
         return inside, states
 
     def solutions(self, end: float) -> list[Piece]:
-        """Return the pieces (low, high, solution) of the motion from t0 to ``end``, one for each segment between switching times.
+        """Return the motion from t0 to ``end`` as pieces (low, high, solution), one for each segment between switches.
 
         If the coarse pass stops early, the final pass follows the motion as far, so that no sample is lost.
         """

@@ -39,15 +39,10 @@ class IntegrationStopped(PropagationError):
 class Samples(NamedTuple):
     """Samples computed before a motion stopped early.
 
-    Attributes ---------- numbers : array, shape (k,)
-        Indices of the samples among all requested samples.
-    states : array, shape (k, N) cost : (int, int, int)
-        Steps accepted and rejected, and evaluations, that were spent until then.
-
     Attributes
     ----------
     numbers : array, shape (k,)
-        Places of the samples among all requested samples.
+        Indices of the samples among all requested samples.
     states : array, shape (k, N)
     cost : (int, int, int)
         Steps accepted and rejected, and evaluations, that were spent until then.

@@ -194,7 +194,7 @@ class _Stepper(Stepper):
         self._jet = self._function("_jet", None, real, pointer, pointer, real, integer, pointer)
         if self._function("_carry", real, real, real)(1.0, 2.0**-60) != 2.0**-60:
             raise CompilerError(
-                f"the compiled kernel {path} ignores rounding errors that its sums must add up: compile without -ffast-math"
+                f"the compiled kernel {path} ignores rounding errors that its sums add; compile without -ffast-math"
             )
 
     def row_length(self) -> int:

@@ -1,4 +1,4 @@
-"""The system of a motion under torques with switches: its switches, and the smooth motions between them."""
+"""All switches of the torques of a motion, and the smooth motions (regimes) between them."""
 
 import math
 from collections.abc import Mapping
@@ -24,7 +24,7 @@ STATES = frozenset({*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range
 
 
 class SwitchedSystem:
-    """The switches of all torques of a plan, and one regime for each combination of held guards."""
+    """The switches of all torques of a plan, and one regime for each combination of guards that stay at zero."""
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
         self.plan, self.choice, self.tolerance = plan, choice, tolerance
@@ -32,7 +32,7 @@ class SwitchedSystem:
 
     @cached_property
     def switches(self) -> list[Switch]:
-        """The switches of all torques, their modes named as the constants of the plan."""
+        """The switches of all torques; their modes have the names of constants of the plan."""
         return [switch for switches in self._switches_by_torque for switch in switches]
 
     @cached_property
@@ -41,7 +41,7 @@ class SwitchedSystem:
 
     @cached_property
     def twins(self) -> dict[str, list[str]]:
-        """The modes of one torque that have the same guard as a mode, itself included: those that jump come first.
+        """For each mode, the modes of the same torque with the same guard, itself included: those that jump come first.
 
         An example is sign(omega_3) and abs(omega_3) in the friction of a bearing, which is greater at rest.
         """
@@ -56,7 +56,7 @@ class SwitchedSystem:
 
     @cached_property
     def settled(self) -> set[str]:
-        """The modes whose guards never change: without the time, a state or a mode that changes in them."""
+        """The modes whose guards are constant: they contain no time, no state and no mode that changes."""
         settled = set[str]()
         for switch in self.switches:
             if names(switch.guard) <= self.constants.keys() - ({each.mode for each in self.switches} - settled):
@@ -68,12 +68,14 @@ class SwitchedSystem:
         return {"pi": PI, **self.plan.constants}
 
     def initial_modes(self) -> Modes:
-        """Return the modes at the start; a guard that is zero there counts as positive until the motion decides."""
+        """Return the modes at the start; a guard that is zero there counts as positive until the motion decides its
+        sign.
+        """
         return dict(self._initial_modes[0])
 
     @property
     def undecided(self) -> set[str]:
-        """The modes whose guards are zero at the start, not only because of the time."""
+        """The modes whose guards are zero at the start and depend on more than the time."""
         return self._initial_modes[1]
 
     @cached_property
@@ -81,7 +83,9 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the modes at the start on one side of a guard that is zero there; modes that depend on it follow."""
+        """Return the modes at the start if one guard that is zero there has the sign ``sign``; modes that depend on it
+        follow.
+        """
         return self._modes_at_start({mode: sign})[0]
 
     def _modes_at_start(self, chosen_modes: Modes) -> tuple[Modes, set[str]]:
@@ -108,7 +112,7 @@ class SwitchedSystem:
         return modes, undecided
 
     def regime(self, held: frozenset[str], modes: Modes) -> Regime:
-        """Return the smooth motion while the guards of some modes stay at zero; derived on first use.
+        """Return the smooth motion while the guards of the modes ``held`` stay at zero; it is derived on first use.
 
         The other modes matter if they choose between the parts of a ``where``.
         """
@@ -133,7 +137,7 @@ class SwitchedSystem:
 
     @cached_property
     def _chooses(self) -> bool:
-        """Whether a ``where`` has a part that must not be evaluated where it does not hold."""
+        """Whether a ``where`` in a torque has a part that must not be evaluated outside its condition."""
         return any(torque.has_choices for torque in self.plan.structure.formula_torques)
 
     @cached_property
@@ -146,7 +150,7 @@ class SwitchedSystem:
 
 
 def _switches(torque: FormulaTorque) -> list[Switch]:
-    """Return the switches of a torque, their modes named as the constants of the plan."""
+    """Return the switches of a torque; their modes have the names of constants of the plan."""
     own = {name: f"{torque.prefix}{name}" for name in torque.parameters}
     return [
         Switch(
@@ -162,12 +166,14 @@ def _switches(torque: FormulaTorque) -> list[Switch]:
 
 
 def _bends(switch: Switch | TorqueSwitch) -> bool:
-    """Return whether a formula bends at a switch without a jump: at zero of the guard either mode is right."""
+    """Return whether a formula bends but does not jump at a switch, so that either mode is right where the guard is
+    zero.
+    """
     return switch.at_zero == 1
 
 
 def _chosen(torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: Mapping[str, str]) -> TorqueStructure:
-    """Return a torque with the parts of its formulas that apply under some modes, and with its held modes.
+    """Return a torque reduced to those parts of its formulas that apply for given modes, with the held modes as names.
 
     Inactive guards are left out. A mode with the same guard as a held mode is ``tied`` to it: if the formula jumps
     there, it takes the value of the held mode.
