@@ -1,8 +1,8 @@
-"""A straight-line program as a tape: one operation after the other, equal ones once. Standard library only.
+"""Tapes: a straight-line program as a list of single operations, with equal operations only once.
 
-What is printed operation by operation starts here: values in pairs of doubles and their gradients
-(:mod:`symrot.codegen.taylor.invariant_source`), values with what rounding may do to them
-(:mod:`symrot.codegen.printing.event_source`).
+Text that is printed operation by operation starts from a tape: values as sums of two doubles and their gradients
+(:mod:`symrot.codegen.taylor.invariant_source`), and values with bounds of their rounding errors
+(:mod:`symrot.codegen.printing.event_source`). Standard library only.
 """
 
 from collections.abc import Sequence
