@@ -16,7 +16,9 @@ __all__ = ["Operation", "Tape", "tape_of"]
 
 
 class Operation(NamedTuple):
-    """One operation: ``+ - * / neg``, a function of :data:`symrot.formula.tree.FUNCTIONS`, ``number`` or ``symbol``."""
+    """One operation of a tape: ``+ - * / neg``, a function of :data:`symrot.formula.tree.FUNCTIONS`, a number or a
+    symbol.
+    """
 
     kind: str
     operands: tuple[int, ...] = ()
@@ -24,7 +26,7 @@ class Operation(NamedTuple):
 
 
 class Tape(NamedTuple):
-    """Operations in an order of computation, and the index of the operation of each output."""
+    """Operations in an order of computation, and the index of the operation that gives each output."""
 
     operations: tuple[Operation, ...]
     outputs: tuple[int, ...]
@@ -70,7 +72,7 @@ class _Writer:
 
 
 def tape_of(program: Program, outputs: Sequence[str], more: Sequence[Node] = ()) -> Tape:
-    """Return the tape of some outputs of a program, then of more formulas over its inputs and its outputs."""
+    """Return the tape of some outputs of a program, and of ``more`` formulas of its inputs and outputs."""
     writer = _Writer()
     formulas = dict(program.outputs)
     for name, node in program.temporaries:
