@@ -330,7 +330,7 @@ def test_a_recording_agrees_with_samples():
     states, _ = taylor.integration(body(), p, start, 0.0, 1e-12).sample(t)
     assert abs(solution(t) - states).max() < 1e-13
     assert (solution(0.0) == start).all() and solution.span == (-5.0, 20.0)
-    with pytest.raises(InputError, match=r"known from -5\.0 to 20\.0 s, asked for 21\.0 s"):
+    with pytest.raises(InputError, match=r"known from -5\.0 to 20\.0 s, got the time 21\.0 s"):
         solution(21.0)
 
 
