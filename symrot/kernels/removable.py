@@ -1,16 +1,17 @@
-"""Functions with a removable singularity, as kernels compute them: accurate on the whole line, no epsilon to tune.
+"""Functions with a removable singularity, as kernels compute them: accurate for all numbers, without a threshold to
+tune.
 
-``sin(x)/x`` is accurate except at zero, where a conditional returns its limit. A difference of nearly equal terms,
-``(x - sin x)/x^3``, is summed as its Taylor series near zero, with a truncation error proven below half the last bit,
-and computed directly elsewhere: where the two meet is a property of the function, not a setting.
+``sin(x)/x`` is accurate except at zero, where a conditional returns its limit. A difference of nearly equal terms, ``(x
+- sin x)/x^3``, is summed as its Taylor series near zero, with a truncation error proven below half the last bit, and
+computed directly elsewhere. The point between the two follows from the function; it is not a setting.
 
-What holds, measured by ``python -m symrot.bench.ulps`` in double and float, fused or not:
+Errors measured by ``python -m symrot.bench.ulps`` in double and float, with fused operations or without:
 
 - ``sinc``, ``sine_gap``: within 4 ulp at every finite number (measured 1.4 and 2.1).
 - ``tangent_gap``: within 4 ulp for |x| <= pi (measured 2.3). Beyond, it falls as cos(x)/x^2 and has zeros, the
   solutions of x = tan x, which are no floating-point numbers: a relative error has no bound there. Its absolute error
   is at most 4 * 2^-53/x^2, in float 4 * 2^-24/x^2, or half the least subnormal number (measured
-  2.5 on the whole line).
+  2.5 for all numbers).
 - ``arc_ratio``: within 4 ulp on the half circle that quaternions have (measured 1.6; batches 1.2).
 
 Batches compute them without a branch, with the sine, cosine and arc tangent of ``symrot_math.h``.
@@ -45,10 +46,11 @@ _x = Symbol("x", real=True)
 
 @dataclass(frozen=True)
 class Removable:
-    """A function of x that is even and analytic, ``numerator / x^power``, whose quotient is undefined at zero.
+    """An even analytic function of x, ``numerator / x^power``, whose quotient is undefined at zero.
 
-    ``split`` is the square of the |x| below which the series is summed; its terms alternate and decrease there. Beyond
-    it ``scaled/x/x`` is computed, the same quotient without a power of x that would overflow before the result does.
+    ``split`` is the square of the |x| below which the series is summed; its terms alternate and decrease there. For
+    larger
+    |x|, ``scaled/x/x`` is computed, the same quotient without a power of x that would overflow before the result does.
     """
 
     name: str
@@ -59,19 +61,19 @@ class Removable:
     about: str
 
     def formula(self, x: Expr) -> Expr:
-        """Return the quotient at x."""
+        """Return the function at x as a quotient."""
         return self.numerator.xreplace({_x: x}) / x**self.power
 
     def coefficients(self, precision: str = "binary64") -> tuple[Fraction, ...]:
-        """Return the Taylor coefficients in x^2 that are summed for a precision.
+        """Return as many Taylor coefficients of the function, in powers of x^2, as a precision needs.
 
-        There are so many that the first omitted one, times its power of ``split``, is less than a quarter of a unit in
-        the last place of the least value there: the series alternates, so that this bounds the remainder.
+        The first omitted coefficient, times its power of ``split``, is less than a quarter of a unit in the last place
+        of the least value there: the series alternates, so that this bounds the remainder.
         """
         return _summed(self, precision)
 
     def taylor(self, count: int) -> tuple[Fraction, ...]:
-        """Return the first Taylor coefficients in x^2."""
+        """Return the first ``count`` Taylor coefficients of the function, in powers of x^2."""
         return _taylor(self, count)
 
 
@@ -118,7 +120,7 @@ _EXPLICIT: dict[str, Callable[..., Any]] = {
 
 
 def explicit(expr: Expr) -> Expr:
-    """Return an expression with the removable functions written as quotients, which are valid except at zero."""
+    """Return an expression with the removable functions replaced by quotients, which are valid except at zero."""
     for name, formula in _EXPLICIT.items():
         expr = expr.replace(
             lambda e, name=name: getattr(e.func, "__name__", "") == name, lambda e, formula=formula: formula(*e.args)
