@@ -1,4 +1,4 @@
-"""Extract one step of a derivation as a page, optionally with all rewritings from its left side to its right side."""
+"""One step of a derivation as a page, optionally with all rewritings from its left side to its right side."""
 
 from sympy import MatrixBase, factor
 
