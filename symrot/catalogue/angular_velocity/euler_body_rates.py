@@ -82,7 +82,7 @@ def _latex(expression: object) -> str:
 
 
 def _values(jacobian: object) -> str:
-    """Return the singular set within one turn, as LaTeX."""
+    """Return the singular angles of an Euler sequence within one whole rotation, as LaTeX."""
     singular = jacobian.singular_set  # type: ignore[attr-defined]
     points = ", ".join(_latex(point) for point in singular.points())
     return rf"at ${_latex(singular.variable)} \in \{{{points}\}}$ within one turn".replace(r"\{", r"\lbrace ").replace(

@@ -1,4 +1,4 @@
-"""Where Euler angles lock, and how their rates grow on the way there (Stuelpnagel, SIAM Review 6, 1964, 422-430)."""
+"""Gimbal lock of Euler angles, and how their rates grow near it (Stuelpnagel, SIAM Review 6, 1964, 422-430)."""
 
 from sympy import Matrix, Symbol, eye
 

@@ -1,4 +1,6 @@
-"""Rotation matrices: what keeps lengths (Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 4.2)."""
+"""Rotation matrices: the matrices that preserve lengths (Goldstein et al., Classical Mechanics, 3rd ed., section
+4.2).
+"""
 
 from itertools import product
 
@@ -15,7 +17,10 @@ SIZES = (2, 3, 4, 5)
 
 
 def skew_dimension(size: int) -> int:
-    """Return how many directions S in the space of matrices solve ``S + S^T = 0``: all, less the rank of the map."""
+    """Return the number of independent solutions S of ``S + S^T = 0`` for matrices of a given size.
+
+    It is the dimension of the space of matrices minus the rank of the map S -> S + S^T.
+    """
     images = []
     for i, j in product(range(size), repeat=2):
         unit = zeros(size)

@@ -214,7 +214,7 @@ def _steady(d: Derivation, potential: Expr) -> None:
 
 
 def _rates() -> tuple[Expr, Expr]:
-    """Return the fast and the slow rate of steady precession."""
+    """Return the fast and the slow rate of steady precession of a heavy top, rad/s."""
     root = sqrt(P_PSI**2 - 4 * A * W * ARM * cos(THETA))
     return (P_PSI + root) / (2 * A * cos(THETA)), (P_PSI - root) / (2 * A * cos(THETA))
 

@@ -1,4 +1,4 @@
-"""What a heavy top keeps (Landau & Lifshitz, Mechanics, 3rd ed., section 35, problem 1)."""
+"""Conserved quantities of a heavy top (Landau & Lifshitz, Mechanics, 3rd ed., section 35, problem 1)."""
 
 from sympy import Matrix, diag
 

@@ -1,4 +1,4 @@
-"""Rotation about one principal axis stays rotation about that axis."""
+"""Planar motion: a body that rotates about one principal axis keeps rotating about this axis."""
 
 from sympy import Matrix, cos, diag, sin
 

@@ -81,7 +81,7 @@ def _pushed(d: Derivation) -> None:
 
 
 def _decay() -> tuple[Expr, Expr, Expr]:
-    """Return the rate, the angle, and the decaying factor with damping."""
+    """Return angular velocity and angle under damping, and the factor that decays in both."""
     decay = exp(-DRAG * T / C)
     final = PUSH / DRAG
     return final + (START - final) * decay, final * T + (START - final) * C / DRAG * (1 - decay), decay

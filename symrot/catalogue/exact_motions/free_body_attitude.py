@@ -43,7 +43,7 @@ def derive() -> Derivation:
 
 
 def smallest_turn() -> Matrix:
-    """Return the smallest rotation that takes the angular momentum to axis 3 of space."""
+    """Return the rotation by the smallest angle that takes the angular momentum to axis 3 of space."""
     return Matrix(
         [
             [1 - L1**2 / (H * (H + L3)), -L1 * L2 / (H * (H + L3)), -L1 / H],

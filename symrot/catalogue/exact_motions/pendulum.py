@@ -78,7 +78,10 @@ def _plane(d: Derivation) -> None:
 def _holds(
     d: Derivation, claim: str, motion: tuple[Expr, ...], along: dict[Symbol, Expr], hypotheses: list[Expr]
 ) -> None:
-    """Add the step that sine and cosine of the half angle, and the rate, satisfy the pendulum's equations."""
+    """Add the step that a motion satisfies the equations of a pendulum.
+
+    The motion is given by sine and cosine of half the angle, and by the angular rate.
+    """
     s, c, speed = motion
     half = Rational(1, 2)
     d.notation({"s": s, "c": c, r"\dot\theta": speed, r"\ddot\theta": rate(speed, along), "p": P}, along)

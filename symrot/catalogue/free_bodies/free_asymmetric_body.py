@@ -71,7 +71,9 @@ def _functions(d: Derivation) -> None:
 
 
 def _amplitudes() -> tuple[Matrix, object, object]:
-    """Return amplitudes, frequency and parameter in terms of the first and third component at the start."""
+    """Return amplitudes, frequency and parameter of Jacobi's solution, from the first and third component at the
+    start.
+    """
     second = THIRD * sqrt(C * (A - C) / (B * (A - B)))
     p = (A - C) / B * FIRST * THIRD / second
     parameter = (B - C) / A * second * THIRD / (p * FIRST)

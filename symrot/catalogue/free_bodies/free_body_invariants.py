@@ -1,4 +1,4 @@
-"""What a free body keeps (Landau & Lifshitz, Mechanics, 3rd ed., section 37)."""
+"""Conserved quantities of a free body (Landau & Lifshitz, Mechanics, 3rd ed., section 37)."""
 
 from sympy import Matrix, Rational, diag
 

@@ -1,4 +1,4 @@
-"""A body with three equal moments."""
+"""The spherical body, whose three principal moments are equal: its angular velocity is constant."""
 
 from sympy import Matrix, diag
 
