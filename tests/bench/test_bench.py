@@ -489,7 +489,7 @@ def test_the_command_studies_compares_and_draws(tmp_path, capsys):
         (["tumbling_prism", "--tolerances", ""], "expected falling numbers"),
         (["tumbling_prism", "--rounds", "0"], "at least 1, got 0"),
         (["--skip", "--rounds", "3"], "takes no --rounds"),
-        (["--suite", "-o", "/dev/null/x"], "cannot be made"),
+        (["--suite", "-o", "/dev/null/x"], "cannot be created"),
         (["tumbling_prism", "--out", "x.txt"], ".json"),
         (["tumbling_prism", "--plot", "x.doc"], ".svg"),
         (["tumbling_prism", "-o", "x"], "takes no -o"),

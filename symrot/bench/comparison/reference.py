@@ -1,4 +1,4 @@
-"""Compute reference states of a scene's motion in several independent ways, and the differences between them.
+"""Reference states of a scene's motion, computed in several independent ways, and the differences between them.
 
 ===========================  =====================  ============================  ==========================
 reference                    equations              method                        arithmetic
@@ -6,9 +6,9 @@ reference                    equations              method                      
 ``taylor``                   the scene's own        Taylor series of order 28     mpmath, 40 digits
 ``dop853 in long double``    most general: full     Dormand-Prince, fixed steps,  the C compiler's long
                              tensor, no shortcut    halved until nothing changes  double, where it is longer
-``closed form``              none                   theta functions               double-double, double
+``closed form``              (no equations)         theta functions               double-double, double
 ``extrapolated midpoints``   the scene's own        Gragg's rule, order 16,       long double
-                                                    halved likewise
+                                                    steps halved as above
 ===========================  =====================  ============================  ==========================
 
 No reference steps over a feature of a torque, such as a narrow pulse: enclosures of the torque limit the steps of the
@@ -17,8 +17,8 @@ series, and fixed steps are short where the stepper of the scene, limited in the
 The first available reference is used, and the others are compared with it. References that contradict one another are
 an error; errors of methods below the difference between references mean nothing. The last reference is computed only
 where just one of the others is available, as for torques without a Taylor series. All references start from the exact
-numbers of the scene, not from rounded ones: a method that rounds its parameters makes an error by it. References that
-take minutes are stored in the cache of kernels.
+numbers of the scene, so that the rounding of parameters counts as an error of a method. References that take minutes
+are stored in the cache of kernels.
 """
 
 import ctypes
@@ -74,7 +74,7 @@ CALLS = re.compile(r"\b(sqrt|sin|cos|tan|exp|log|fabs|sinh|cosh|tanh|asin|acos|a
 
 
 class Reference(NamedTuple):
-    """The reference states of a motion, the name of their computation, and the differences of the other ones."""
+    """Reference states of a motion, the name of the computation, and its differences from other computations."""
 
     states: tuple[State, ...]
     name: str
@@ -97,11 +97,11 @@ class Reference(NamedTuple):
 
 
 class _Unavailable(Exception):
-    """Raised by a reference that is not available for this motion or on this machine; the text says why."""
+    """Signal that a reference is not available for this motion or on this machine; the text says why."""
 
 
 def reference(problem: Problem, say: Progress = lambda text: None, seconds: float = MOST_SECONDS) -> Reference:
-    """Return the reference states of a scene's motion, and how far the other references are from them.
+    """Return the reference states of a scene's motion, with the differences of other references from them.
 
     Raises
     ------
@@ -163,7 +163,7 @@ def _exact_start(plan: Plan) -> list[Fraction]:
 
 
 def _taylor(problem: Problem, say: Progress, seconds: float) -> list[State]:
-    """Return the states by Taylor series in 40 digits, or from the cache."""
+    """Return the reference states by Taylor series in 40 digits, computed now or loaded from the cache."""
     import mpmath
 
     rough = non_smooth_torque(problem.plan)
@@ -255,18 +255,18 @@ def longer(source: str) -> str:
 
 
 def _long_double(problem: Problem, say: Progress, seconds: float) -> list[State]:
-    """Return the states by DOP853 with fixed steps, from the most general equations."""
+    """Return the reference states by DOP853 in long double with fixed steps, from the most general equations."""
     general = Problem(problem.scene, Plan(problem.scene, general_structure(problem.scene), ()))
     return _converged(general, "dop853", (HEADER, BY_HAND / "fixed_step.c"), seconds)
 
 
 def _extrapolated(problem: Problem, say: Progress, seconds: float) -> list[State]:
-    """Return the states by extrapolated midpoint rules with fixed steps, from the scene's own equations."""
+    """Return the reference states by extrapolated midpoint rules with fixed steps, from the scene's own equations."""
     return _converged(problem, "extrapolation", (BY_HAND / "extrapolation.c",), seconds)
 
 
 def _converged(general: Problem, name: str, files: Sequence[Path], seconds: float) -> list[State]:
-    """Return the states by fixed steps in long double, shortened until they make no difference."""
+    """Return the reference states by fixed steps in long double, halved until the result no longer changes."""
     if cache.missing():
         raise _Unavailable("no C compiler")
     if np.finfo(np.longdouble).nmant < LONG_DOUBLE_BITS or ctypes.sizeof(ctypes.c_longdouble) == 8:
@@ -280,7 +280,7 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
         path = follow(steps)
         if np.isfinite(path.astype(float)).all():
             now = change if before is None else float(np.max(np.abs(path - before) / sizes))
-            if before is not None and now >= change and change <= ROUNDED * turned:  # rounding has taken over
+            if before is not None and now >= change and change <= ROUNDED * turned:  # rounding errors dominate
                 break
             if before is not None:
                 finest, change = path, min(now, change)
@@ -350,7 +350,7 @@ def _fixed_steps(
 
 
 def _long_state(general: Problem, y: Any, end: float) -> State:
-    """Return the state of the body, evaluated in long double."""
+    """Return the state of the body from integrated states, evaluated in long double."""
     exact = _exact_parameters(general.kernel.quantity_parameters, general.plan)
     values: dict[str, Any] = dict(zip(general.plan.states, y, strict=True)) | {"t": np.longdouble(end)}
     values |= {name: _long_number(value) for name, value in exact.items()}
