@@ -23,7 +23,7 @@ class SymrotError(Exception):
 
 
 class InputError(SymrotError, ValueError):
-    """A scene, formula, mesh, option or other argument is unusable; the message says what was expected.
+    """A scene, formula, mesh, option or other argument that cannot be used.
 
     Examples
     --------
@@ -36,7 +36,7 @@ class InputError(SymrotError, ValueError):
 
 
 class CompilerError(SymrotError):
-    """A C compiler is missing, or it rejects the emitted kernel.
+    """There is no C compiler, or it rejects the emitted kernel.
 
     Examples
     --------
@@ -63,7 +63,7 @@ class PropagationError(SymrotError):
 
 
 class CertificateError(SymrotError):
-    """A kernel, an object file or a certificate fails its check: a statement in the certificate does not hold.
+    """A kernel, an object file or a certificate does not hold what it claims.
 
     Examples
     --------

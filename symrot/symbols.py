@@ -112,5 +112,5 @@ heights = u_1, u_2, u_3 = _make("u_1 u_2 u_3", "1")  # zeros of the cubic of a h
 # outputs of kernels
 jacobian_entries = _make(" ".join(f"B_{i}{j}" for i in "123" for j in "123"), "1")
 product_quaternion = _make("pq0 pq1 pq2 pq3", "1")
-vector = _make("vector_1 vector_2 vector_3", "")  # any vector, of any unit
+vector = _make("vector_1 vector_2 vector_3", "")  # any vector: its unit is that of what it stands for
 turned_vector = _make("turned_1 turned_2 turned_3", "")

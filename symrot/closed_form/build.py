@@ -122,10 +122,10 @@ def times_of(t: ArrayLike) -> Floats:
     try:
         times = np.ascontiguousarray(t, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"times are a number or a sequence of numbers (s), got {show(t)}") from None
+        raise InputError(f"t: expected a number or a sequence of numbers in s, got {show(t)}") from None
     if times.ndim > 1:
-        raise InputError(f"times are a number or a sequence of numbers (s), got an array of shape {times.shape}")
+        raise InputError(f"t: expected a number or a sequence of numbers in s, got an array of shape {times.shape}")
     times = times.reshape(-1)
     if not isfinite(np.add.reduce(times)) and not np.isfinite(times).all():
-        raise InputError(f"times must be finite, got {times[~np.isfinite(times)][0]}")
+        raise InputError(f"t: expected finite times in s, got {times[~np.isfinite(times)][0]}")
     return times

@@ -156,7 +156,7 @@ LAWS: dict[str, Callable[..., TorqueLaw]] = {
     "expression": _expression,
 }
 if LAWS.keys() != TORQUE_KINDS.keys():
-    raise AssertionError(f"torque kinds without a law, or laws without a kind: {LAWS.keys() ^ TORQUE_KINDS.keys()}")
+    raise AssertionError(f"expected one law per torque kind, differing: {LAWS.keys() ^ TORQUE_KINDS.keys()}")
 
 
 _FUNCTIONS: dict[str, Callable[..., Expr]] = {

@@ -1,1 +1,1 @@
-"""Safe reading of files from unknown sources, and writing of files whole or not at all."""
+"""Read files that may be anything, and write files whole or not at all."""

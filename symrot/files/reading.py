@@ -1,5 +1,4 @@
-"""Safe reading of a file that may come from anywhere: only a regular file up to a size, so that no pipe or device
-blocks.
+"""Read a file that somebody else may have made: a regular file, up to a size, so that no pipe or device blocks.
 
 Every scene, claim file, table, certificate and study is opened here. Standard library only.
 """
@@ -18,11 +17,11 @@ SPECIAL = (
     (stat.S_ISCHR, "a device"),
     (stat.S_ISBLK, "a device"),
 )
-"""Kinds of files that are not regular: a test of the file's mode, and the name of the kind in messages."""
+"""Files that are not regular: how the mode of a file shows them, and what a sentence calls them."""
 
 
 def refuse_special(path: Path) -> os.stat_result:
-    """Return the status of a file, links followed; raise OSError unless it is a regular file.
+    """Return the status of a regular file, links followed.
 
     Raises
     ------
@@ -42,8 +41,8 @@ def _refuse_mode(mode: int) -> None:
 def read_input(path: Path, largest: int) -> bytes:
     """Return the content of a regular file of at most ``largest`` bytes.
 
-    The kind of the file is checked twice: before it is opened, since opening alone starts some devices, and after,
-    since another process may have exchanged the file in between.
+    The kind of the file is asked for before it is opened, since opening alone starts some devices, and again of what
+    was opened, which may have been exchanged in between.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Writing of files whole or not at all: a temporary file in the same folder is renamed when it is complete."""
+"""Write a file whole or not at all: to a temporary one beside it, renamed when it is complete."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -11,7 +11,7 @@ __all__ = ["check_target", "write"]
 
 
 def check_target(path: Path, suffixes: Sequence[str], option: str) -> None:
-    """Raise InputError if a file cannot be written; called before anything is computed for the file.
+    """Refuse a file that cannot be written, before anything is computed for it.
 
     Raises
     ------
@@ -26,7 +26,7 @@ def check_target(path: Path, suffixes: Sequence[str], option: str) -> None:
         if path.exists() and not path.is_file():
             raise InputError(f"{option}: expected the name of a file, got the device or pipe {str(path)!r}")
         if not path.parent.is_dir():
-            raise InputError(f"{option}: expected a file in a folder that exists, got {str(path)!r}")
+            raise InputError(f"{option}: expected a folder that is there, got {str(path)!r}")
         if not os.access(path if path.exists() else path.parent, os.W_OK):
             raise InputError(f"{option}: expected a file that can be written, got {str(path)!r} (permission denied)")
     except InputError:
@@ -40,12 +40,12 @@ def _refusal(path: Path, reason: Exception) -> InputError:
 
 
 def write(path: Path, content: Callable[[BinaryIO], object]) -> None:
-    """Write a file by ``content``, a function of a binary stream; the file replaces ``path`` once it is complete.
+    """Let ``content`` write to a file that takes the place of ``path`` once it is complete.
 
     Raises
     ------
     InputError
-        If the file cannot be written; an existing file at ``path`` is unchanged.
+        If the disk refuses; what stood at ``path`` is untouched.
     """
     target = path.resolve()  # a link keeps pointing to its file
     passing = target.with_name(f".{target.name[:100]}.{os.getpid()}.part")

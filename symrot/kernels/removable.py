@@ -84,7 +84,7 @@ def _summed(which: Removable, precision: str) -> tuple[Fraction, ...]:
         coefficients = which.taylor(count)
         terms = [abs(a) * which.split**k for k, a in enumerate(coefficients)]
         if any(a * b >= 0 for a, b in pairwise(coefficients)) or sorted(terms, reverse=True) != terms:
-            raise AssertionError(f"{which.name}: expected a series that alternates and falls below {which.split}")
+            raise AssertionError(f"{which.name}: expected an alternating, decreasing series for x^2 < {which.split}")
         if terms[-1] < (terms[0] - terms[1]) * Fraction(1, 2 ** (DIGITS[precision] + 2)):
             return coefficients[:-1]
         count += 1

@@ -202,7 +202,7 @@ class Derivation(PrintedPage):
         """
         reduced = factor(normal_form(expression))
         if reduced.is_positive is not True:
-            raise ProofError(f"{self.name}, {claim!r}: the signs of the symbols do not make {reduced} positive")
+            raise ProofError(f"{self.name}, {claim!r}: the signs of its symbols do not prove {reduced} positive")
         return self._add(Step(claim, _frozen(expression), S.Zero, because, ">", named=named, display=reduced))
 
     def _proven(self, claim: str, left: Any, right: Any, relations: Sequence[Any]) -> Decision:
@@ -254,7 +254,7 @@ class Derivation(PrintedPage):
                              for n, side in enumerate(chain))  # fmt: skip
             names.setdefault(key(chain[0]), last)
             if any(other is not None and not is_zero(other - last) for other in others):
-                raise ProofError(f"{self.name}: {text} does not hold where it is displayed")
+                raise ProofError(f"{self.name}: the displayed equation {text} does not hold")
         values = []
         for number, side in enumerate(main):
             try:

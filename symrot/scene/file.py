@@ -70,7 +70,7 @@ def find_scene(source: str | Path) -> Path:
         raise InputError(f"{str(source)[:80]}: expected a scene file, got {reason.strerror}") from None
     label = str(source) if str(source).isprintable() else repr(str(source))
     hints = " ".join(filter(None, (nearest(path.stem, names), f"the shipped scenes are {', '.join(names)}")))
-    raise InputError(f"{label}: expected a scene or a scene file, there is none ({hints})")
+    raise InputError(f"{label}: expected a scene or a scene file, but there is none of this name ({hints})")
 
 
 def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:

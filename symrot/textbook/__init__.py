@@ -38,7 +38,7 @@ def document(name: str) -> Document:
         For another name.
     """
     if name not in DOCUMENTS:
-        raise InputError(f"expected one of the documents {', '.join(DOCUMENTS)}, got {name!r}")
+        raise InputError(f"expected the name of a document, one of {', '.join(DOCUMENTS)}; got {name!r}")
     path = Path(__file__).with_name(f"{name}.toml")
     content = tomllib.loads(path.read_text(encoding="utf-8"))
     claims = {claim["id"]: claim for claim in content["claim"]}

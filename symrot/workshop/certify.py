@@ -209,7 +209,7 @@ def certify(
     if objects:
         object_code.require_compiler()
     if ranges and not bounds:
-        raise InputError(f"--box: expected no --no-bounds, which leaves the bounds out, got both, with {ranges[0]!r}")
+        raise InputError(f"--box: leave out --no-bounds, which computes no bounds, got both, with {ranges[0]!r}")
     rounding = None
     if bounds and (ranges or name in kernel_names()):
         progress("bounding ..")

@@ -384,7 +384,7 @@ def test_too_many_steps_are_refused():
         ({"y0": [1.0, math.nan]}, "states must be finite numbers"),
         ({"p": []}, "takes 1 parameters"),
         ({"t0": math.inf}, "initial time must be finite"),
-        ({"max_step": 0.0}, "longest step is a positive number"),
+        ({"max_step": 0.0}, "max_step: expected a positive number"),
     ],
 )  # fmt: skip
 def test_bad_input_is_refused_in_one_sentence(change, words):

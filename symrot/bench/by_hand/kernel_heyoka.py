@@ -39,7 +39,7 @@ def heyoka_code(name: str) -> tuple[Any, Any, Any]:
     """
     states = _function(name).llvm_states
     if not _LOADED.exists():
-        raise ImportError(f"expected {_LOADED}, to find the library of heyoka")
+        raise ImportError(f"expected {_LOADED}, to locate the shared library of heyoka")
     for line in _LOADED.read_text(encoding="utf-8").splitlines():
         if "/libheyoka" in line:
             ctypes.CDLL(line.split(maxsplit=5)[5], ctypes.RTLD_GLOBAL)

@@ -270,7 +270,7 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
     if cache.missing():
         raise _Unavailable("no C compiler")
     if np.finfo(np.longdouble).nmant < LONG_DOUBLE_BITS or ctypes.sizeof(ctypes.c_longdouble) == 8:
-        raise _Unavailable("long double is no longer than double here")
+        raise _Unavailable("long double has no more digits than double on this machine")
     sizes = np.array(_sizes(general))
     turned = max(1.0, (general.stop - general.start) * max(sizes))
     steps, before, finest = max(FEWEST_STEPS, int(turned)), None, None
@@ -289,7 +289,7 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
             before = path
         steps = int(steps * 1.5)
     if finest is None:
-        raise _Unavailable("it needs more steps than allowed")
+        raise _Unavailable("the fixed steps needed are more than allowed")
     return [_long_state(general, state, end) for state, end in zip(finest, general.ends, strict=True)]
 
 
@@ -378,7 +378,7 @@ def _long(values: Iterable[Fraction]) -> Any:
 
 def _closed_form(problem: Problem, say: Progress, seconds: float) -> list[State]:
     if exact_form(problem.scene) is None:
-        raise _Unavailable("the motion has no closed form")
+        raise _Unavailable("symrot has no closed form of this motion")
     trajectory = propagator(problem.scene, method="exact")(problem.ends)
     attitude = trajectory.quaternion if problem.plan.structure.attitude else [None] * len(problem.ends)
     return list(map(State, trajectory.omega, attitude))

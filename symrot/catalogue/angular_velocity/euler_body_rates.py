@@ -70,7 +70,8 @@ def _sequence(d: Derivation, sequence: str) -> None:
         f"The angles lock {_values(body)}.",
         body.det(),
         body.determinant,
-        because="the three axes lie in one plane there, and no rates give an angular velocity across that plane",
+        because="at gimbal lock the three axes lie in one plane, and no angle rates give an angular velocity "
+        "perpendicular to this plane",
         named=r"\det B_b",
     )
 

@@ -89,7 +89,7 @@ def _holds(
         claim,
         rate(Matrix([s, c, speed]), along),
         Matrix([half * speed * c, -half * speed * s, -2 * P**2 * s * c]),
-        because="each derivative is put in",
+        because="each derivative is substituted",
         relations=hypotheses,
         named=r"\begin{bmatrix} \dot s \\ \dot c \\ \ddot\theta \end{bmatrix}",
         display=r"\begin{bmatrix} \tfrac12 \dot\theta\,c \\ -\tfrac12 \dot\theta\,s \\ -2 p^2 s\,c \end{bmatrix}",
@@ -105,7 +105,7 @@ def _turning(d: Derivation) -> None:
         "height of the highest place.",
         cubic(symbols.gamma_3).subs(flat),
         2 * W * ARM / A * (U2 - symbols.gamma_3) * (1 - symbols.gamma_3**2),
-        because="$1 - u^2$ is a factor",
+        because="$1 - u^2$ is a common factor",
         named=r"\dot u^2",
         display=r"\frac{2 W c_3}{A} (u_2 - u)(1 - u^2)",
     )

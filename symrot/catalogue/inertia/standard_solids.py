@@ -96,7 +96,7 @@ def _moments(d: Derivation, body: Solid, letter: str) -> None:
             "Of the first and second moments these vanish.",
             Matrix([moments[axes] for axes in zero]),
             0,
-            because="the integrals are zero term by term",
+            because="the integral of each term is zero",
             named=r"\frac{m}{" + letter + r"} \int \left( " + r",\ ".join(_product(axes) for axes in zero)
             + rf" \right) d{letter}",
         )  # fmt: skip
@@ -132,7 +132,8 @@ def _tensor(d: Derivation, body: Solid, moments: Moments) -> None:
         "The tensor of inertia about the centre of mass.",
         about_origin - body.mass * (center.dot(center) * eye(3) - center * center.T),
         body.inertia,
-        because="moments sum two squares, products carry a minus sign, and the theorem of parallel axes is applied",
+        because="a moment is the integral of the sum of two squares, a product of inertia has a minus sign, "
+        "and the parallel axis theorem is applied",
         named="I",
     )
 

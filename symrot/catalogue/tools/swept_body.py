@@ -147,7 +147,7 @@ def near(d: Derivation) -> None:
         "$x = 0$ the attitude there differs in the sign of $q_1$ and $q_2$.",
         rate(pair, back),
         Rational(1, 2) * Matrix([I * X * pair[0] - KAPPA * pair[1], KAPPA * pair[0] - I * X * pair[1]]),
-        because="both the time and the sweep change their signs",
+        because="time and sweep both change their signs",
         relations=[imaginary()],
         named=r"\frac{d}{dx} \begin{bmatrix} \alpha(-x) \\ -\beta(-x) \end{bmatrix}",
     )
@@ -211,7 +211,7 @@ def weak(d: Derivation) -> None:
         "These obey the recurrence.",
         recurrence.subs(solution),
         0,
-        because="every $P$ follows from two that are neighbours",
+        because="the three Legendre polynomials follow from two that are neighbours",
         named=r"(k + 1)\,a_{k+1} - (1 - 2 k)\,c\,a_k - (2 - k)\,a_{k-1}",
     )
     legendre, series = {0: S.One, 1: -c}, {-1: S.Zero, 0: S.One}
@@ -222,7 +222,7 @@ def weak(d: Derivation) -> None:
         "And they are where it has come to at $k = 3$.",
         Matrix([(legendre[n - 2] - legendre[n]) / (2 * n - 1) for n in (2, 3)]),
         Matrix([series[2], series[3]]).expand(),
-        because="the first four $P$ are $1$, $-c$, $(3 c^2 - 1)/2$, $(3 c - 5 c^3)/2$",
+        because="the first four Legendre polynomials of $-c$ are $1$, $-c$, $(3 c^2 - 1)/2$, $(3 c - 5 c^3)/2$",
         named=r"\begin{bmatrix} a_{2} \\ a_{3} \end{bmatrix}",
     )
 
@@ -273,7 +273,7 @@ def between(d: Derivation) -> None:
         "nothing cancels: both terms are positive.",
         together * z * root,
         (omega * speed - start * there) / 2,
-        because="the same two relations are put in, and $t / (2 D) = z / s$",
+        because="the same two relations are substituted, and $t / (2 D) = z / s$",
         relations=squares,
         named=r"E\,z\,w",
         display=r"\tfrac12 \left( \Omega S - \Omega_0 S_0 \right)",

@@ -323,7 +323,7 @@ class _Reader:
         try:
             value = Matrix.vstack(*(Matrix.hstack(*map(_as_matrix, row)) for row in rows))
         except sympy.matrices.exceptions.ShapeError as error:
-            raise Unread("a table whose rows differ") from error
+            raise Unread("a matrix whose rows have different lengths") from error
         if name not in ("bmatrix", "pmatrix", "matrix"):
             raise Unread(name)
         if self.peek() == "_" and self.peek(1) != "\\times":
@@ -453,13 +453,13 @@ def _dotted(left: Any, right: Any) -> Any:
 
 def _crossed(left: Any, right: Any) -> Any:
     if not all(isinstance(side, MatrixBase) and side.shape == (3, 1) for side in (left, right)):
-        raise Unread("a cross product of other than two vectors")
+        raise Unread("a cross product of values that are not vectors of three")
     return Matrix(left).cross(Matrix(right))
 
 
 def _skew(vector: Any) -> Matrix:
     if not isinstance(vector, MatrixBase) or vector.shape != (3, 1):
-        raise Unread("the cross product matrix of no vector")
+        raise Unread("the cross product matrix of a value that is not a vector")
     a, b, c = vector
     return Matrix([[0, -c, b], [c, 0, -a], [-b, a, 0]])
 
@@ -475,8 +475,8 @@ def _inverted(value: Any) -> Any:
 def _gradient(value: Any, variable: Any) -> Any:
     if isinstance(variable, MatrixBase):
         if isinstance(value, MatrixBase) or not all(entry.is_Symbol for entry in variable):
-            raise Unread("a derivative by a vector")
+            raise Unread("a derivative with respect to a vector")
         return Matrix([diff(value, entry) for entry in variable])
     if not getattr(variable, "is_Symbol", False):
-        raise Unread("a derivative by a formula")
+        raise Unread("a derivative with respect to a formula instead of a symbol")
     return diff(value, variable)

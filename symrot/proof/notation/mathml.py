@@ -74,7 +74,7 @@ class _Reader:
     def next(self) -> str:
         token = self.peek()
         if not token:
-            raise InputError(f"expected more after the end of the formula {self.latex!r}")
+            raise InputError(f"expected a complete formula, got {self.latex!r}, which ends too early")
         self.place += 1
         return token
 

@@ -121,7 +121,7 @@ def fitted(
     left[0] -= len(edges) - 1
     if left[0] < 0:
         raise PropagationError(
-            f"expected a motion that polynomials can follow, but {MOST_PIECES} were not enough near "
+            f"expected a motion that polynomials can follow, but {MOST_PIECES} pieces were not enough near "
             f"t = {float(edges[0])!r} s"
         )
     points, to_series, to_powers = _chebyshev()

@@ -123,13 +123,13 @@ def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching]) -> Stat
 def check_tolerance(tolerance: float) -> None:
     """Raise InputError for a tolerance that is not between 0 and 1."""
     if not 0.0 < tolerance < 1.0:
-        raise InputError(f"the tolerance lies between 0 and 1, got {tolerance}")
+        raise InputError(f"tolerance: expected a number between 0 and 1, got {tolerance}")
 
 
 def check_longest_step(max_step: float) -> None:
     """Raise InputError for a longest step, s, that is not positive; infinity means no limit."""
     if not max_step > 0.0:
-        raise InputError(f"the longest step is a positive number of seconds, got {max_step}")
+        raise InputError(f"max_step: expected a positive number of seconds, got {max_step}")
 
 
 def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
@@ -524,7 +524,7 @@ class Integration:
         """
         low, high = min(span), max(span)
         if not (math.isfinite(low) and math.isfinite(high)):
-            raise InputError(f"a span runs between two finite times, got {span}")
+            raise InputError(f"span: expected two finite times in s, got {span}")
         span = min(low, self.t0), max(high, self.t0)
         backward, forward = (np.concatenate(self.record_steps(end)) for end in span)
         return SteppedRecording(self, span, backward, forward)
