@@ -1,4 +1,4 @@
-"""Compile the closed forms, once per machine, and load them: all scenes share the code; only constants differ.
+"""Compilation of the closed forms, once per machine: all scenes share the code; only constants differ.
 
 A closed form consists of two C files, compiled in parallel. ``name.c`` computes the constants of a motion, once per
 motion; it is compiled at -Og, which takes a third of the time of -O2 and costs 1 us per motion. ``name_at.c`` holds the

@@ -120,7 +120,10 @@ _EXPLICIT: dict[str, Callable[..., Any]] = {
 
 
 def explicit(expr: Expr) -> Expr:
-    """Return an expression with the removable functions replaced by quotients, which are valid except at zero."""
+    """Return an expression in which functions with a removable singularity, such as sinc, are written as quotients.
+
+    The quotients are valid except where their denominator is zero.
+    """
     for name, formula in _EXPLICIT.items():
         expr = expr.replace(
             lambda e, name=name: getattr(e.func, "__name__", "") == name, lambda e, formula=formula: formula(*e.args)

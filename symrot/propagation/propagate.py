@@ -1,4 +1,4 @@
-"""Make the propagator of a scene: choose the kind of its motion and check the options that this kind accepts."""
+"""The propagator of a scene: the kind of its motion, and the options that this kind accepts."""
 
 from math import inf
 from pathlib import Path

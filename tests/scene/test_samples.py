@@ -189,7 +189,7 @@ def test_no_torque_is_made_up_outside_the_samples():
 
 @pytest.mark.parametrize("option", [{"method": "taylor"}, {"method": "exact"}, {"state": "ZXZ"}, {"torque": max}])
 def test_options_that_need_a_formula_are_refused(option):
-    with pytest.raises(InputError, match=r"no formula|of kind table"):
+    with pytest.raises(InputError, match=r"without a formula|of kind table"):
         symrot.propagator(scene(), **option)
 
 

@@ -11,7 +11,7 @@ __all__ = ["Share"]
 
 
 class Share:
-    """Search for common factors and sums in formula trees: the most frequent pair becomes a node of its own.
+    """Collection of formula trees in which common factors and sums are found: the most frequent pair becomes a node.
 
     Among equally frequent pairs the one that appears first is taken. Every distinct node has a number, its identity.
     """

@@ -30,11 +30,11 @@ Polynomial = dict[Monomial, Fraction]
 
 
 class _Open(Exception):
-    """Signal that the equations of companions do not close, or not soon enough."""
+    """Signal that the equations of auxiliary states do not close, or not soon enough."""
 
 
 class _Term(NamedTuple):
-    """One term of a sum: a number times a constant formula, and perhaps times a companion and a state."""
+    """One term of a sum: a number times a constant formula, and perhaps times a auxiliary state and a state."""
 
     companion: int | None
     number: Fraction
@@ -43,10 +43,11 @@ class _Term(NamedTuple):
 
 
 def with_companions(system: Recurrences) -> Recurrences:
-    """Return a system in which quantities of the attitude alone are replaced by auxiliary states (companions).
+    """Return a system in which quantities of the attitude alone are replaced by auxiliary states.
 
-    Companions are states beyond those of the program: ``rates`` of the result contains their rates, and ``seeds`` a
-    formula of states and t for coefficient 0 of each. The system is returned unchanged if there are no such quantities.
+    Auxiliary states are states beyond those of the program: ``rates`` of the result contains their rates, and ``seeds``
+    a formula of states and t for coefficient 0 of each. The system is returned unchanged if there are no such
+    quantities.
     """
     if not set(QUATERNION) <= set(system.states):
         return system
@@ -208,11 +209,11 @@ class _Closure:
     # -------------------------------------------------------------------------------------------- closing
 
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
-        """Return a companion, a factor and a number such that a polynomial of the attitude is factor*companion +
+        """Return a auxiliary state, a factor and a number such that a polynomial of the attitude is factor*state +
         number.
 
-        The companion is added if it is new. For a unit quaternion all terms of the polynomial can be given the same
-        degree; of degree two, they are fixed only up to a multiple of the squared norm.
+        The auxiliary state is added if it is new. For a unit quaternion all terms of the polynomial can be given the
+        same degree; of degree two, they are fixed only up to a multiple of the squared norm.
         """
         degrees = {self.degree(monomial) for monomial in inner}
         top = max(degrees)
@@ -249,7 +250,9 @@ class _Closure:
         return result
 
     def seek(self, i: int) -> None:
-        """Search a series and its operands for polynomials of the attitude alone, and replace them by companions."""
+        """Search a series and its operands for polynomials of the attitude alone, and replace them by auxiliary
+        states.
+        """
         s = self.series[i]
         if i in self.replaced or s.rule not in ("sum", "product"):
             return
@@ -262,7 +265,9 @@ class _Closure:
                 self.seek(operand)
 
     def seek_in(self, s: Series) -> None:
-        """Replace the products of the attitude in a sum by companions, all together, then search its other operands."""
+        """Replace the products of the attitude in a sum by auxiliary states, all together, then search its other
+        operands.
+        """
         alone = {
             i for i in s.operands if self.series[i].rule == "product" and self.of_attitude(self.polynomial(i))
             and not any(self.of_attitude(self.polynomial(factor)) for factor in self.series[i].operands)
@@ -330,7 +335,7 @@ def _total(terms: list[Node]) -> Node:
 
 
 def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
-    """Return the system with companions as additional states, without the series that are no longer needed."""
+    """Return the system with auxiliary states as additional states, without the series that are no longer needed."""
     system, old = closure.system, closure.series
     count = len(system.states)
     alias = {
@@ -339,7 +344,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     }  # fmt: skip
 
     def left(s: Series) -> list[int]:
-        """Return those operands of a series that remain after the replacement by companions."""
+        """Return those operands of a series that remain after the replacement by auxiliary states."""
         return [i for i in s.operands if i not in closure.parts.get(s, (set(),))[0]]
 
     needed: set[int] = set()
@@ -362,7 +367,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     def summed(
         terms: list[_Term], pairs: Iterable[tuple[int, Node | None]] = (), constant: Node | None = None
     ) -> Series:
-        """Return the series for a sum of weighted series, companions and a constant."""
+        """Return the series for a sum of weighted series, auxiliary states and a constant."""
         for term in terms:
             if term.companion is None:
                 constant = weight(term) if constant is None else ("+", constant, weight(term))

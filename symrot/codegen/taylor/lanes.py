@@ -77,10 +77,10 @@ class Row(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """All rows in the order of their computation: first the states, then their companions, then the other series.
+    """All rows in the order of their computation: first the states, then their auxiliary states, then the other series.
 
-    Companions are auxiliary states, see :mod:`symrot.codegen.taylor.auxiliary_states`. ``rates`` has one row per row of
-    states and of companions; ``seeds`` has the formulas of coefficient 0 of companions.
+    For auxiliary states see :mod:`symrot.codegen.taylor.auxiliary_states`. ``rates`` has one row per row of states and
+    of auxiliary states; ``seeds`` has the formulas of coefficient 0 of auxiliary states.
     """
 
     series: tuple[Series, ...]

@@ -292,7 +292,7 @@ class _Jet:
         return f"V_LANE(r{row}, {lane})"
 
     def seeds(self) -> list[str]:
-        """Return the C statements that set coefficient 0 of the companions, which are auxiliary states."""
+        """Return the C statements that set coefficient 0 of the auxiliary states."""
         lines: list[str] = []
         formulas = [formula for row in self.layout.seeds for formula in row]
         places = {name: f"V_LANE({self.constant((('symbol', name),) * LANES)}, 0)"

@@ -1,4 +1,4 @@
-"""Test whether the torques of a plan are smooth enough for Taylor series. Does not use SymPy.
+"""Smoothness of the torques of a plan, which decides whether Taylor series can be used. Does not use SymPy.
 
 A series needs derivatives of every order at its centre. Quotients, powers, sin, cos, exp and log have them wherever
 they are defined. The absolute value and the square root have none where their argument is zero, and a motion may reach

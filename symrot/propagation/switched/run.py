@@ -1,4 +1,4 @@
-"""Follow a motion under torques with switches from its start to one end: find where it switches, slides or stops."""
+"""A motion under torques with switches, followed from its start to one end: where it switches, slides or stops."""
 
 import math
 from collections.abc import Callable, Generator
