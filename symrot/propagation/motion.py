@@ -354,8 +354,9 @@ class ShiftableMotion(RestartableMotion):
         """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion."""
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at times of the scene, shape (n, N), and the cost; stepped on the clock that loses fewest
-        digits.
+        """Return the states at times of the scene, shape (n, N), and the cost of the motion.
+
+        The motion is stepped on the clock that loses the fewest digits.
         """
         if not self._shifts(times):
             return self.steps(times, in_order)

@@ -1,6 +1,4 @@
-"""Heavy tops that pass through the vertical or fall asleep (Klein & Sommerfeld, Theory of the Top, vol. 2, ch. 4,
-6).
-"""
+"""Heavy tops through the vertical, and into sleep (Klein & Sommerfeld, Theory of the Top, vol. 2, chapters 4 and 6)."""
 
 from sympy import Integer, Matrix, Symbol, atan, sqrt, tanh
 

@@ -223,7 +223,9 @@ class Driven:
 
 
 def turned_about(axis: int, q: Sequence[Any]) -> list[Any]:
-    """Return the quaternion product ``q * e``, where e is the unit quaternion of a half turn about a body axis."""
+    """Return the quaternion product ``q * e``, where e is the unit quaternion of a rotation by 180 degrees about a body
+    axis.
+    """
     product: list[Any] = [None] * 4
     product[0], product[axis + 1] = -q[axis + 1], q[0]
     product[(axis + 1) % 3 + 1], product[(axis + 2) % 3 + 1] = q[(axis + 2) % 3 + 1], -q[(axis + 1) % 3 + 1]

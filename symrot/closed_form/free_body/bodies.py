@@ -63,10 +63,11 @@ def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray
 
 
 def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floats, Doubtful]:
-    """Return angular velocities along the principal axes of a :func:`fixed_body`, their defects, and doubtful rows.
+    """Return angular velocities of a :func:`fixed_body` along its principal axes, their defects, and a mask of doubtful
+    rows.
 
     The shapes are (n, 6) and (n, 2), hi and lo of each number. A defect is |L|^2 - 2 T I_mid; its sign tells whether
-    the motion goes around the axis of the least or of the largest moment.
+    the motion goes around the axis of the least or of the largest moment. Doubtful rows need exact arithmetic.
     """
     n = len(omega)
     rates, exact, doubtful = np.empty((n, 6)), np.empty((n, 8)), np.empty(n, np.uint8)
@@ -76,9 +77,10 @@ def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floa
 
 
 def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
-    """Return the defects |L|^2 - 2 T I_mid of free bodies, shape (n, 2), and a mask of doubtful rows.
+    """Return the defects |L|^2 - 2 T I_mid of free bodies, shape (n, 2), and a mask of rows that need exact arithmetic.
 
     ``moments`` are principal moments and ``omega`` angular velocities along the principal axes, both of shape (n, 3).
+    The sign of a defect tells whether the motion goes around the axis of the least or of the largest moment.
     """
     n = len(omega)
     exact, doubtful = np.empty((n, 8)), np.empty(n, np.uint8)

@@ -1,6 +1,6 @@
-"""Sums of formulas with few minus signs: a sign is moved where it costs no operation.
+"""Sums of formulas with few minus signs: a sign is moved to a place where it costs no operation.
 
-Such places are a difference, a number and a product that contains one of these.
+Such a place is a difference, a number, or a product that contains one of these.
 """
 
 from collections.abc import Sequence

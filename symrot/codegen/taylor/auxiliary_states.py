@@ -34,7 +34,7 @@ class _Open(Exception):
 
 
 class _Term(NamedTuple):
-    """One term of a sum: a number times a constant formula, and perhaps times a auxiliary state and a state."""
+    """One term of a sum: a number times a constant formula, and perhaps times an auxiliary state and a state."""
 
     companion: int | None
     number: Fraction
@@ -209,7 +209,7 @@ class _Closure:
     # -------------------------------------------------------------------------------------------- closing
 
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
-        """Return a auxiliary state, a factor and a number such that a polynomial of the attitude is factor*state +
+        """Return an auxiliary state, a factor and a number such that a polynomial of the attitude is factor*state +
         number.
 
         The auxiliary state is added if it is new. For a unit quaternion all terms of the polynomial can be given the

@@ -282,8 +282,8 @@ class _Builder:
         return self.known[key]
 
     def half_turn(self, name: str, argument: _Linear) -> _Linear:
-        """Add a pair of functions that appear in each other's derivative (sin and cos, or sinh and cosh); return
-        ``name``.
+        """Return sin, cos, sinh or cosh of a linear form; the other function of the pair, its derivative, is added
+        too.
         """
         sine, cosine, *signs = HALF_TURNS[name]
         first = self.driven(((sine, signs[0]), (cosine, signs[1])), (1, 0), argument)

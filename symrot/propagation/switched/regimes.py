@@ -1,6 +1,7 @@
-"""Regimes: the smooth motions between switches, and the guards that end them.
+"""Regimes: the smooth motions between switches of a torque, and the guards whose zeros end them.
 
-:mod:`symrot.propagation.switched.motion` explains guards and modes.
+A guard is the formula inside a function such as sign or abs; a mode is the value of the function. See
+:mod:`symrot.propagation.switched.motion`.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -28,8 +29,9 @@ Modes = dict[str, int]
 
 
 class Guard(NamedTuple):
-    """A formula that is positive while its switch keeps its mode, and the change of the mode where it becomes
-    negative.
+    """A formula inside a switching function (sign, abs, ..): it is positive while the function keeps its mode (value).
+
+    The guard also says how the mode changes where the formula becomes negative.
     """
 
     mode: str
@@ -39,7 +41,8 @@ class Guard(NamedTuple):
 
 
 class RegimeParameters(NamedTuple):
-    """Parameters of a regime for fixed modes of its switches, as functions of the epoch of its clock.
+    """Parameters of a regime for fixed modes (values of its switching functions), as functions of the epoch of its
+    clock.
 
     ``invariants`` are pairs of doubles that do not depend on the clock; only Taylor steps use them.
     """
@@ -51,9 +54,11 @@ class RegimeParameters(NamedTuple):
 
 
 class Regime:
-    """Smooth motion while the guards of some switches stay at zero, and the guards that end it.
+    """A smooth motion between two switches: its rates, and the guards (formulas inside sign, abs, ..) whose zeros end
+    it.
 
-    Its clock shows 0 at the instant at which the motion enters it; rates and guards have parameters for that instant.
+    Some guards may stay at zero during the regime. Its clock shows 0 at the instant at which the motion enters it;
+    rates and guards have parameters for that instant.
     """
 
     def __init__(
@@ -106,7 +111,7 @@ class Regime:
             yield Guard(mode, f"1 - ({guard})", 1, where)
 
     def _parameters_under(self, modes: Modes) -> RegimeParameters:
-        """Return the parameters of the regime for given modes of its switches."""
+        """Return the parameters of the regime for given modes, which are the values of its switching functions."""
         key = tuple(modes.values())
         if key not in self._parameters:
             values = {name: Fraction(value) for name, value in modes.items()}
@@ -120,8 +125,9 @@ class Regime:
         return self._parameters[key]
 
     def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
-        """Return the values of the named :attr:`formulas` for given modes, on a clock that shows 0 at the instant
-        ``zero``.
+        """Return the values of the named :attr:`formulas` for given modes (values of the switching functions).
+
+        They are for a clock that shows 0 at the instant ``zero``.
         """
         numbers = self._parameters_under(modes).guards.parameters(zero.exact)
         return {name: number for (name, _), number in zip(self.parameters, numbers, strict=True)} | {
@@ -129,8 +135,9 @@ class Regime:
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
-        """Return the parameters of the stepper and those of the guards, on a clock that shows 0 at the instant
-        ``zero``.
+        """Return the parameters of the stepper and those of the guards, which are the formulas that end the regime.
+
+        They are for a clock that shows 0 at the instant ``zero``.
         """
         rates, guards, quantities, invariants = self._parameters_under(modes)
         fixed = rates.fixed and guards.fixed and quantities.fixed
@@ -152,7 +159,10 @@ class Regime:
 
     @cached_property
     def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:
-        """Return the parameters of rates, guards and quantities as formulas of the modes and the epoch alone."""
+        """Return the parameters of rates, guards and quantities as formulas of the epoch and of modes alone.
+
+        Modes are the values of switching functions such as sign.
+        """
         modes = {switch.mode for switch in self.switches}
         known = {name: value for name, value in self.constants.items() if name not in modes}
         kernel = self.motion.kernel
@@ -163,7 +173,9 @@ class Regime:
         return rates, guards, quantities
 
     def active(self, modes: Modes) -> list[bool]:
-        """Return, for each guard, whether it can end the regime for given modes."""
+        """Return, for each guard, whether its zero can end the regime for the given modes (values of switching
+        functions).
+        """
         key = tuple(modes.values())
         if key not in self._active:
             self._active[key] = [hold(guard.where, modes, self.held) for guard in self.guards]

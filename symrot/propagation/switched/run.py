@@ -216,12 +216,12 @@ class SwitchedRun(RunState):
     def _hop(
         self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: IntegrationStopped
     ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
-        """Return a straight piece of motion over a place where a stepper is stuck, and the guard that it reaches; or
+        """Return a straight piece of motion over a place where a stepper is stuck, and the switch that it reaches; or
         None.
 
         Steps shrink to zero where a torque has no derivative, though its impulse is finite. Examples are sqrt(1 - t)
         before a switch at 1 s, and sqrt(t - 1) after it. While the impulse is less than the tolerance the motion may
-        continue straight: to the guard if the guard is that near, or away from the last switch. The result also has the
+        continue straight: to the switch if it is that near, or away from the last switch. The result also has the
         states along the piece.
         """
         kernel, motion = regime.motion.kernel, regime.motion
@@ -263,7 +263,7 @@ class SwitchedRun(RunState):
         return None
 
     def _crosses(self, regime: Regime, guard: Guard, *places: tuple[float, Floats]) -> bool:
-        """Return whether a guard becomes negative between two places, each a time with states."""
+        """Return whether the formula of a guard becomes negative between two places, each a time with states."""
         try:
             before, after = (
                 float(evaluate(parse(guard.formula), self._values(regime, place), FLOAT_FUNCTIONS, float))
@@ -277,9 +277,9 @@ class SwitchedRun(RunState):
         return Chunk(self._at(start), self._at(stop), self.zero, states, piece)
 
     def _located(self, regime: Regime, guard: Guard, t: float) -> Instant:
-        """Return the instant at which a guard is zero, which lies next to the time t.
+        """Return the instant at which the formula of a guard is zero, which lies next to the time t.
 
-        On a clock that shows 0 at t, a guard of time alone is known to all digits; one step of Newton's method finds
+        On a clock that shows 0 at t, a formula of time alone is known to all digits; one step of Newton's method finds
         its zero to twice the digits of t.
         """
         instant = self.zero.after(t)
@@ -302,7 +302,9 @@ class SwitchedRun(RunState):
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
     ) -> tuple[list[Guard], list[Guard]]:
-        """Return two lists of guards: those negative from the start of a piece on, and those negative at its end."""
+        """Return two lists of guards: those whose formulas are negative from the start of a piece on, and those at its
+        end.
+        """
         formulas = [guard.formula for guard in regime.guards]
         first, last = (
             [guard for guard, on, sign in zip(regime.guards, active, signs, strict=True) if on and sign < 0]
@@ -311,9 +313,9 @@ class SwitchedRun(RunState):
         return first, last
 
     def _settle(self, regime: Regime, active: list[bool], piece: Piece, states: Callable[[Floats], Floats]) -> bool:
-        """Give each mode whose guard stays at zero the value of its function at zero; return whether a mode changed.
+        """Give each switching function whose argument stays at zero its value at zero; return whether a value changed.
 
-        A mode that is 0 takes the sign of its guard as soon as the guard is not zero.
+        A value (mode) of 0 changes to the sign of its argument (guard) as soon as the argument is not zero.
         """
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
 
@@ -349,9 +351,10 @@ class SwitchedRun(RunState):
         return changed
 
     def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
-        """Return the distance of the guard of a mode from zero, at the present time or at another time with states.
+        """Return how far the argument of a switching function is from the switch, now or at another time with states.
 
-        For a floor it is the distance of the guard from the whole number that is the mode.
+        The function is named by its mode. For a floor it is the distance of the argument from the whole number that is
+        its value.
         """
         regime = self.system.regime(self.held, self.modes)
         return float(
@@ -359,7 +362,7 @@ class SwitchedRun(RunState):
         )
 
     def _values(self, regime: Regime, place: tuple[float, Floats]) -> dict[str, float]:
-        """Return the values of all names in guards, at one time with its states."""
+        """Return the values of all names in the arguments of switching functions, at one time with its states."""
         t, y = place
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure.attitude else []
@@ -368,7 +371,10 @@ class SwitchedRun(RunState):
         return {**values, **regime.values(self.modes, self.zero), "t": t}
 
     def _switch(self, regime: Regime, guard: Guard) -> None:
-        """Change the mode of a guard; hold the guard at zero where the rates on both sides send the motion back."""
+        """Change the value (mode) of a function whose argument (guard) crosses zero.
+
+        Where the rates on both sides send the motion back, the argument is held at zero: the motion slides.
+        """
         mode, kind = guard.mode, self.by_name[guard.mode].kind
         self.left.add((mode, self.modes[mode]))
         again = self.flipped.get(mode, 0)
@@ -404,17 +410,21 @@ class SwitchedRun(RunState):
             self._wake(other)
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether, since a mode changed at the present time, a mode inside its guard has changed too."""
+        """Return whether, since a function last switched at the present time, a function inside its argument has
+        switched too.
+        """
         inside = names(self.by_name[mode].guard)
         last = len(self.order) - self.order[::-1].index(mode)
         return any(other in inside for other in self.order[last:])
 
     def _asleep(self) -> set[str]:
-        """Return the modes whose guards are not active in the present regime."""
+        """Return the modes of those switching functions that do not matter in the present regime."""
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
-        """Set a mode whose guard becomes active by the sign of the guard, if the guard is not zero."""
+        """Set the value (mode) of a switching function that begins to matter, by the sign of its argument if it is not
+        zero.
+        """
         try:
             guard = self._guard_value(mode)
         except (ArithmeticError, ValueError, IntegrationStopped):

@@ -24,7 +24,11 @@ STATES = frozenset({*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range
 
 
 class SwitchedSystem:
-    """The switches of all torques of a plan, and one regime for each combination of guards that stay at zero."""
+    """All switching functions (sign, abs, ..) in the torques of a plan, and the smooth motions (regimes) between
+    switches.
+
+    There is one regime for each combination of arguments (guards) that stay at zero.
+    """
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
         self.plan, self.choice, self.tolerance = plan, choice, tolerance
@@ -32,7 +36,7 @@ class SwitchedSystem:
 
     @cached_property
     def switches(self) -> list[Switch]:
-        """The switches of all torques; their modes have the names of constants of the plan."""
+        """The switching functions of all torques; their values (modes) have the names of constants of the plan."""
         return [switch for switches in self._switches_by_torque for switch in switches]
 
     @cached_property
@@ -41,9 +45,10 @@ class SwitchedSystem:
 
     @cached_property
     def twins(self) -> dict[str, list[str]]:
-        """For each mode, the modes of the same torque with the same guard, itself included: those that jump come first.
+        """For each mode, the modes of the same torque whose functions have the same argument, itself included.
 
-        An example is sign(omega_3) and abs(omega_3) in the friction of a bearing, which is greater at rest.
+        A mode is the value of a switching function. Functions that jump come first. An example is sign(omega_3) and
+        abs(omega_3) in the friction of a bearing, which is greater at rest.
         """
         twins: dict[str, list[str]] = {}
         for switches in self._switches_by_torque:
@@ -56,7 +61,9 @@ class SwitchedSystem:
 
     @cached_property
     def settled(self) -> set[str]:
-        """The modes whose guards are constant: they contain no time, no state and no mode that changes."""
+        """The modes of switching functions whose arguments are constant: they contain no time, no state and no changing
+        mode.
+        """
         settled = set[str]()
         for switch in self.switches:
             if names(switch.guard) <= self.constants.keys() - ({each.mode for each in self.switches} - settled):
@@ -68,14 +75,15 @@ class SwitchedSystem:
         return {"pi": PI, **self.plan.constants}
 
     def initial_modes(self) -> Modes:
-        """Return the modes at the start; a guard that is zero there counts as positive until the motion decides its
-        sign.
+        """Return the modes (values of the switching functions) at the start.
+
+        An argument that is zero at the start counts as positive until the motion decides its sign.
         """
         return dict(self._initial_modes[0])
 
     @property
     def undecided(self) -> set[str]:
-        """The modes whose guards are zero at the start and depend on more than the time."""
+        """The modes of switching functions whose arguments are zero at the start and depend on more than the time."""
         return self._initial_modes[1]
 
     @cached_property
@@ -83,8 +91,9 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the modes at the start if one guard that is zero there has the sign ``sign``; modes that depend on it
-        follow.
+        """Return the modes (values of the switching functions) just beside the start, where one argument is zero.
+
+        ``sign`` is the side of that argument; modes that depend on it follow.
         """
         return self._modes_at_start({mode: sign})[0]
 
@@ -112,9 +121,10 @@ class SwitchedSystem:
         return modes, undecided
 
     def regime(self, held: frozenset[str], modes: Modes) -> Regime:
-        """Return the smooth motion while the guards of the modes ``held`` stay at zero; it is derived on first use.
+        """Return the smooth motion while the arguments of the functions ``held`` stay at zero; it is derived on first
+        use.
 
-        The other modes matter if they choose between the parts of a ``where``.
+        The values of the other functions (modes) matter if they choose between the parts of a ``where``.
         """
         key = held, tuple(modes.values()) if self._chooses else ()
         if key not in self._regimes:
@@ -150,7 +160,7 @@ class SwitchedSystem:
 
 
 def _switches(torque: FormulaTorque) -> list[Switch]:
-    """Return the switches of a torque; their modes have the names of constants of the plan."""
+    """Return the switching functions of a torque; their values (modes) have the names of constants of the plan."""
     own = {name: f"{torque.prefix}{name}" for name in torque.parameters}
     return [
         Switch(
@@ -166,17 +176,19 @@ def _switches(torque: FormulaTorque) -> list[Switch]:
 
 
 def _bends(switch: Switch | TorqueSwitch) -> bool:
-    """Return whether a formula bends but does not jump at a switch, so that either mode is right where the guard is
-    zero.
+    """Return whether a formula bends but does not jump where a switching function switches.
+
+    Then either value of the function is right at the switch.
     """
     return switch.at_zero == 1
 
 
 def _chosen(torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: Mapping[str, str]) -> TorqueStructure:
-    """Return a torque reduced to those parts of its formulas that apply for given modes, with the held modes as names.
+    """Return a torque reduced to the parts of its formulas that apply for given values (modes) of its switching
+    functions.
 
-    Inactive guards are left out. A mode with the same guard as a held mode is ``tied`` to it: if the formula jumps
-    there, it takes the value of the held mode.
+    Functions that do not matter are left out. A function with the same argument as a held one is ``tied`` to it: if the
+    formula jumps there, it takes the value of the held function.
     """
     if not isinstance(torque, FormulaTorque):
         return torque
