@@ -226,7 +226,7 @@ def _check_overshoot(spline: Any, largest: float) -> None:
     before, after = map(float, spline.x[worst : worst + 2])
     if not reach[worst] <= OVERSHOOT * largest:
         raise InputError(
-            f"torque: expected samples that a cubic spline keeps near, got samples of at most {largest:.3g} N m that "
+            f"torque: expected samples that a cubic spline follows, got samples of at most {largest:.3g} N m that "
             f"send it to {reach[worst]:.3g} N m between {before!r} and {after!r} s; a jump is a switching time with "
             "two samples, before and after"
         )

@@ -121,9 +121,9 @@ def read_study(path: Path) -> dict[str, Any]:
         expectation = f"a study of `symrot bench`, of at most {LARGEST_FILE // 1_000_000} MB"
         raise InputError(f"{label}: expected {expectation}, got {reason.strerror or reason}") from None
     except (ValueError, RecursionError):
-        raise InputError(f"{label}: expected a study of `symrot bench` as JSON, got other text") from None
+        raise InputError(f"{label}: expected a study of `symrot bench` as JSON, got text that is not JSON") from None
     if not isinstance(study, dict) or study.get("format") != FORMAT:
-        raise InputError(f"{label}: expected a study of `symrot bench`, whose format is {FORMAT!r}")
+        raise InputError(f"{label}: expected a study of `symrot bench` of the format {FORMAT!r}, got another")
     try:
         whole = _positive(study) and bool(lines(study))
     except (KeyError, TypeError, AttributeError, ValueError, IndexError, OverflowError):

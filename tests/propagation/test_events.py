@@ -263,9 +263,7 @@ def test_dense_zeros_of_exact_motions_are_counted():
 @pytest.mark.long_motion
 @pytest.mark.parametrize("formula", ["sin(1/(t - 5))", "asin(sin(t)) - t", "sin(1e8*t)"])
 def test_zeros_that_cannot_be_told_apart_end_in_a_sentence(formula):
-    with pytest.raises(
-        PropagationError, match=r"events: expected formulas whose zeros can be told apart, but beyond t"
-    ):
+    with pytest.raises(PropagationError, match=r"events: expected formulas whose zeros can be separated, but beyond t"):
         run(scene(), [formula])
 
 

@@ -106,7 +106,7 @@ def test_a_spline_far_from_its_samples_is_refused():
     """Two samples of a jump one bit apart send the spline beside it to 1e30 N m; declared, the jump is one."""
     samples = np.array([[0, 0, 0], [0.1, 0, 0], [-0.1, 1, 0], [0, 0, 0.1]])
     with pytest.raises(
-        InputError, match=r"expected samples that a cubic spline keeps near, .* between 1\.0000000000000002 and 3\.0 s"
+        InputError, match=r"expected samples that a cubic spline follows, .* between 1\.0000000000000002 and 3\.0 s"
     ):
         symrot.propagator(scene(), torque=([0, 1, math.nextafter(1, 2), 3], samples))
     assert symrot.propagator(scene(), torque=([0, 1, 1, 3], samples), switching_times=[1])().success

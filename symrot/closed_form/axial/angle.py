@@ -85,7 +85,7 @@ class Turning:
             self._final, self._rest = pair(final * turn), pair(rest * turn)
         except OverflowError:
             raise InputError(
-                "expected no damping, or one that ends the motion within turns that doubles can count, got a decay of "
+                "expected no damping, or one with a final angle that doubles can represent, got a decay of "
                 f"{float(decay)!r} 1/s under {float(push)!r} rad/s^2"
             ) from None
         self._bits = _BITS + max(int(abs(x)) for x in self._exact).bit_length()

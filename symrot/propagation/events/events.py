@@ -253,7 +253,7 @@ class _Search:
                 t = float(edges[min(answer[2], count)])
                 formulas = ", ".join(map(repr, self.formulas))
                 raise PropagationError(
-                    f"events: expected formulas whose zeros can be told apart, but beyond t = {t!r} s the zeros of "
+                    f"events: expected formulas whose zeros can be separated, but beyond t = {t!r} s the zeros of "
                     f"{formulas} are not settled after {self.spent:.1g} operations and {len(listed)} entries"
                 )
         return listed
