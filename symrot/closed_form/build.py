@@ -122,9 +122,9 @@ def times_of(t: ArrayLike) -> Floats:
     try:
         times = np.ascontiguousarray(t, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"t: expected a number or a sequence of numbers in s, got {show(t)}") from None
+        raise InputError(f"t: expected times in s, a number or a sequence, got {show(t)}") from None
     if times.ndim > 1:
-        raise InputError(f"t: expected a number or a sequence of numbers in s, got an array of shape {times.shape}")
+        raise InputError(f"t: expected times in s, a number or sequence, got an array of shape {times.shape}")
     times = times.reshape(-1)
     if not isfinite(np.add.reduce(times)) and not np.isfinite(times).all():
         raise InputError(f"t: expected finite times in s, got {times[~np.isfinite(times)][0]}")
