@@ -28,9 +28,9 @@ from symrot.ensemble import lanes
 
 __all__ = ["main", "measure"]
 
-SPREAD = 0.1  # of the initial states about those of the motion
+SPREAD = 0.1  # relative spread of the initial states about those of the motion
 SHORTER = 20  # the span of the many is so much shorter
-COMPARED = 16  # of the many are compared with the reference
+COMPARED = 16  # number of trajectories that are compared with the reference
 TIGHTEST = 1e-19  # tolerance of the reference in long double
 ORDERS = (8, 10, 12, 14, 16, 18, 20)
 WIDTHS = (4, 8)

@@ -45,7 +45,7 @@ TAIT_BRYAN = ("zyx", "zxy", "xyz", "xzy", "yxz", "yzx")
 PAGE = 4096  # bytes
 PLACES = {"one": 1, "cached": 1, "many": 7}  # pieces of memory that rounds take in turn
 SHORTEST = 1e-3  # s, one measurement
-BAR = 1.05  # of the least time of the others
+BAR = 1.05  # largest accepted ratio to the least time of the other tools
 FLOOR = "moves only"
 
 Floats = NDArray[np.float64]

@@ -31,7 +31,7 @@ from symrot.scene.scene import Scene, Torque, load_scene
 __all__ = ["LADDER", "general_plan", "lines", "measure", "rungs"]
 
 LADDER = Path(__file__).with_name("skip.toml")
-TOLERANCE, AGREEMENT = 1e-12, 1e-10  # of the motions; of their ends
+TOLERANCE, AGREEMENT = 1e-12, 1e-10  # tolerance of the motions, and of the difference of their ends
 STATES, TURNS = 64, 400  # evaluations in one call
 ABOUT_CENTRE = ("gravity_gradient",)  # needs the centre of mass at rest, gravity a fixed point: one of them acts
 ABOUT_POINT = ("gravity",)

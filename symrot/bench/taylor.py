@@ -77,7 +77,7 @@ SETTINGS: dict[str, dict[str, bool]] = {
     "heyoka compact": {"compact_mode": True},
 }  # fmt: skip
 OURS, BY_HAND = ("taylor", "dop853"), ("rk4", "dop853")
-HAND_DECADES = (1e-3, 1e-4, 1e-5)  # where low order is at its best
+HAND_DECADES = (1e-3, 1e-4, 1e-5)  # decades of the error in which low order is at its best
 DECADES = tuple(10.0**-k for k in range(3, 14))
 ORDERS = (8, 10, 12, 14, 16, 18, 20, 22, 24, 28)
 REFERENCE_DIGITS, REFERENCE_ORDER, REFERENCE_TAIL = 40, 32, 1e-28

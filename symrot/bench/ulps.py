@@ -36,7 +36,7 @@ __all__ = ["FUNCTIONS", "Measured", "main", "measured"]
 
 CONTRACTION = {"unfused": ("-ffp-contract=off",), "fused": ("-ffp-contract=fast", cache.NATIVE)}
 FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared")
-DIGITS = {"binary64": (53, -1074), "binary32": (24, -149)}  # of the fraction; exponent of the least number
+DIGITS = {"binary64": (53, -1074), "binary32": (24, -149)}  # bits of the fraction; exponent of the least number
 LEAST = {"binary64": 2.0**-1021, "binary32": 2.0**-125}
 REACH = {"binary64": float(np.finfo(np.float64).max), "binary32": float(np.finfo(np.float32).max)}  # for one sample
 

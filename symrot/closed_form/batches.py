@@ -40,9 +40,9 @@ Column = Floats | Fraction
 """A constant: one value for each motion, shape (n,), or one value for all motions."""
 
 _SPREAD = 2.0**-300  # components of a quaternion farther apart are left to fractions
-_DOUBT = 2.0**-12  # of a step of the grid: pairs of doubles err by less than a quarter of it
-_TIE = 2.0**-40  # of the last bit
-_TURNED = 2.0**-99  # by which products of unit quaternions may err: units by 2^-100, two products by 2^-102 each
+_DOUBT = 2.0**-12  # part of a grid step: double-double numbers have errors of less than a quarter of it
+_TIE = 2.0**-40  # part of the last bit
+_TURNED = 2.0**-99  # error of products of unit quaternions: 2^-100 of the units, 2^-102 of each product
 
 
 def attitudes(quaternions: Floats) -> Floats:

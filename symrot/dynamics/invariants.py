@@ -35,7 +35,7 @@ class Invariant:
 
     name: str
     unit: str
-    value: Expr  # in t, the states and the constants
+    value: Expr  # a formula in t, the states and the constants
     holds: bool
     reason: str
 

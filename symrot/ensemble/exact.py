@@ -408,7 +408,7 @@ def _driven(part: _Part) -> tuple["Batch | None", Usual]:
         ratios = [[x.as_integer_ratio() for x in column] for column in columns]
         bodies = [Constants(axis, (a, c), *rest) for a, c, *rest in zip(*ratios, strict=True)]
         return batches.driven(bodies, part.omega, part.start), True
-    except InputError:  # of one trajectory, which says so alone
+    except InputError:  # of one trajectory: its own motion reports the error
         return None, False
 
 

@@ -32,7 +32,7 @@ SIGNS = {  # what a field's sign asks of its values, of each trajectory: shape (
     "nonnegative": lambda values: (values >= 0).all(axis=1),
     "nonzero": lambda values: (values != 0).any(axis=1),
 }
-GENERAL_START = Initial(  # with no component that any rule of the planner could drop
+GENERAL_START = Initial(  # no component has a value that a rule of the planner could use
     (Fraction(3, 7), Fraction(5, 11), Fraction(7, 13)),
     (Fraction(1, 5), Fraction(2, 5), Fraction(4, 5), Fraction(2, 5)),
 )
@@ -42,7 +42,7 @@ BY_ZEROS = {"gravity", "rotor", "constant_body", "damping"}
 DISTINCT = (Fraction(4), Fraction(5), Fraction(6))  # admissible moments of a body of any class
 
 
-_rooms: dict[int, dict[Hashable, Any]] = {}  # of scenes by their ids, as long as they live
+_rooms: dict[int, dict[Hashable, Any]] = {}  # data of scenes by their ids, as long as the scenes live
 
 
 class _Place(NamedTuple):
@@ -50,7 +50,7 @@ class _Place(NamedTuple):
 
     torque: int  # -1: the inertia
     field: str
-    entry: int | str | None  # of a vector, of the parameters by name; None: the field is a number
+    entry: int | str | None  # index in a vector, name of a parameter; None: the field is a number
 
 
 @dataclass(frozen=True)
@@ -289,7 +289,7 @@ def _check_bodies(variation: Variation) -> None:
         for name, (i, j) in PLACES.items():
             value = variation.constant(name)
             tensors[:, i, j] = tensors[:, j, i] = float(value) if isinstance(value, Fraction) else value
-        moments = np.linalg.eigvalsh(tensors)  # to some 1e-15 of the largest
+        moments = np.linalg.eigvalsh(tensors)  # errors of some 1e-15 of the largest
     small, middle, large = np.sort(moments, axis=1).T
     doubtful = ~((small > CLEARLY * large) & (small + middle > (1 + CLEARLY) * large))
     for i in np.flatnonzero(doubtful).tolist():

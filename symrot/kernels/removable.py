@@ -36,7 +36,7 @@ arc_ratio = Function("arc_ratio", real=True)
 copysign = Function("copysign", real=True)
 select_ge = Function("select_ge", real=True)
 
-FUNCTIONS: dict[str, int] = {  # what kernels of the library call beyond the functions of scenes; number of arguments
+FUNCTIONS: dict[str, int] = {  # functions of kernels beyond those of scenes, with their numbers of arguments
     "sinc": 1, "sine_gap": 1, "tangent_gap": 1, "arc_ratio": 2, "copysign": 2, "select_ge": 4,
 }  # fmt: skip
 DIGITS = {"binary64": 53, "binary32": 24}
@@ -54,7 +54,7 @@ class Removable:
     """
 
     name: str
-    numerator: Expr  # in x
+    numerator: Expr  # a formula in x
     power: int
     split: Fraction
     scaled: Expr  # numerator / x^(power - 2), term by term

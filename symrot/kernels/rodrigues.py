@@ -37,7 +37,7 @@ def _input(which: Projection) -> Argument:
     return argument("parameters", "in", which.parameters, which.about)
 
 
-_SQUARE = Symbol("square", real=True)  # of the length of the parameters
+_SQUARE = Symbol("square", real=True)  # square of the length of the parameters
 
 
 def _ray(which: Projection) -> tuple[Named, Expr]:

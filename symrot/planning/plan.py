@@ -162,7 +162,7 @@ class Plan:
         start = self.scene.initial
         values = (*start.omega_b, *start.quaternion, 0)
         ratios = [values[place].as_integer_ratio() for place in self._places]
-        return tuple([top / bottom for top, bottom in ratios])  # as float(), at half the price
+        return tuple([top / bottom for top, bottom in ratios])  # as float(), in half the time
 
     @cached_property
     def _places(self) -> tuple[int, ...]:
@@ -486,7 +486,7 @@ def _in_body(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[Fraction
     return tuple(scalar * v + t - 2 * q0 * c for v, t, c in zip(vector_s, twice, turned, strict=True))
 
 
-CLEARLY = 1e-12  # of a vector: doubles show that a larger component is not zero
+CLEARLY = 1e-12  # part of a vector: doubles show that a larger component is not zero
 
 
 def _negligible(value: Fraction, vector: tuple[Fraction, ...]) -> bool:

@@ -17,7 +17,7 @@ PANELS = (
     ("motion", 1e-6, "µs of the motion from Python"),
 )
 GENERAL, OWN, AUTO = COLOURS[1], COLOURS[0], COLOURS[6]
-LEAST = 0.6  # where no operation at all is drawn
+LEAST = 0.6  # place on the axis of a motion without any operation
 
 
 def figure(ladder: Mapping[str, Any]) -> Any:

@@ -11,7 +11,7 @@ __all__ = ["FAINT", "draw_directions", "prefixed"]
 Floats = NDArray[np.float64]
 
 GRID, FAINT, DARK = "#d0d0d0", "#b4b4b4", "#303030"
-ELEVATION, ASIDE = np.radians(24.0), np.radians(28.0)  # where the eye is: above the equator, beside the path's middle
+ELEVATION, ASIDE = np.radians(24.0), np.radians(28.0)  # place of the eye: above the equator, beside the path's middle
 SMALL, STILL = 0.2, 1e-12  # rad: paths smaller than this are drawn on a plane; than that, as a point
 PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "\N{GREEK SMALL LETTER MU}"), (1e-9, "n"), (1e-12, "p"))
 ROOM = 1.26  # half the width of a drawing, in radii

@@ -153,7 +153,7 @@ def _switches(times: list[float], switchings: "list[SwitchingRecord]", start: st
     by_function: dict[str, list[tuple[float, str]]] = {}
     for item in switchings:
         by_function.setdefault(f"{one_line(item['function'])} ", []).append((item["t"], HOW[item["how"]]))
-    if times and not by_function:  # of a table of samples
+    if times and not by_function:  # switching times of a table of samples
         by_function[""] = [(t, "") for t in times]
     listed = dict(list(by_function.items())[:SWITCHES_SHOWN])
     seen = [t for own in listed.values() for t, _ in own[:SWITCHES_SHOWN]]

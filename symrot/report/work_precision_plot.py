@@ -18,7 +18,7 @@ from symrot.report.plot import GREY, STYLE
 __all__ = ["LOOKS", "METHOD_LABELS", "OTHER", "OUTERMOST", "figure", "frontier", "save"]
 
 LEAST_ERROR = 1e-17  # an error of zero is drawn as this error
-APART = 0.042  # of the height of the panel, between two names
+APART = 0.042  # part of the panel's height between two names
 DPI = 150
 OUTERMOST = 1.5  # error from which on nothing is shown
 
@@ -64,7 +64,7 @@ def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float
     best: list[tuple[float, float]] = []
     rest: list[tuple[float, float]] = []
     least = float("inf")
-    for point in points:  # from the least error on: each must be faster than all before it
+    for point in points:  # by rising error: each point must be faster than all before it
         (best if point[1] < least else rest).append(point)
         least = min(least, point[1])
     return best, rest

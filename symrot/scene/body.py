@@ -33,7 +33,7 @@ _UNTURNED: Matrix = (
     (Fraction(0), Fraction(1), Fraction(0)),
     (Fraction(0), Fraction(0), Fraction(1)),
 )
-_NEGLIGIBLE = Fraction(1, 2**200)  # as symrot.formula.exact_numbers.equal
+_NEGLIGIBLE = Fraction(1, 2**200)  # relative, as in symrot.formula.exact_numbers.equal
 
 
 class Body(NamedTuple):

@@ -228,7 +228,7 @@ def _row(line: str, place: str) -> list[float]:
     def refuse() -> NoReturn:
         raise InputError(f"{place}: expected four finite numbers {', '.join(COLUMNS)}, got {line[:80]!r}")
 
-    if not line.isascii() or "_" in line:  # which float() would read
+    if not line.isascii() or "_" in line:  # float() would accept such a number
         refuse()
     try:
         numbers = [float(cell) for cell in line.split(",")]

@@ -62,13 +62,13 @@ Progress = Callable[[str], object]
 DIGITS, ORDER, TAIL = 40, 28, 1e-26
 MOST_SECONDS = 150.0  # for the series; it is abandoned as soon as it is bound to take longer
 MOST_LONG_SECONDS = 20.0  # for fixed steps in long double
-MOST_STEPS = 2_000_000  # likewise
+MOST_STEPS = 2_000_000  # limit of fixed steps, like MOST_SECONDS
 FEWEST_STEPS = 64
-GRID_TOLERANCE = 1e-8  # of the motion whose steps show where fixed steps must be short
+GRID_TOLERANCE = 1e-8  # tolerance of the motion whose steps show where fixed steps must be short
 CONTRADICTION = 1e-6  # a larger difference between references means that one of them is wrong
 CONVERGED = 4e-19  # error per radian of rotation (at least one radian) that long double can reach
 ROUNDED = 1e-15  # per radian: smaller changes may be rounding errors, larger ones come from corners in the torque
-LONG_DOUBLE_BITS = 63  # in the fraction, at least; otherwise long double is no better than double
+LONG_DOUBLE_BITS = 63  # bits of the fraction, at least; otherwise long double is no better than double
 LITERAL = re.compile(r"(?<![\w.])(\d+\.\d*(?:[eE][+-]?\d+)?|\d+[eE][+-]?\d+)(?![\w.])")
 CALLS = re.compile(r"\b(sqrt|sin|cos|tan|exp|log|fabs|sinh|cosh|tanh|asin|acos|atan|atan2|pow)\(")
 

@@ -30,7 +30,7 @@ __all__ = ["FROM", "METHODS", "Curve", "Track", "exponent", "growth"]
 Floats = NDArray[np.float64]
 
 TIGHTEST, SCIPY_RTOL, SCIPY_ATOL = 1e-15, 3e-14, 1e-15
-STEPS_PER_TURN = 200  # of RK4
+STEPS_PER_TURN = 200  # steps of RK4 per revolution
 FROM = 30.0  # revolutions: the power of growth is fitted from there on
 
 

@@ -30,7 +30,7 @@ class Carried(NamedTuple):
     growth: float  # largest |r| at the end over that at the start
     derived: float  # growth of the tangent step by the law, along the exact motion; 1 for other schemes
     strain: float  # largest relative change of a distance between two points, apart from uniform growth
-    error: float  # of positions, over the size of the body
+    error: float  # largest error of positions, relative to the size of the body
 
 
 def laws() -> list[tuple[str, bool]]:

@@ -34,8 +34,8 @@ PLATE = (
     3,
     4,
 )  # kg m^2: (B - C)/A and its permutations are exact in doubles, so that all methods rotate the same body
-POWERS = {False: 5, True: 6}  # of ten revolutions
-SAMPLES = 241  # of a scene
+POWERS = {False: 5, True: 6}  # exponent of ten: revolutions, by default and with --long
+SAMPLES = 241  # samples of a scene
 PASSES = ("1/10", "1/1000", "1/100000", "1/10000000", "1/1000000000", 0)  # rad from gimbal lock
 SEQUENCE = "ZXZ"
 STEPS = (0.1, 0.01, 0.001)  # s

@@ -12,7 +12,7 @@ DPHI, DTHETA, DPSI = symbols.angle_rates
 A, C, W, ARM = symbols.A, symbols.C, symbols.W, symbols.c_3
 P_PHI, P_THETA, P_PSI = symbols.momenta
 HALF = Rational(1, 2)
-RATE = symbols.n  # of steady precession
+RATE = symbols.n  # rate of steady precession
 
 
 def derive() -> Derivation:

@@ -18,7 +18,7 @@ from symrot.formula.tree import Node
 
 __all__ = ["LOW_ORDER", "REACHES", "Enclosure", "enclosure", "value_operands"]
 
-HIGHEST_DEGREE = 6  # of a polynomial that hides nothing: cos(t)**6 is as broad as a pulse of half a radian
+HIGHEST_DEGREE = 6  # degree of a polynomial that hides nothing: cos(t)**6 is as broad as a pulse of half a radian
 BEYOND = HIGHEST_DEGREE + 1
 REACHES = {  # radii of the discs, in steps, by whether the order is low: a disc must be wide where few orders are known
     False: (1.3, 1.8, 2.6, 3.6, 5.0, 7.0, 10.0, 16.0),

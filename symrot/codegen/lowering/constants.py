@@ -18,7 +18,7 @@ Tree = tuple[Any, ...]
 HOISTED = "$"
 """First letter of a constant that has no number yet."""
 
-LARGEST_POWER = 64  # of what is written as one product
+LARGEST_POWER = 64  # largest power that is written as one product
 ONE: Tree = ("num", Fraction(1))
 
 

@@ -22,7 +22,7 @@ class Operation(NamedTuple):
 
     kind: str
     operands: tuple[int, ...] = ()
-    value: Any = None  # of a number, the Fraction; of a symbol, its name
+    value: Any = None  # the Fraction of a number, the name of a symbol
 
 
 class Tape(NamedTuple):

@@ -15,14 +15,14 @@ from symrot.formula.tree import Node, names, rename
 __all__ = ["with_names"]
 
 LONGEST = 32  # letters of a name made of its parts
-MOST_TERMS = 3  # of a sum that is named by its terms
+MOST_TERMS = 3  # terms of a sum that is named by its terms
 WORDS = {
     Fraction(1): "", Fraction(2): "two", Fraction(3): "three", Fraction(4): "four", Fraction(5): "five",
     Fraction(6): "six", Fraction(8): "eight", Fraction(1, 2): "half", Fraction(1, 3): "third",
     Fraction(1, 4): "quarter", Fraction(2, 3): "two_thirds", Fraction(3, 2): "three_halves",
 }  # fmt: skip
 POWERS = {1: "", 2: "_sq", 3: "_cubed"}
-NOUNS = {"atan2": "angle", "sqrt": "root", "select_ge": "choice"}  # of calls without a short name
+NOUNS = {"atan2": "angle", "sqrt": "root", "select_ge": "choice"}  # last words of names of calls without a short name
 RESERVED = frozenset({"size_t", "ptrdiff_t", "wchar_t", "time_t", "and_eq", "or_eq", "not_eq", "xor_eq"})
 
 

@@ -31,10 +31,10 @@ __all__ = [
 ]
 
 MATH_HEADER = "symrot_math.h"
-INDEPENDENT = "SYMROT_INDEPENDENT"  # in front of a loop over samples: none of them reads what another one writes
+INDEPENDENT = "SYMROT_INDEPENDENT"  # precedes a loop over independent samples: no sample reads what another one writes
 RELATIONS = {"==": "eq", "<": "lt"}
 STREAMS = 16  # arrays that a loop walks along before processors fetch ahead for it no more
-REGISTERS = 16  # of vectors, from SSE2 to AVX2
+REGISTERS = 16  # vector registers, from SSE2 to AVX2
 WAYS = 12  # arrays of which the first cache of processors holds a line each, where n is a multiple of 512 (8 to 12)
 SPAN = "SYMROT_SPAN"  # samples that loops of a batch take in turn: what one has read is in cache for the next
 

@@ -26,10 +26,10 @@ _DIGITS = {"binary64": 53, "binary32": 24}
 _PARTS = {"binary64": (36, 36), "binary32": (12, 12, 12)}  # bits: a part times the number of quarter turns is exact
 _COUNT = {"binary64": (6, 6), "binary32": (4, 4)}  # coefficients of sine and cosine
 _SQUARE = Fraction(617, 1000)  # largest square of the rest, that of pi/4 and a little more
-_TERMS = 20  # of the exact series
+_TERMS = 20  # terms of the exact series
 _ARC_COUNT = {"binary64": 13, "binary32": 6}  # coefficients of the arc tangent
 _ARC_SQUARE = Fraction(1, 4)  # largest square of the quotient
-_ARC_TERMS = 60  # of the exact series
+_ARC_TERMS = 60  # terms of the exact series
 _HALF = {"binary64": 27, "binary32": 12}  # bits of the lower half of a fraction
 _RAISED = {"binary64": (900, 200), "binary32": (90, 40)}  # a quotient below 2^-first is found times 2^second
 

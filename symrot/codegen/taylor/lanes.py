@@ -88,7 +88,7 @@ class Layout(NamedTuple):
     rates: tuple[Row, ...]
     columns: tuple[Column, ...]
     states: tuple[tuple[int, ...], ...]  # the numbers of the states in each row of states
-    names: tuple[str, ...]  # of the states
+    names: tuple[str, ...]  # names of the states
     seeds: tuple[tuple[Node, ...], ...] = ()  # one per row of companions
 
 

@@ -81,7 +81,7 @@ class _Form(NamedTuple):
 
     node: Node | None  # None: of degree one, made from the terms where it is used
     terms: tuple[Node, ...] | None = None
-    centred: bool = False  # whether it is a product of factors such as t - c, which are small near a time of their own
+    centred: bool = False  # whether it is a product of factors such as t - c, each small near its own time
 
 
 class _Mover:

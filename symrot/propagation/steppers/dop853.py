@@ -38,8 +38,8 @@ from symrot.propagation.steppers.stepping import (
 __all__ = ["DENSE_ORDER", "MAX_STEPS", "NO_ENCLOSURE", "Clock", "integration", "step_tolerance", "translation_unit"]
 
 STEP_SHARE, NATURAL_TIMES = 0.14, 0.16  # fractions of the tolerance and of the span, see step_tolerance
-TERMS = 8  # of the dense output
-DENSE_ORDER = 7  # of the error of the dense output
+TERMS = 8  # coefficients of the dense output
+DENSE_ORDER = 7  # order of the error of the dense output
 NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n#define SYMROT_DEPENDS 0\n"
 ENCLOSURE = "/* ENCLOSURE */\n"  # line of dop853.c that is replaced by enclosure.h
 ROUGH = "#define SYMROT_ROUGH\n"  # the error control handles corners, such as a root at zero: see disc.h

@@ -57,7 +57,7 @@ METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "
 
 DEFAULT = "DOP853"
 FIT_ORDER = 7  # degree of the polynomial that the states follow in a step
-SLACK = 1e4  # as in dop853.c
+SLACK = 1e4  # the same number as in dop853.c
 HELD, REGAIN = 0.5, 1.5  # a step longer than this part of the limit was held back; the next one may grow by this factor
 FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
 STUCK = "the step shrank to nothing, as it does before a singularity"
@@ -248,7 +248,7 @@ class _Integration:
             if low < len(self.y0)
         ]
         self.steps = self.evaluations = self.broken = 0
-        self.pieces: list[Piece] = []  # of the pass that is running
+        self.pieces: list[Piece] = []  # pieces of the pass that is running
         self.final = False  # whether this is the final pass, not the coarse one
         self.mark = (0, self.t0)  # work and time when the pace was judged last
         self.whole, self.before = options.whole, self.deviations.spent if self.deviations else 0
@@ -368,7 +368,7 @@ class _Integration:
         solver = begin(segment.start - self.epoch, y, longest)
         while solver.status == "running":
             start, end = (self.whole.start, self.whole.end) if self.whole else (self.t0, segment.stop)
-            now, y = float(solver.t), solver.y.copy()  # what the present clock shows
+            now, y = float(solver.t), solver.y.copy()  # time on the present clock
             before = self.epoch + now
             progress.report(before if self.final else self.t0, start, end if self.whole else self.goal)
             self._judge_pace(before, end if self.final else segment.stop)  # a coarse pass is no part of the whole

@@ -59,7 +59,7 @@ SLIVER = 2.0**-100  # part of a segment: a time so near its end that no formula 
 Floats = NDArray[np.float64]
 PathLike = str | os.PathLike[str]
 
-DONE, PAUSED, FULL, NOT_FINITE, UNDERFLOW = range(5)  # what a stepper in C returns
+DONE, PAUSED, FULL, NOT_FINITE, UNDERFLOW = range(5)  # return values of a stepper in C
 NOT_FINITE_SENTENCE = "its rate of change is not finite there"
 
 

@@ -25,7 +25,7 @@ WINDOWS, FEWEST = 64, 8  # parts of the span that SciPy follows at a time, at fi
 JOIN = 0.01  # part of the tolerance: largest gap between the ends of two LSODA steps
 RECENT = 4  # number of smooth parts whose lengths predict the length of the next one
 FIRST_ANGLE = 30.0  # rad
-SHORTEST = 1e-6  # of the span
+SHORTEST = 1e-6  # part of the span
 OVERHEAD = 200  # evaluations that take as long as the rest of a window
 
 
