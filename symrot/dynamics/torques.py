@@ -234,7 +234,10 @@ def field_value(name: str, pattern: FieldPattern) -> Any:
 
 
 def torque_of_potential(law: TorqueLaw) -> Matrix:
-    """Return the torque that follows from the potential of a law, body components: minus its rotational gradient."""
+    """Return the torque that follows from the potential of a law, body components: minus its rotational gradient.
+
+    With ``dq = 1/2 q (0, omega_b) dt`` the work of the torque is ``tau . omega_b dt = -dV``, for every omega_b.
+    """
     rates = quaternion_rates("body") * Matrix(symbols.omega_b)
     gradient = Matrix([sympy.S.Zero if law.potential is None else law.potential]).jacobian(symbols.quaternion)
     return -ImmutableMatrix((gradient * rates).jacobian(symbols.omega_b).T)

@@ -74,7 +74,9 @@ def facts(survey: Survey) -> list[dict[str, Any]]:
 
 
 def page(survey: Survey) -> str:
-    """Return ``errata.md``: for each document the claims that do not hold, with right form, reason and proof."""
+    """Return the text of ``errata.md``: the claims of each document that do not hold, with right form, reason and
+    proof.
+    """
     text = [
         "# Errata",
         "",

@@ -49,6 +49,8 @@ def _has_kernel(torque: dict[str, Any]) -> bool:
 def find_scene(source: str | Path) -> Path:
     """Return the path of a scene file, from the name of a shipped scene or from a path.
 
+    Text without a suffix and without a folder is a shipped name first, and a file in the current folder second.
+
     Raises
     ------
     InputError

@@ -1,4 +1,4 @@
-"""A body with a rotor inside (Hughes, Spacecraft Attitude Dynamics, chapter 6)."""
+"""Conserved quantities of a gyrostat, a body with a rotor inside (Hughes, Spacecraft Attitude Dynamics, chapter 6)."""
 
 from sympy import Matrix
 

@@ -1,4 +1,4 @@
-"""Constant parts of expressions: whatever depends on no variable becomes one number that is computed only once."""
+"""Constant parts of expressions: a part that depends on no variable becomes one number that is computed only once."""
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction

@@ -33,8 +33,9 @@ FEWEST, MOST = 16, 1024  # pieces fitted at a time
 
 
 class Piece(NamedTuple):
-    """Part of a motion as consecutive polynomials: row i holds from edge i to edge i + 1, s, in the order of the
-    motion.
+    """Part of a motion as consecutive polynomials, in the order of the motion.
+
+    Row i of the coefficients holds from the time of edge i to that of edge i + 1, s.
     """
 
     edges: Floats
