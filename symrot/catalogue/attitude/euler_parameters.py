@@ -69,7 +69,7 @@ def _precession(d: Derivation) -> None:
         r"\mathrm{atan2}(q_2, q_1)$.",
         Matrix([Q[3] * cos(total) - Q[0] * sin(total), Q[2] * cos(difference) - Q[1] * sin(difference)]).subs(tilt),
         0,
-        because="the parameters of the first step are put in; an angle is defined where its two parameters are not "
+        because="the parameters of the first step are inserted; an angle is defined where its two parameters are not "
         "both zero",
         named=r"\begin{bmatrix} q_3 \cos\frac{\phi+\psi}{2} - q_0 \sin\frac{\phi+\psi}{2} \\"
         r" q_2 \cos\frac{\phi-\psi}{2} - q_1 \sin\frac{\phi-\psi}{2} \end{bmatrix}",

@@ -70,8 +70,8 @@ def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motio
         "It does no work.",
         torque.dot(Matrix(dcm("ZXZ")) * rate_jacobian("ZXZ") * Matrix([PRECESSION, 0, SPIN])),
         0,
-        because="the line of nodes is at right angles to the vertical and to the axle, of which angular velocity "
-        "consists",
+        because="the line of nodes is perpendicular to the vertical and to the axle, and the angular velocity lies in "
+        "their plane",
         named=r"\dot L_s \cdot \omega_s",
     )
 

@@ -200,8 +200,8 @@ def _steady(d: Derivation, potential: Expr) -> None:
         "A small nutation about steady precession swings with this frequency squared, times $A$.",
         (potential.diff(THETA, 2).subs(steady) * RATE**2).subs(P_PSI, (A * RATE**2 * cos(THETA) + W * ARM) / RATE),
         (A**2 * RATE**4 - 2 * A * W * ARM * RATE**2 * cos(THETA) + (W * ARM) ** 2) / A,
-        because=r"$p_\psi$ is taken from the condition; the right side is positive, being "
-        r"$(A n^2 - W c_3 \cos\theta)^2 + (W c_3 \sin\theta)^2$ over $A$",
+        because=r"the condition for steady precession gives $p_\psi$; the right side is positive: it is "
+        r"$(A n^2 - W c_3 \cos\theta)^2 + (W c_3 \sin\theta)^2$ divided by $A$",
         named=r"n^2\,\frac{\partial^2 U}{\partial \theta^2}",
     )
     d.step(

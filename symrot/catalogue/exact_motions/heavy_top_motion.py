@@ -92,7 +92,7 @@ def _nutation(d: Derivation) -> None:
         "It has its acceleration too, so that it does not stay where the rate is zero.",
         rate(speed, along),
         cubic(u).diff(u).subs(u, HEIGHT) / 2,
-        because="the derivative of the step before, less its factor $\\dot u$; proven by itself",
+        because="the previous step is differentiated and divided by $\\dot u$; the result is proven separately",
         relations=squares(PARAMETER),
         named=r"\ddot u",
         display=r"\frac{W c_3}{A} \frac{\partial}{\partial u} (u - u_1)(u - u_2)(u - u_3)",

@@ -27,7 +27,7 @@ def derive() -> Derivation:
         "A point that is turned has the turned tensor.",
         Matrix(inertia_of_point(symbols.m, dcm_sb * point)),
         Matrix(rotate(inertia_of_point(symbols.m, point), dcm_sb)),
-        because="$R$ keeps lengths, and $(R r)(R r)^{\\mathsf T} = R\\,r\\,r^{\\mathsf T} R^{\\mathsf T}$",
+        because="$R$ preserves lengths, and $(R r)(R r)^{\\mathsf T} = R\\,r\\,r^{\\mathsf T} R^{\\mathsf T}$",
         relations=unit,
         named="I(R r)",
         display=r"R\,I(r)\,R^{\mathsf T}",
