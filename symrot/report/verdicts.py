@@ -1,4 +1,4 @@
-"""Verdicts as text: a single claim in full, a file of claims as a list with failed claims in full and a count."""
+"""Verdicts on claims as text: one claim in full, or a file of claims as a list with a count."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -19,7 +19,9 @@ def check(
     repair: bool,
     progress: Callable[[str], None] = lambda text: None,
 ) -> list[Verdict]:
-    """Return the verdicts on a claim as text or LaTeX, or on the claims of a file, where bad claims are ``"refused"``.
+    """Return the verdicts on a claim (text or LaTeX), or on all claims of a file.
+
+    A claim of a file that cannot be read gets the verdict ``"refused"``.
 
     Raises
     ------
@@ -41,7 +43,7 @@ def check(
 
 
 def _units(words: Sequence[str]) -> dict[str, str]:
-    """Return the units of words like ``F=kg m/s^2``."""
+    """Return the units of quantities, by name, from words like ``F=kg m/s^2``."""
     pairs = [word.partition("=") for word in words]
     for word, (name, sign, unit) in zip(words, pairs, strict=True):
         if not (name.strip() and sign and unit.strip()):
@@ -50,12 +52,15 @@ def _units(words: Sequence[str]) -> dict[str, str]:
 
 
 def _is_file(source: str) -> bool:
-    """Return whether an argument names a file: a text without ``=`` is no claim."""
+    """Return whether an argument is the name of a file; a text without ``=`` cannot be a claim."""
     return "=" not in source or (source.endswith(".toml") and "==" not in source and Path(source).is_file())
 
 
 def lines(verdicts: Sequence[Verdict], source: str) -> list[str]:
-    """Return verdicts as lines: a single claim in full; of a file the claims that are not true in full, and a count."""
+    """Return verdicts as lines of text: a single claim in full.
+
+    Of a file, the claims that are not true are shown in full, with a count of all claims.
+    """
     if len(verdicts) == 1 and not _is_file(source):
         return _full(verdicts[0], verdicts[0].verdict)
     text: list[str] = []

@@ -1,4 +1,4 @@
-"""Changes of axes to 30 digits for the closed forms: rotation matrices of Fractions and their quaternions."""
+"""Rotation matrices of exact fractions and their quaternions, correct to 30 digits, for changes of axes."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -23,7 +23,11 @@ def quaternion_of(r: Rows) -> tuple[Fraction, ...]:
 
 
 def to_axis(direction: Sequence[Fraction]) -> tuple[tuple[Fraction, ...], ...]:
-    """Return a rotation whose third column is the unit vector along ``direction``; an axis along it is not moved."""
+    """Return a rotation matrix that maps the third axis onto ``direction``: its third column is the unit vector along
+    it.
+
+    If ``direction`` lies along the third axis, the matrix only contains 0, 1 and -1.
+    """
     third = unit(direction)
     if third[0] == third[1] == 0:
         sign = 1 if third[2] > 0 else -1

@@ -1,4 +1,4 @@
-"""A free body by mpmath and NumPy; the formulas are those of :file:`free_body.h`."""
+"""Motion of a free body by mpmath and NumPy, without a C compiler; the formulas are those of :file:`free_body.h`."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -14,12 +14,14 @@ from symrot.kinematics.hamilton import hamilton
 
 __all__ = ["PortableFreeBody"]
 
-SWITCH = 0.7  # the modulus from which on the imaginary transforms are summed
-NEGLIGIBLE = mpf(10) ** -150  # of the largest component of omega
+SWITCH = 0.7  # above this modulus, theta functions are summed by their imaginary transforms
+NEGLIGIBLE = mpf(10) ** -150  # relative to the largest component of omega
 
 
 class PortableFreeBody:
-    """One motion; arguments as ``symrot_free_body_prepare`` takes them, in lists of hi, lo."""
+    """Motion of a free body, made from the arguments of the C function ``symrot_free_body_prepare`` (lists of hi,
+    lo).
+    """
 
     def __init__(
         self,
@@ -92,7 +94,7 @@ class PortableFreeBody:
         k = mp.pi / (2 * mp.agm(1, mp.sqrt(complement))) if complement else mp.inf
         k_prime = mp.pi / (2 * mp.agm(1, mp.sqrt(m))) if m else mp.inf
         eta = amplitudes[2] / total * mp.elliprf(a1 / total**2, (a1 + m * a3) / total**2, 1)
-        turning = (energy + total * amplitudes[2] / inertia[2]) / (total + amplitudes[2]) / 2  # of psi/2 where u = 0
+        turning = (energy + total * amplitudes[2] / inertia[2]) / (total + amplitudes[2]) / 2  # psi/2 at u = 0
         series = self._circular if m < SWITCH else self._hyperbolic
         kappa, n_start, lead = series(m, k, k_prime, eta, s, rate, u, turning)
         self.turning = Phase.of(kappa / (2 * mp.pi))
@@ -170,7 +172,9 @@ class PortableFreeBody:
         return kappa - slope * mp.pi / k * rate, start, u / k / 2 * slope
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times, where an array is given."""
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times into the arrays; an array that is None is
+        skipped.
+        """
         t = times * float(self.scale)
         if self.regime == "steady":
             if omega is not None:
@@ -189,7 +193,11 @@ class PortableFreeBody:
             quaternion[:] = (x / np.sqrt(2.0 * p0 * (re * re + im * im))[:, None]) @ self.attitude.T
 
     def _sums(self, t: Floats) -> tuple[Any, Any, Floats]:
-        """Return cn, sn, dn; N; the phase in half turns."""
+        """Return, at the times: cn, sn and dn times their amplitudes; the theta sum N of the attitude; the phase in
+        half turns.
+
+        N is complex and is returned as its real and imaginary part.
+        """
         if self.regime == "circular":
             sine, cosine = self.axial.circle(t)
             z = multiples(sine, cosine)
@@ -211,7 +219,7 @@ class PortableFreeBody:
         )
 
         def pair(weight: float, order: float) -> tuple[Floats, Floats]:
-            """Return nome**weight times cosh and sinh of order*v, without overflow of a factor."""
+            """Return nome**weight times cosh(order*v) and times sinh(order*v), where cosh alone might overflow."""
             log = self.log_nome * weight if weight else 0.0
             up, down = np.exp(log + order * v), np.exp(log - order * v)
             return 0.5 * (up + down), (np.sinh(order * v) if log == 0.0 else 0.5 * (up - down))
@@ -229,7 +237,7 @@ class PortableFreeBody:
 
 
 def _differences(inertia: list[float], omega: list[float], w: list[Any]) -> tuple[list[Any], Any]:
-    """Return I2 - I3, I3 - I1, I1 - I2 and |L|^2 - 2 T I_mid, without rounding before the last digit."""
+    """Return I2 - I3, I3 - I1, I1 - I2 and |L|^2 - 2 T I_mid with 120 digits, so that cancellation does no harm."""
     moments = [Fraction(high) + Fraction(low) for high, low in zip(inertia[::2], inertia[1::2], strict=True)]
     rates = [Fraction(high) + Fraction(low) for high, low in zip(omega[::2], omega[1::2], strict=True)]
     middle = sorted(moments)[1]
@@ -245,7 +253,7 @@ def _rounded(x: Fraction) -> Any:
 def _canonical(
     moments: list[Any], w: list[Any], differences: list[Any], defect: Any
 ) -> tuple[list[int], list[int], int]:
-    """Return the numbers of the axes e1, e2, e3, their directions along them, and the sign of I3 - I2."""
+    """Return how the principal axes are assigned to e1, e2, e3: their numbers, their signs, and the sign of I3 - I2."""
     above = [differences[2] >= 0, differences[0] >= 0, differences[1] >= 0]  # I_i >= I_(i+1)
     largest = 0 if above[0] and not above[2] else 1 if above[1] else 2
     a, b = (largest + 1) % 3, (largest + 2) % 3

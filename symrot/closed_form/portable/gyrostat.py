@@ -1,4 +1,4 @@
-"""A gyrostat by mpmath and NumPy; the formulas are those of :file:`gyrostat.h`."""
+"""Motion of a gyrostat by mpmath and NumPy, without a C compiler; the formulas are those of :file:`gyrostat.h`."""
 
 import numpy as np
 from mpmath import mp, mpf
@@ -12,7 +12,7 @@ __all__ = ["PortableGyrostat"]
 
 
 class PortableGyrostat:
-    """One motion; arguments as ``symrot_gyrostat_prepare`` takes them, in lists of hi, lo."""
+    """Motion of a gyrostat, made from the arguments of the C function ``symrot_gyrostat_prepare`` (lists of hi, lo)."""
 
     regime = "steady"
 
@@ -45,7 +45,9 @@ class PortableGyrostat:
             self.attitude = mapping([hamilton(column, renaming) for column in columns])
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times, where an array is given."""
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times into the arrays; an array that is None is
+        skipped.
+        """
         t = times * float(self.scale)
         s, c = self.spin.circle(t)
         if omega is not None:

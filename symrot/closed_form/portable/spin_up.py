@@ -1,4 +1,4 @@
-"""A symmetric body driven about its axis by NumPy; the formulas are those of :file:`spin_up.h`."""
+"""Motion of a symmetric body driven about its axis, by NumPy without a C compiler; formulas as in :file:`spin_up.h`."""
 
 from collections.abc import Callable, Sequence
 from itertools import islice
@@ -16,12 +16,12 @@ from symrot.formula import exact_numbers as number
 __all__ = ["PortableSpinUp"]
 
 _QUARTER = pair(1 / (4 * number.PI))
-_TERMS = 10  # of atanh, for arguments to 1/60
+_TERMS = 10  # terms of the series of atanh, for arguments up to 1/60
 _SMALL = 2.0**-5
 
 
 def _atanh_ratio(x: dd.Pair) -> dd.Pair:
-    """Return atanh(x)/x of small pairs."""
+    """Return atanh(x)/x of small double-double numbers, by its power series."""
     square, total = dd.multiply(x, x), (np.zeros_like(x[0]), 0.0)
     for k in range(_TERMS, -1, -1):
         total = dd.add(dd.multiply(total, square), dd.divide((1.0, 0.0), (2.0 * k + 1.0, 0.0)))
@@ -29,7 +29,10 @@ def _atanh_ratio(x: dd.Pair) -> dd.Pair:
 
 
 def _asinh_ratio(z: dd.Pair, root: dd.Pair) -> dd.Pair:
-    """Return asinh(z)/z; the argument is halved until the series converges."""
+    """Return asinh(z)/z of double-double numbers, where ``root`` is sqrt(1 + z^2).
+
+    The argument is halved until the power series converges fast.
+    """
     size = (np.abs(z[0]), np.where(z[0] < 0.0, -z[1], z[1]))
     small, above, times = size, dd.add(root, (1.0, 0.0)), np.ones_like(z[0])
     while (large := small[0] > _SMALL).any():
@@ -50,7 +53,11 @@ def _circle(turns: dd.Pair) -> tuple[Floats, Floats]:
 
 
 class PortableSpinUp:
-    """One motion, from its constants, which are computed in integers, and the table near resonance if needed."""
+    """Motion of a body driven about its axis; the constants are computed in integers.
+
+    A table of Taylor polynomials is made only if samples lie near resonance (see
+    :mod:`symrot.closed_form.spin_up.motion`).
+    """
 
     def __init__(self, constants: Sequence[float], table: Floats | None) -> None:
         values = iter(constants)
@@ -71,7 +78,9 @@ class PortableSpinUp:
         self._near, self._table = np.array(take(16)).reshape(4, 4), table
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times, where an array is given."""
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times into the arrays; an array that is None is
+        skipped.
+        """
         t = (times * self._scale, np.zeros_like(times))
         sine, cosine = _circle(dd.multiply(t, dd.add(self._turn[0], dd.multiply(t, self._turn[1]))))
         if omega is not None:
@@ -94,7 +103,10 @@ class PortableSpinUp:
                 quaternion[chosen] = np.stack([a.real, b.real, b.imag, a.imag], axis=1) @ mapping.T
 
     def _far(self, side: Any, t: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
-        """Return q0 + i q3 and q1 + i q2 of the rotating axes, from the origin of a side of resonance."""
+        """Return q0 + i q3 and q1 + i q2 of the attitude in the rotating axes, for times far from resonance.
+
+        ``side`` holds the constants of the motion before or after resonance.
+        """
         time, start, delta, _ = side
         square = dd.multiply(self._across, self._across)
         here, there = (dd.add(dd.multiply(x, x), square) for x in (omega, start))
@@ -130,11 +142,14 @@ class PortableSpinUp:
         )
 
     def _close(self, _: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
-        """Return the same near resonance, from x = 0, by Taylor polynomials."""
+        """Return q0 + i q3 and q1 + i q2 of the attitude in the rotating axes, for times near resonance.
+
+        Taylor polynomials in x = Omega/sqrt(s) give the rotation from x = 0 on.
+        """
         assert self._table is not None
         sign = np.where(omega[0] < 0.0, -1.0, 1.0)
         high, low = dd.multiply((sign * omega[0], sign * omega[1]), self._inverse)
-        piece = np.minimum(np.floor(high * PIECES), len(self._table) - 1)  # the edge itself is in the last one
+        piece = np.minimum(np.floor(high * PIECES), len(self._table) - 1)  # the end belongs to the last one
         rest = (high - (piece + 0.5) / PIECES) + low
         terms = self._table[piece.astype(np.int64)]
         q = terms[:, -1]

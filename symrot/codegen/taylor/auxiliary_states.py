@@ -1,13 +1,15 @@
-"""Let quantities made of the attitude alone follow equations of their own: companions of the states.
+"""Auxiliary states (companions): quantities of the attitude alone that follow equations of their own in a Taylor
+series.
 
-The components of a fixed direction in the body, ``gamma = R(q)^T e``, are sums of products of q0..q3, which then stand
-in further products: at each order of a series one convolution waits for another. But ``gamma' = gamma x omega``, so
-that gamma is known one order ahead like a state. Nothing of this is written down here: a quantity that holds nothing
-but the attitude and functions of time is differentiated along the motion, what stands beside each rate becomes a
-companion too if it is not one yet, and so on until nothing new comes; if that does not end soon, all stays as it is.
+The components of a direction fixed in space, seen from the body, ``gamma = R(q)^T e``, are sums of products of q0..q3,
+which occur in further products: at each order of a series one convolution waits for another. But ``gamma' = gamma x
+omega``, so that gamma is known one order ahead, like a state. These equations are found automatically: a quantity that
+contains only the attitude and functions of time is differentiated along the motion, each factor beside a rate in the
+result becomes a companion too, and so on until no new companion appears. If that does not end soon, the system stays
+unchanged.
 
-A companion starts from the attitude anew at every step, so that it cannot drift. Identities hold for a unit quaternion,
-whose norm must be found constant along the motion.
+A companion is computed from the attitude at the start of every step, so that it cannot drift. The identities hold for a
+unit quaternion; its norm must be found constant along the motion.
 """
 
 from collections.abc import Iterable
@@ -21,16 +23,16 @@ from symrot.formula.tree import Node, children
 __all__ = ["with_companions"]
 
 QUATERNION = ("q0", "q1", "q2", "q3")
-MOST_COMPANIONS, MOST_TERMS = 9, 200  # three directions; beyond that nothing is gained
+MOST_COMPANIONS, MOST_TERMS = 9, 200  # companions of three directions; more bring no gain
 ONE: Node = ("number", Fraction(1))
 
 
 class _Open(Exception):
-    """The equations do not close, or not soon."""
+    """Signal that the equations of auxiliary states do not close, or not soon enough."""
 
 
 class _Term(NamedTuple):
-    """A companion, or one (None), times a number, a constant formula and perhaps a state, by its number."""
+    """One term of a sum: a number times a constant formula, and perhaps times an auxiliary state and a state."""
 
     companion: int | None
     number: Fraction
@@ -39,10 +41,11 @@ class _Term(NamedTuple):
 
 
 def with_companions(system: Recurrences) -> Recurrences:
-    """Return a system in which expressions of the attitude alone are replaced by auxiliary states, if there are any.
+    """Return a system in which quantities of the attitude alone are replaced by auxiliary states.
 
-    Companions are states beyond those of the program: ``seeds`` of the result has a formula for coefficient 0 of each,
-    in the states and t, and ``rates`` their rates.
+    Auxiliary states are states beyond those of the program: ``rates`` of the result contains their rates, and ``seeds``
+    a formula of states and t for coefficient 0 of each. The system is returned unchanged if there are no such
+    quantities.
     """
     if not set(QUATERNION) <= set(system.states):
         return system
@@ -85,7 +88,7 @@ class _Closure:
         return generator(self.variable(kind, what))
 
     def constant(self, node: Node) -> Polynomial:
-        """Return a constant formula as a polynomial; a subformula that is not a polynomial becomes a new variable."""
+        """Return a constant formula as a polynomial; each part that is not a polynomial becomes a new variable."""
         if node[0] == "number":
             return constant(node[1])
         if node[0] not in ("neg", "*", "+", "-"):
@@ -98,7 +101,7 @@ class _Closure:
         return parts[0] + (parts[1] if node[0] == "+" else _times(parts[1], constant(-1)))
 
     def polynomial(self, i: int) -> Polynomial | None:
-        """Return a series as a polynomial of states, clocks and constants, or None."""
+        """Return a series as a polynomial of states, functions of time and constants, or None if it is none."""
         if i not in self.polynomials:
             s = self.series[i]
             result: Polynomial | None = None
@@ -115,7 +118,7 @@ class _Closure:
         return self.polynomials[i]
 
     def sum(self, s: Series, only: Iterable[int] | None = None) -> Polynomial | None:
-        """Return a sum, or that of some of its operands alone, as a polynomial."""
+        """Return a sum of series, or of only some of its operands, as a polynomial; None if it is none."""
         *weights, constant = s.weights
         total = self.constant(constant) if constant is not None and only is None else Polynomial({})
         for operand, weight in zip(s.operands, weights, strict=True):
@@ -127,7 +130,7 @@ class _Closure:
         return total
 
     def rate(self, variable: int) -> Polynomial:
-        """Return the rate of a variable along the motion."""
+        """Return the time derivative of a variable along the motion, as a polynomial."""
         kind, what = self.variables[variable]
         if kind == "constant":
             return Polynomial({})
@@ -153,18 +156,22 @@ class _Closure:
         return variable in self.attitude or self.variables[variable][0] == "clock"
 
     def of_attitude(self, form: Polynomial | None) -> bool:
-        """Return whether a form is made of the attitude, functions of time and constants, and is no mere state."""
+        """Return whether a polynomial contains only the attitude, functions of time and constants, and is not a single
+        state.
+        """
         if form is None:
             return False
         free = [v for monomial in form.terms for v, _ in monomial if self.variables[v][0] != "constant"]
         return all(map(self.is_inner, free)) and max(map(self.degree, form.terms), default=0) > 1
 
     def degree(self, monomial: Monomial) -> int:
-        """Return the degree in the attitude."""
+        """Return the degree of a monomial in the components of the attitude."""
         return sum(power for variable, power in monomial if variable in self.attitude)
 
     def split(self, form: Polynomial) -> list[tuple[Node, int | None, Polynomial]]:
-        """Return a form as constants times states times what holds the attitude and functions of time."""
+        """Return a polynomial as a sum of products: a constant, a state or None, and a polynomial of attitude and
+        time.
+        """
         groups: dict[Monomial, dict[Monomial, Fraction]] = {}
         for monomial, x in form.terms.items():
             outer = tuple((v, p) for v, p in monomial if not self.is_inner(v))
@@ -186,9 +193,11 @@ class _Closure:
     # -------------------------------------------------------------------------------------------- closing
 
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
-        """Return the companion that a form is, how many times, and a number besides.
+        """Return an auxiliary state, a factor and a number such that a polynomial of the attitude is factor*state +
+        number.
 
-        For a unit quaternion all terms of a form can be given one degree; of degree two, they have a trace to spare.
+        The auxiliary state is added if it is new. For a unit quaternion all terms of the polynomial can be given the
+        same degree; of degree two, they are fixed only up to a multiple of the squared norm.
         """
         degrees = {self.degree(monomial) for monomial in inner.terms}
         top = max(degrees)
@@ -225,7 +234,9 @@ class _Closure:
         return result
 
     def seek(self, i: int) -> None:
-        """Replace expressions of the attitude alone in a series and in its operands."""
+        """Search a series and its operands for polynomials of the attitude alone, and replace them by auxiliary
+        states.
+        """
         s = self.series[i]
         if i in self.replaced or s.rule not in ("sum", "product"):
             return
@@ -238,7 +249,9 @@ class _Closure:
                 self.seek(operand)
 
     def seek_in(self, s: Series) -> None:
-        """Replace the products of the attitude in a sum, all together, and what stands in its other operands."""
+        """Replace the products of the attitude in a sum by auxiliary states, all together, then search its other
+        operands.
+        """
         alone = {
             i for i in s.operands if self.series[i].rule == "product" and self.of_attitude(self.polynomial(i))
             and not any(self.of_attitude(self.polynomial(factor)) for factor in self.series[i].operands)
@@ -248,7 +261,7 @@ class _Closure:
         for operand in s.operands:
             if operand in alone:
                 continue
-            if self.series[operand].rule == "product":  # of directions: each of them is replaced
+            if self.series[operand].rule == "product":  # products of companions: each companion is replaced separately
                 for factor in self.series[operand].operands:
                     self.seek(factor)
             else:
@@ -265,7 +278,7 @@ class _Closure:
         return _rebuilt(self, rates)
 
     def seed(self, form: Polynomial) -> Node:
-        """Return a form as a formula of states and time: terms of one factor of time together."""
+        """Return a polynomial as a formula of states and time; terms with the same function of time are grouped."""
         groups: dict[Monomial, dict[Fraction, list[Node]]] = {}
         for monomial, x in sorted(form.terms.items()):
             clocks = tuple((v, p) for v, p in monomial if v not in self.attitude)
@@ -306,7 +319,7 @@ def _total(terms: list[Node]) -> Node:
 
 
 def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
-    """Return the system with companions as further states; series that nothing needs any more are left out."""
+    """Return the system with auxiliary states as additional states, without the series that are no longer needed."""
     system, old = closure.system, closure.series
     count = len(system.states)
     alias = {
@@ -315,7 +328,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     }  # fmt: skip
 
     def left(s: Series) -> list[int]:
-        """Return the operands of a sum, or of another series, that stay."""
+        """Return those operands of a series that remain after the replacement by auxiliary states."""
         return [i for i in s.operands if i not in closure.parts.get(s, (set(),))[0]]
 
     needed: set[int] = set()
@@ -338,7 +351,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     def summed(
         terms: list[_Term], pairs: Iterable[tuple[int, Node | None]] = (), constant: Node | None = None
     ) -> Series:
-        """Return a sum of series with weights, companions and a constant."""
+        """Return the series for a sum of weighted series, auxiliary states and a constant."""
         for term in terms:
             if term.companion is None:
                 constant = weight(term) if constant is None else ("+", constant, weight(term))
@@ -361,7 +374,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
         operands = []
         for term in terms:
             if term.companion is None and term.state is None:
-                raise _Open  # a rate that nothing moves has no place here
+                raise _Open  # a companion with rate zero would be a constant
             both = (term.state, None if term.companion is None else count + term.companion)
             pair = [own for own in both if own is not None]
             if len(pair) == 2 and tuple(pair) not in products:

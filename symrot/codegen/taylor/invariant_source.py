@@ -1,7 +1,8 @@
-"""Print the invariants of a motion as C: values in pairs of doubles (about 32 digits), gradients in doubles.
+"""C text of the conserved quantities of a motion: values in double-double arithmetic, gradients in doubles.
 
-The values say how far a motion has left its invariants long before a double could; the gradients say which small change
-of the states takes it back. Gradients are accumulated backwards along the tape, one pass for each invariant.
+A value is a sum of two doubles with about 32 digits, so that it shows how far a motion has left its invariants long
+before a double could. The gradients show which small change of the states takes the motion back; they are accumulated
+backwards along the tape, one pass for each invariant.
 
 The text stands between :file:`taylor.h` and :file:`taylor.c`; :file:`projection.c` uses it.
 """
@@ -26,21 +27,21 @@ IN_PAIRS = {*_OPERATIONS, "number", "symbol"}
 
 
 def projectable(program: Program, outputs: Sequence[str]) -> list[str]:
-    """Return the outputs that can be computed in pairs of doubles: outputs without sin, exp and similar functions."""
+    """Return the outputs that double-double arithmetic can compute: those without sin, exp and similar functions."""
     return [name for name in outputs if {op.kind for op in tape_of(program, [name]).operations} <= IN_PAIRS]
 
 
 def invariant_definitions(
     program: Program, outputs: Sequence[str], states: Sequence[str], parameters: Sequence[str]
 ) -> str:
-    """Return the C text of the invariants.
+    """Return the C text of the conserved quantities of a motion.
 
     Parameters
     ----------
     program : Program
         Quantities of t, states and parameters.
     outputs : sequence of str
-        Those that the motion keeps; what is not :func:`projectable` is left out. The norm of the quaternion is added.
+        The conserved quantities. One that is not :func:`projectable` is left out. The norm of the quaternion is added.
     states : sequence of str
         Names of the states, in order.
     parameters : sequence of str
@@ -83,7 +84,7 @@ def _in_pairs(op: Operation, places: dict[str, str]) -> str:
 
 
 def _gradient(tape: Tape, output: int, states: Sequence[str]) -> list[str]:
-    """Return the statements that fill the gradient of one output: adjoints from the last operation to the first."""
+    """Return the C statements that fill the gradient of one output, by reverse differentiation along the tape."""
     needed = tape.of(output)
     varying = _varying(tape, needed, set(states))
     terms: dict[int, list[str]] = {tape.outputs[output]: ["1.0"]}
@@ -111,7 +112,9 @@ def _varying(tape: Tape, needed: Sequence[int], states: set[str]) -> set[int]:
 
 
 def _shares(op: Operation, index: int, own: str) -> list[str]:
-    """Return the adjoint that an operation adds to each of its operands, as C."""
+    """Return, for each operand of an operation, the C expression that the operation adds to the operand's
+    derivative.
+    """
     values = [f"v{i}.hi" for i in op.operands]
     if op.kind == "+":
         return [own, own]

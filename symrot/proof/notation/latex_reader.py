@@ -1,6 +1,6 @@
-"""Read the LaTeX of a page back as mathematics, so that a displayed formula can be proven equal to the derived one.
+r"""Reader of the LaTeX on a page, so that a displayed formula can be proven equal to the derived one.
 
-A page may write a side of an equation as a person would, ``R\\,[\\omega_b]_\\times``, where the derivation has nine
+A page may write a side of an equation as a person would, ``R\,[\omega_b]_\times``, where the derivation has nine
 entries. With the declared meanings of the names on the page, the text is read by the usual rules of notation and proven
 equal to the derived expression. Text that contains a name without a declared meaning raises :class:`Unread`: it is only
 a label.
@@ -28,16 +28,16 @@ SKEW = ("_", "\\times")
 
 
 class Unread(Exception):
-    """Raised for text that contains a name without a meaning, or an unsupported notation."""
+    """Signal that LaTeX text contains a name without a meaning, or an unsupported notation."""
 
 
 def key(latex: str) -> str:
-    """Return the key under which a name is looked up: the name without braces and spaces."""
+    """Return the key under which a LaTeX name is looked up: the name without braces and spaces."""
     return "".join(token for token in TOKEN.findall(latex) if token not in "{}" and not token.isspace())
 
 
 def parts(latex: str) -> list[list[str]]:
-    """Split a text at ``, \\quad`` into equations, and return each as the list of its sides."""
+    r"""Return the equations in a LaTeX text, which are separated by ``, \quad``; each is the list of its sides."""
     equations: list[list[str]] = [[""]]
     depth = 0
     tokens = TOKEN.findall(latex)
@@ -235,7 +235,7 @@ class _Reader:
         return self.closed(opening, values, closing)
 
     def evaluated(self) -> Any:
-        """Read ``\\left. X \\right|_{a = b, ...}``."""
+        r"""Return the value of ``\left. X \right|_{a = b, ...}``, which is X with a replaced by b."""
         value = self.sum()
         for mark in ("\\right", "|", "_"):
             self.expect(mark)
@@ -289,7 +289,9 @@ class _Reader:
         return sqrt(self.inside(self.argument_tokens()))
 
     def font(self) -> Any:
-        """Read a name in a font: a function of a matrix, ``\\mathbf{1}``, or a name with a declared meaning."""
+        r"""Return the value of a name in a font: a function of a matrix, ``\mathbf{1}``, or a name with a declared
+        meaning.
+        """
         self.place -= 1
         start = self.place
         self.next()
@@ -321,7 +323,7 @@ class _Reader:
         try:
             value = Matrix.vstack(*(Matrix.hstack(*map(_as_matrix, row)) for row in rows))
         except sympy.matrices.exceptions.ShapeError as error:
-            raise Unread("a table whose rows differ") from error
+            raise Unread("a matrix whose rows have different lengths") from error
         if name not in ("bmatrix", "pmatrix", "matrix"):
             raise Unread(name)
         if self.peek() == "_" and self.peek(1) != "\\times":
@@ -332,7 +334,7 @@ class _Reader:
 
     def name(self) -> Any:
         text = "".join(self.name_tokens())
-        if self.peek() == "(":  # a value, such as x(t), may have a meaning of its own
+        if self.peek() == "(":  # a value such as x(t) may have its own declared meaning
             stop = self.place
             while stop < len(self.tokens) and self.tokens[stop] != ")":
                 stop += 1
@@ -419,7 +421,7 @@ def _stacked(values: list[Any]) -> Matrix:
 
 
 def _added(left: Any, right: Any) -> Any:
-    """Return a sum; a number added to a matrix means that multiple of the unit matrix."""
+    """Return the sum of two values; a number added to a matrix means that multiple of the unit matrix."""
     if isinstance(left, MatrixBase) != isinstance(right, MatrixBase):
         matrix, scalar = (left, right) if isinstance(left, MatrixBase) else (right, left)
         if scalar == 0:
@@ -433,7 +435,7 @@ def _added(left: Any, right: Any) -> Any:
 
 
 def _multiplied(left: Any, right: Any) -> Any:
-    """Return a product: the matrix product, or the quaternion product for two columns of four."""
+    """Return the product of two values: the matrix product, or the quaternion product for two columns of four."""
     if isinstance(left, MatrixBase) and isinstance(right, MatrixBase):
         if left.shape == right.shape == (4, 1):
             a, u, b, v = left[0], Matrix(left[1:]), right[0], Matrix(right[1:])
@@ -451,13 +453,13 @@ def _dotted(left: Any, right: Any) -> Any:
 
 def _crossed(left: Any, right: Any) -> Any:
     if not all(isinstance(side, MatrixBase) and side.shape == (3, 1) for side in (left, right)):
-        raise Unread("a cross product of other than two vectors")
+        raise Unread("a cross product of values that are not vectors of three")
     return Matrix(left).cross(Matrix(right))
 
 
 def _skew(vector: Any) -> Matrix:
     if not isinstance(vector, MatrixBase) or vector.shape != (3, 1):
-        raise Unread("the cross product matrix of no vector")
+        raise Unread("the cross product matrix of a value that is not a vector")
     a, b, c = vector
     return Matrix([[0, -c, b], [c, 0, -a], [-b, a, 0]])
 
@@ -473,8 +475,8 @@ def _inverted(value: Any) -> Any:
 def _gradient(value: Any, variable: Any) -> Any:
     if isinstance(variable, MatrixBase):
         if isinstance(value, MatrixBase) or not all(entry.is_Symbol for entry in variable):
-            raise Unread("a derivative by a vector")
+            raise Unread("a derivative with respect to a vector")
         return Matrix([diff(value, entry) for entry in variable])
     if not getattr(variable, "is_Symbol", False):
-        raise Unread("a derivative by a formula")
+        raise Unread("a derivative with respect to a formula instead of a symbol")
     return diff(value, variable)

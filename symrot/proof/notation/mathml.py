@@ -1,4 +1,4 @@
-"""Translate LaTeX formulas into native MathML: only the part of LaTeX that the pages use.
+"""Translation of LaTeX formulas into native MathML, for the part of LaTeX that the pages use.
 
 The same reader serves HTML and line breaking: a formula becomes a row of items, each with its LaTeX, its MathML, an
 estimate of its width, and whether a line may be broken before it. Unknown LaTeX raises InputError.
@@ -52,7 +52,7 @@ SMALL = 0.75  # scripts, relative to the line
 
 @dataclass(frozen=True)
 class Item:
-    """One item of a row: LaTeX, MathML, width in letters; ``kind`` is "relation", "sign", "function" or ""."""
+    """One item of a formula: LaTeX, MathML, width in letters; ``kind`` is "relation", "sign", "function" or ""."""
 
     latex: str
     mathml: str
@@ -74,7 +74,7 @@ class _Reader:
     def next(self) -> str:
         token = self.peek()
         if not token:
-            raise InputError(f"expected more after the end of the formula {self.latex!r}")
+            raise InputError(f"expected a complete formula, got {self.latex!r}, which ends too early")
         self.place += 1
         return token
 
@@ -84,7 +84,7 @@ class _Reader:
     # -- rows -------------------------------------------------------------------------------------------------------
 
     def row(self, *stops: str) -> list[Item]:
-        """Read items up to one of the stop tokens, which is not consumed; without stops, read to the end."""
+        """Return the items of a formula up to one of the stop tokens, which is not consumed, or up to the end."""
         items: list[Item] = []
         while (token := self.peek()) not in stops and token:
             start = self.place
@@ -99,7 +99,7 @@ class _Reader:
         return items
 
     def argument(self) -> list[Item]:
-        """Read a braced row, or one token, as the argument of a command."""
+        """Return the argument of a LaTeX command, a braced row or one token, as a list of items."""
         if self.peek() == "{":
             self.next()
             items = self.row("}")
@@ -111,7 +111,7 @@ class _Reader:
         return [self.atom(False)]
 
     def group(self) -> Item:
-        """Read an argument as one item."""
+        """Return the argument of a LaTeX command as one item."""
         return _joined(self.argument())
 
     def scripted(self, after_operand: bool) -> Item:
@@ -254,7 +254,7 @@ class _Reader:
         return Item("", f"<mrow>{first}<mtable>{body}</mtable>{last}</mrow>", width)
 
     def environment(self) -> str:
-        """Read ``{name}``."""
+        """Return the name of an environment, read from ``{name}``."""
         self.next()
         name = ""
         while (token := self.next()) != "}":
@@ -262,7 +262,7 @@ class _Reader:
         return name
 
     def phantom(self) -> Item:
-        """Read a style command and ignore it."""
+        """Return an empty item for a style command, which is ignored."""
         return Item("", "", 0.0)
 
 
@@ -316,7 +316,7 @@ def read(latex: str) -> list[Item]:
 
 
 def rows(latex: str, width: float) -> list[list[Item]]:
-    """Break a formula into lines of a given width where possible: before relations, then before signs."""
+    """Return a formula broken into lines of a given width where possible: before relations, then before signs."""
     return _broken(read(latex), width)
 
 
@@ -335,7 +335,7 @@ def _broken(items: list[Item], width: float) -> list[list[Item]]:
 
 
 def _stacked(items: list[Item]) -> Item:
-    """Return a row as one item; a long sum becomes several lines."""
+    """Return a row of items as one item; a long sum becomes several lines."""
     lines = _broken(items, WIDEST)
     if len(lines) == 1:
         return _joined(items)
@@ -344,7 +344,7 @@ def _stacked(items: list[Item]) -> Item:
 
 
 def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:
-    """Split the items before each item of a kind, and yield the pieces."""
+    """Yield the parts of a row, which is split before each item of a kind."""
     piece: list[Item] = []
     for item in items:
         if item.kind == kind and piece:
@@ -355,7 +355,7 @@ def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:
 
 
 def mathml(latex: str, *, display: bool = False, width: float = WIDEST) -> str:
-    """Return a formula as a ``math`` element; a display that is too wide is broken into lines."""
+    """Return a LaTeX formula as a MathML ``math`` element; a display that is too wide is broken into lines."""
     start = '<math xmlns="http://www.w3.org/1998/Math/MathML"' + (' display="block"' if display else "") + ">"
     lines = rows(latex, width) if display else [read(latex)]
     if len(lines) == 1:
