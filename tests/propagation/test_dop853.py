@@ -310,8 +310,8 @@ def sampled(library, times, **arguments):
         ({"times": 1.0}, r"shape"),
         ({"tolerance": 0.0}, r"between 0 and 1, got 0.0"),
         ({"tolerance": math.nan}, r"between 0 and 1"),
-        ({"max_step": 0.0}, r"longest step"),
-        ({"max_step": math.nan}, r"longest step"),
+        ({"max_step": 0.0}, r"max_step: expected"),
+        ({"max_step": math.nan}, r"max_step: expected"),
     ],
 )
 def test_input_that_cannot_be_used_is_named(change, sentence):
