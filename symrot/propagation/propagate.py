@@ -112,7 +112,10 @@ def propagator(
     if method not in ("auto", "dop853"):
         raise InputError(f"method: expected 'auto' or 'dop853' for a torque without a formula, got {method!r}")
     if switched(scene):
-        raise InputError(f"torque: leave it out if a formula jumps or bends (abs, sign, ..), got {number.show(torque)}")
+        raise InputError(
+            "torque: expected no further torque, since a formula of the scene jumps or bends (abs, sign, ..), "
+            f"got {number.show(torque)}"
+        )
     from symrot.propagation.external_torque import ExternallyDrivenPropagator
 
     return ExternallyDrivenPropagator(scene, aim, torque, switching_times, torque_frame, _longest_step(max_step))
