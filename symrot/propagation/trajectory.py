@@ -1,6 +1,6 @@
 """Trajectories: the states of a motion at its sample times, and quantities computed from them on first use."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import cached_property
 from typing import NamedTuple
 
@@ -281,7 +281,3 @@ class Trajectory:
             return self.euler(output.sequence, degrees=output.degrees)
         value: Floats = getattr(self, name)
         return value
-
-    def as_mapping(self) -> Mapping[str, Floats]:
-        """Return time and the output quantities of the scene, by name."""
-        return {"t": self.t, **{name: self.quantity(name) for name in self.scene.output.quantities}}

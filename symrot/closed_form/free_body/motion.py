@@ -26,10 +26,10 @@ from symrot.closed_form.arithmetic.pairs import (
 )
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.formula.exact_numbers import NEGLIGIBLE_BITS
-from symrot.inertia.principal import Principal, principal_axes
+from symrot.inertia.principal import Principal
 from symrot.scene.scene import Initial
 
-__all__ = ["Defect", "FreeRigidBody", "gaps", "motion", "motion_of_tensor", "starts"]
+__all__ = ["Defect", "FreeRigidBody", "gaps", "motion", "starts"]
 
 
 def motion(
@@ -63,24 +63,11 @@ def motion(
     return _prepared(flatten_pairs(moments), flatten_pairs(rates), start, exact, None)
 
 
-def motion_of_tensor(
-    inertia: Sequence[Sequence[Number]],
-    omega0: Sequence[Number],
-    quaternion0: Sequence[Number] = (1.0, 0.0, 0.0, 0.0),
-) -> ExactMotion:
-    """Return the motion of a free body from its inertia tensor; angular velocity and attitude refer to the tensor's
-    axes.
-
-    ``inertia`` is a symmetric 3x3 tensor, kg m^2; the other arguments are those of :func:`motion`. The principal axes
-    are computed to 110 digits, and the constants of the motion follow before anything is rounded to a double.
-    """
-    return FreeRigidBody(principal_axes([list(row) for row in inertia])).motion(omega0, quaternion0)
-
-
 def starts(principal: Principal) -> Callable[[Initial], ExactMotion]:
-    """Return a function from initial states to motions of one free body, given by its principal moments and axes.
+    """Return a function of the initial state that returns the motion of a body whose axes need not be principal.
 
-    Constants that do not depend on the initial state are computed once.
+    Angular velocity and attitude refer to the given axes. The principal axes have 110 digits, and the constants of the
+    motion follow from them before anything is rounded to a double.
     """
     body = FreeRigidBody(principal)
     return lambda start: body.motion(start.omega_b, start.quaternion)

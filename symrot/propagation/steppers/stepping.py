@@ -357,12 +357,6 @@ class Stepper(ABC):
     def cost(run: Run) -> tuple[int, int, int]:
         """Return the numbers of accepted steps, rejected steps and evaluations of a run."""
 
-    @property
-    def dense_address(self) -> Any:
-        """The dense output as a function in C, for other libraries to call."""
-        function: Any = self._dense
-        return ctypes.cast(function, ctypes.c_void_p)
-
     def dense(self, rows: Floats, times: Floats) -> Floats:
         """Return the states at times inside recorded steps; all times lie on one side of t0."""
         states = np.empty((len(times), self.states))
