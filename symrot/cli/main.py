@@ -382,8 +382,9 @@ def _derive_arguments(parser: ArgumentParser) -> None:
 def _check_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("claim", metavar="CLAIM", nargs="?", help="'left == right', LaTeX, or a FILE.toml of claims")
     parser.epilog = ("Budget per claim: 20 000 characters and 1 000 000 products of terms; a claim beyond it is "
-                     "refused, or undecided for this reason. The budget is counted, not timed, so "
-                     "that all machines give the same verdict.")  # fmt: skip
+                     "refused, or undecided for this reason. The budget is counted, so that all machines give the same "
+                     "verdict; only a claim for which SymPy needs more than 20 s of processor time is undecided "
+                     "because of its time.")  # fmt: skip
     parser.add_argument("--textbook", metavar="NAME", help="check the claims of a document: chen, sahakian, brown, "
                         "beer-johnston, or all")  # fmt: skip
     parser.add_argument("--all", action="store_true", help="with --textbook all: write the page of errata")
