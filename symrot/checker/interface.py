@@ -1,12 +1,13 @@
 """``check`` and ``check_file``: a claim in, a verdict out."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from symrot.checker.claim.claims import Claim, Refusal, claim_of_text, read_entries, relation_text
+from symrot.checker.claim.claims import Claim, Refusal, claim_of_text, named_formula, read_entries, relation_text
 from symrot.checker.claim.size import MOST_NESTED, nesting
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import Equation, decide_equation
@@ -197,9 +198,9 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
     verdict: Verdict | None = None
     try:
         with processor_seconds(MOST_SECONDS):
-            decision, verdict = _decide(claim)
+            decision, verdict = _on_name(claim, repair) or _decide(claim)
             other_verdict = None if verdict else _of_another_reading(claim)
-            if other_verdict is None and repair:
+            if other_verdict is None and repair and decision is not None:
                 verdict = _diagnosed(claim, decision, verdict)
     except TimeUp:
         other_verdict = None
@@ -234,20 +235,44 @@ def _of_another_reading(claim: Claim) -> Verdict | None:
     return None
 
 
+def _on_name(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
+    """Return the verdict on a claim that names a formula, for which there is no decision; None for any other claim."""
+    named = named_formula(claim) if claim.relation is not None else None
+    if named is None:
+        return None
+    from symrot.checker.recognition.naming import verdict_on_name
+
+    start = perf_counter()
+    with _place_of(claim):
+        verdict = verdict_on_name(claim, named, repair)
+    return None, _completed(claim, replace(verdict, text=claim.text), start)
+
+
 def _decide(claim: Claim) -> tuple[Decision, Verdict]:
     start = perf_counter()
-    try:
+    with _place_of(claim):
         decision = decide_value(claim) if claim.relation is None else decide_equation(claim.equation)
+    return decision, _completed(claim, _verdict(decision, claim.text, start), start)
+
+
+@contextmanager
+def _place_of(claim: Claim) -> Iterator[None]:
+    """Put the name of a claim in front of a refusal."""
+    try:
+        yield
     except InputError as reason:
         if not claim.id or claim.id in str(reason):
             raise
         raise InputError(f"{claim.id}: {reason}") from None
-    verdict = _verdict(decision, claim.text, start)
+
+
+def _completed(claim: Claim, verdict: Verdict, start: float) -> Verdict:
+    """Return a verdict with the check of units, and with the name and place of the claim."""
     if claim.relation is not None:
         hypotheses = [relation[1:] for relation in claim.hypotheses]
         dimensions = check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)
         verdict = replace(verdict, dimension=dimensions)
-    return decision, replace(verdict, id=claim.id, where=claim.where, seconds=perf_counter() - start)
+    return replace(verdict, id=claim.id, where=claim.where, seconds=perf_counter() - start)
 
 
 def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
@@ -257,13 +282,12 @@ def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
     if decision.verdict not in ("false", "conditional"):
         return replace(verdict, diagnosis=_domain(claim)) if verdict and verdict.conditions else verdict
     from symrot.checker.recognition.identification import named_parts
-    from symrot.checker.recognition.nearest import nearest_known
     from symrot.checker.repair.diagnose import diagnose
 
     diagnosis, repairs = diagnose(claim, decision)
     if diagnosis.code == "none" and verdict.dimension.status == "inconsistent":
         diagnosis = Diagnosis("dimension", f"the units do not fit: {verdict.dimension.text}")
-    notes = (*verdict.notes, *named_parts(claim), *nearest_known(claim))
+    notes = (*verdict.notes, *named_parts(claim))
     return replace(verdict, diagnosis=diagnosis, repairs=repairs, notes=notes)
 
 

@@ -248,7 +248,8 @@ def _check(options: Namespace) -> int:
         say(verdicts.lines(results, options.claim))
     refused = [verdict for verdict in results if verdict.verdict == "refused"]
     sys.stderr.write("".join(f"symrot: {one_line(verdict.reason)}\n" for verdict in refused))
-    return USAGE_ERROR if refused else OK if all(results) else FAILED
+    accepted = [bool(verdict) or (verdict.verdict == "definition" and not options.strict) for verdict in results]
+    return USAGE_ERROR if refused else OK if all(accepted) else FAILED
 
 
 def _check_textbook(options: Namespace) -> int:
@@ -393,6 +394,8 @@ def _check_arguments(parser: ArgumentParser) -> None:
                         help="'a == b', 'x > 0' or 'x != 0', with a claim as text; may be repeated")  # fmt: skip
     parser.add_argument("--unit", metavar="NAME=UNIT", action="append", default=[],
                         help="unit of a symbol, with a claim as text: 'F=kg m/s^2'; may be repeated")  # fmt: skip
+    parser.add_argument("--strict", action="store_true",
+                        help="exit 1 for a definition, a named formula that symrot does not know")  # fmt: skip
     parser.add_argument("--no-repair", action="store_true", help="do not look for true formulas near a false one")
     json_option(parser)
 

@@ -11,6 +11,9 @@ from symrot.report.layout import duration, one_line, room
 
 __all__ = ["check", "lines"]
 
+VERDICTS = ("true", "false", "conditional", "undecided", "recognised", "doubtful", "definition", "refused")
+"""The verdicts in the order in which they are counted."""
+
 
 def check(
     source: str,
@@ -69,9 +72,7 @@ def lines(verdicts: Sequence[Verdict], source: str) -> list[str]:
         name = f"{verdict.verdict:<11} {one_line(verdict.id)}{place}"
         text += [name] if verdict else _full(verdict, name)
     counts = Counter(verdict.verdict for verdict in verdicts)
-    total = ", ".join(
-        f"{counts[name]} {name}" for name in ("true", "false", "conditional", "undecided", "refused") if counts[name]
-    )
+    total = ", ".join(f"{counts[name]} {name}" for name in VERDICTS if counts[name])
     seconds = duration(sum(verdict.seconds for verdict in verdicts))
     return [*text, "", f"{len(verdicts)} claim{'s' if len(verdicts) != 1 else ''}: {total}, in {seconds}"]
 
