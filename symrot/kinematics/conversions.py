@@ -495,5 +495,5 @@ def euler_to_dcm(angles: Any, sequence: str, degrees: bool = False) -> Array:
 
 
 def dcm_to_euler(dcm: Any, sequence: str, degrees: bool = False, lock: float = LOCK) -> tuple[Array, Mask]:
-    """Return Euler angles and a mask of gimbal lock, as :func:`quaternion_to_euler` does; NaN for no rotation matrix."""
+    """Return Euler angles and a mask of the lock, as :func:`quaternion_to_euler` does; NaN for no rotation matrix."""
     return quaternion_to_euler(dcm_to_quaternion(dcm), sequence, degrees, lock)
