@@ -9,6 +9,7 @@ formula                smooth formula                 guard
 ``sign(u)``            ``s``                          ``u``, s = 1 or -1
 ``step(u)``            ``(1 + s)/2``                  ``u``
 ``abs(u)``             ``s u``                        ``u``
+``sqrt(u^2 v)``        ``s u sqrt(v)``                ``u``
 ``max(a, b)``          ``b + (1 + s)/2 (a - b)``      ``a - b``
 ``where(c, a, b)``     ``b + p (a - b)``              those of the condition, p = 1 or 0
                        or a or b alone (see below)
@@ -32,6 +33,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
+from symrot.formula.squares import square_under_root
 from symrot.formula.tree import SWITCHING, Node, children, evaluate, names, parse, text
 
 __all__ = [
@@ -96,6 +98,8 @@ def has_switches(node: Node) -> bool:
         return True
     if node[0] == "call" and node[1] in BENDING and names(node) & CHANGING:
         return True
+    if node[:2] == ("call", "sqrt") and names(node) & CHANGING and (split := square_under_root(node[2][0])):
+        return bool(names(split[0]) & CHANGING) or has_switches(split[1])
     return any(map(has_switches, children(node)))
 
 
@@ -230,6 +234,9 @@ class _Writer:
             if max(_degree(yes), _degree(no)) < RISKY:
                 return _blend(share, self.smooth(yes), self.smooth(no))
             return ("call", "where", (share, self.part(yes, share, 1), self.part(no, share, 0)))
+        if node[:2] == ("call", "sqrt") and (split := square_under_root(node[2][0])) and names(split[0]) & CHANGING:
+            size: Node = ("call", "abs", (split[0],))
+            return self.smooth(size if split[1] == ONE else ("*", size, ("call", "sqrt", (split[1],))))
         parts = tuple(map(self.smooth, children(node)))
         if kind != "call":
             return (kind, *parts, *(node[2:] if kind == "**" else ()))

@@ -6,7 +6,7 @@ bodies that tumble are followed by the reference of the campaign, which is told 
 
 import subprocess
 import sys
-from math import cosh, erf, exp, log, pi, sqrt
+from math import cos, cosh, erf, exp, log, pi, sqrt
 
 import numpy as np
 import pytest
@@ -239,6 +239,50 @@ for torque in ("exp(t**3)", "exp(exp(t))", "cosh(100*t)", "1/(t-1/3)**3"):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=80)
     assert done.returncode == 0, done.stderr
     assert len([line for line in done.stdout.splitlines() if "t =" in line]) == 4 * 2, done.stdout
+
+
+HIDDEN_SQUARE = "sqrt(t**2 - 2*({c})*t + ({c})**2)"
+ROOTS_OF_SQUARES = [  # torque, and its integral over [0, 10] s
+    ("((t-5)/sqrt((t-5)**2) - (t-5.01)/sqrt((t-5.01)**2))/2", 0.01),
+    ("(1 - 2*(t-5)*(t-5.01)/sqrt(4*((t-5)*(t-5.01))**2))/2", 0.01),
+    ("exp(-1000*sqrt((t-5.3)**2))", 0.002),
+    ("(sqrt((t-5.3-0.001)**2) + sqrt((t-5.3+0.001)**2) - 2*sqrt((t-5.3)**2))/(2*0.001)", 0.001),
+    (f"({HIDDEN_SQUARE.format(c='5.29')} + {HIDDEN_SQUARE.format(c='5.31')} - 2*{HIDDEN_SQUARE.format(c='5.3')})/0.02", 0.01),
+    ("sqrt(1 - cos(t - 5.5))", 2 * sqrt(2) * (2 - cos(2.75) - cos(2.25))),
+    ("sqrt(t)", 10**1.5 / 1.5),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
+@pytest.mark.parametrize(("torque", "impulse"), ROOTS_OF_SQUARES)
+def test_no_step_goes_past_the_bend_of_a_root(torque, impulse, tolerance, method):
+    """sqrt(u^2) is abs(u), which bends where u = 0, however the square is written."""
+    made = symrot.Scene.from_dict({
+        "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": [0, 0, 1]}, "span": {"t": [0, 10]},
+        "torque": [{"kind": "expression", "torque": ["0", "0", torque]}],
+    })  # fmt: skip
+    omega = symrot.propagator(made, method, tolerance)([0.0, 10.0]).omega[-1][2]
+    assert abs(omega - 1 - impulse) < ALLOWED * tolerance
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
+def test_a_jump_in_the_last_bits_of_the_end_ends_the_motion(method):
+    """mod(1e6 t, 1) jumps at 2 ms, of which the double is a little more."""
+    trajectory = symrot.propagator(scene("3*mod(1e6*t, 1)", stop=0.002), method, 1e-9)([0.0, 0.002])
+    assert abs(trajectory.omega[-1][2] - 0.001) < ALLOWED * 1e-9
+
+
+def test_the_bend_of_a_root_of_a_rate_is_not_passed_over():
+    """omega_1 = t - 5: the hat of width 0.002 around omega_1 = 0.3 has an integral of 0.001."""
+    hat = "(sqrt((omega_1-0.301)**2) + sqrt((omega_1-0.299)**2) - 2*sqrt((omega_1-0.3)**2))/0.002"
+    made = symrot.Scene.from_dict({
+        "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": [-5, 0, 1]}, "span": {"t": [0, 10]},
+        "torque": [{"kind": "expression", "torque": ["1", "0", hat]}],
+    })  # fmt: skip
+    for method, tolerance in (("auto", 1e-10), ("dop853", 1e-6)):
+        omega = symrot.propagator(made, method, tolerance)([0.0, 10.0]).omega[-1][2]
+        assert abs(omega - 1.001) < ALLOWED * tolerance
 
 
 @pytest.mark.thinned(4)

@@ -62,11 +62,11 @@ def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequen
         f"static const int symrot_encloses[] = {{{used}}};  /* whether the enclosed terms depend on a state */",
         "",
         "/* Bound how far the enclosed terms of each rate deviate from a constant for times within `reach` of t and",
-        " * states within `radius` of y. */",
-        "static void symrot_deviations(double t, double reach, const double *y, const double *radius, const double *p,",
-        "    double *deviation)",
+        " * states within `radius` of y; `whole` is for roots, see symrot_disc_sqrt. */",
+        "static void symrot_deviations(double t, double reach, double whole, const double *y, const double *radius,",
+        "    const double *p, double *deviation)",
         "{",
-        *(f"    (void){name};" for name in ("t", "reach", "y", "radius", "p")),
+        *(f"    (void){name};" for name in ("t", "reach", "whole", "y", "radius", "p")),
         *(f"    {line}" for line in lines),
         "}",
         "",
@@ -92,7 +92,8 @@ def _disc(system: Recurrences, number: int, places: Mapping[str, str]) -> str:
     if series.rule == "clock":
         rate, offset = (None if weight is None else _constant(weight, places) for weight in series.weights)
         angle = f"({rate})*t" + (f" + ({offset})" if offset else "")
-        return f"symrot_disc_{series.function}(symrot_disc_of({angle}, fabs({rate})*reach))"
+        further = ", whole" if series.function == "sqrt" else ""
+        return f"symrot_disc_{series.function}(symrot_disc_of({angle}, fabs({rate})*reach){further})"
     if series.rule == "sum":
         *weights, constant = series.weights
         centres = [f"({_constant(w, places)})*{d}.c" for d, w in zip(own, weights, strict=True) if w is not None]
@@ -105,4 +106,4 @@ def _disc(system: Recurrences, number: int, places: Mapping[str, str]) -> str:
         inverse = f"symrot_disc_inverse({own[-1]})"
         return f"symrot_disc_product({own[0]}, {inverse})" if len(own) > 1 else inverse
     name = "ln" if series.function == "log" else series.function
-    return f"symrot_disc_{name}({', '.join(own)})"
+    return f"symrot_disc_{name}({', '.join([*own, 'whole'] if name == 'sqrt' else own)})"

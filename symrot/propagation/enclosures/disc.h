@@ -54,13 +54,18 @@ static inline symrot_disc symrot_disc_inverse(symrot_disc a)
     return fabs(a.c) > a.r ? symrot_disc_of(a.c*inner*outer, a.r*inner*outer) : symrot_disc_of(0.0, INFINITY);
 }
 
-/* Where a disc meets the branch point the root has a corner: no series goes past it, a bound of its size may. */
-static inline symrot_disc symrot_disc_sqrt(symrot_disc a)
+/*
+ * Where a disc meets the branch point the root has a corner. No series goes past it, and Cauchy's bound does not hold. A
+ * step of size h past it misses at most h times the size of the root: `whole`, one over the share of a deviation that a
+ * step misses, makes up for that share.
+ */
+static inline symrot_disc symrot_disc_sqrt(symrot_disc a, double whole)
 {
     const double root = sqrt(a.c > 0.0 ? a.c : 0.0);
 #if defined(SYMROT_ROUGH)
-    const double corner = root + sqrt(fabs(a.c) + a.r);
+    const double corner = whole*(root + sqrt(fabs(a.c) + a.r));
 #else
+    (void)whole;
     const double corner = INFINITY;
 #endif
     return symrot_disc_of(root, a.c > a.r ? a.r/(root + sqrt(a.c - a.r)) : corner);

@@ -22,7 +22,7 @@ static SYMROT_APART double symrot_excess(symrot_path path, double t, double unit
     const double reach = symrot_reaches[k][0]*size, share = symrot_reaches[k][1]*size;
     double radius[SYMROT_STATES], deviation[SYMROT_STATES], worst = 0.0;
     if (SYMROT_DEPENDS) symrot_radii(path, reach/fabs(unit), radius);
-    symrot_deviations(t, reach, y, radius, p, deviation);
+    symrot_deviations(t, reach, 1.0/symrot_reaches[k][1], y, radius, p, deviation);
     for (int b = 0; b < SYMROT_BORDERS; ++b)
         for (int i = symrot_borders[b]; i < symrot_borders[b + 1]; ++i) {
             const double lack = share*deviation[i];

@@ -70,11 +70,14 @@ def _inverse(a: Disc) -> Disc:
     return Disc(a.centre * inner * outer, a.radius * inner * outer)
 
 
-def _sqrt(a: Disc) -> Disc:
+def _sqrt(a: Disc, whole: float) -> Disc:
+    """Return the disc of a root. Where it has a corner, ``whole`` makes up for the share of a deviation that is missed;
+    see :file:`disc.h`.
+    """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
         return Disc(root, a.radius / (root + math.sqrt(a.centre - a.radius)))
-    return Disc(root, root + math.sqrt(abs(a.centre) + a.radius))  # a corner, which the error control notices
+    return Disc(root, whole * (root + math.sqrt(abs(a.centre) + a.radius)))
 
 
 def _exp(a: Disc) -> Disc:
@@ -155,22 +158,25 @@ FUNCTIONS: dict[str, Callable[..., Disc]] = {
 
 
 def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
-    """Return the bounds of an enclosure as one Python function of (t, reach, y, radii, weights, sizes of weights).
+    """Return the bounds of an enclosure as one Python function of (t, reach, whole, y, radii, weights, their sizes).
 
     The function omits the logarithms of sizes, which only matter where a bound is infinite or not a number. There the
     caller uses the slow bounds instead; elsewhere the results are equal and take much less time.
     """
-    lines, place = ["def bounds(t, reach, y, radii, w, a):"], 0
+    lines, place = ["def bounds(t, reach, whole, y, radii, w, a):"], 0
     for number in enclosure.series:
         series: Series = enclosure.system.series[number]
         c, r = f"c{number}", f"r{number}"
+        further = ", whole" if series.function == "sqrt" else ""
         own = value_operands(series)
         if series.rule == "state":
             lines.append(f" {c}, {r} = y[{series.number}], radii[{series.number}]")
         elif series.rule == "time":
             lines.append(f" {c}, {r} = t, reach")
         elif series.rule == "clock":
-            lines.append(f" {c}, {r}, _ = {series.function}(Disc(w[{place}]*t + w[{place + 1}], a[{place}]*reach))")
+            lines.append(
+                f" {c}, {r}, _ = {series.function}(Disc(w[{place}]*t + w[{place + 1}], a[{place}]*reach){further})"
+            )
             place += 2
         elif series.rule == "sum":
             inner = [f"w[{place + k}]*c{i}" for k, i in enumerate(own)]
@@ -187,7 +193,7 @@ def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
                 lines.append(f" {c}, {r} = c{x}*{c}, abs(c{x})*{r} + abs({c})*r{x} + r{x}*{r}")
         else:
             arguments = ", ".join(f"Disc(c{i}, r{i})" for i in own)
-            lines.append(f" {c}, {r}, _ = {series.function}({arguments})")
+            lines.append(f" {c}, {r}, _ = {series.function}({arguments}{further})")
     sums = []
     for own_terms in enclosure.terms:
         sums.append(" + ".join(f"a[{place + k}]*r{operand}" for k, (_, operand) in enumerate(own_terms)) or "0.0")
@@ -229,20 +235,20 @@ class Deviations:
         self._listed += [weight for own in self._terms for weight, _ in own]
         self._sizes = [abs(weight) for weight in self._listed]
 
-    def __call__(self, t: float, reach: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
+    def __call__(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
         """Return the bounds of the rates for times within ``reach`` of t and states within ``radii`` of y; infinite at
         poles.
         """
         self.spent += 1
         try:
-            bounds = self._bounds(t, reach, y, radii, self._listed, self._sizes)
+            bounds = self._bounds(t, reach, whole, y, radii, self._listed, self._sizes)
             if math.isfinite(sum(bounds)):
                 return bounds
         except (OverflowError, ValueError, ZeroDivisionError):
             pass
-        return self.slowly(t, reach, y, radii)
+        return self.slowly(t, reach, whole, y, radii)
 
-    def slowly(self, t: float, reach: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
+    def slowly(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
         """Return the same bounds as a call, disc by disc, where numbers over- or underflow and logarithms are
         needed.
         """
@@ -250,24 +256,26 @@ class Deviations:
         discs: dict[int, Disc] = {}
         try:
             for number in self.enclosure.series:
-                discs[number] = self._disc(number, discs, t, reach, y, radii)
+                discs[number] = self._disc(number, discs, t, reach, whole, y, radii)
             bounds = [sum(weight * discs[operand].radius for weight, operand in own) for own in self._terms]
         except (OverflowError, ValueError, ZeroDivisionError):
             return [math.inf if own else 0.0 for own in self._terms]
         return [_or_infinite(bound) for bound in bounds]
 
     def _disc(
-        self, number: int, discs: Mapping[int, Disc], t: float, reach: float, y: Sequence[float], radii: Sequence[float]
-    ) -> Disc:
+        self, number: int, discs: Mapping[int, Disc], t: float, reach: float, whole: float, y: Sequence[float],
+        radii: Sequence[float],
+    ) -> Disc:  # fmt: skip
         series: Series = self.enclosure.system.series[number]
         own = [discs[operand] for operand in value_operands(series)]
+        further = (whole,) if series.function == "sqrt" else ()
         if series.rule == "state":
             return Disc(y[series.number], radii[series.number])
         if series.rule == "time":
             return Disc(t, reach)
         if series.rule == "clock":
             rate, offset = self._weights[number]
-            return FUNCTIONS[series.function](Disc(rate * t + offset, abs(rate) * reach))
+            return FUNCTIONS[series.function](Disc(rate * t + offset, abs(rate) * reach), *further)
         if series.rule == "sum":
             *weights, constant = self._weights[number]
             centre = constant + sum(w * disc.centre for w, disc in zip(weights, own, strict=True))
@@ -277,7 +285,7 @@ class Deviations:
         if series.rule == "quotient":
             inverse = _inverse(own[-1])
             return _product(own[0], inverse) if len(own) > 1 else inverse
-        return FUNCTIONS[series.function](*own)
+        return FUNCTIONS[series.function](*own, *further)
 
 
 def deviations_of(enclosure: Enclosure) -> Callable[[Mapping[str, float]], Deviations]:
@@ -331,14 +339,15 @@ def _excess(
     deviations: Deviations, t: float, y: Sequence[float], path: Sequence[Sequence[float]], size: float, unit: float,
     reach: float, allowed: Sequence[float], edges: Sequence[int], order: int,
 ) -> float:  # fmt: skip
-    part, share = reach * size / unit, size * reach**-order / ((order + 1) * (1.0 - 1.0 / reach))
+    missed = reach**-order / ((order + 1) * (1.0 - 1.0 / reach))
+    part, share = reach * size / unit, size * missed
     radii = []
     for coefficients in path:
         total = 0.0
         for coefficient in reversed(coefficients):
             total = (total + coefficient) * part
         radii.append(total)
-    bounds, worst = deviations(t, reach * size, y, radii), 0.0
+    bounds, worst = deviations(t, reach * size, 1.0 / missed, y, radii), 0.0
     for block, (low, high) in enumerate(pairwise(edges)):
         lack = share * max(bounds[low:high], default=0.0)
         worst = max(worst, lack / allowed[block])

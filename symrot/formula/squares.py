@@ -1,0 +1,90 @@
+"""Squares under a root: sqrt(u^2) is abs(u), which bends where u changes its sign. Standard library only."""
+
+from fractions import Fraction
+
+from symrot.formula.polynomial import Polynomial, constant, generator, square_root
+from symrot.formula.tree import Node, children, text
+
+__all__ = ["square_under_root"]
+
+ONE: Node = ("number", Fraction(1))
+MOST_TERMS = 60  # of a polynomial that is examined for being a square
+
+
+def square_under_root(radicand: Node) -> tuple[Node, Node] | None:
+    """Return (u, v) with radicand = u^2 v, so that its square root is abs(u) sqrt(v); None for u = 1.
+
+    A sum counts as a square if it is one as a polynomial in its symbols and functions: t**2 - 2*c*t + c**2.
+    """
+    root, rest = _split(radicand)
+    return None if root == ONE else (root, rest)
+
+
+def _split(node: Node) -> tuple[Node, Node]:
+    """Return (u, v) with node = u^2 v; u is 1 where no square is seen."""
+    kind = node[0]
+    if kind in ("*", "/"):
+        (a, v), (b, w) = map(_split, children(node))
+        return _joined(kind, a, b), _joined(kind, v, w)
+    if kind == "**" and node[2] >= 2:
+        half = node[2] // 2
+        root: Node = node[1] if half == 1 else ("**", node[1], half)
+        return root, node[1] if node[2] % 2 else ONE
+    if kind in ("+", "-") and (total := _root_of_sum(node)) is not None:
+        return total, ONE
+    return ONE, node
+
+
+def _joined(kind: str, left: Node, right: Node) -> Node:
+    if right == ONE:
+        return left
+    return right if left == ONE and kind == "*" else (kind, left, right)
+
+
+def _root_of_sum(node: Node) -> Node | None:
+    """Return the polynomial whose square a sum is, or None."""
+    generators: dict[str, Node] = {}
+    polynomial = _polynomial(node, generators)
+    if polynomial is None or len(polynomial.terms) > MOST_TERMS or set(polynomial.terms) <= {()}:
+        return None
+    try:
+        root = square_root(polynomial)
+    except ValueError:
+        return None
+    return _node(root, generators)
+
+
+def _polynomial(node: Node, generators: dict[str, Node]) -> Polynomial | None:
+    """Return a formula as a polynomial in its symbols and functions, and add these to ``generators``."""
+    kind = node[0]
+    if kind == "number":
+        return constant(node[1])
+    if kind in ("symbol", "call"):
+        name = text(node)
+        generators[name] = node
+        return generator(name)
+    parts = [_polynomial(child, generators) for child in children(node)]
+    if any(part is None or len(part.terms) > MOST_TERMS for part in parts):
+        return None
+    first, *others = (part for part in parts if part is not None)
+    if kind == "neg":
+        return -first
+    if kind == "**":
+        return first ** node[2] if 0 <= node[2] <= 8 else None
+    (second,) = others
+    if kind == "/":
+        return first / second if set(second.terms) == {()} else None
+    return first * second if kind == "*" else first + second if kind == "+" else first - second
+
+
+def _node(polynomial: Polynomial, generators: dict[str, Node]) -> Node:
+    total: Node | None = None
+    for monomial, coefficient in sorted(polynomial.terms.items()):
+        factors: list[Node] = [("number", coefficient)] if coefficient != 1 or not monomial else []
+        factors += [generators[name] if power == 1 else ("**", generators[name], power) for name, power in monomial]
+        product = factors[0]
+        for factor in factors[1:]:
+            product = ("*", product, factor)
+        total = product if total is None else ("+", total, product)
+    assert total is not None
+    return total
