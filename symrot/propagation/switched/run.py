@@ -151,6 +151,7 @@ class SwitchedRun(RunState):
             for piece, states in source.pieces():
                 first, last = self._negative(regime, active, values, piece)
                 first = [guard for guard in first if guard.mode not in self.released or guard in last]
+                first = [guard for guard in first if not self._is_rounding(regime, guard)]
                 if passed[-1] == start and (first or self._settle(regime, active, piece, states)):
                     violated.extend(first)
                     return
@@ -297,7 +298,31 @@ class SwitchedRun(RunState):
             correction = -value(0.0) / slope
         except (ArithmeticError, ValueError, IntegrationStopped):
             return instant
-        return instant.after(correction) if abs(correction) <= MOST_ULPS * math.ulp(t) else instant
+        if abs(correction) > MOST_ULPS * math.ulp(t):
+            return instant
+        return self._past(regime, guard, instant.after(correction))
+
+    def _past(self, regime: Regime, guard: Guard, instant: Instant) -> Instant:
+        """Return the first instant, from a given one on, at which a formula of time alone is no longer positive.
+
+        A zero that was rounded to an earlier instant would switch the function back at once.
+        """
+        formula, later = parse(guard.formula), instant
+        step = self.side * math.ulp(math.ulp(instant.high))
+        while abs(step) <= MOST_ULPS * math.ulp(instant.high):
+            values = {**regime.values(self.modes, later), "t": 0.0}
+            if float(evaluate(formula, values, FLOAT_FUNCTIONS, float)) <= 0.0:
+                return later
+            later, step = instant.after(step), 8.0 * step
+        return instant
+
+    def _is_rounding(self, regime: Regime, guard: Guard) -> bool:
+        """Return whether a formula of time alone that has just switched is negative only up to rounding of the time."""
+        if guard.mode in self.held or guard.mode not in regime.of_time or not self.flipped.get(guard.mode):
+            return False
+        later = self.t + self.side * MOST_ULPS * math.ulp(self.zero.high)
+        values = {**regime.values(self.modes, self.zero), "t": later}
+        return float(evaluate(parse(guard.formula), values, FLOAT_FUNCTIONS, float)) > 0.0
 
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
