@@ -8,9 +8,9 @@ import pytest
 
 from symrot.build import cache as library
 from symrot.closed_form import registry as choose
-from symrot.closed_form.free_body import motion as free_body
 from symrot.closed_form.heavy_top import motion as heavy_top
 from symrot.formula import exact_numbers as number
+from symrot.inertia import composite
 from symrot.planning import plan as planner
 from symrot.planning.plan import make_plan, structure_key
 from symrot.propagation import compiled_models as kernels
@@ -113,7 +113,7 @@ def test_starts_of_one_key_have_one_plan(name):
 
 
 LOOKED_UP = [
-    (free_body, "principal_axes"), (heavy_top, "quaternion_of"), (library, "build"), (library, "built"),
+    (composite, "principal_axes"), (heavy_top, "quaternion_of"), (library, "build"), (library, "built"),
     (library, "compiler"), (library, "missing"), (library, "fetch"), (taylor, "order_for"),
     (motion, "scene_kernel"), (choose, "exact_form"), (propagator, "make_plan"), (propagator, "choose_method"),
     (kernels, "scene_kernel"),
