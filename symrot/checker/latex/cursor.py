@@ -1,18 +1,27 @@
-"""The cursor of the LaTeX reader: the tokens of a formula, and the methods that parts of its grammar call in others."""
+"""The cursor of the LaTeX checker: the place in a formula, and the methods that parts of its grammar call in others."""
 
-from abc import ABC, abstractmethod
-from collections.abc import Collection
-from dataclasses import dataclass, field
+from abc import abstractmethod
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
 
-from symrot.checker.claim.reader import complaint
+from symrot.checker.claim.reader import LONGEST_TEXT, MOST_PIECES
 from symrot.checker.claim.tree import Node
-from symrot.checker.latex.tokens import Token, tokens
-from symrot.errors import InputError
+from symrot.errors import InputError, complaint
+from symrot.latex import cursor, tree
+from symrot.latex.reader import read
+from symrot.latex.tokens import GREEK, tokens
 
-__all__ = ["CLOSING", "TIME", "Cursor", "Names"]
+__all__ = ["CLOSING", "TIME", "UPRIGHT", "Cursor", "Names", "is_letter"]
 
-CLOSING = {"(": ")", "[": "]", "\\{": "\\}", "{": "}"}
+CLOSING = {"(": ")", "[": "]", "\\{": "\\}"}
 TIME = Node("name", "t")
+UPRIGHT = ("\\mathrm", "\\mathit", "\\mathsf", "\\textrm")
+MARKS = frozenset("-+*/=()[]{}^_&|,'−·×′⋅")
+WRAPPERS = (
+    ("$$", "$$"), ("$", "$"), (r"\[", r"\]"), (r"\(", r"\)"),
+    *((f"\\begin{{{name}}}", f"\\end{{{name}}}") for name in ("equation*", "equation", "displaymath", "math")),
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -33,48 +42,42 @@ class Names:
         return name in {*self.symbols, *self.functions, *self.matrices, *self.others}
 
 
-@dataclass
-class Cursor(ABC):
-    """The position in the tokens of a formula, with the integrals and bars that are open there."""
+def is_letter(item: tree.Node) -> bool:
+    """Return whether an item is a Latin or Greek letter."""
+    return item.kind == "letter" or item.text[1:] in GREEK
 
-    source: str
-    where: str
-    names: Names
-    timed: set[str] = field(default_factory=set)
 
-    def __post_init__(self) -> None:
-        if not isinstance(self.source, str) or not self.source.strip():
-            raise InputError(f"{self.where + ': ' if self.where else ''}expected LaTeX of an equation, got empty text")
-        self.tokens = tokens(self.source, self.where)
-        self.index = self.depth = self.integrals = 0
-        self.timed.update(self.names.functions)
+class Cursor(cursor.Cursor):
+    """The place in a formula, with the integrals and bars that are open there, and the names that depend on time."""
 
-    def peek(self, ahead: int = 0) -> Token:
-        return self.tokens[min(self.index + ahead, len(self.tokens) - 1)]
+    synonyms: ClassVar[Mapping[str, str]] = {
+        "\\top": "\\T", "\\intercal": "\\T", "\\lbrace": "\\{", "\\rbrace": "\\}", "\\lbrack": "[", "\\rbrack": "]",
+        "\\vert": "|", "\\lvert": "|", "\\rvert": "|", "\\Vert": "\\|", "\\lVert": "\\|", "\\rVert": "\\|",
+        "\\equiv": "=", "\\ast": "*", "−": "-", "·": "\\cdot", "×": "\\times", "⋅": "\\cdot",
+    }  # fmt: skip
+    open_bars: tuple[str, ...] = ()
+    depth = integrals = 0
 
-    def at(self, *texts: str) -> bool:
-        return self.peek().text in texts
+    def __init__(self, source: str, where: str, names: Names) -> None:
+        place = f"{where}: " if where else ""
+        if not isinstance(source, str) or not source.strip():
+            raise InputError(f"{place}expected LaTeX of an equation, got empty text")
+        if len(source) > LONGEST_TEXT:
+            raise InputError(f"{place}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
+        self.source, self.where, self.names = source, where, names
+        self.timed = set(names.functions)
+        pieces = tokens(source, *_unwrapped(source))
+        for piece in pieces:
+            if piece.kind == "mark" and piece.text not in MARKS:
+                raise self.fail("LaTeX of mathematics", piece)
+        if len(pieces) > MOST_PIECES:
+            raise InputError(f"{place}expected a formula of at most {MOST_PIECES} pieces, got {len(pieces)}")
+        super().__init__(read(source, where, pieces))
 
-    def next(self) -> Token:
-        token = self.peek()
-        self.index += token.kind != "end"
-        return token
-
-    def take(self, text: str) -> bool:
-        is_next = self.at(text)
-        self.index += is_next
-        return is_next
-
-    def expect(self, text: str) -> None:
-        if not self.take(text):
-            raise self.fail(f"'{text}'")
-
-    def fail(self, expected: str, token: Token | None = None) -> InputError:
-        return complaint(self.source, self.where, (token or self.peek()).position, expected)
+    def fail(self, expected: str, item: tree.Node | None = None) -> InputError:
+        return complaint(self.source, self.where, (item or self.peek()).start, expected)
 
     # -- methods that parts of the grammar call in other parts --------------------------------------------------------
-
-    open_bars: tuple[str, ...] = ()
 
     @abstractmethod
     def expression(self) -> Node:
@@ -85,15 +88,15 @@ class Cursor(ABC):
         """Read a piece with its powers."""
 
     @abstractmethod
-    def base(self, script: bool = True) -> Node:
-        """Read a piece without its powers."""
+    def base(self, item: tree.Node, script: bool = True) -> Node:
+        """Read a piece without its powers; without ``script``, without its index and primes too."""
 
     @abstractmethod
-    def argument(self) -> Node:
-        """Read a group in braces, or one token."""
+    def argument(self, node: tree.Node) -> Node:
+        """Read the argument of a command: a group in braces, or one token."""
 
     @abstractmethod
-    def bracket(self, token: Token) -> Node:
+    def bracket(self, opening: tree.Node) -> Node:
         """Read an expression and its closing bracket, after the opening one."""
 
     @abstractmethod
@@ -101,5 +104,24 @@ class Cursor(ABC):
         """Return whether a factor may start at the cursor."""
 
     @abstractmethod
-    def derivative(self, node: Node, times: int, token: Token) -> Node:
+    def derivative(self, node: Node, times: int, item: tree.Node) -> Node:
         """Return a time derivative."""
+
+
+def _unwrapped(source: str) -> tuple[int, int]:
+    """Return where the formula starts and ends, without dollar signs around it and a full stop after it."""
+    start, end = 0, len(source)
+
+    def strip() -> None:
+        nonlocal start, end
+        while start < end and source[start].isspace():
+            start += 1
+        while end > start and (source[end - 1].isspace() or source[end - 1] in ".,;"):
+            end -= 1
+
+    strip()
+    for opening, closing in WRAPPERS:
+        if source.startswith(opening, start) and source.endswith(closing, start + len(opening), end):
+            start, end = start + len(opening), end - len(closing)
+            strip()
+    return start, end

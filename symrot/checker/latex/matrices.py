@@ -2,7 +2,7 @@
 
 from symrot.checker.claim.tree import Node
 from symrot.checker.latex.calculus import CalculusPart
-from symrot.checker.latex.tokens import Token
+from symrot.latex import tree
 
 __all__ = ["MATRIX_CALLS", "MatricesPart"]
 
@@ -24,55 +24,33 @@ MATRIX_CALLS = ("Matrix", "cross", "skew", "vee", "Rx", "Ry", "Rz", "inverse", "
 
 
 class MatricesPart(CalculusPart):
-    """The part of the reader for matrices, and for bars around them."""
+    """The part of the checker's interpreter for matrices, and for bars around them."""
 
-    def bars(self, token: Token) -> Node:
+    def bars(self, bar: tree.Node) -> Node:
         outside = self.open_bars
-        self.open_bars = (*outside, token.text)
+        self.open_bars = (*outside, bar.text)
         inner = self.expression()
         self.open_bars = outside
-        self.expect(token.text)
-        if token.text == "\\|" or self.is_column(inner):
+        self.expect(bar.text)
+        if bar.text == "\\|" or self.is_column(inner):
             return Node("call", "sqrt", (Node("call", "dot", (inner, inner)),))
         return Node("call", "det" if self.is_matrix(inner) else "abs", (inner,))
 
-    def environment(self, token: Token) -> Node:
-        name = self.environment_name()
+    def environment(self, table: tree.Node) -> Node:
+        assert isinstance(table, tree.Table)
+        name = table.name
         if name.rstrip("*") in SEVERAL_LINES:
-            raise self.fail(f"one equation instead of the lines of {name}", token)
+            raise self.fail(f"one equation instead of the lines of {name}", table)
         if name not in MATRICES:
-            raise self.fail(f"one of the environments {', '.join(MATRICES)}", token)
-        if name == "array":
-            self.expect("{")
-            while self.at("c", "l", "r", "|"):
-                self.next()
-            self.expect("}")
+            raise self.fail(f"one of the environments {', '.join(MATRICES)}", table)
         bars, self.open_bars = self.open_bars, ()
-        rows = [[self.expression()]]
-        while not self.at("\\end"):
-            if self.take("&"):
-                rows[-1].append(self.expression())
-            elif self.take("\\\\"):
-                if not self.at("\\end"):
-                    rows.append([self.expression()])
-            else:
-                raise self.fail("& or \\\\ between the entries of a matrix")
-        self.next()
+        between = "& or \\\\ between the entries of a matrix"
+        rows = [[self.inside(cell, self.expression, between) for cell in line] for line in table.lines]
         self.open_bars = bars
-        if self.environment_name() != name:
-            raise self.fail(f"\\end{{{name}}}", token)
         if len({len(row) for row in rows}) > 1:
-            raise self.fail("rows of equal length in a matrix", token)
+            raise self.fail("rows of equal length in a matrix", table)
         made = Node("call", "Matrix", (_listed([_listed(row) for row in rows]),))
         return Node("call", MATRICES[name], (made,)) if MATRICES[name] else made
-
-    def environment_name(self) -> str:
-        self.expect("{")
-        name = ""
-        while self.peek().kind == "letter" or self.at("*"):
-            name += self.next().text
-        self.expect("}")
-        return name
 
     def is_matrix(self, node: Node) -> bool:
         """Return whether a tree is a vector or a matrix."""

@@ -11,15 +11,17 @@ from fractions import Fraction
 from symrot.checker.claim.reader import DEEPEST_NESTING, Relation, read_relation
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text
 from symrot.checker.latex.calculus import DOTS, FUNCTIONS
-from symrot.checker.latex.cursor import CLOSING, TIME, Names
+from symrot.checker.latex.cursor import CLOSING, TIME, UPRIGHT, Names, is_letter
 from symrot.checker.latex.matrices import MATRIX_CALLS, MatricesPart
 from symrot.checker.latex.names import NAME_MARKS, OPERATORS, VECTOR_MARKS
-from symrot.checker.latex.tokens import GREEK, Token
+from symrot.latex import tree
 
 __all__ = ["MATRIX_CALLS", "TIME", "Names", "Reading", "read_latex", "read_latex_formula"]
 
-ENDS = ("+", "-", "=", ")", "]", "\\}", "}", "&", "\\\\", ",", "\\end", "\\cdot", "\\times", "*", "/", "^", "_", "'")
-"""Tokens that cannot start a factor."""
+ENDS = frozenset(
+    ["", "+", "-", "=", ")", "]", "\\}", "}", "&", "\\\\", ",", "\\end", "\\cdot", "\\times", "*", "/", "^", "_", "'"]
+)
+"""Items that cannot start a factor."""
 
 
 @dataclass(frozen=True)
@@ -126,7 +128,7 @@ class _Reader(MatricesPart):
     def run(self) -> Node:
         """Read factors side by side, with slashes: ``\\frac12 m v^2``, ``a/b``, ``1/2 m``."""
         factors = [self.factor()]
-        divided: Token | None = None
+        divided: tree.Node | None = None
         while True:
             token = self.peek()
             if token.text == "/":
@@ -148,91 +150,76 @@ class _Reader(MatricesPart):
                 factors.append(self.factor())
 
     def starts_factor(self) -> bool:
-        token = self.peek()
-        if token.kind == "end" or token.text in ENDS:
+        item = self.peek()
+        if item.text in ENDS:
             return False
-        if token.text in ("|", "\\|"):
-            return token.text not in self.open_bars
+        if item.text in ("|", "\\|"):
+            return item.text not in self.open_bars
         return not (self.integrals and self.differential())
 
     def factor(self) -> Node:
-        token = self.peek()
-        node = self.base()
-        while self.at("^"):
-            mark = self.next()
+        item = self.next()
+        node = self.base(item)
+        while raised := self.script("^"):
             if node.kind == "power":
-                raise self.fail("brackets around a repeated power", mark)
+                raise self.fail("brackets around a repeated power", raised)
             if node.kind == "call" and node.value in FUNCTIONS.values():
-                raise self.fail(f"the power after the name, {token.text}^n(..)", mark)
-            node = self.raised(node)
+                raise self.fail(f"the power after the name, {item.text}^n(..)", raised)
+            node = self.raised(node, raised.inside)
         return node
 
-    def raised(self, node: Node) -> Node:
-        """Read a transpose, a cross-product matrix or an exponent after ``^``."""
-        group = self.at("{")
-        start = self.index
-        if group:
-            self.next()
-        upright = self.take("\\mathrm")
-        if upright:
-            self.take("{")
-        if self.at("T", "\\T"):
-            self.next()
-            for _ in range(group + upright):
-                self.take("}")
+    def raised(self, node: Node, inside: tree.Node) -> Node:
+        """Return a transpose, a cross-product matrix or a power."""
+        mark = tree.alone(inside)
+        if isinstance(mark, tree.Font) and mark.text in UPRIGHT:
+            mark = tree.alone(mark.inside)
+        if mark.text in ("T", "\\top", "\\intercal"):
             return Node("transpose", None, (node,))
-        if not upright and self.take("\\times"):
-            for _ in range(group):
-                self.expect("}")
+        if mark.text in ("\\times", "×"):
             return Node("call", "skew", (node,))
-        self.index = start
-        if [self.peek(n).text for n in range(2)] == ["{", "("] and self.peek(3).text == ")":
-            raise self.fail("a power like x^2 instead of x^{(2)}")
-        exponent = self.argument()
+        texts = [item.text for item in getattr(inside, "items", ())]
+        if texts[:3:2] == ["(", ")"] or (isinstance(mark, tree.Delimited) and len(mark.inside.items) == 1):
+            raise self.fail("a power like x^2 instead of x^{(2)}", inside)
+        exponent = self.argument(inside)
         if exponent == number(2) and self.is_column(node):
             return Node("call", "dot", (node, node))
         return Node("power", None, (node, exponent))
 
-    def argument(self) -> Node:
-        """Read a group in braces, or one token."""
-        token = self.peek()
-        if self.take("{"):
-            inner = self.expression()
-            self.expect("}")
-            return inner
-        if token.kind == "number":  # ^12 is ^1 2
-            if len(token.text) > 1:
-                raise self.fail("braces around a number of several digits")
-            return number(Fraction(self.next().text))
-        if token.kind == "letter" or token.text[1:] in GREEK or token.text == "\\pi":
-            return self.base(script=False)
-        raise self.fail("a group in braces")
+    def argument(self, node: tree.Node) -> Node:
+        if isinstance(node, tree.Row):
+            return self.inside(node, self.expression)
+        if node.kind == "number":
+            if self.is_cut(node):
+                raise self.fail("braces around a number of several digits", node)
+            return number(Fraction(node.text))
+        if is_letter(node) or node.text == "\\pi":
+            return Node("name", self.resolved(node.text.removeprefix("\\"), ""))
+        raise self.fail("a group in braces", node)
 
-    def base(self, script: bool = True) -> Node:
-        token = self.next()
-        if token.kind == "number":
-            return number(Fraction(token.text))
-        if token.kind == "letter" or (token.text[1:] in GREEK and token.kind == "command"):
-            return self.named(token.text.removeprefix("\\"), token, script)
-        if token.text == "\\pi":
+    def base(self, item: tree.Node, script: bool = True) -> Node:
+        if item.kind == "number":
+            return number(Fraction(item.text))
+        if is_letter(item):
+            return self.named(item.text.removeprefix("\\"), item, script)
+        if item.text == "\\pi":
             return Node("name", "pi")
-        reader = _READ.get(token.text)
-        if reader is None:
-            known = "a command that is known" if token.kind == "command" else "a number, a symbol or a bracket"
-            raise self.fail(known, token)
-        return reader(self, token)
+        read = _READ.get(item.text)
+        if read is None:
+            known = "a command that is known" if item.text.startswith("\\") else "a number, a symbol or a bracket"
+            raise self.fail(known, item)
+        return read(self, item)
 
-    def bracket(self, token: Token) -> Node:
+    def bracket(self, opening: tree.Node) -> Node:
         bars, self.open_bars = self.open_bars, ()
-        inner = self.expression()
-        self.expect(CLOSING[token.text])
+        if opening.kind == "row":
+            inner = self.inside(opening, self.expression)
+        else:
+            inner = self.expression()
+            self.expect(CLOSING[opening.text])
         self.open_bars = bars
-        if token.text == "[" and self.at("_") and "\\times" in (self.peek(1).text, self.peek(2).text):
+        mark = self.peek()
+        if opening.text == "[" and isinstance(mark, tree.Script) and tree.alone(mark.inside).text in ("\\times", "×"):
             self.next()
-            group = self.take("{")
-            self.expect("\\times")
-            if group:
-                self.expect("}")
             return Node("call", "skew", (inner,))
         return inner
 
@@ -245,8 +232,7 @@ _READ = {
     **dict.fromkeys(DOTS, _Reader.dotted),
     **dict.fromkeys(FUNCTIONS, _Reader.trigonometric),
     **dict.fromkeys(OPERATORS, _Reader.operator),
-    "\\mathrm": _Reader.spelled,
-    "\\operatorname": _Reader.spelled,
+    **dict.fromkeys((*UPRIGHT, "\\operatorname"), _Reader.spelled),
     "\\frac": _Reader.fraction,
     "\\sqrt": _Reader.root,
     "\\int": _Reader.integral,
