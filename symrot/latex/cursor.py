@@ -41,7 +41,7 @@ class Cursor(ABC):
         for node in nodes:
             if isinstance(node, Token):
                 if node.kind == "space":
-                    space = space or node.text != "~"
+                    space = space or node.text[0] == "\\"
                     continue
                 text = self.synonyms.get(node.text)
                 self.items.append(Token("command" if text[0] == "\\" else "mark", text, node.start) if text else node)

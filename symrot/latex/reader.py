@@ -65,7 +65,12 @@ class _Reader:
         while token.text not in stops:
             if token.kind == "end":
                 raise self.fail(f"'{stops[-1]}'", token)
-            items.append(self.item())
+            following = self.tokens[self.place + 1]
+            if token.text in STRUCTURES or following.text in SCRIPTS or following.kind == "space":
+                items.append(self.item())
+            else:  # most items are a token
+                items.append(token)
+                self.place += 1
             token = self.tokens[self.place]
         return Row(tuple(items), first.start, token.start)
 
@@ -209,3 +214,4 @@ READERS: dict[str, Callable[[_Reader, Token], Node]] = {
     **dict.fromkeys((f"\\{name}" for name in SIZES), _Reader.sized),
     **dict.fromkeys(COMMANDS, _Reader.command),
 }
+STRUCTURES = SCRIPTS | READERS.keys()
