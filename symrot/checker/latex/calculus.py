@@ -1,22 +1,12 @@
 """Functions, roots, fractions, derivatives and integrals in LaTeX."""
 
-from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, number, product, walk
-from symrot.checker.latex.cursor import CLOSING, TIME, UPRIGHT, is_letter
-from symrot.checker.latex.names import NamesPart
+from symrot.checker.latex.cursor import CLOSING, TIME, is_d, is_letter
+from symrot.checker.latex.names import NamesPart, appended
+from symrot.checker.latex.sums import FUNCTIONS
 from symrot.latex import tree
 
-__all__ = ["DOTS", "FUNCTIONS", "CalculusPart"]
-
-FUNCTIONS = {
-    f"\\{command}": name
-    for command, name in (
-        *((name, name) for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp")),
-        *(("arcsin", "asin"), ("arccos", "acos"), ("arctan", "atan"), ("ln", "log")),
-    )
-    if name in BUILT_IN
-}
-"""Command -> function; ``\\log``, whose base differs from book to book, is refused."""
+__all__ = ["DOTS", "CalculusPart"]
 
 DOTS = {"\\dot": 1, "\\ddot": 2, "\\dddot": 3}
 
@@ -61,26 +51,22 @@ class CalculusPart(NamesPart):
         """Return whether a command for space is before the cursor."""
         return self.peek().start in self.after_space
 
-    def root(self, root: tree.Node) -> Node:
-        assert isinstance(root, tree.Root)
+    def root(self, root: tree.Root) -> Node:
         index = None if root.index is None else self.inside(root.index, self.expression, "']'")
         inner = self.argument(root.inside)
         if index is None:
             return Node("call", "sqrt", (inner,))
         return Node("power", None, (inner, product([number(1), Node("inv", None, (index,))])))
 
-    def fraction(self, fraction: tree.Node) -> Node:
-        assert isinstance(fraction, tree.Fraction)
+    def fraction(self, fraction: tree.Fraction) -> Node:
         sides = above, below = fraction.above, fraction.below
-        if all(isinstance(side, tree.Row) and side.items and _is_d(side.items[0]) for side in sides):
+        if all(isinstance(side, tree.Row) and side.items and is_d(side.items[0]) for side in sides):
             return self.derivative_fraction(fraction)
-        if above.kind == below.kind == "number" and above.end == below.start and not self.is_cut(below):  # \frac12
+        if (
+            above.kind == below.kind == "number" and above.start + 1 == below.start and not self.is_cut(below)
+        ):  # \frac12
             return product([number(int(above.text)), Node("inv", None, (number(int(below.text)),))])
         return product([self.argument(above), Node("inv", None, (self.argument(below),))])
-
-    def differential(self) -> bool:
-        """Return whether a ``dx`` is at the cursor."""
-        return _is_d(self.peek()) and is_letter(self.peek(1))
 
     def derivative_fraction(self, fraction: tree.Fraction) -> Node:
         """Read ``\\frac{d^n X}{d x^n}`` or ``\\frac{d}{dx} X``."""
@@ -96,7 +82,7 @@ class CalculusPart(NamesPart):
                 raise self.fail("brackets around the formula to differentiate")
         for variable in variables:
             in_time = variable == TIME
-            operand = self.derivative(operand, 1, fraction) if in_time else _appended(operand, variable)
+            operand = self.derivative(operand, 1, fraction) if in_time else appended(operand, variable)
         return operand
 
     def differentiated(self) -> tuple[int, Node | None]:
@@ -109,7 +95,7 @@ class CalculusPart(NamesPart):
         """Read ``dx^2 dy`` under the line of a derivative."""
         variables: list[Node] = []
         while self.peek().kind != "end":
-            if not _is_d(self.next()):
+            if not is_d(self.next()):
                 self.index -= 1
                 raise self.fail("d or \\partial before each variable")
             variable = self.base(self.next())
@@ -125,31 +111,14 @@ class CalculusPart(NamesPart):
             raise self.fail("the order of a derivative, 1 to 4")
         return int(node.value)
 
-    def dotted(self, dot: tree.Node) -> Node:
-        assert isinstance(dot, tree.Accent)
-        inside = dot.inside
-        node = self.argument(inside) if isinstance(inside, tree.Row) else self.base(inside, script=False)
-        if node.kind == "name" and self.at("_", "'"):
-            node = self.named(str(node.value), inside)
+    def dotted(self, dot: tree.Accent) -> Node:
+        if isinstance(dot.inside, tree.Row) and len(dot.inside.items) > 1 and self.at("_", "'"):
+            raise self.fail(f"one symbol under {dot.text}")
+        node = self.under(dot, self.expression)
         derivative = self.derivative(node, DOTS[dot.text], dot)
         if self.called_with_time() and node.kind == "name":
             self.index += 3
         return derivative
-
-    def derivative(self, node: Node, times: int, item: tree.Node) -> Node:
-        """Return a time derivative; an undeclared name becomes a function of time."""
-        if node.kind == "name" and node.value not in (*self.names.functions, *self.names.matrices, *self.names.others):
-            name = str(node.value)
-            forms = ["d" * times + name, name + "dot", name + "d" * times]
-            declared = [form for form in forms if form in self.names.symbols] if times == 1 else forms[:0]
-            if declared:
-                return Node("name", declared[0])
-            if not self.names.implied:
-                raise self.fail(f"a function of time, since {name} is differentiated,", item)
-            self.timed.add(name)
-        for _ in range(times):
-            node = _appended(node, TIME)
-        return node
 
     def integral(self, sign: tree.Node) -> Node:
         limits = [(self.limit("_"), self.limit("^"))]
@@ -171,19 +140,3 @@ class CalculusPart(NamesPart):
         if limit is None:
             raise self.fail(f"'{mark}'")
         return self.argument(limit.inside)
-
-
-def _is_d(item: tree.Node) -> bool:
-    """Return whether an item is d, \\partial or an upright d."""
-    if isinstance(item, tree.Font):
-        return item.text in UPRIGHT and tree.alone(item.inside).text == "d"
-    if isinstance(item, tree.Scripts):
-        return _is_d(item.base) and [script.text for script in item.scripts] == ["^"]
-    return item.text in ("d", "\\partial")
-
-
-def _appended(node: Node, variable: Node) -> Node:
-    """Return the derivative of a tree with respect to one more variable."""
-    if node.kind == "call" and node.value == "diff" and node.args[-1] == variable == TIME:
-        return Node("call", "diff", (*node.args, variable))
-    return Node("call", "diff", (node, variable))

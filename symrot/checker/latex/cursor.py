@@ -1,8 +1,8 @@
-"""The cursor of the LaTeX checker: the place in a formula, and the methods that parts of its grammar call in others."""
+"""The cursor of the LaTeX checker: the place in a formula, with the names that its claim declares."""
 
-from abc import abstractmethod
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from string import whitespace
 from typing import ClassVar
 
 from symrot.checker.claim.reader import LONGEST_TEXT, MOST_PIECES
@@ -12,14 +12,16 @@ from symrot.latex import cursor, tree
 from symrot.latex.reader import read
 from symrot.latex.tokens import GREEK, tokens
 
-__all__ = ["CLOSING", "TIME", "UPRIGHT", "Cursor", "Names", "is_letter"]
+__all__ = ["CLOSING", "MATRIX_CALLS", "TIME", "UPRIGHT", "Cursor", "Names", "is_d", "is_letter"]
 
 CLOSING = {"(": ")", "[": "]", "\\{": "\\}"}
 TIME = Node("name", "t")
 UPRIGHT = ("\\mathrm", "\\mathit", "\\mathsf", "\\textrm")
-MARKS = frozenset("-+*/=()[]{}^_&|,'−·×′⋅")
+MATRIX_CALLS = ("Matrix", "cross", "skew", "vee", "Rx", "Ry", "Rz", "inverse", "transpose", "eye", "diag", "qmul",
+                "dcm_of", "hstack")  # fmt: skip
+MARKS = frozenset("-+*/=()[]{}&|,−·×⋅")
 WRAPPERS = (
-    ("$$", "$$"), ("$", "$"), (r"\[", r"\]"), (r"\(", r"\)"),
+    ("", ""), ("$$", "$$"), ("$", "$"), (r"\[", r"\]"), (r"\(", r"\)"),
     *((f"\\begin{{{name}}}", f"\\end{{{name}}}") for name in ("equation*", "equation", "displaymath", "math")),
 )  # fmt: skip
 
@@ -41,21 +43,54 @@ class Names:
     def __contains__(self, name: str) -> bool:
         return name in {*self.symbols, *self.functions, *self.matrices, *self.others}
 
+    def is_matrix(self, node: Node) -> bool:
+        """Return whether a tree is a vector or a matrix."""
+        if node.kind == "name":
+            return node.value in self.matrices
+        if node.kind == "call":
+            return node.value in MATRIX_CALLS or (node.value == "diff" and self.is_matrix(node.args[0]))
+        if node.kind == "index":
+            return False
+        kinds = [self.is_matrix(child) for child in node.args]
+        if node.kind == "product" and len(kinds) > 1 and node.args[0].kind == "transpose":
+            return True  # a row times a column is a 1 x 1 matrix
+        return any(kinds)
+
+    def is_column(self, node: Node) -> bool:
+        """Return whether a matrix is a column: bars mean the length of a column, the determinant of other matrices."""
+        if node.kind == "name":
+            return node.value in self.columns
+        if node.kind == "call" and node.value == "Matrix":
+            return len(node.args[0].args[0].args) == 1
+        if node.kind == "call":
+            return node.value in ("cross", "vee") or (node.value == "diff" and self.is_column(node.args[0]))
+        if node.kind == "product":
+            return self.is_column(node.args[-1]) and node.args[0].kind != "transpose"
+        return node.kind in ("sum", "neg") and self.is_column(node.args[0])
+
 
 def is_letter(item: tree.Node) -> bool:
     """Return whether an item is a Latin or Greek letter."""
     return item.kind == "letter" or item.text[1:] in GREEK
 
 
+def is_d(item: tree.Node) -> bool:
+    """Return whether an item is d, \\partial or an upright d, perhaps with a power."""
+    if isinstance(item, tree.Scripts):
+        return is_d(item.base) and [script.text for script in item.scripts] == ["^"]
+    if isinstance(item, tree.Font):
+        return item.text in UPRIGHT and tree.alone(item.inside).text == "d"
+    return item.text in ("d", "\\partial")
+
+
 class Cursor(cursor.Cursor):
-    """The place in a formula, with the integrals and bars that are open there, and the names that depend on time."""
+    """The place in a formula, with the integrals that are open there, and the names that depend on time."""
 
     synonyms: ClassVar[Mapping[str, str]] = {
         "\\top": "\\T", "\\intercal": "\\T", "\\lbrace": "\\{", "\\rbrace": "\\}", "\\lbrack": "[", "\\rbrack": "]",
         "\\vert": "|", "\\lvert": "|", "\\rvert": "|", "\\Vert": "\\|", "\\lVert": "\\|", "\\rVert": "\\|",
         "\\equiv": "=", "\\ast": "*", "−": "-", "·": "\\cdot", "×": "\\times", "⋅": "\\cdot",
     }  # fmt: skip
-    open_bars: tuple[str, ...] = ()
     depth = integrals = 0
 
     def __init__(self, source: str, where: str, names: Names) -> None:
@@ -68,60 +103,19 @@ class Cursor(cursor.Cursor):
         self.timed = set(names.functions)
         pieces = tokens(source, *_unwrapped(source))
         for piece in pieces:
-            if piece.kind == "mark" and piece.text not in MARKS:
-                raise self.fail("LaTeX of mathematics", piece)
+            if piece.text not in MARKS and (piece.kind == "mark" or piece.text == "."):
+                raise complaint(source, where, source.index(piece.text, piece.start), "LaTeX of mathematics")
         if len(pieces) > MOST_PIECES:
             raise InputError(f"{place}expected a formula of at most {MOST_PIECES} pieces, got {len(pieces)}")
-        super().__init__(read(source, where, pieces))
-
-    def fail(self, expected: str, item: tree.Node | None = None) -> InputError:
-        return complaint(self.source, self.where, (item or self.peek()).start, expected)
-
-    # -- methods that parts of the grammar call in other parts --------------------------------------------------------
-
-    @abstractmethod
-    def expression(self) -> Node:
-        """Read a sum."""
-
-    @abstractmethod
-    def factor(self) -> Node:
-        """Read a piece with its powers."""
-
-    @abstractmethod
-    def base(self, item: tree.Node, script: bool = True) -> Node:
-        """Read a piece without its powers; without ``script``, without its index and primes too."""
-
-    @abstractmethod
-    def argument(self, node: tree.Node) -> Node:
-        """Read the argument of a command: a group in braces, or one token."""
-
-    @abstractmethod
-    def bracket(self, opening: tree.Node) -> Node:
-        """Read an expression and its closing bracket, after the opening one."""
-
-    @abstractmethod
-    def starts_factor(self) -> bool:
-        """Return whether a factor may start at the cursor."""
-
-    @abstractmethod
-    def derivative(self, node: Node, times: int, item: tree.Node) -> Node:
-        """Return a time derivative."""
+        super().__init__(source, where, read(source, where, pieces))
 
 
 def _unwrapped(source: str) -> tuple[int, int]:
     """Return where the formula starts and ends, without dollar signs around it and a full stop after it."""
     start, end = 0, len(source)
-
-    def strip() -> None:
-        nonlocal start, end
-        while start < end and source[start].isspace():
-            start += 1
-        while end > start and (source[end - 1].isspace() or source[end - 1] in ".,;"):
-            end -= 1
-
-    strip()
     for opening, closing in WRAPPERS:
         if source.startswith(opening, start) and source.endswith(closing, start + len(opening), end):
-            start, end = start + len(opening), end - len(closing)
-            strip()
+            inside = source[start + len(opening) : end - len(closing)]
+            end = start + len(opening) + len(inside.rstrip(whitespace + ".,;"))
+            start = end - len(inside.rstrip(whitespace + ".,;").lstrip())
     return start, end

@@ -1,13 +1,14 @@
 """Names in LaTeX: subscripts, primes, arguments of time, marks of vectors, words in upright letters."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node
-from symrot.checker.latex.cursor import CLOSING, UPRIGHT, Cursor, is_letter
+from symrot.checker.latex.cursor import CLOSING, TIME, UPRIGHT, is_letter
+from symrot.checker.latex.sums import SumsPart
 from symrot.latex import tree
 
-__all__ = ["NAME_MARKS", "OPERATORS", "VECTOR_MARKS", "NamesPart"]
+__all__ = ["NAME_MARKS", "OPERATORS", "VECTOR_MARKS", "NamesPart", "appended"]
 
 OPERATORS = {"\\det": "det", "\\tr": "trace", "\\diag": "diag"}
 SPELLED = {"tr": "trace", "trace": "trace", "Tr": "trace"} | {name: name for name in BUILT_IN}
@@ -16,17 +17,20 @@ VECTOR_MARKS = ("\\vec", *BOLD, "\\hat", "\\overrightarrow", "\\underline")
 NAME_MARKS = {"\\bar": "_bar", "\\tilde": "_tilde", "\\overline": "_bar", "\\widetilde": "_tilde", "\\mathcal": "_cal"}
 
 
-class NamesPart(Cursor):
+class NamesPart(SumsPart):
     """The part of the checker's interpreter for names, and for functions that are called by name."""
 
-    def named(self, name: str, item: tree.Node, script: bool = True) -> Node:
+    def letter(self, item: tree.Node) -> Node:
+        return self.named(item.text.removeprefix("\\"), item)
+
+    def named(self, name: str, item: tree.Node) -> Node:
         """Read the rest of a name, its subscript, primes and ``(t)``; return its node."""
-        if name in ("Delta", "delta") and script and name not in self.names and not self.at("_", "'"):
+        if name in ("Delta", "delta") and name not in self.names and not self.at("_", "'"):
             follower = self.peek()
             if is_letter(follower):
                 raise self.fail(f"\\{name}_{{..}} for a change, or \\cdot for a product,", follower)
         primes, subscript = 0, ""
-        while script and (mark := self.script("_") or self.script("'")):
+        while mark := self.script("_") or self.script("'"):
             if mark.text == "'":
                 primes = len(mark.inside.text)
             else:
@@ -73,10 +77,6 @@ class NamesPart(Cursor):
                 place = item.scripts[0] if isinstance(item, tree.Scripts) else item
                 raise self.fail("letters and digits in a subscript", place)
 
-    def is_cut(self, digit: tree.Node) -> bool:
-        """Return whether a number without braces is one digit of several: LaTeX reads ``x^12`` as ``x^1 2``."""
-        return len(digit.text) > 1 or self.source[digit.end : digit.end + 1].isdigit()
-
     def resolved(self, name: str, subscript: str, others: tuple[str, ...] = ()) -> str:
         """Return the declared name with a subscript, ``I_1`` or ``I1``; ``I_1`` if neither is declared."""
         forms = [f"{name}_{subscript}", f"{name}{subscript}"] if subscript else [name]
@@ -85,6 +85,21 @@ class NamesPart(Cursor):
     def called_with_time(self) -> bool:
         return self.at("(") and self.peek(1).text == "t" and self.peek(2).text == ")"
 
+    def derivative(self, node: Node, times: int, item: tree.Node) -> Node:
+        """Return a time derivative; an undeclared name becomes a function of time."""
+        if node.kind == "name" and node.value not in (*self.names.functions, *self.names.matrices, *self.names.others):
+            name = str(node.value)
+            forms = ["d" * times + name, name + "dot", name + "d" * times]
+            declared = [form for form in forms if form in self.names.symbols] if times == 1 else forms[:0]
+            if declared:
+                return Node("name", declared[0])
+            if not self.names.implied:
+                raise self.fail(f"a function of time, since {name} is differentiated,", item)
+            self.timed.add(name)
+        for _ in range(times):
+            node = appended(node, TIME)
+        return node
+
     def take_time_call(self, name: str) -> None:
         if not self.called_with_time():
             return
@@ -92,68 +107,61 @@ class NamesPart(Cursor):
             self.index += 3
             self.timed.add(name)
 
-    def marked(self, mark: tree.Node) -> Node:
+    def marked(self, mark: tree.Accent | tree.Font) -> Node:
         """Read ``\\vec{r}``, ``\\mathbf R``, ``\\hat n``: names of vectors and matrices, which must be defined."""
-        node, letter = self.letter(mark)
-        if self.at("_", "'"):
-            node = self.named(str(node.value), letter)
-        self.refuse_call()
-        known = node.value in self.names.matrices
-        if not known and (self.names.implied or not self.is_group_with_subscript()):
+        inside = tree.alone(mark.inside)
+        if inside.kind == "number" and mark.text in BOLD:
+            raise self.fail("eye(n) among the definitions for a unit matrix", inside)
+        node = self.under(mark, self.symbol)
+        if node.value not in self.names.matrices:
             raise self.fail(f"a vector or matrix that is defined under the name {node.value!r}", mark)
+        self.refuse_call()
         return node
 
-    def is_group_with_subscript(self) -> bool:
-        """Return whether the group ends here and has a subscript, as in ``\\dot{\\mathbf{H}}_G``."""
-        end = self.peek()
-        return end.kind == "end" and self.source[end.start + 1 :].lstrip().startswith("_")
-
-    def barred(self, mark: tree.Node) -> Node:
+    def overlined(self, mark: tree.Accent | tree.Font) -> Node:
         """Read a name with a mark that belongs to it, ``\\bar I``."""
-        node, letter = self.letter(mark, NAME_MARKS[mark.text])
-        return self.named(str(node.value), letter) if self.at("_", "'") else node
+        node = self.under(mark, lambda: self.symbol(NAME_MARKS[mark.text]))
+        self.take_time_call(str(node.value))
+        self.refuse_call()
+        return node
 
-    def letter(self, mark: tree.Node, ending: str = "") -> tuple[Node, tree.Node]:
-        """Read the letter under a mark, or a letter with a second mark; in braces, with its subscript and primes."""
-        assert isinstance(mark, tree.Accent | tree.Font)
+    def under(self, mark: tree.Accent | tree.Font, read: Callable[[], Node]) -> Node:
+        """Read what is under a mark, with the subscript and primes after the mark, as in ``\\dot{\\mathbf{H}}_G``."""
+        scripts = []
+        while script := self.script("_") or self.script("'"):
+            scripts.append(script)
+        inside = mark.inside
+        items = inside.items if isinstance(inside, tree.Row) else (inside,)
+        return self.inside(tree.Row((*items, *scripts), inside.start, self.peek().start), read)
 
-        def read(inner: tree.Node, script: bool) -> tuple[Node, tree.Node]:
-            if inner.text in VECTOR_MARKS and not ending:  # \\hat{\\mathbf n}
-                return self.marked(inner), inner
-            if inner.kind == "number" and mark.text in BOLD:
-                raise self.fail("eye(n) among the definitions for a unit matrix", inner)
-            return self.named(self.symbol(inner) + ending, inner, script), inner
-
-        if isinstance(mark.inside, tree.Row):
-            return self.inside(mark.inside, lambda: read(self.next(), True))
-        return read(mark.inside, False)
-
-    def symbol(self, item: tree.Node) -> str:
-        """Return the name of a letter, a number or a command without arguments."""
+    def symbol(self, ending: str = "") -> Node:
+        """Read a letter, a number or a command, with an ending, or a symbol with a mark of its own."""
+        item = self.next()
+        if item.text in VECTOR_MARKS and not ending:  # \\hat{\\mathbf n}
+            return self.base(item)
         if item.kind not in ("letter", "number", "command"):
             raise self.fail("a letter", item)
-        return item.text.removeprefix("\\")
+        return self.named(item.text.removeprefix("\\") + ending, item)
 
-    def spelled(self, font: tree.Node) -> Node:
+    def spelled(self, font: tree.Font) -> Node:
         """Read ``\\operatorname{tr}(..)`` or ``\\mathrm{abc}``: a built-in function, or a name of several letters."""
-        assert isinstance(font, tree.Font)
-        if not isinstance(font.inside, tree.Row):
-            return self.named(self.symbol(font.inside), font.inside)
-        name, node = self.inside(font.inside, lambda: self.word(font))
-        if node is not None:
-            return node
-        if name == "d":
-            raise self.fail("a derivative or an integral around d", font)
-        return self.called(SPELLED[name]) if name in SPELLED else self.named(name, font)
+        node = self.under(font, lambda: self.word(font))
+        if node.kind == "call":
+            return self.called(str(node.value))
+        self.take_time_call(str(node.value))
+        self.refuse_call()
+        return node
 
-    def word(self, font: tree.Node) -> tuple[str, Node | None]:
-        """Read letters and digits; return them, with the name that they and a subscript make."""
+    def word(self, font: tree.Font) -> Node:
+        """Read letters and digits, with a subscript and primes; a built-in function becomes a call."""
         name = ""
-        while self.peek().kind in ("letter", "number") and self.peek().text.isalnum():
-            name += self.next().text
-        if not name[:1].isalpha():
+        while self.peek().kind in ("letter", "number") or (is_letter(self.peek()) and not name):
+            name += self.next().text.removeprefix("\\")
+        if not name.isalnum() or not name[0].isalpha():
             raise self.fail("a name of letters and digits")
-        return name, self.named(name, font) if self.at("_") else None
+        if name == "d" and self.peek().kind == "end":
+            raise self.fail("a derivative or an integral around d", font)
+        return Node("call", SPELLED[name]) if name in SPELLED else self.named(name, font)
 
     def operator(self, item: tree.Node) -> Node:
         return self.called(OPERATORS[item.text])
@@ -164,8 +172,11 @@ class NamesPart(Cursor):
         if opening.text not in CLOSING:
             return Node("call", name, (self.factor(),))
         self.next()
-        arguments = [self.expression()]
-        while self.take(","):
-            arguments.append(self.expression())
-        self.expect(CLOSING[opening.text])
-        return Node("call", name, tuple(arguments))
+        return Node("call", name, tuple(self.listed(self.expression, CLOSING[opening.text])))
+
+
+def appended(node: Node, variable: Node) -> Node:
+    """Return the derivative of a tree with respect to one more variable."""
+    if node.kind == "call" and node.value == "diff" and node.args[-1] == variable == TIME:
+        return Node("call", "diff", (*node.args, variable))
+    return Node("call", "diff", (node, variable))

@@ -12,12 +12,13 @@ from typing import Any
 
 import sympy
 from sympy import Expr, Integer, Matrix, MatrixBase, diff, eye, sqrt
+from sympy.matrices.exceptions import MatrixError
 
 from symrot.errors import InputError
 from symrot.latex import reader
 from symrot.latex.cursor import Cursor
 from symrot.latex.tokens import Token, tokens
-from symrot.latex.tree import Accent, Font, Fraction, Node, Root, Row, Script, Table, alone, divided
+from symrot.latex.tree import Accent, Command, Font, Fraction, Node, Root, Row, Script, Scripts, Table, alone, divided
 
 __all__ = ["Unread", "key", "parts", "read"]
 
@@ -32,7 +33,7 @@ TIME = "time"
 UNMARKED = str.maketrans("", "", "{} \t\n\r\f\v")
 
 
-class Unread(Exception):
+class Unread(InputError):
     """Raised for text that contains a name without a meaning, or an unsupported notation."""
 
 
@@ -46,7 +47,8 @@ def parts(latex: str) -> list[list[str]]:
     equations: list[list[str]] = [[""]]
     depth = 0
     for token, following in pairwise(tokens(latex)):
-        depth += (token.text in ("{", "(", "\\left", "\\begin")) - (token.text in ("}", ")", "\\right", "\\end"))
+        depth += token.text in ("{", "(") or token.kind in ("left", "begin")
+        depth -= token.text in ("}", ")") or token.kind in ("right", "close")
         if depth == 0 and token.text == "," and following.text == "\\quad":
             equations.append([""])
         elif depth == 0 and token.text == "=":
@@ -74,31 +76,20 @@ def read(latex: str, names: Mapping[str, Any], rates: Mapping[Expr, Expr] | None
     """
     try:
         row = reader.read(latex)
-    except InputError as error:
+        return _Interpreter(row, latex, names, rates or {}).value(row)
+    except (InputError, MatrixError) as error:
         raise Unread(str(error)) from error
-    return _Interpreter(row, latex, names, rates or {}).value(row)
 
 
 class _Interpreter(Cursor):
     def __init__(self, row: Row, latex: str, names: Mapping[str, Any], rates: Mapping[Expr, Expr]) -> None:
-        super().__init__(row)
-        self.latex, self.names, self.rates = latex, names, rates
+        super().__init__(latex, "", row)
+        self.names, self.rates = names, rates
         self.time = names.get(TIME, "t")
-        self.bars = 0
-
-    def fail(self, expected: str, item: Node | None = None) -> Unread:
-        return Unread(f"expected {expected} at position {(item or self.peek()).start + 1}")
 
     def value(self, node: Node) -> Any:
         """Return the value of a whole row, or of an argument."""
-        bars, self.bars = self.bars, 0
-        value = self.inside(node, self.sum)
-        self.bars = bars
-        return value
-
-    def key(self, node: Node) -> str:
-        """Return the text of a piece as the key of a name."""
-        return key(self.latex[node.start : node.end])
+        return self.inside(node, self.sum)
 
     # -- sums and products ------------------------------------------------------------------------------------------
 
@@ -123,7 +114,7 @@ class _Interpreter(Cursor):
         while True:
             if self.take("/"):
                 value = _multiplied(value, _inverted(self.power()))
-            elif self.peek().text in ENDS or (self.at("|") and self.bars):
+            elif self.peek().text in ENDS or (self.at("|") and self.open_bars):
                 return value
             else:
                 value = _multiplied(value, self.power())
@@ -145,20 +136,19 @@ class _Interpreter(Cursor):
 
     def raised(self, value: Any, inside: Node) -> Any:
         mark = alone(inside)
-        if isinstance(mark, Font) and mark.text == "\\mathsf" and self.key(mark.inside) == "T":
+        if isinstance(mark, Font) and mark.text == "\\mathsf" and _text(mark.inside) == "T":
             return value.T if isinstance(value, MatrixBase) else value
         exponent = self.value(inside)
-        if isinstance(value, MatrixBase) and value.cols == 1 and exponent == 2:
+        matrix = isinstance(value, MatrixBase)
+        if matrix and value.cols == 1 and exponent == 2:
             return value.dot(value)
-        if isinstance(value, MatrixBase):
-            if not (value.is_square and exponent.is_Integer):
-                raise Unread("a power of a matrix")
-            return value.inv() ** -exponent if exponent < 0 else value**exponent
-        return value**exponent
+        if isinstance(exponent, MatrixBase) or (matrix and not exponent.is_Integer):
+            raise Unread("a power of a matrix")
+        return value.inv() ** -exponent if matrix and exponent < 0 else value**exponent
 
     def norm(self) -> Any:
         """Read the length of a vector, after the first bar."""
-        inner = self.barred()
+        inner = self.barred(self.sum, "|")
         square = inner.dot(inner) if isinstance(inner, MatrixBase) and 1 in inner.shape else None
         if square is None:
             raise Unread("an absolute value")
@@ -166,14 +156,6 @@ class _Interpreter(Cursor):
         if script is None:
             return sqrt(square)
         return square if alone(script.inside).text == "2" else self.raised(sqrt(square), script.inside)
-
-    def barred(self) -> Any:
-        """Read a sum and the bar after it."""
-        self.bars += 1
-        value = self.sum()
-        self.bars -= 1
-        self.expect("|")
-        return value
 
     # -- atoms ------------------------------------------------------------------------------------------------------
 
@@ -189,18 +171,8 @@ class _Interpreter(Cursor):
             return READERS[item.text](self, self.next())
         return self.name()
 
-    def values(self, closing: str) -> list[Any]:
-        """Read values between commas, and the bracket that closes them."""
-        bars, self.bars = self.bars, 0
-        sums = [self.sum()]
-        while self.take(","):
-            sums.append(self.sum())
-        self.bars = bars
-        self.expect(closing)
-        return sums
-
     def bracket(self, opening: str) -> Any:
-        values = self.values(CLOSING[opening])
+        values = self.listed(self.sum, CLOSING[opening])
         if opening == "[" and self.at_skew():
             self.next()
             return _skew(values[0])
@@ -213,12 +185,12 @@ class _Interpreter(Cursor):
 
     def evaluated(self, dot: Node) -> Any:
         """Read ``\\left. X \\right|_{a = b, ...}``."""
-        value = self.barred()
+        value = self.barred(self.sum, "|")
         script = self.script("_")
         if script is None:
             raise self.fail("the place of the value")
         places: list[tuple[Any, Any]] = []
-        inside = script.inside if isinstance(script.inside, Row) else Row((script.inside,), dot.start, script.end)
+        inside = script.inside if isinstance(script.inside, Row) else Row((script.inside,), dot.start, dot.start)
         for equation in divided(inside, ","):
             first, *others = [self.value(side) for side in divided(equation, "=")]
             places += [(first, others[0])] if len(others) == 1 else [(other, first) for other in others]
@@ -237,7 +209,7 @@ class _Interpreter(Cursor):
         if _starts_with(below, "\\partial"):
             variable = self.value(_rest(below))
             return _gradient(self.differentiated(above), variable)
-        if _starts_with(above, "d") and self.key(below) == "d" + self.time and self.rates:
+        if _starts_with(above, "d") and _text(below) == "d" + self.time and self.rates:
             return self.rate(self.differentiated(above))
         return _multiplied(self.value(above), _inverted(self.value(below)))
 
@@ -253,7 +225,7 @@ class _Interpreter(Cursor):
 
     def font(self, font: Font) -> Any:
         """Read a name in a font: a function of a matrix, ``\\mathbf{1}``, or a name with a declared meaning."""
-        word, place = self.key(font.inside), self.index
+        word, place = _text(font.inside), self.index
         if word == "1":
             return Integer(1)
         if word in MATRIX_FUNCTIONS and isinstance(argument := self.power(), MatrixBase):
@@ -269,10 +241,7 @@ class _Interpreter(Cursor):
 
     def table(self, table: Table) -> Any:
         rows = [[self.value(cell) for cell in line] for line in table.lines]
-        try:
-            value = Matrix.vstack(*(Matrix.hstack(*map(_as_matrix, row)) for row in rows))
-        except sympy.matrices.exceptions.ShapeError as error:
-            raise Unread("a table whose rows differ") from error
+        value = Matrix.vstack(*(Matrix.hstack(*map(_as_matrix, row)) for row in rows))
         if table.name not in ("bmatrix", "pmatrix", "matrix"):
             raise self.fail("a matrix", table)
         if self.at("_") and not self.at_skew():
@@ -286,7 +255,7 @@ class _Interpreter(Cursor):
         if self.at("("):  # a value, such as x(t), may have a meaning of its own
             texts = [item.text for item in self.items[self.index :]]
             stop = self.index + (texts.index(")") if ")" in texts else len(texts) - 1)
-            whole = text + "".join(self.key(item) for item in self.items[self.index : stop + 1])
+            whole = text + "".join(_text(item) for item in self.items[self.index : stop + 1])
             if whole in self.names:
                 self.index = stop + 1
                 return self.names[whole]
@@ -309,7 +278,7 @@ class _Interpreter(Cursor):
     def meaning(self, value: Any) -> Any:
         if callable(value) and not isinstance(value, (Expr, MatrixBase)):
             self.expect("(")
-            return value(*self.values(")"))
+            return value(*self.listed(self.sum, ")"))
         return value
 
     def name_parts(self) -> Iterator[str]:
@@ -317,9 +286,9 @@ class _Interpreter(Cursor):
         item = self.next()
         if not isinstance(item, Token | Accent | Font) or item.text in ENDS:
             raise self.fail("a name", item)
-        yield self.key(item)
+        yield _text(item)
         while not self.at_skew() and (script := self.script("_") or self.script("'")):
-            yield script.text + self.key(script.inside) if script.text == "_" else script.inside.text
+            yield _text(script)
 
     def rate(self, value: Any) -> Any:
         terms = [value.diff(variable) * speed for variable, speed in self.rates.items()]
@@ -328,9 +297,20 @@ class _Interpreter(Cursor):
 
 READERS: dict[str, Callable[[_Interpreter, Any], Any]] = {
     "\\frac": _Interpreter.fraction, "\\sqrt": _Interpreter.root, "\\mathbf": _Interpreter.font,
-    "\\mathrm": _Interpreter.font, "\\det": _Interpreter.determinant, "\\begin": _Interpreter.table,
+    "\\mathrm": _Interpreter.font, "\\det": _Interpreter.determinant, "table": _Interpreter.table,
     ".": _Interpreter.evaluated,
 }  # fmt: skip
+
+
+def _text(node: Node) -> str:
+    """Return a piece as the key of a name; braces are left out."""
+    if isinstance(node, Row):
+        return "".join(map(_text, node.items))
+    if isinstance(node, Scripts):
+        return _text(node.base) + "".join(map(_text, node.scripts))
+    if isinstance(node, Script) and node.text == "'":
+        return node.inside.text
+    return node.text + (_text(node.inside) if isinstance(node, Command) else "")
 
 
 def _starts_with(node: Node, mark: str) -> bool:
@@ -341,7 +321,7 @@ def _starts_with(node: Node, mark: str) -> bool:
 def _rest(node: Node) -> Row:
     """Return a group without its first item."""
     items = node.items[1:] if isinstance(node, Row) else ()
-    return Row(items, items[0].start if items else node.end, node.end)
+    return Row(items, node.start, node.end if isinstance(node, Row) else node.start)
 
 
 def _vee(matrix: MatrixBase) -> Matrix:
@@ -369,22 +349,15 @@ def _added(left: Any, right: Any) -> Any:
         matrix, scalar = (left, right) if isinstance(left, MatrixBase) else (right, left)
         if scalar == 0:
             return matrix
-        if not matrix.is_square:
-            raise Unread("a number added to a vector")
         return Matrix(matrix) + scalar * eye(matrix.rows)
-    if isinstance(left, MatrixBase) and left.shape != right.shape:
-        raise Unread("a sum of two shapes")
     return left + right
 
 
 def _multiplied(left: Any, right: Any) -> Any:
     """Return a product: the matrix product, or the quaternion product for two columns of four."""
-    if isinstance(left, MatrixBase) and isinstance(right, MatrixBase):
-        if left.shape == right.shape == (4, 1):
-            a, u, b, v = left[0], Matrix(left[1:]), right[0], Matrix(right[1:])
-            return Matrix([a * b - u.dot(v), *(a * v + b * u + u.cross(v))])
-        if left.cols != right.rows:
-            raise Unread("a product of two shapes")
+    if isinstance(left, MatrixBase) and isinstance(right, MatrixBase) and left.shape == right.shape == (4, 1):
+        a, u, b, v = left[0], Matrix(left[1:]), right[0], Matrix(right[1:])
+        return Matrix([a * b - u.dot(v), *(a * v + b * u + u.cross(v))])
     return left * right
 
 
@@ -403,8 +376,7 @@ def _crossed(left: Any, right: Any) -> Any:
 def _skew(vector: Any) -> Matrix:
     if not isinstance(vector, MatrixBase) or vector.shape != (3, 1):
         raise Unread("the cross product matrix of no vector")
-    a, b, c = vector
-    return Matrix([[0, -c, b], [c, 0, -a], [-b, a, 0]])
+    return Matrix(vector.hat())
 
 
 def _inverted(value: Any) -> Any:

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from symrot.errors import InputError, complaint
 from symrot.latex import reader
 from symrot.latex.tokens import Token
-from symrot.latex.tree import Accent, Delimited, Font, Fraction, Node, Root, Row, Scripts, Sized, Table
+from symrot.latex.tree import Accent, Delimited, Font, Fraction, Node, Root, Row, Scripts, Table
 
 __all__ = ["Item", "mathml", "read", "rows"]
 
@@ -118,6 +118,8 @@ class _Translation:
         if not isinstance(node, Token):
             return self.scripted(node, after_operand) if isinstance(node, Scripts) else ITEMS[type(node)](self, node)
         text = node.text
+        if node.kind == "sized" and text in FENCES:
+            return Item(f'<mo stretchy="true" minsize="1.6em">{FENCES[text]}</mo>', 0.5)
         if text in TOKENS:
             return TOKENS[text]
         if node.kind == "number":
@@ -153,7 +155,7 @@ class _Translation:
 
     def font(self, font: Font) -> Item:
         inside, variant = font.inside, FONTS.get(font.text[1:])
-        text = self.latex[inside.start + isinstance(inside, Row) : inside.end]
+        text = self.latex[inside.start + 1 : inside.end] if isinstance(inside, Row) else inside.text
         if variant is None or "\\" in text:
             raise self.refuse(font)
         text = text.strip() if variant != "normal" else text
@@ -187,11 +189,6 @@ class _Translation:
             raise self.refuse(mark)
         return _fence(FENCES[mark.text], form)
 
-    def sized(self, node: Sized) -> Item:
-        if node.inside.text not in FENCES:
-            raise self.refuse(node)
-        return Item(f'<mo stretchy="true" minsize="1.6em">{FENCES[node.inside.text]}</mo>', 0.5)
-
     def table(self, table: Table) -> Item:
         if table.name not in TABLES:
             raise self.refuse(table)
@@ -204,7 +201,7 @@ class _Translation:
 
 ITEMS: dict[type, Callable[[_Translation, Any], Item]] = {
     Row: _Translation.group, Accent: _Translation.accent, Font: _Translation.font, Fraction: _Translation.fraction,
-    Root: _Translation.root, Delimited: _Translation.delimited, Sized: _Translation.sized, Table: _Translation.table,
+    Root: _Translation.root, Delimited: _Translation.delimited, Table: _Translation.table,
 }  # fmt: skip
 
 
