@@ -41,7 +41,7 @@ class _Reader:
         while token.kind not in stops and token.text not in stops:
             if token.kind == "end":
                 raise self.fail(f"'{closing}'", token)
-            if token.kind in READERS or token.text == "{" or self.tokens[self.place + 1].kind in AFTER:
+            if token.kind in READERS or self.tokens[self.place + 1].kind in AFTER:
                 items.append(self.item())
             else:  # most items are a token
                 items.append(token)
@@ -59,22 +59,27 @@ class _Reader:
         """Read a piece with its scripts."""
         base = self.atom()
         scripts: dict[str, Script] = {}
-        while (mark := self.ahead()).kind in ("script", "prime") and base.kind != "space":
-            self.place = self.tokens.index(mark, self.place) + 1
+        while base.kind != "space" and (mark := self.mark()):
             text = mark.text[0]
             if text in scripts:
                 raise self.fail(REPEATED[text], mark)
             scripts[text] = Script(text, mark if text == "'" else self.argument(), mark.start)
         if not scripts:
             return base
-        return Scripts(base, tuple(sorted(scripts.values(), key=lambda script: script.text == "^")), base.start)
+        if "^" in scripts:
+            scripts["^"] = scripts.pop("^")  # last
+        return Scripts(base, tuple(scripts.values()), base.start)
 
-    def ahead(self) -> Token:
-        """Return the next token that is no space."""
+    def mark(self) -> Token | None:
+        """Step over the mark of a script and spaces before it, if it is next, and return it."""
         place = self.place
         while self.tokens[place].kind == "space":
             place += 1
-        return self.tokens[place]
+        token = self.tokens[place]
+        if token.kind not in ("script", "prime"):
+            return None
+        self.place = place + 1
+        return token
 
     def argument(self) -> Node:
         """Read a group in braces, or one piece; of a number, one digit."""
@@ -91,7 +96,7 @@ class _Reader:
     def atom(self) -> Node:
         token = self.tokens[self.place]
         self.place += 1
-        reader = _Reader.group if token.text == "{" else READERS.get(token.kind)
+        reader = READERS.get(token.kind)
         if reader is None:
             return token
         self.depth += 1
@@ -135,7 +140,8 @@ class _Reader:
 
 
 READERS: dict[str, Callable[[_Reader, Token], Node]] = {
-    "fraction": _Reader.fraction, "root": _Reader.root, "left": _Reader.delimited, "begin": _Reader.table,
+    "group": _Reader.group, "fraction": _Reader.fraction, "root": _Reader.root, "left": _Reader.delimited,
+    "begin": _Reader.table,
     "accent": lambda reader, token: Accent(token.text, reader.argument(), token.start),
     "font": lambda reader, token: Font(token.text, reader.argument(), token.start),
     "script": _Reader.no_piece, "prime": _Reader.no_piece,

@@ -1,7 +1,6 @@
 """The tokens of LaTeX, with their positions. A delimiter with its size is one token, an environment's begin another."""
 
 import re
-from collections.abc import Callable
 from typing import NamedTuple
 
 __all__ = ["GREEK", "Token", "tokens"]
@@ -11,36 +10,23 @@ alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lam
 upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega ell"""
 GREEK = frozenset(_LETTERS.split())
 
-_KINDS = {  # the commonest tokens first; blanks match nothing
-    "letter": r"[A-Za-z]",
-    "mark": r"[-+=(){}\[\]&]",
-    "number": r"\d+(?:\.\d+)?|\.\d+",
-    "prime": r"(?:\^\s*)?(?:\\prime#|['′])+|\^\s*\{\s*(?:(?:\\prime#|['′])\s*)+\}",
-    "script": r"[_^]",
-    "space": r"~|%[^\n]*|\\[,:;! ]|\\(?:q?quad|displaystyle|textstyle|limits|nolimits|nonumber|notag)#",
-    "fraction": r"\\[tdc]?frac#",
-    "root": r"\\sqrt#",
-    "accent": r"\\(?:d?d?dot|hat|bar|overline|vec|overrightarrow|(?:wide)?tilde|underline)#",
-    "font": r"\\(?:math(?:bf|rm|it|sf|cal)|bm|boldsymbol|text|textrm|operatorname)#",
-    "left": r"\\left\s*@", "right": r"\\right\s*@", "sized": r"\\(?:[bB]igg?[lrm]?|middle)\s*@",
-    "begin": r"\\begin\s*\{(?:array\}\s*\{[clr|\s]*|(?!array\})[A-Za-z]+\*?)\}",
-    "close": r"\\end\s*\{[A-Za-z]+\*?\}",
-    "line": r"\\\\|\\cr#",
-    "command": r"\\(?:[A-Za-z]+|[{}|])",
-    "other": r"\\.|\S",
-}  # fmt: skip
-_DELIMITER = r"(?:[()\[\]|/.<>]|\\[{}|]|\\(?:[lr](?:brace|brack|vert|Vert|angle|floor|ceil)|[vV]ert)#)"
-_TOKEN = re.compile(
-    "|".join(f"(?P<{kind}>{text})" for kind, text in _KINDS.items())
-    .replace("@", _DELIMITER).replace("#", "(?![A-Za-z])"),
+_DELIMITER = r"(?:[()\[\]|/.<>]|\\[{}|]|\\(?:[lr](?:brace|brack|vert|Vert|angle|floor|ceil)|[vV]ert)(?![A-Za-z]))"
+_PRIME = r"(?:['′]|\\prime(?![A-Za-z]))"
+_TOKEN = re.compile(  # the commonest tokens first; blanks match nothing
+    r"(?P<letter>[A-Za-z])|(?P<mark>[-+=()}\[\]&])|(?P<group>\{)|(?P<number>\d+(?:\.\d+)?|\.\d+)"
+    rf"|(?P<prime>\^\s*(?:{_PRIME}+|\{{\s*(?:{_PRIME}\s*)+\}})|{_PRIME}+)|(?P<script>[_^])"
+    rf"|(?P<sized>\\(?:left|right|middle|[bB]igg?[lrm]?)\s*{_DELIMITER})"
+    r"|(?P<environment>\\(?:begin\s*\{(?:array\}\s*\{[clr|\s]*|(?!array\})[A-Za-z]+\*?)\}|end\s*\{[A-Za-z]+\*?\}))"
+    r"|(?P<command>\\(?:[A-Za-z]+|[\\{}|]))|(?P<space>~|%[^\n]*|\\[,:;! ])|(?P<other>\\.|\S)",
     re.ASCII | re.DOTALL,
-)  # fmt: skip
-_PARTS: dict[str, Callable[[str], str]] = {
-    "prime": lambda text: "'" * len(re.findall(r"\\prime|['′]", text)),
-    **dict.fromkeys(("begin", "close"), lambda text: re.split("[{}]", text)[1]),
-    **dict.fromkeys(("left", "right", "sized"), lambda text: re.sub(r"\\[A-Za-z]+\s*", "", text, count=1)),
-}
-"""Kind of token -> the part of the source that is its text: the primes, the environment, the delimiter."""
+)
+_COMMANDS = {
+    "space": "quad qquad displaystyle textstyle limits nolimits nonumber notag",
+    "fraction": "frac tfrac dfrac cfrac", "root": "sqrt", "line": "\\ cr",
+    "accent": "dot ddot dddot hat bar overline vec overrightarrow tilde widetilde underline",
+    "font": "mathbf bm boldsymbol mathrm mathit mathsf mathcal text textrm operatorname",
+}  # fmt: skip
+_KINDS = {f"\\{name}": kind for kind, names in _COMMANDS.items() for name in names.split()}
 
 
 class Token(NamedTuple):
@@ -60,8 +46,15 @@ def tokens(source: str, start: int = 0, stop: int | None = None) -> list[Token]:
     pieces = []
     for match in _TOKEN.finditer(source, start, stop):
         kind, text = str(match.lastgroup), match[0]
-        if kind in _PARTS:
-            text = _PARTS[kind](text)
+        if kind == "command":
+            kind = _KINDS.get(text, kind)
+        elif kind == "sized":
+            size, text = re.match(r"(\\[A-Za-z]+)\s*(.*)", text).groups()  # type: ignore[union-attr]
+            kind = size[1:] if size in ("\\left", "\\right") else kind
+        elif kind == "environment":
+            kind, text = "begin" if text.startswith("\\begin") else "close", re.split("[{}]", text)[1]
+        elif kind == "prime":
+            text = "'" * len(re.findall(r"\\prime|['′]", text))
         # the constructor of a NamedTuple takes twice as long
         pieces.append(tuple.__new__(Token, ("mark" if kind == "other" else kind, text, match.start())))
     return [*pieces, Token("end", "", stop)]

@@ -77,7 +77,7 @@ def read(latex: str, names: Mapping[str, Any], rates: Mapping[Expr, Expr] | None
     try:
         row = reader.read(latex)
         return _Interpreter(row, latex, names, rates or {}).value(row)
-    except (InputError, MatrixError) as error:
+    except (InputError, MatrixError, RecursionError) as error:
         raise Unread(str(error)) from error
 
 

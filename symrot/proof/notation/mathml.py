@@ -102,7 +102,8 @@ class _Translation:
                 before = THIN if items and kind == "" else ""
                 body = before + body + ("" if self.latex.startswith(("(", "\\left"), end) else THIN)
             kind = item.kind
-            items.append(Item(body, item.width, kind, self.latex[node.start : end]))
+            # the constructor of a NamedTuple takes twice as long
+            items.append(tuple.__new__(Item, (body, item.width, kind, self.latex[node.start : end])))
         return items
 
     def argument(self, node: Node) -> list[Item]:
