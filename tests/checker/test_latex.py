@@ -105,7 +105,7 @@ def test_what_is_not_understood_is_refused_with_its_place(latex, position):
 
 @pytest.mark.parametrize(("latex", "words"), [
     (r"\mathbf r\times\mathbf r\times\mathbf r = 0", "brackets"), (r"m\times\mathbf r = 0", "two vectors"),
-    (r"\dot{m} = 0", "function of time"), (r"\vec v = 0", "'v'"),
+    (r"\theta'(3) = 0", "a function that is declared"), (r"m'(t) = 0", "a function that is declared"), (r"\dot{m} = 0", "function of time"), (r"\vec v = 0", "'v'"),
 ])  # fmt: skip
 def test_vectors_are_refused_where_they_make_no_sense(latex, words):
     with pytest.raises(InputError, match=words):

@@ -62,10 +62,9 @@ class CalculusPart(NamesPart):
         sides = above, below = fraction.above, fraction.below
         if all(isinstance(side, tree.Row) and side.items and is_d(side.items[0]) for side in sides):
             return self.derivative_fraction(fraction)
-        if (
-            above.kind == below.kind == "number" and above.start + 1 == below.start and not self.is_cut(below)
-        ):  # \frac12
-            return product([number(int(above.text)), Node("inv", None, (number(int(below.text)),))])
+        if above.kind == below.kind == "number" and above.start + 1 == below.start and not self.is_cut(below):
+            digits = number(int(above.text)), Node("inv", None, (number(int(below.text)),))  # \frac12
+            return product([*digits])
         return product([self.argument(above), Node("inv", None, (self.argument(below),))])
 
     def derivative_fraction(self, fraction: tree.Fraction) -> Node:

@@ -42,7 +42,6 @@ class NamesPart(SumsPart):
         if primes:
             known = self.resolved(known + "_prime" * primes, "", (known + "p" * primes,))
         self.take_time_call(known)
-        self.refuse_call()
         return Node("name", known)
 
     def refuse_call(self) -> None:
@@ -101,11 +100,13 @@ class NamesPart(SumsPart):
         return node
 
     def take_time_call(self, name: str) -> None:
-        if not self.called_with_time():
-            return
-        if name in self.names.functions or (self.names.implied and name not in self.names):
+        """Step over ``(t)`` after a function of time; refuse other calls."""
+        if self.called_with_time() and (
+            name in self.names.functions or (self.names.implied and name not in self.names)
+        ):
             self.index += 3
             self.timed.add(name)
+        self.refuse_call()
 
     def marked(self, mark: tree.Accent | tree.Font) -> Node:
         """Read ``\\vec{r}``, ``\\mathbf R``, ``\\hat n``: names of vectors and matrices, which must be defined."""
@@ -122,7 +123,6 @@ class NamesPart(SumsPart):
         """Read a name with a mark that belongs to it, ``\\bar I``."""
         node = self.under(mark, lambda: self.symbol(NAME_MARKS[mark.text]))
         self.take_time_call(str(node.value))
-        self.refuse_call()
         return node
 
     def under(self, mark: tree.Accent | tree.Font, read: Callable[[], Node]) -> Node:
@@ -149,7 +149,6 @@ class NamesPart(SumsPart):
         if node.kind == "call":
             return self.called(str(node.value))
         self.take_time_call(str(node.value))
-        self.refuse_call()
         return node
 
     def word(self, font: tree.Font) -> Node:

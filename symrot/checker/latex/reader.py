@@ -10,9 +10,8 @@ from typing import Any, ClassVar
 
 from symrot.checker.claim.reader import Relation, read_relation
 from symrot.checker.claim.tree import Node, text
-from symrot.checker.latex.calculus import DOTS
+from symrot.checker.latex.calculus import DOTS, CalculusPart
 from symrot.checker.latex.cursor import TIME, UPRIGHT, Names
-from symrot.checker.latex.matrices import MatricesPart
 from symrot.checker.latex.names import NAME_MARKS, OPERATORS, VECTOR_MARKS
 from symrot.checker.latex.sums import FUNCTIONS
 
@@ -85,21 +84,21 @@ def _timed(node: Node, names: Collection[str]) -> Node:
     return Node(node.kind, node.value, tuple(_timed(child, names) for child in node.args), node.span)
 
 
-class _Interpreter(MatricesPart):
+class _Interpreter(CalculusPart):
     """The whole interpreter."""
 
     readers: ClassVar[Mapping[str, Callable[[Any, Any], Node]]] = {
-        "letter": MatricesPart.letter,
-        **dict.fromkeys(("(", "[", "\\{", "{"), MatricesPart.bracket),
-        **dict.fromkeys(("|", "\\|"), MatricesPart.bars),
-        **dict.fromkeys(VECTOR_MARKS, MatricesPart.marked),
-        **dict.fromkeys(NAME_MARKS, MatricesPart.overlined),
-        **dict.fromkeys(DOTS, MatricesPart.dotted),
-        **dict.fromkeys(FUNCTIONS, MatricesPart.trigonometric),
-        **dict.fromkeys(OPERATORS, MatricesPart.operator),
-        **dict.fromkeys((*UPRIGHT, "\\operatorname"), MatricesPart.spelled),
-        "\\frac": MatricesPart.fraction,
-        "\\sqrt": MatricesPart.root,
-        "\\int": MatricesPart.integral,
-        "table": MatricesPart.environment,
+        "letter": CalculusPart.letter,
+        **dict.fromkeys(("(", "[", "\\{", "{"), CalculusPart.bracket),
+        **dict.fromkeys(("|", "\\|"), CalculusPart.bars),
+        **dict.fromkeys(VECTOR_MARKS, CalculusPart.marked),
+        **dict.fromkeys(NAME_MARKS, CalculusPart.overlined),
+        **dict.fromkeys(DOTS, CalculusPart.dotted),
+        **dict.fromkeys(FUNCTIONS, CalculusPart.trigonometric),
+        **dict.fromkeys(OPERATORS, CalculusPart.operator),
+        **dict.fromkeys((*UPRIGHT, "\\operatorname"), CalculusPart.spelled),
+        "\\frac": CalculusPart.fraction,
+        "\\sqrt": CalculusPart.root,
+        "\\int": CalculusPart.integral,
+        "table": CalculusPart.environment,
     }

@@ -1,4 +1,4 @@
-"""Sums, products, powers and brackets in LaTeX: the order of operations."""
+"""Sums, products, powers, brackets and matrices in LaTeX: the order of operations."""
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
@@ -22,6 +22,9 @@ FUNCTIONS = {
 }
 """Command -> function; ``\\log``, whose base differs from book to book, is refused."""
 
+MATRICES = {"matrix": "", "pmatrix": "", "bmatrix": "", "Bmatrix": "", "smallmatrix": "", "array": "", "vmatrix": "det"}
+SEVERAL_LINES = ("align", "aligned", "alignat", "gather", "gathered", "eqnarray", "split", "multline", "cases",
+                 "flalign")  # fmt: skip
 ENDS = frozenset(
     ["", "+", "-", "=", ")", "]", "\\}", "}", "&", "\\\\", ",", "\\end", "\\cdot", "\\times", "*", "/", "^", "_", "'"]
 )
@@ -29,7 +32,7 @@ ENDS = frozenset(
 
 
 class SumsPart(Cursor):
-    """The part of the checker's interpreter for sums, products, powers and brackets."""
+    """The part of the checker's interpreter for sums, products, powers, brackets and matrices."""
 
     readers: ClassVar[Mapping[str, Callable[[Any, Any], Node]]] = {}
     """Kind or text of an item -> the method of a further part that reads it."""
@@ -173,3 +176,26 @@ class SumsPart(Cursor):
             self.next()
             return Node("call", "skew", (inner,))
         return inner
+
+    def bars(self, bar: tree.Node) -> Node:
+        inner = self.barred(self.expression, bar.text)
+        if bar.text == "\\|" or self.names.is_column(inner):
+            return Node("call", "sqrt", (Node("call", "dot", (inner, inner)),))
+        return Node("call", "det" if self.names.is_matrix(inner) else "abs", (inner,))
+
+    def environment(self, table: tree.Table) -> Node:
+        name = table.name
+        if name.rstrip("*") in SEVERAL_LINES:
+            raise self.fail(f"one equation instead of the lines of {name}", table)
+        if name not in MATRICES:
+            raise self.fail(f"one of the environments {', '.join(MATRICES)}", table)
+        between = "& or \\\\ between the entries of a matrix"
+        rows = [[self.inside(cell, self.expression, between) for cell in line] for line in table.lines]
+        if len({len(row) for row in rows}) > 1:
+            raise self.fail("rows of equal length in a matrix", table)
+        made = Node("call", "Matrix", (_listed([_listed(row) for row in rows]),))
+        return Node("call", MATRICES[name], (made,)) if MATRICES[name] else made
+
+
+def _listed(members: list[Node]) -> Node:
+    return Node("list", ("[", "]"), tuple(members))

@@ -174,9 +174,11 @@ class _Interpreter(Cursor):
     def bracket(self, opening: str) -> Any:
         values = self.listed(self.sum, CLOSING[opening])
         if opening == "[" and self.at_skew():
+            if not isinstance(values[0], MatrixBase) or values[0].shape != (3, 1):
+                raise self.fail("no cross-product matrix of this")
             self.next()
-            return _skew(values[0])
-        return values[0] if len(values) == 1 else _stacked(values)
+            return Matrix(values[0].hat())
+        return values[0] if len(values) == 1 else Matrix.vstack(*map(_as_matrix, values))
 
     def at_skew(self) -> bool:
         """Return whether the index that makes a cross-product matrix of a vector is next."""
@@ -206,17 +208,17 @@ class _Interpreter(Cursor):
 
     def fraction(self, fraction: Fraction) -> Any:
         above, below = fraction.above, fraction.below
-        if _starts_with(below, "\\partial"):
-            variable = self.value(_rest(below))
-            return _gradient(self.differentiated(above), variable)
-        if _starts_with(above, "d") and _text(below) == "d" + self.time and self.rates:
-            return self.rate(self.differentiated(above))
+        if variable := _after(below, "\\partial"):
+            return _gradient(self.differentiated(_after(above, "\\partial")), self.value(variable))
+        if (operand := _after(above, "d")) and _text(below) == "d" + self.time and self.rates:
+            return self.rate(self.differentiated(operand))
         return _multiplied(self.value(above), _inverted(self.value(below)))
 
-    def differentiated(self, above: Node) -> Any:
+    def differentiated(self, operand: Row | None) -> Any:
         """Read what is differentiated: the rest of the numerator, or the term after the fraction."""
-        rest = _rest(above)
-        return self.value(rest) if rest.items else self.term()
+        if operand is None:
+            raise self.fail("the sign of a derivative above the line")
+        return self.value(operand) if operand.items else self.term()
 
     def root(self, root: Root) -> Any:
         if root.index is not None:
@@ -261,8 +263,12 @@ class _Interpreter(Cursor):
                 return self.names[whole]
             if stop == self.index + 2 and not callable(self.names.get(text)):
                 raise Unread(whole)  # not a product: the value of a function
+        value = self.names.get(text)
+        if callable(value) and not isinstance(value, (Expr, MatrixBase)):
+            self.expect("(")
+            return value(*self.listed(self.sum, ")"))
         if text in self.names:
-            return self.meaning(self.names[text])
+            return value
         if text.startswith(("\\dot", "\\ddot")) and self.rates:
             times = 2 if text.startswith("\\ddot") else 1
             bare = text.removeprefix("\\ddot" if times == 2 else "\\dot")
@@ -274,12 +280,6 @@ class _Interpreter(Cursor):
                     value = self.rate(value)
                 return value
         raise Unread(text)
-
-    def meaning(self, value: Any) -> Any:
-        if callable(value) and not isinstance(value, (Expr, MatrixBase)):
-            self.expect("(")
-            return value(*self.listed(self.sum, ")"))
-        return value
 
     def name_parts(self) -> Iterator[str]:
         """Yield the pieces of a name: a letter, a command or a letter with a mark, then indices and primes."""
@@ -313,34 +313,21 @@ def _text(node: Node) -> str:
     return node.text + (_text(node.inside) if isinstance(node, Command) else "")
 
 
-def _starts_with(node: Node, mark: str) -> bool:
-    """Return whether a group, or a single token, starts with a mark."""
-    return node.text == mark or (isinstance(node, Row) and bool(node.items) and node.items[0].text == mark)
-
-
-def _rest(node: Node) -> Row:
-    """Return a group without its first item."""
-    items = node.items[1:] if isinstance(node, Row) else ()
-    return Row(items, node.start, node.end if isinstance(node, Row) else node.start)
-
-
-def _vee(matrix: MatrixBase) -> Matrix:
-    return Matrix([matrix[2, 1], matrix[0, 2], matrix[1, 0]])
+def _after(node: Node, mark: str) -> Row | None:
+    """Return a group, or a token, without the mark it starts with; None if it does not start with it."""
+    row = node if isinstance(node, Row) else Row((node,), node.start, node.start)
+    return Row(row.items[1:], row.start, row.end) if row.items and row.items[0].text == mark else None
 
 
 MATRIX_FUNCTIONS: dict[str, Callable[[MatrixBase], Any]] = {
     "tr": lambda matrix: matrix.trace(),
-    "vee": _vee,
+    "vee": lambda matrix: Matrix([matrix[2, 1], matrix[0, 2], matrix[1, 0]]),
     "adj": lambda matrix: matrix.adjugate(method="berkowitz"),
 }
 
 
 def _as_matrix(value: Any) -> Matrix:
     return Matrix(value) if isinstance(value, MatrixBase) else Matrix([[value]])
-
-
-def _stacked(values: list[Any]) -> Matrix:
-    return Matrix.vstack(*(_as_matrix(value) for value in values))
 
 
 def _added(left: Any, right: Any) -> Any:
@@ -371,12 +358,6 @@ def _crossed(left: Any, right: Any) -> Any:
     if not all(isinstance(side, MatrixBase) and side.shape == (3, 1) for side in (left, right)):
         raise Unread("a cross product of other than two vectors")
     return Matrix(left).cross(Matrix(right))
-
-
-def _skew(vector: Any) -> Matrix:
-    if not isinstance(vector, MatrixBase) or vector.shape != (3, 1):
-        raise Unread("the cross product matrix of no vector")
-    return Matrix(vector.hat())
 
 
 def _inverted(value: Any) -> Any:

@@ -11,17 +11,12 @@ from typing import Any, NamedTuple
 
 from symrot.errors import InputError, complaint
 from symrot.latex import reader
-from symrot.latex.tokens import Token
+from symrot.latex.tokens import GREEK, Token
 from symrot.latex.tree import Accent, Delimited, Font, Fraction, Node, Root, Row, Scripts, Table
 
 __all__ = ["Item", "mathml", "read", "rows"]
 
-LETTERS = {
-    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ϵ", "zeta": "ζ", "eta": "η", "theta": "θ",
-    "kappa": "κ", "lambda": "λ", "mu": "μ", "nu": "ν", "xi": "ξ", "pi": "π", "rho": "ρ", "sigma": "σ", "tau": "τ",
-    "phi": "ϕ", "varphi": "φ", "chi": "χ", "psi": "ψ", "omega": "ω", "Gamma": "Γ", "Delta": "Δ", "Theta": "Θ",
-    "Lambda": "Λ", "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω", "ell": "ℓ", "partial": "∂", "infty": "∞",
-}  # fmt: skip
+LETTERS = GREEK | {"pi": "π", "partial": "∂", "infty": "∞"}
 OPERATORS = {
     "times": "×", "cdot": "⋅", "le": "≤", "ge": "≥", "leq": "≤", "geq": "≥", "neq": "≠", "ne": "≠", "to": "→",
     "in": "∈", "Rightarrow": "⇒", "rightarrow": "→", "mapsto": "↦", "ldots": "…", "cdots": "⋯", "dots": "…",
@@ -181,14 +176,12 @@ class _Translation:
         return Item(f"<mroot>{inner.mathml}{self.group(root.index).mathml}</mroot>", inner.width + 1)
 
     def delimited(self, node: Delimited) -> Item:
-        first, last = (self.fence(mark, side) for mark, side in ((node.opening, "prefix"), (node.closing, "postfix")))
+        for mark in (node.opening, node.closing):
+            if mark.text not in FENCES:
+                raise self.refuse(mark)
+        first, last = _fence(FENCES[node.opening.text], "prefix"), _fence(FENCES[node.closing.text], "postfix")
         inner = self.group(node.inside)
         return Item(f"<mrow>{first}{inner.mathml}{last}</mrow>", inner.width + 0.8)
-
-    def fence(self, mark: Token, form: str) -> str:
-        if mark.text not in FENCES:
-            raise self.refuse(mark)
-        return _fence(FENCES[mark.text], form)
 
     def table(self, table: Table) -> Item:
         if table.name not in TABLES:
