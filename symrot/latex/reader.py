@@ -39,8 +39,8 @@ class _Reader:
         items: list[Node] = []
         first = token = self.tokens[self.place]
         while token.kind not in stops and token.text not in stops:
-            if token.kind == "end":
-                raise self.fail(f"'{closing}'", token)
+            if token.kind in ("end", "right", "close"):
+                raise self.fail(f"'{closing}'" if closing else "\\left or \\begin before this", token)
             if token.kind in READERS or self.tokens[self.place + 1].kind in AFTER:
                 items.append(self.item())
             else:  # most items are a token
@@ -109,6 +109,9 @@ class _Reader:
     def no_piece(self, token: Token) -> Node:
         raise self.fail("a number, a symbol or a bracket", token)
 
+    def unpaired(self, token: Token) -> Node:
+        raise self.fail(f"a delimiter, or an environment in braces, after {token.text}", token)
+
     def fraction(self, token: Token) -> Fraction:
         return Fraction(token.text, self.argument(), self.argument(), token.start)
 
@@ -144,5 +147,5 @@ READERS: dict[str, Callable[[_Reader, Token], Node]] = {
     "begin": _Reader.table,
     "accent": lambda reader, token: Accent(token.text, reader.argument(), token.start),
     "font": lambda reader, token: Font(token.text, reader.argument(), token.start),
-    "script": _Reader.no_piece, "prime": _Reader.no_piece,
+    "script": _Reader.no_piece, "prime": _Reader.no_piece, "unpaired": _Reader.unpaired,
 }  # fmt: skip

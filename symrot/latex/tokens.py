@@ -26,7 +26,7 @@ _TOKEN = re.compile(  # the commonest tokens first; blanks match nothing
 )
 _COMMANDS = {
     "space": "quad qquad displaystyle textstyle limits nolimits nonumber notag",
-    "fraction": "frac tfrac dfrac cfrac", "root": "sqrt", "line": "\\ cr",
+    "fraction": "frac tfrac dfrac cfrac", "root": "sqrt", "line": "\\ cr", "unpaired": "left right begin end",
     "accent": "dot ddot dddot hat bar overline vec overrightarrow tilde widetilde underline",
     "font": "mathbf bm boldsymbol mathrm mathit mathsf mathcal text textrm operatorname",
 }  # fmt: skip

@@ -92,7 +92,7 @@ REFUSED = (
     (r"a = b \text{ for all } x", 7), (r"\left.x\right|_0 = 1", 6), (r"\frac{d}{dt} R v = 0", 16), (r"\frac{d x}{d t^2} = 1", 1),
     (r"\begin{pmatrix}1&2\\3\end{pmatrix} = 1", 1), (r"\begin{cases}1\end{cases} = 1", 1), (r"(a = b)", 4), (r"a) = b", 2),
     (r"\frac{a} = b", 10), (r"a^2^3 = b", 4), (r"a_{i,} = \sqrt", 15), (r"x = y!", 6), (r"\mathrm{d}x = 1", 1), (r"{\rm tr}(R) = 1", 2),
-    (r"\left(a] = 1", 13), (r"\left(a\right] = 1", 8), (r"\bar{x}(y) = 1", 8), (r"\mathrm\mathrm{tr} = 1", 8), (r"\dot{ab}_1 = 1", 9),
+    (r"\left(a] = 1", 13), (r"\left(a\right] = 1", 8), (r"\bar{x}(y) = 1", 8), (r"\mathrm\mathrm{tr} = 1", 8), (r"\mathrm{\theta t} = 1", 16), (r"\dot{ab}_1 = 1", 9),
     (r"\int_0^1 x = 1", 12), (r"|x = 1", 4), (r"x2 = 1", 2), ("a = b\n\n§", 8), ("(" * 500 + "a = b", 31), (r"\sin -x = 1", 6),
 )  # fmt: skip
 

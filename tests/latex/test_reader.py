@@ -83,6 +83,8 @@ REFUSED = (
     ("{a", "'}'", 3), (r"\left( a", r"'\right'", 9), (r"\begin{matrix} a", r"'\end{matrix}'", 17), (r"\sqrt[3 x", "']'", 10),
     (r"\begin{matrix} a \end{pmatrix}", r"'\end{matrix}'", 18), (r"\frac{a}", "a group in braces", 9), ("x^", "a group in braces", 3),
     (r"\left( a^ \right)", "a group in braces", 11), ("x^2^3", "a repeated power", 4), ("x_1_2", "one subscript", 4), ("^2", "a symbol", 1),
+    (r"a \right)", "before this", 3), (r"{a \end{matrix}}", "'}'", 4), (r"\left a", r"after \left", 1), (r"\bar{\begin}", r"after \begin", 6),
+
     ("{'}", "a symbol", 2), ("{" * 70 + "}" * 70, "60 nested levels", 61), (r"\dot" * 100 + "x", "60 nested levels", 241),
 )  # fmt: skip
 

@@ -196,6 +196,9 @@ def test_mathml_of_the_pages_own_latex():
         "50%",
         r"\mathbf{\omega}",
         r"\left< x \right>",
+        r"x \end{array}",
+        r"x \right)",
+        r"\mathbf\begin{matrix}x\end{matrix}",
     ],
 )
 def test_latex_that_is_not_known_is_refused(text):

@@ -154,8 +154,10 @@ class NamesPart(SumsPart):
     def word(self, font: tree.Font) -> Node:
         """Read letters and digits, with a subscript and primes; a built-in function becomes a call."""
         name = ""
-        while self.peek().kind in ("letter", "number") or (is_letter(self.peek()) and not name):
-            name += self.next().text.removeprefix("\\")
+        while self.peek().kind in ("letter", "number"):
+            name += self.next().text
+        if not name and is_letter(self.peek()):
+            name = self.next().text.removeprefix("\\")
         if not name.isalnum() or not name[0].isalpha():
             raise self.fail("a name of letters and digits")
         if name == "d" and self.peek().kind == "end":

@@ -152,7 +152,7 @@ class _Translation:
     def font(self, font: Font) -> Item:
         inside, variant = font.inside, FONTS.get(font.text[1:])
         text = self.latex[inside.start + 1 : inside.end] if isinstance(inside, Row) else inside.text
-        if variant is None or "\\" in text:
+        if variant is None or "\\" in text or not isinstance(inside, Row | Token):
             raise self.refuse(font)
         text = text.strip() if variant != "normal" else text
         letters = "".join(_letter(letter, variant) for letter in text)
