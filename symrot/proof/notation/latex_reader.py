@@ -75,15 +75,18 @@ def read(latex: str, names: Mapping[str, Any], rates: Mapping[Expr, Expr] | None
         If a name has no meaning, shapes do not match, or the notation is not supported.
     """
     try:
-        row = reader.read(latex)
-        return _Interpreter(row, latex, names, rates or {}).value(row)
+        interpreter = _Interpreter(latex, names, rates or {})
+        value = interpreter.sum()
+        if not interpreter.at(""):
+            raise interpreter.fail("an operator or the end")
     except (InputError, MatrixError, RecursionError) as error:
         raise Unread(str(error)) from error
+    return value
 
 
 class _Interpreter(Cursor):
-    def __init__(self, row: Row, latex: str, names: Mapping[str, Any], rates: Mapping[Expr, Expr]) -> None:
-        super().__init__(latex, "", row)
+    def __init__(self, latex: str, names: Mapping[str, Any], rates: Mapping[Expr, Expr]) -> None:
+        super().__init__(latex, "", reader.read(latex))
         self.names, self.rates = names, rates
         self.time = names.get(TIME, "t")
 
