@@ -2,8 +2,8 @@
 
 from symrot.catalogue import derivation
 from symrot.checker.interface import RefusedClaims, check, check_file
-from symrot.checker.recognition.identification import Identification, identify
-from symrot.checker.verdict import Diagnosis, Dimensions, Repair, Verdict
+from symrot.checker.recognition.identification import identify
+from symrot.checker.verdict import Diagnosis, Dimensions, Identification, Repair, Verdict
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.equations import euler_equations
 from symrot.dynamics.structure import Structure

@@ -1,10 +1,10 @@
-"""``python -m symrot``, and the command ``symrot``."""
+"""Entry point of ``python -m symrot`` and of the command ``symrot``."""
 
 __all__ = ["main"]
 
 
 def main() -> int:
-    """Run the command line; Ctrl-C while it is still being imported ends it as quietly as later."""
+    """Run the command line and return its exit code; Ctrl-C ends it quietly, even while modules are imported."""
     try:
         from symrot.cli.interrupt import repeat_lost_interrupts
 

@@ -221,7 +221,7 @@ REVEALED = {  # expression -> the type that mypy reveals
     'symrot.plan("t_handle")': "symrot.planning.plan.Plan",
     'symrot.check("x == x")': "symrot.checker.verdict.Verdict",
     'symrot.check("x == x").counterexample': "symrot.exact.evidence.Counterexample | None",
-    'symrot.identify("x")[0]': "symrot.checker.recognition.identification.Identification",
+    'symrot.identify("x")[0]': "symrot.checker.verdict.Identification",
     'symrot.derivation("poinsot")': "symrot.proof.derivation.Derivation",
     'symrot.solid("cone")': "symrot.inertia.solids.Solid",
     'symrot.rate_jacobian("ZXZ")': "symrot.kinematics.euler.EulerRateMatrix",

@@ -37,7 +37,8 @@ ROOMS = (  # from left to right: a module imports, anywhere, only from its own r
 MOST_IN_A_ROOM = 16
 ORDER = {room: place for place, rooms in enumerate(ROOMS) for room in rooms}
 WITHOUT_SYMPY = (
-    "errors", "conventions", "latex.reader", "latex.cursor", "formula.tree", "formula.exact_numbers", "formula.program", "kinematics.conversions", "kinematics.continuity", "kinematics.rates",
+    "errors", "conventions", "latex.reader", "latex.cursor", "formula.tree", "formula.exact_numbers", "formula.program", "kinematics.conversions", "kinematics.continuity",
+    "kinematics.hamilton", "kinematics.rates",
     "inertia.composite",
     "inertia.principal", "dynamics.structure", "dynamics.torque_kinds", "scene.scene", "planning.plan", "planning.scene_kernel", "build.cache",
     "propagation.propagator", "propagation.trajectory", "report.summary", "cli.main",

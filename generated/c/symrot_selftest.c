@@ -531,14 +531,14 @@ const char *symrot_selftest_sentence(int failure)
         "library linked with -ffast-math does",
         "expected a*b + c to be rounded twice: compile with -ffp-contract=off for the bits of the C text, "
         "whose error bounds hold",
-        "expected sin right to 1 ulp: that of this machine errs by more",
-        "expected cos right to 1 ulp: that of this machine errs by more",
-        "expected atan2 right to 1 ulp: that of this machine errs by more",
-        "expected sqrt to be rounded correctly: that of this machine is not",
-        "expected sinf right to 1 ulp: that of this machine errs by more",
-        "expected cosf right to 1 ulp: that of this machine errs by more",
-        "expected atan2f right to 1 ulp: that of this machine errs by more",
-        "expected sqrtf to be rounded correctly: that of this machine is not",
+        "expected sin right to 1 ulp: on this machine its error is larger",
+        "expected cos right to 1 ulp: on this machine its error is larger",
+        "expected atan2 right to 1 ulp: on this machine its error is larger",
+        "expected sqrt to be rounded correctly: on this machine it is not",
+        "expected sinf right to 1 ulp: on this machine its error is larger",
+        "expected cosf right to 1 ulp: on this machine its error is larger",
+        "expected atan2f right to 1 ulp: on this machine its error is larger",
+        "expected sqrtf to be rounded correctly: on this machine it is not",
     };
     const int count = (int)(sizeof sentences/sizeof sentences[0]);
     return failure >= 0 && failure < count ? sentences[failure] : "no check of the self-test has this number";

@@ -1,1 +1,1 @@
-"""Measurements, each a module run as ``python -m symrot.bench.NAME``."""
+"""Measurements of speed and accuracy, each a module run as ``python -m symrot.bench.NAME``."""

@@ -1,4 +1,4 @@
-"""Measure the exact motions: nanoseconds per sample, microseconds of set-up, and a complete call from Python.
+"""Times of closed forms: nanoseconds per sample, microseconds of set-up, and a complete call from Python.
 
     python -m symrot.bench.closed_form [--rounds 300]
 
@@ -58,7 +58,10 @@ def _seconds(run: Callable[[], Any]) -> float:
 
 
 def measure(rounds: int) -> list[tuple[str, str, list[float]]]:
-    """Return name, regime and the minima in s: set-up, both, omega alone, q alone, one sample, set-up with both."""
+    """Return for each motion its name, its regime, and the least times, s.
+
+    The times are: set-up, both quantities, omega alone, attitude alone, one sample, set-up with both quantities.
+    """
     t = np.linspace(0.0, SPAN, SAMPLES)
     one = t[:1]
     runs: list[tuple[str, str, list[Callable[[], Any]]]] = []
@@ -86,7 +89,7 @@ def measure(rounds: int) -> list[tuple[str, str, list[float]]]:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table."""
+    """Print the table of times of the closed forms."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=300, help="repetitions, of which the fastest counts")
     rounds = parser.parse_args(arguments).rounds

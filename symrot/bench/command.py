@@ -1,4 +1,4 @@
-"""What ``symrot bench`` does: a table of modes, each an option of the command line.
+"""Modes of ``symrot bench`` as a table; each mode is an option of the command line.
 
 A mode takes the parsed options and a callback for progress messages; it returns a :class:`ModeReport`. The modules of a
 mode are imported only when it runs. To add a mode, write a function here or in its own module and add a row to
@@ -18,7 +18,7 @@ Progress = Callable[[str], object]
 
 
 class ModeReport(NamedTuple):
-    """The result of a mode: data for JSON, lines of text (the first is the title), and whether the mode succeeded."""
+    """Result of a mode: data for JSON, lines of text (the first is the title), and whether the mode succeeded."""
 
     data: Any
     lines: Sequence[str]
@@ -26,7 +26,10 @@ class ModeReport(NamedTuple):
 
 
 class Mode(NamedTuple):
-    """One mode: its option ("" for the study of a scene), its help text, the options it accepts, its function."""
+    """One mode of ``symrot bench``: its option, help text, accepted options, and function.
+
+    The option of the study of a scene is "".
+    """
 
     option: str
     about: str

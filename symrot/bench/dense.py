@@ -1,12 +1,12 @@
-"""Measure dense output: 20 000 samples of one motion against heyoka's, at equal error.
+"""Times of dense output: 20 000 samples of one motion, by symrot and by heyoka, at equal error.
 
     python -m symrot.bench.dense [--samples 20000] [--rounds 15] [--motion NAME]
 
 The motions are those of :mod:`symrot.bench.taylor`. symrot is called as a user calls it, ``propagator(t)``; heyoka by
-``propagate_grid``, and by ``propagate_until`` with ``c_output``, whose continuous output is then evaluated at all
-times at once. The array of times is made before the clock starts. Both run at several tolerances. The error of a run is
-that of its last sample against a series in 40 digits; the table also has the largest distance of its samples from those
-of symrot's tightest run. Each run of heyoka is compared with the fastest run of symrot whose error is not larger. Runs
+``propagate_grid``, and by ``propagate_until`` with ``c_output``, whose continuous output is then evaluated at all times
+at once. The array of times is made before the clock starts. Both run at several tolerances. The error of a run is that
+of its last sample against a series in 40 digits; the table also has the largest distance of its samples from those of
+symrot's tightest run. Each run of heyoka is compared with the fastest run of symrot whose error is not larger. Runs
 alternate; the median of the processor time counts.
 
 heyoka is optional: ``pip install heyoka``.
@@ -33,14 +33,16 @@ PEERS = (1e-9, 1e-12, 2.0**-52)
 
 
 class Sampled(NamedTuple):
-    """One contestant at one tolerance: its seconds, the error of its last sample, its distance from the tightest."""
+    """One contestant at one tolerance: seconds, error of the last sample, largest distance from the most accurate
+    run.
+    """
 
     measured: Measured
     apart: float
 
 
 def _heyoka(problem: Problem, tolerance: float, times: Floats) -> dict[str, Callable[[], Floats]]:
-    """Return heyoka's two methods of sampling a motion by name; an empty dict if heyoka is not installed."""
+    """Return heyoka's two methods of sampling a motion, by name; an empty dict if heyoka is not installed."""
     try:
         import heyoka
     except ImportError:
@@ -95,14 +97,14 @@ def measure(name: str, samples: int, rounds: int) -> list[Sampled]:
 
 
 def _distance(states: Floats, exact: Floats) -> float:
-    """Return the largest distance of states, rates relative to their size."""
+    """Return the largest difference between samples of two runs; differences of rates are relative to their size."""
     apart, rates = abs(states - exact), states.shape[-1] - 4
     size = float(np.linalg.norm(np.atleast_2d(exact)[-1, :rates]))
     return max(float(apart[:, :rates].max()) / size, float(apart[:, rates:].max()))
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table."""
+    """Print the table of times and errors of dense output."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.dense", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--samples", type=int, default=20_000)
     parser.add_argument("--rounds", type=int, default=15)

@@ -1,4 +1,4 @@
-"""Measure derivations: every Euler sequence with rates, inverse and determinant in both frames, and every solid.
+"""Times of derivations: every Euler sequence with rates, inverse and determinant in both frames, and every solid.
 
 ``python -m symrot.bench.derive`` prints seconds of processor time, without the import of SymPy.
 """
@@ -33,7 +33,7 @@ ROWS: tuple[tuple[str, Callable[[], int]], ...] = (
 
 
 def main() -> int:
-    """Print the table."""
+    """Print the table of times of derivations."""
     import sympy
 
     print(f"SymPy {sympy.__version__}")

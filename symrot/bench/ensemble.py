@@ -1,4 +1,4 @@
-"""Measure ensembles in SIMD lanes against heyoka's batch and ensemble modes, at equal error, on one core.
+"""Times of ensembles in SIMD lanes against heyoka's batch and ensemble modes, at equal error, on one core.
 
     python -m symrot.bench.ensemble [--rounds 9] [--orders] [--motion NAME] [--many 4096]
 
@@ -28,9 +28,9 @@ from symrot.ensemble import lanes
 
 __all__ = ["main", "measure"]
 
-SPREAD = 0.1  # of the initial states about those of the motion
+SPREAD = 0.1  # relative spread of the initial states about those of the motion
 SHORTER = 20  # the span of the many is so much shorter
-COMPARED = 16  # of the many are compared with the reference
+COMPARED = 16  # number of trajectories that are compared with the reference
 TIGHTEST = 1e-19  # tolerance of the reference in long double
 ORDERS = (8, 10, 12, 14, 16, 18, 20)
 WIDTHS = (4, 8)
@@ -38,7 +38,9 @@ ENSEMBLE_TOLERANCES = (1e-6, 1e-12)  # few: each of its trajectories takes a cop
 
 
 class Start(NamedTuple):
-    """An ensemble: its motion, initial states (n, N), end time, and the reference end states of its first members."""
+    """An ensemble to measure: its motion, initial states (n, N), end time, and reference end states of its first
+    members.
+    """
 
     problem: Any
     y: Floats
@@ -46,13 +48,13 @@ class Start(NamedTuple):
     exact: Floats
 
     def error(self, states: Floats) -> float:
-        """Return the largest error of states (n, N) at the end."""
+        """Return the largest error of the end states of an ensemble, shape (n, N)."""
         pairs = zip(states[: len(self.exact)], self.exact, strict=True)
         return float(max(self.problem.error(computed, exact) for computed, exact in pairs))
 
 
 def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
-    """Return an ensemble about a motion; its first trajectory is the motion itself."""
+    """Return an ensemble of n initial states near that of a motion; the first trajectory is the motion itself."""
     random = np.random.default_rng(1)
     y = np.tile(np.array(problem.y0), (n, 1))
     rates = problem.blocks[1]
@@ -63,7 +65,7 @@ def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
 
 
 def _references(problem: Any, y: Floats, stop: float) -> Floats:
-    """Return the states at the end, computed in long double."""
+    """Return the end states of an ensemble, computed by heyoka in long double."""
     import heyoka
 
     real = np.longdouble
@@ -78,7 +80,7 @@ def _references(problem: Any, y: Floats, stop: float) -> Floats:
 
 
 def _system(problem: Any, real: Callable[[float], Any] = float) -> list[tuple[Any, Any]]:
-    """Return the right-hand side for heyoka."""
+    """Return the right-hand side of a motion in heyoka's form; ``real`` makes its numbers."""
     import heyoka
 
     names = [name for name, *_ in problem.kernel.rates.signature.argument("y").components]
@@ -120,7 +122,7 @@ def _ours(
 
 
 def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
-    """Run heyoka's batch integrator over the ensemble, one batch after another."""
+    """Return steps and last states of an ensemble by heyoka's batch integrator, one batch after another."""
     states, steps = np.empty_like(start.y), 0
     for first in range(0, len(start.y), width):
         integrator.set_time(0.0)
@@ -132,7 +134,7 @@ def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
 
 
 def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> BatchEnd:
-    """Run heyoka's own ensemble function in one thread."""
+    """Return steps and last states of an ensemble by heyoka's own ensemble function in one thread."""
 
     def begin(integrator: Any, i: int) -> Any:
         if width == 1:
@@ -172,7 +174,7 @@ def _heyoka(start: Start, tolerances: Sequence[float], many: bool) -> list[Batch
 
 
 def measure(start: Start, rounds: int, many: bool = False) -> list[Run]:
-    """Return the runs of all contestants."""
+    """Return the runs of all contestants on an ensemble, with their times and errors."""
     ours, theirs = [10.0 ** (-k / 4) for k in range(4, 57)], [10.0 ** (-k / 2) for k in range(6, 33)]
     return raced([*_ours(start, ours), *_heyoka(start, theirs, many)], start.error, rounds, process_time)
 
@@ -201,7 +203,7 @@ def _print_table(runs: list[Run], n: int) -> None:
 
 
 def _print_widths(start: Start, rounds: int) -> None:
-    """Compare four lanes with eight."""
+    """Print a comparison of four lanes with eight lanes."""
     tasks = [
         (f"{width} lanes", *task[1:]) for width in WIDTHS for task in _ours(start, [1e-12], [20], width)
     ]  # fmt: skip
@@ -220,7 +222,7 @@ def _print_orders(start: Start, rounds: int) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the tables."""
+    """Print the tables of times of ensembles."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.ensemble", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=9)
     parser.add_argument("--orders", action="store_true", help="compare orders of the series")

@@ -1,4 +1,4 @@
-"""Measure kernels against those of other tools: operations, ns for one sample, in a batch in cache, in one of 10^6.
+"""Kernels against those of other tools: operations, and ns for one sample, in a batch in cache, in one of 10^6.
 
     python -m symrot.bench.kernels [--rounds 63] [--many 1000000] [--kernels NAME ..]
 
@@ -45,7 +45,7 @@ TAIT_BRYAN = ("zyx", "zxy", "xyz", "xzy", "yxz", "yzx")
 PAGE = 4096  # bytes
 PLACES = {"one": 1, "cached": 1, "many": 7}  # pieces of memory that rounds take in turn
 SHORTEST = 1e-3  # s, one measurement
-BAR = 1.05  # of the least time of the others
+BAR = 1.05  # largest accepted ratio to the least time of the other tools
 FLOOR = "moves only"
 
 Floats = NDArray[np.float64]
@@ -54,7 +54,7 @@ SHAPES = ("one", "cached", "many")
 
 @dataclass
 class Contestant:
-    """A tool's version of a kernel: its operations, and its seconds per sample for each shape and round."""
+    """One tool's version of a kernel: operations, and seconds per sample for each shape of input and each round."""
 
     name: str
     operations: Counter[str]
@@ -62,7 +62,7 @@ class Contestant:
     seconds: dict[str, list[float]] = field(default_factory=lambda: {shape: [] for shape in SHAPES})
 
     def nanoseconds(self, shape: str) -> float | None:
-        """Return the least time per sample in ns, None where it was not measured."""
+        """Return the least time per sample, ns, for a shape of input; None if it was not measured."""
         return min(self.seconds[shape]) * 1e9 if self.seconds[shape] else None
 
 
@@ -113,7 +113,7 @@ def _addresses(name: str, shape: str, count: int, place: int) -> Any:
 
 
 def _drivers(signature: Signature, batch: bool) -> str:
-    """Return C drivers that repeat a one-sample function and a batch function; a missing batch function is added."""
+    """Return C functions that repeat a one-sample function and a batch function; a missing batch function is added."""
     inputs = [a for a in signature.arguments if a.role == "in"]
     outputs = [a for a in signature.arguments if a.role == "out"]
     every = [*inputs, *outputs]
@@ -151,7 +151,7 @@ _REPEAT_BATCH = """void symrot_repeat_batch(size_t repeats, size_t n, double **a
 
 
 def _batch_of_one(name: str, inputs: Sequence[Argument], outputs: Sequence[Argument]) -> list[str]:
-    """Return C of a batch function whose loop inlines a one-sample function."""
+    """Return the C text of a batch function whose loop inlines a one-sample function."""
     every = [*inputs, *outputs]
     pointers = [f"{'const ' if a in inputs else ''}double *restrict {a.name}" for a in every]
     lines = [f"static void batch(size_t n, {', '.join(pointers)})", "{", '    _Pragma("GCC ivdep")',
@@ -167,7 +167,9 @@ def _batch_of_one(name: str, inputs: Sequence[Argument], outputs: Sequence[Argum
 
 
 def _heyoka_drivers(signature: Signature) -> str:
-    """Return C drivers that repeat heyoka's compiled functions, for one sample and for ``LANES`` samples of a batch."""
+    """Return C functions that repeat heyoka's compiled functions, for one sample and for ``LANES`` samples of a
+    batch.
+    """
     sizes = {role: sum(a.size for a in signature.arguments if a.role == role) for role in ("in", "out")}
     out = sum(a.role == "in" for a in signature.arguments)
     return "\n".join([
@@ -185,7 +187,7 @@ def _heyoka_drivers(signature: Signature) -> str:
 
 
 def _moving(signature: Signature) -> str:
-    """Return C that reads every input and writes every output of a batch."""
+    """Return C text that reads every input and writes every output of a batch, and computes nothing else."""
     inputs, outputs = ([a for a in signature.arguments if a.role == role] for role in ("in", "out"))
     heads = [f"const double *restrict {a.name}" for a in inputs] + [f"double *restrict {a.name}" for a in outputs]
     total = " + ".join(f"{a.name}[{i}*n + k]" for a in inputs for i in range(a.size))
@@ -215,7 +217,7 @@ def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], f
 
 
 def _runs(name: str, loaded: ctypes.CDLL, shapes: Sequence[str], many: int) -> dict[str, Callable[[int], float]]:
-    """Return a measurement for each shape of the functions in a compiled driver."""
+    """Return a timing function for each shape of input, which calls the functions of a compiled driver."""
     runs = {}
     for shape in shapes:
         count = many if shape == "many" else CACHED
@@ -234,7 +236,7 @@ def _call(function: Any, count: int, addresses: Sequence[Any], repeats: int, pla
 def _in_c(
     name: str, text: str, many: int, shapes: Sequence[str] = SHAPES, prepare: Callable[[Any], object] = id
 ) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Compile C text with its drivers; return the measurements, and its outputs for the batch that fits in cache."""
+    """Return the timing functions of a kernel in C, and its outputs for the batch that fits in the cache."""
     loaded = ctypes.CDLL(str(build_cache.build(text, f"bench_{name}", FLAGS)))
     prepare(loaded)
     runs = _runs(name, loaded, shapes, many)
@@ -250,7 +252,10 @@ def _symrot_text(name: str) -> str:
 
 
 def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
-    """Return the contestants of a kernel, symrot first, and the missing tools; raise if outputs do not agree."""
+    """Return the contestants of a kernel, symrot first, and the tools that are missing.
+
+    The outputs must agree; otherwise an error is raised.
+    """
     contestants: list[Contestant] = []
     missing: list[str] = []
     signature = kernel_program(name).signature
@@ -260,7 +265,7 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
     def add(tool: str, operations: Counter[str], runs: dict[str, Callable[[int], float]], outputs: Floats) -> None:
         error = float(np.max(np.abs(outputs - reference)) / np.max(np.abs(reference)))
         if not error < 1e-11:
-            raise AssertionError(f"{tool}: expected the numbers of symrot for {name}, differs by {error:.1e}")
+            raise AssertionError(f"{tool}: expected the results of symrot for {name}, got a difference of {error:.1e}")
         contestants.append(Contestant(tool, operations, runs))
 
     around = _drivers(signature, False)
@@ -288,7 +293,7 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
 
 
 def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Return the measurements and outputs of CasADi's own evaluation of a batch, with its map over samples."""
+    """Return timing functions and outputs of CasADi's own evaluation of a batch, which maps a function over samples."""
     import casadi
 
     def run(count: int) -> Callable[[int, int], object]:
@@ -300,7 +305,7 @@ def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int],
 
 
 def _casadi_text(name: str, function: Any) -> str:
-    """Return CasADi's own C and a function of the kernel's arguments around it."""
+    """Return CasADi's C text for a kernel, and a function around it with the kernel's own arguments."""
     import casadi
 
     generator = casadi.CodeGenerator("peer", {"with_header": False})
@@ -389,14 +394,16 @@ def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
 
 
 def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return the cells where symrot misses its goal: more operations than the best tool, or over 1.05 of its time."""
+    """Return the cases in which symrot misses its goal: more operations than the best tool, or over 1.05 of its
+    time.
+    """
     mine, best = _operations(contestants)
     over = [f"{name} {shape} {ratio:.3f}" for shape, ratio in _ratios(contestants).items() if ratio > BAR]
     return [f"{name} operations {mine} to {best}"] * (mine > best) + over
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table."""
+    """Print the table of kernels and tools."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.kernels", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=63)
     parser.add_argument("--many", type=int, default=MANY, help="samples of the large batch; 0 leaves it out")

@@ -1,11 +1,11 @@
-"""Follow a free asymmetric body for many revolutions by stepping, against its exact motion and heyoka.
+"""Free asymmetric body over many revolutions by stepping, compared with its exact motion and with heyoka.
 
     python -m symrot.bench.long [--revolutions 1e6] [--states 4]
 
-The contestants are the Taylor stepper with and without the projection of its carry, and heyoka, if it is installed, at
-its tightest tolerance. The table has the errors at the end against the exact motion: relative error of the kinetic
-energy, and error of the attitude in rad; medians over the initial states. All contestants run from one initial state
-before the next, so that they run under the same conditions.
+The contestants are the Taylor stepper with and without projection onto the conserved quantities, and heyoka, if it is
+installed, at its tightest tolerance. The table has the errors at the end against the exact motion: relative error of
+the kinetic energy, and error of the attitude in rad; medians over the initial states. All contestants run from one
+initial state before the next, so that they run under the same conditions.
 
 heyoka is optional: ``pip install heyoka``.
 """
@@ -52,7 +52,7 @@ def _scene(omega: Sequence[Any]) -> Scene:
 
 
 def measure(omega: Sequence[Any], revolutions: float) -> dict[str, tuple[float, float, float, int]]:
-    """Return, for each contestant: relative error of the energy, error of the attitude in rad, seconds, steps."""
+    """Return for each contestant: relative error of the energy, error of the attitude in rad, seconds, and steps."""
     scene = _scene(omega)
     plan = make_plan(scene)
     kernel = scene_kernel(plan)
@@ -88,7 +88,7 @@ def measure(omega: Sequence[Any], revolutions: float) -> dict[str, tuple[float, 
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table."""
+    """Print the table of errors after many revolutions."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.long", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--revolutions", type=float, default=1e6)
     parser.add_argument("--states", type=int, default=len(STATES), help="how many of the initial states")

@@ -1,4 +1,4 @@
-"""Measure the overhead of a call from Python: ``propagator(t)`` against the bare call of the same C function.
+"""Overhead of a call from Python: the time of ``propagator(t)`` against the bare call of the same C function.
 
     python -m symrot.bench.overhead [--rounds 25] [SCENE ...]
 
@@ -47,7 +47,7 @@ def _bare_stepper(propagate: Propagator, times: "np.ndarray[tuple[int], np.dtype
 
     bare()
     if run.next != len(times) or call(place, *arguments) != DONE:
-        raise InputError(f"{propagate.scene.name}: expected a motion that one call can follow")
+        raise InputError(f"{propagate.scene.name}: expected a motion that a single call of a C stepper can follow")
     return bare
 
 
@@ -63,7 +63,7 @@ def _bare_exact(propagate: Propagator, times: "np.ndarray[tuple[int], np.dtype[n
 
 
 def measure(name: str, method: str, samples: int, rounds: int) -> tuple[float, float] | None:
-    """Return the seconds of ``propagator(t)`` and of the bare call, or None for a scene without that method."""
+    """Return the seconds of ``propagator(t)`` and of the bare call in C; None if the method cannot follow the scene."""
     try:
         propagate = propagator(name, method)
         if propagate.method != method:
@@ -80,7 +80,7 @@ def measure(name: str, method: str, samples: int, rounds: int) -> tuple[float, f
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table."""
+    """Print the table of overheads."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.overhead", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("scenes", metavar="SCENE", nargs="*", default=list(SCENES))
     parser.add_argument("--rounds", type=int, default=25)

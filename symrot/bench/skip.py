@@ -1,4 +1,4 @@
-"""Measure what specialisation saves: each motion with the most general kernel and with the scene's own.
+"""Savings by specialisation: each motion with the most general kernel and with the scene's own kernel.
 
 The general kernel has a full tensor, the full attitude and all kinds of torque that can act together, each with free
 constants, which are zero for a torque that the motion lacks. Both kernels follow the same motion by Taylor series at
@@ -31,7 +31,7 @@ from symrot.scene.scene import Scene, Torque, load_scene
 __all__ = ["LADDER", "general_plan", "lines", "measure", "rungs"]
 
 LADDER = Path(__file__).with_name("skip.toml")
-TOLERANCE, AGREEMENT = 1e-12, 1e-10  # of the motions; of their ends
+TOLERANCE, AGREEMENT = 1e-12, 1e-10  # tolerance of the motions, and of the difference of their ends
 STATES, TURNS = 64, 400  # evaluations in one call
 ABOUT_CENTRE = ("gravity_gradient",)  # needs the centre of mass at rest, gravity a fixed point: one of them acts
 ABOUT_POINT = ("gravity",)
@@ -48,7 +48,7 @@ Progress = Callable[[str], object]
 
 
 def rungs() -> dict[str, tuple[str, Scene]]:
-    """Return the ladder of scenes, the most general first: name -> (description, scene)."""
+    """Return the scenes of the ladder, the most general first: name -> (description, scene)."""
     scenes = {}
     for name, entry in read_toml(LADDER, LADDER.name).items():
         about = str(entry.pop("about"))
@@ -57,7 +57,7 @@ def rungs() -> dict[str, tuple[str, Scene]]:
 
 
 def _nothing(kind: str) -> Torque:
-    """Return a torque of a kind, with constants that make it zero."""
+    """Return a torque of the given kind whose constants make it zero."""
     zeros: dict[str, Any] = {
         "scalar": Fraction(0), "vector": (Fraction(0),) * 3, "scalar or vector": (Fraction(0),) * 3,
         "attitude": (Fraction(1), *(Fraction(0),) * 3),
@@ -76,7 +76,7 @@ def general_plan(scene: Scene) -> Plan:
 
 
 def measure(name: str | None = None, quick: bool = False, say: Progress = lambda text: None) -> dict[str, Any]:
-    """Measure the ladder, or one scene, and return its rows as data for JSON.
+    """Return the savings by specialisation for the ladder, or for one scene, as data for JSON.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def measure(name: str | None = None, quick: bool = False, say: Progress = lambda
         For a scene that cannot be used, or where there is no C compiler.
     """
     if cache.missing():
-        raise InputError(f"--skip: expected a C compiler, whose kernels are compared; {cache.missing()}")
+        raise InputError(f"--skip: expected a C compiler to compile the compared kernels; {cache.missing()}")
     ladder = rungs() if name is None else {name: (load_scene(name).title, load_scene(name))}
     rows, entries = [], []
     for about, scene in ladder.values():
@@ -101,7 +101,7 @@ def measure(name: str | None = None, quick: bool = False, say: Progress = lambda
 
 
 def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[], object]]]:
-    """Return a row without its times, and the runs that are timed for it."""
+    """Return a row of the table without its times, and the runs that are timed for it."""
     plans = {"general": general_plan(scene), "own": make_plan(scene)}
     row: dict[str, Any] = {"motion": about}
     runs: dict[str, Callable[[], object]] = {}
@@ -128,7 +128,7 @@ def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[
 
 
 def _evaluations(problem: Problem) -> Callable[[], object]:
-    """Return a run that evaluates the rates at many states near the initial state."""
+    """Return a function that evaluates the rates at many states near the initial state."""
     size = len(problem.y0)
     function = ctypes.CDLL(str(cache.build(problem.kernel.source + LOOP.format(states=STATES, size=size), "many"))).many
     function.argtypes, function.restype = (ctypes.c_long, *(ctypes.c_void_p,) * 3), None
@@ -142,7 +142,7 @@ def _scaled(value: float | None, unit: float) -> str:
 
 
 def lines(results: Mapping[str, Any]) -> list[str]:
-    """Return the table as lines of text; the first is the title."""
+    """Return the table of savings as lines of text; the first is the title."""
     from symrot.report.layout import columns, fields, room
 
     rows = [["motion", "states", "operations", "ns", "motion us", "auto us", "", "ends apart"]]

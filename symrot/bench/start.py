@@ -1,4 +1,4 @@
-"""Measure the time to the first result: `symrot run` from a warm and a cold start, and the unavoidable part of it.
+"""Time to the first result: `symrot run` from a warm and a cold start, and the unavoidable part of it.
 
     python -m symrot.bench.start [ROUNDS] [SCENE]
 
@@ -34,13 +34,13 @@ def _seconds(command: list[str], environment: dict[str, str]) -> float:
 
 
 def _symrot() -> list[str]:
-    """Return the command of a user: the script installed next to this Python, otherwise ``python -m symrot``."""
+    """Return the command line of symrot: the script next to this Python, otherwise ``python -m symrot``."""
     script = Path(sys.executable).with_name("symrot")
     return [str(script)] if script.exists() else [sys.executable, "-m", "symrot"]
 
 
 def main(arguments: list[str]) -> int:
-    """Print the table; arguments are the number of rounds and the scene."""
+    """Print the table of starting times; arguments are the number of rounds and the scene."""
     rounds = int(arguments[0]) if arguments else ROUNDS
     scene = arguments[1] if len(arguments) > 1 else "tumbling_prism"
     with TemporaryDirectory(prefix="symrot-") as directory:

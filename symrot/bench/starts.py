@@ -1,17 +1,18 @@
-"""Measure a change of the start: one more call of a propagator, part by part, and one trajectory of an ensemble.
+"""Times of another initial state: one more call of a propagator, part by part, and one trajectory of an ensemble.
 
     python -m symrot.bench.starts [--rounds 300] [SCENE ...]
     python -m symrot.bench.starts --ensembles [--most 100000] [--rounds 5] [SCENE ...]
 
-The first table has a row for each scene and method, in microseconds. Its columns: reading the start; planning it (the
-structure is known); binding parameters; setting up the motion (constants of a closed form, or the task of a stepper);
-the motion itself (the work in C and the call of it, for a start with both changed); then whole calls at 101 times with
-another angular velocity, with another attitude, and with both; the overhead (the time of a call minus that of its own
-motion) of the more expensive of the first two calls, and of the third; last, the most expensive call of a stepper while
-nothing is done in C. On a loaded machine Python is slower after a long motion; the last column is free of that.
+The first table has a row for each scene and method, in microseconds. Its columns: reading the initial state; planning
+it (the structure is known); binding parameters; setting up the motion (constants of a closed form, or the task of a
+stepper); the motion itself (the work in C and the call of it, for a start with both changed); then whole calls at 101
+times with another angular velocity, with another attitude, and with both; the overhead (the time of a call minus that
+of its own motion) of the more expensive of the first two calls, and of the third; last, the most expensive call of a
+stepper while nothing is done in C. On a loaded machine Python is slower after a long motion; the last column is free of
+that.
 
 The second table has microseconds per trajectory of 101 samples, in closed form and by steps, for ensembles that vary
-only starts or starts and constants, and the method that ``auto`` chooses. Medians of processor time.
+only initial states or initial states and constants, and the method that ``auto`` chooses. Medians of processor time.
 """
 
 import argparse
@@ -111,13 +112,16 @@ def _median(run: Callable[[], object], rounds: int) -> float:
 
 
 def _start(scene: Scene) -> tuple[Floats, Floats]:
-    """Return a start near that of the scene, with no component zero."""
+    """Return an angular velocity and attitude near the initial state of a scene, with no component zero."""
     omega, quaternion = (np.array([float(x) for x in vector]) for vector in scene.initial)
     return omega * (1 + SPREAD) + SPREAD * abs(omega).max(), quaternion + SPREAD
 
 
 def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int) -> tuple[float, float, float]:
-    """Return microseconds of two runs in turn, and of what the first takes longer: what drifts does so for both."""
+    """Return median microseconds of two runs that alternate, and the median of their difference.
+
+    A slow change of the machine's speed affects both runs and cancels in the difference.
+    """
     times = np.empty((rounds, 3))
     for k in range(rounds):
         began = process_time_ns()
@@ -136,8 +140,8 @@ class _Row(NamedTuple):
     parts: tuple[float, ...]  # read, plan, bind, set up
     motion: float  # with both
     calls: tuple[float, ...]
-    python: tuple[float, ...]  # what of the calls is not the motion
-    idle: float  # the dearest call of a stepper with nothing done in C
+    python: tuple[float, ...]  # the part of each call that is not the motion itself
+    idle: float  # the most expensive call of a stepper while nothing is done in C
 
 
 def _row(propagate: Propagator, rounds: int) -> _Row:
@@ -160,7 +164,7 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
         return one.exact if motion.choice.method == "exact" else one.stepping
 
     def whole(start: dict[str, Floats]) -> tuple[float, float, float]:
-        """Return what a call takes, the motion itself, and the rest."""
+        """Return the microseconds of a call, of the motion itself, and of the rest of the call."""
         initial = read_start(scene, start.get("omega"), start.get("quaternion"))
         own = propagate.motion_from(initial)
         own.follow(times, True)
@@ -189,7 +193,9 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
 
 
 def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
-    """Return the microseconds in C for the constants of a closed form; zero for steppers, which have no constants."""
+    """Return the microseconds that C takes for the constants of a closed form; zero for a stepper, which has no
+    constants.
+    """
     if motion.choice.method != "exact":
         return 0.0
     if motion.form.library == "spin_up":
@@ -212,7 +218,10 @@ def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
 
 
 def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
-    """Return the microseconds in C for the constants of a spin-up, with polynomials only if samples need them."""
+    """Return the microseconds that C takes for the constants of a spin-up.
+
+    The table of polynomials counts only if samples need it.
+    """
     functions, total = spin_up_compiled.functions(), 0.0
     record, table = functions.record(), np.empty(spin_up_compiled.TABLE)
     arguments = source._numbers, functions.limits(*spin_up_compiled.limits())
@@ -228,7 +237,7 @@ def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
 
 
 def changed_starts(scenes: list[str], rounds: int) -> None:
-    """Print the first table."""
+    """Print the table of calls of a propagator with another initial state."""
     heads = ("read", "plan", "bind", "set up", "motion", "omega", "attitude", "both", "Python", "of both", "no C")
     print(f"{'us of a changed start':28}{'method':>8}" + "".join(f"{head:>9}" for head in heads))
     for name in scenes:
@@ -268,7 +277,7 @@ def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tup
 
 
 def ensembles(scenes: list[str], rounds: int, most: int) -> None:
-    """Print the second table."""
+    """Print the table of trajectories of ensembles."""
     print(f"{'us per trajectory':26}{'varied':36}{'n':>8}{'exact':>9}{'taylor':>9}   auto takes")
     for name in scenes:
         scene = _scene(name)
@@ -284,7 +293,7 @@ def ensembles(scenes: list[str], rounds: int, most: int) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print a table."""
+    """Print the table that the arguments choose."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.starts", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("scenes", metavar="SCENE", nargs="*")
     parser.add_argument("--rounds", type=int)

@@ -1,4 +1,4 @@
-"""Measure the stepper: symrot's DOP853, one written by hand in C, and SciPy's, interleaved on the free asymmetric body.
+"""Times of DOP853: symrot's, one written by hand in C, and SciPy's, interleaved on the free asymmetric body.
 
     python -m symrot.bench.stepper [--tolerance 1e-9] [--stop 1000] [--rounds 15]
 
@@ -27,7 +27,7 @@ __all__ = ["Measurement", "main", "measure"]
 
 MOMENTS = (1.0, 2.0, 3.0)  # kg m^2
 INITIAL = (0.3, 1.0, 0.5, 1.0, 0.0, 0.0, 0.0)  # rad/s, 1
-SLOW_ROUNDS = 3  # of SciPy's, which takes a thousand times as long
+SLOW_ROUNDS = 3  # rounds of SciPy, which takes a thousand times as long
 
 Floats = NDArray[np.float64]
 

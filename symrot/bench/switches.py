@@ -1,4 +1,4 @@
-"""Compare switched torques with their closed forms: error, steps, switches and time at tolerances 1e-6 to 1e-12.
+"""Switched torques against closed forms: error, steps, switches and time at tolerances 1e-6 to 1e-12.
 
 Dry friction stops a wheel and lets it go again, a relay swings a body in parabolas, a thruster fires 10 ms in each of
 1000 seconds. Run it as ``python -m symrot.bench.switches``.
@@ -36,7 +36,10 @@ class Problem(NamedTuple):
 
 
 def _friction(times: Floats) -> Floats:
-    """Return omega_3 under 2 sin t - sign(omega_3), from rest: from t = pi/6 the wheel slips until it stops."""
+    """Return omega_3 of a wheel under the torque 2 sin t - sign(omega_3), from rest, at the times.
+
+    From t = pi/6 the wheel slips until it stops.
+    """
     loose = math.asin(0.5)
     slip = np.maximum(times, loose)
     rise: Floats = (2.0 * (math.cos(loose) - np.cos(slip)) - (slip - loose)) / MOMENT
@@ -44,14 +47,16 @@ def _friction(times: Floats) -> Floats:
 
 
 def _relay(times: Floats) -> Floats:
-    """Return omega_3 under -sign(angle): the period is 12 s, four arcs of constant torque."""
+    """Return omega_3 under the torque -sign(angle) at the times: the period is 12 s, with four arcs of constant
+    torque.
+    """
     phase = np.mod(times, 4.0 * MOMENT)
     swing: Floats = np.where(phase < 2 * MOMENT, 1.0 - phase / MOMENT, -1.0 + (phase - 2 * MOMENT) / MOMENT)
     return swing
 
 
 def _thruster(times: Floats) -> Floats:
-    """Return omega_3 under pulses of 10 ms at each full second."""
+    """Return omega_3 under pulses of 10 ms at each full second, at the times."""
     whole = np.floor(times)
     burned: Floats = (0.01 * whole + np.minimum(times - whole, 0.01)) / MOMENT
     return burned
@@ -65,7 +70,7 @@ PROBLEMS = {
 
 
 def scene(problem: Problem) -> Scene:
-    """Return the scene of a problem."""
+    """Return the scene in which a problem's torque acts about axis 3."""
     torque = {"kind": "expression", "torque": ["0", "0", problem.torque], "parameters": problem.parameters}
     return Scene.from_dict({
         "schema": 1, "body": {"principal": [1, 2, MOMENT]}, "initial": {"omega": [0, 0, problem.omega]},
@@ -74,7 +79,7 @@ def scene(problem: Problem) -> Scene:
 
 
 def _measured(problem: Problem, method: str, tolerance: float) -> tuple[float, Any, float]:
-    """Return the largest error (in tolerances) at and between samples, the statistics, and the least seconds."""
+    """Return the largest error at samples and between them (in tolerances), the statistics, and the least seconds."""
     made = propagator(scene(problem), method, tolerance)
     times = np.linspace(0.0, problem.stop, 1001)
     least, motion = math.inf, made(times)
@@ -92,7 +97,7 @@ def _measured(problem: Problem, method: str, tolerance: float) -> tuple[float, A
 
 
 def main() -> None:
-    """Print the table."""
+    """Print the table of motions with switches."""
     rows = [("torque", "method", "tolerance", "error, tolerances", "steps", "switches", "time")]
     for name, problem in PROBLEMS.items():
         for method in METHODS:

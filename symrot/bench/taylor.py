@@ -1,4 +1,4 @@
-"""Measure the steppers at equal error: against heyoka in each of its settings, and against loops written by hand in C.
+"""Steppers at equal error: symrot's against heyoka in each of its settings, and against loops written by hand in C.
 
     python -m symrot.bench.taylor [--rounds 7] [--quick] [--orders] [--motion NAME]
 
@@ -77,7 +77,7 @@ SETTINGS: dict[str, dict[str, bool]] = {
     "heyoka compact": {"compact_mode": True},
 }  # fmt: skip
 OURS, BY_HAND = ("taylor", "dop853"), ("rk4", "dop853")
-HAND_DECADES = (1e-3, 1e-4, 1e-5)  # where low order is at its best
+HAND_DECADES = (1e-3, 1e-4, 1e-5)  # decades of the error in which low order is at its best
 DECADES = tuple(10.0**-k for k in range(3, 14))
 ORDERS = (8, 10, 12, 14, 16, 18, 20, 22, 24, 28)
 REFERENCE_DIGITS, REFERENCE_ORDER, REFERENCE_TAIL = 40, 32, 1e-28
@@ -95,7 +95,7 @@ class Run(NamedTuple):
 
 
 class _Problem:
-    """A motion with its kernel and the numbers of its parameters."""
+    """One motion of the comparison, with its kernel and the numbers of its parameters."""
 
     def __init__(self, name: str, scale: float) -> None:
         self.plan: Plan = make_plan(scene(name))
@@ -115,7 +115,7 @@ class _Problem:
         return [*self.p, *invariant_parameters(self.kernel, self.plan)]
 
     def error(self, state: Iterable[Any], exact: Floats) -> float:
-        """Return the largest error of a state, rates relative to the largest rate."""
+        """Return the largest error of a state; errors of rates are relative to the largest rate."""
         computed, worst = np.array([float(value) for value in state]), 0.0
         if not np.isfinite(computed).all():
             return math.inf
@@ -126,14 +126,14 @@ class _Problem:
 
 
 def scene(name: str) -> Scene:
-    """Return a motion of :data:`MOTIONS` as a scene."""
+    """Return one of the motions of :data:`MOTIONS` as a scene."""
     form = {"schema": 1, "title": name, "output": {"quantities": ["omega", "quaternion"]}, **MOTIONS[name]}
     form["span"] = {**form["span"], "samples": 2}
     return Scene.from_dict(form, name)
 
 
 def reference(name: str, scale: float = 1.0) -> Floats:
-    """Return the last state of a motion: from :data:`REFERENCES` for the whole span, otherwise computed now."""
+    """Return the exact last state of a motion: from :data:`REFERENCES` for the whole span, otherwise computed now."""
     stored = tomllib.loads(REFERENCES.read_text(encoding="utf-8")).get(name)
     return (
         np.array([float(value) for value in stored])
@@ -163,7 +163,7 @@ def compute_reference(name: str, scale: float = 1.0) -> list[Any]:
 
 
 def references_text() -> str:
-    """Return the text of :data:`REFERENCES`."""
+    """Return the Python text of :data:`REFERENCES`, with all references computed again."""
     import mpmath
 
     lines = [
@@ -216,7 +216,7 @@ def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> T
 
 
 def _by_hand(library_: Any, method: str, problem: _Problem, steps: int) -> TimedRun:
-    """Return a run of a handwritten loop."""
+    """Return a run of a handwritten loop in C, with a fixed number of steps."""
     function = getattr(library_, f"symrot_{method}")
     real = ctypes.c_double
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
@@ -278,7 +278,10 @@ def raced(
     tasks: Sequence[tuple[str, float, Callable[[], tuple[int, Any]]]], error: Callable[[Any], float], rounds: int,
     clock: Callable[[], float] = perf_counter,
 ) -> list[Run]:  # fmt: skip
-    """Time contestants (name, tolerance, task) alternately and return their runs; ``clock`` gives the seconds."""
+    """Return the runs of several contestants (name, tolerance, task), timed alternately.
+
+    ``clock`` gives the seconds.
+    """
     runs = []
     for name, tolerance, task in tasks:
         steps, states = task()
@@ -304,7 +307,7 @@ def best_of(runs: Iterable[Run], error: float, names: Sequence[str]) -> Run | No
 
 
 def _print_table(name: str, runs: list[Run]) -> dict[str, list[float]]:
-    """Print one motion; return the ratios by title."""
+    """Print the table of one motion; return the ratios of times by title."""
     stop = MOTIONS[name]["span"]["t"][1]
     present = list(dict.fromkeys(run.name for run in runs))
     peers = [n for n in present if n.startswith("heyoka")]
@@ -345,7 +348,7 @@ def _print_ratios(indent: str, ratios: dict[str, list[float]]) -> None:
 
 
 def _print_orders(name: str, rounds: int) -> None:
-    """Compare orders: the least time for each decade of the error."""
+    """Print a comparison of orders of the series: the least time for each decade of the error."""
     problem, exact = _Problem(name, 1.0), reference(name)
     paths = {f"{order}": problem.taylor_library(order) for order in ORDERS}
     tasks: list[tuple[str, float, TimedRun]] = [
@@ -363,7 +366,7 @@ def _print_orders(name: str, rounds: int) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the tables."""
+    """Print the tables of the comparison of steppers."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.taylor", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--quick", action="store_true", help="race heyoka in its default setting only")

@@ -1,4 +1,4 @@
-"""Measure the error of the functions that kernels call, in units in the last place (ulp).
+"""Errors of the functions that kernels call, in units in the last place (ulp).
 
     python -m symrot.bench.ulps [--points 20000]
 
@@ -36,7 +36,7 @@ __all__ = ["FUNCTIONS", "Measured", "main", "measured"]
 
 CONTRACTION = {"unfused": ("-ffp-contract=off",), "fused": ("-ffp-contract=fast", cache.NATIVE)}
 FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared")
-DIGITS = {"binary64": (53, -1074), "binary32": (24, -149)}  # of the fraction; exponent of the least number
+DIGITS = {"binary64": (53, -1074), "binary32": (24, -149)}  # bits of the fraction; exponent of the least number
 LEAST = {"binary64": 2.0**-1021, "binary32": 2.0**-125}
 REACH = {"binary64": float(np.finfo(np.float64).max), "binary32": float(np.finfo(np.float32).max)}  # for one sample
 
@@ -49,7 +49,7 @@ class Function:
 
     name: str
     exact: Callable[..., Any]
-    kernel: str  # whose text has it
+    kernel: str  # kernel whose C text contains the function
     forms: tuple[tuple[str, str], ...] = (("one", "symrot_"), ("batch", "symrot_near_"))
     reach: float = inf  # largest |x|
     beyond: float = 0.0  # if not 0: the least |x|, and the unit of errors is the roundoff over x^2
@@ -143,7 +143,10 @@ def _points(function: Function, real: Real, form: str, count: int) -> Floats:
 
 
 def _directions(real: Real, count: int, kind: Any) -> Floats:
-    """Return rows y and x: angles all around, all sizes and ratios, and the neighbours of y = x/2, x and 2 x."""
+    """Return test arguments y and x of the arc tangent, as two rows.
+
+    They are angles all around, all sizes and ratios, and the neighbours of y = x/2, x and 2 x.
+    """
     draw, third = np.random.default_rng(4), count // 3
     low, high = np.log(LEAST[real.precision]), np.log(REACH[real.precision])
     angles = draw.uniform(-pi, pi, third)
@@ -224,7 +227,7 @@ def _called(loaded: ctypes.CDLL, name: str, arguments: Floats, real: Real) -> li
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table."""
+    """Print the table of errors."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.ulps", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--points", type=int, default=20_000)
     points = parser.parse_args(arguments).points

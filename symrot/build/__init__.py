@@ -1,1 +1,1 @@
-"""Compile C and store the shared libraries in the user's cache."""
+"""Compilation of C, and the cache that stores the shared libraries for the user."""

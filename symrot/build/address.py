@@ -1,4 +1,4 @@
-"""Return the addresses of arrays, for calls of compiled functions."""
+"""Addresses of arrays, for calls of compiled functions."""
 
 import ctypes
 from typing import Any, overload
@@ -13,7 +13,10 @@ def address(array: NDArray[Any]) -> int: ...
 @overload
 def address(array: None) -> None: ...
 def address(array: Any) -> int | None:
-    """Return the address of an array's data, or None for None; NumPy's `ctypes` attribute takes eight times as long."""
+    """Return the memory address of an array's data, or None if there is no array.
+
+    NumPy's `ctypes` attribute takes eight times as long.
+    """
     if array is None:
         return None
     try:

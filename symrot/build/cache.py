@@ -1,4 +1,4 @@
-"""Compile C source once, store the library in the user's cache, and load it later without running a compiler.
+"""Cache of compiled C: a library is compiled once, stored for the user, and loaded later without a compiler.
 
 An entry is keyed by the source, the identity of the compiler (resolved path, size, modification time), the flags and
 the processor. A library is named by its own checksum, so a truncated or altered file is detected and rebuilt instead of
@@ -65,14 +65,14 @@ OWN_FILE = re.compile(r"(\w+-[0-9a-f]{32}\.(so|dll|dylib|index|text)|\.symrot-\w
 
 
 class Compiler(NamedTuple):
-    """A C compiler: its command line, and the identity of its program for cache keys."""
+    """C compiler: its command line, and the identity of its program for cache keys."""
 
     command: tuple[str, ...]
     identity: str
 
 
 class Cache(NamedTuple):
-    """The directory of compiled kernels; ``reason`` says why it is not the user's cache, or is empty."""
+    """Directory of compiled kernels; ``reason`` says why it is not the user's cache, or is empty."""
 
     directory: Path
     reason: str
@@ -97,7 +97,7 @@ def compiler() -> Compiler:
 
 
 def missing() -> str:
-    """Return why there is no C compiler, a sentence; an empty text if there is one."""
+    """Return a sentence that says why there is no C compiler, or an empty text if there is one."""
     try:
         compiler()
     except CompilerError as error:
@@ -106,7 +106,10 @@ def missing() -> str:
 
 
 def cache(probe: bool = False) -> Cache:
-    """Return the directory in use and why it is temporary, if it is; ``probe`` writes a file to detect a full disk."""
+    """Return the cache directory in use, with the reason if it is a temporary one.
+
+    With ``probe`` a file is written, which detects a full disk.
+    """
     if probe:
         _keep(_text_name("probe"), b"")
     if _temporary.path is not None:
@@ -147,7 +150,7 @@ def built(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path | None
 
 
 class Building:
-    """A library that is compiled in another thread; arguments as for :func:`build`."""
+    """Library that is compiled in another thread; arguments as for :func:`build`."""
 
     def __init__(self, source: str, name: str, flags: tuple[str, ...] = FLAGS) -> None:
         self._path: Path | None = built(source, name, flags)
@@ -188,7 +191,7 @@ class Building:
 
 
 def _thread(work: Callable[..., None], *arguments: object) -> Any:
-    """Return a thread that compiles. All that its work imports is imported here.
+    """Return a thread that runs ``work`` to compile; all modules that the work needs are imported here first.
 
     A thread that imports waits for Python's import lock, and Ctrl-C during an import of the main thread can leave this
     lock held for good: neither the thread nor the process, which waits for its threads, would ever end.
@@ -204,7 +207,7 @@ def _thread(work: Callable[..., None], *arguments: object) -> Any:
 
 
 def stop_compilers() -> None:
-    """Kill the compilers of this process, for example after Ctrl-C; waiting callers get a CompilerError."""
+    """Kill all running compilers of this process, for example after Ctrl-C; waiting callers get a CompilerError."""
     from symrot.build.compiler import stop_all
 
     stop_all()
@@ -217,7 +220,10 @@ def _entry(tool: Compiler, source: str, name: str, flags: tuple[str, ...]) -> st
 
 
 def store(key: str, text: str) -> None:
-    """Store a small text under a key (any string); if the cache cannot be written, for this process only."""
+    """Store a small text in the cache under a key (any string).
+
+    If the cache cannot be written, the text is stored for this process only.
+    """
     try:
         _keep(_text_name(key), f"{_digest(text)}\n{text}".encode())
     except CompilerError:
@@ -225,7 +231,7 @@ def store(key: str, text: str) -> None:
 
 
 def fetch(key: str) -> str | None:
-    """Return the text stored under the key, or None if it is missing or damaged."""
+    """Return the text that is stored in the cache under a key, or None if it is missing or damaged."""
     for directory in _directories():
         content = _read(directory / _text_name(key))
         if content is not None:
@@ -327,7 +333,7 @@ def _cache_directory() -> Path:
 
 
 def _foreign(path: Path) -> str:
-    """Return why a file or directory must not be trusted, or an empty text."""
+    """Return the reason why a file or directory must not be trusted, or an empty text."""
     status = path.lstat()
     if hasattr(os, "getuid") and status.st_uid != os.getuid():
         return f"{path} belongs to another user (uid {status.st_uid})"
@@ -340,7 +346,7 @@ def _foreign(path: Path) -> str:
 
 @cache_once
 def _exposed(directory: Path) -> str:
-    """Return why another user could replace the cache directory, or an empty text.
+    """Return the reason why another user could replace the cache directory, or an empty text.
 
     A user who may write to a directory may rename its entries, even those of other users. In a sticky directory such as
     ``/tmp``, only the owner of the entry, the owner of the directory and root may. Therefore every parent directory,
@@ -373,7 +379,7 @@ def _shared_group(group: int) -> bool:
 
 
 def _user_directory() -> tuple[Path, str]:
-    """Return the user's cache directory and why it cannot be used, or an empty text."""
+    """Return the user's cache directory, and the reason why it cannot be used (an empty text if it can)."""
     directory = _cache_directory() / CACHE_SUBDIR
     try:
         if not directory.is_dir():
@@ -444,7 +450,7 @@ def _library_name(name: str, content: bytes) -> str:
 
 
 def _sound_library(directory: Path, entry: str, name: str) -> Path | None:
-    """Return the library an index entry points to, if its content still has the checksum in its name."""
+    """Return the library that an entry of the index names, if its content still has the checksum in its name."""
     pointer = _read(directory / entry)
     if pointer is None:
         return None

@@ -1,4 +1,4 @@
-"""Run a C compiler for a bounded time, and kill it with all its children when this process is stopped.
+"""Runs of a C compiler for a bounded time; it is killed with all its children when this process is stopped.
 
 This module is imported only when something has to be compiled; most runs find their libraries in the cache.
 """
@@ -62,7 +62,7 @@ def run_compiler(command: Sequence[str], flags: Sequence[str], source: str, outp
 
 
 def stop_all() -> None:
-    """Kill all running compilers, and make waiting threads kill those that they start next."""
+    """Kill all running compilers, also those that waiting threads start later."""
     for thread in enumerate_threads():
         if thread.name == WAITING:
             thread.name = STOPPED

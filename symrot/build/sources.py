@@ -1,4 +1,4 @@
-"""Read the C files of the package by their paths inside it."""
+"""Access to the C files of the package by their paths inside it."""
 
 from pathlib import Path
 

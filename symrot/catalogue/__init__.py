@@ -100,7 +100,7 @@ def module_of(name: str) -> str:
 
 @cache
 def derivation(name: str) -> "Derivation":
-    """Derive and prove one entry of the catalogue, once per process.
+    """Return one derivation of the catalogue, with every step proven; it is derived once per process.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def derivation(name: str) -> "Derivation":
     6
     """
     if name not in names():
-        raise InputError(f"no derivation is called {name!r}; there are {', '.join(names())}")
+        raise InputError(f"expected the name of a derivation, one of {', '.join(names())}; got {name!r}")
     module = module_of(name)
     page: Derivation = import_module(module).derive()
     page.file = f"{module.replace('.', '/')}.py"
@@ -146,7 +146,7 @@ def _quiet(text: str) -> None:
 
 
 def pages(say: Say = _quiet) -> dict[str, str]:
-    """Return file name -> text of every printed page, the table of contents (``README.md``) first."""
+    """Return file name -> text of every printed page; the table of contents (``README.md``) comes first."""
     derived = {}
     for name in names():
         say(f"deriving {name} ..")
@@ -180,7 +180,7 @@ def write_pages(directory: Path | str, form: str) -> list[Path]:
         For an unknown format.
     """
     if form not in SUFFIXES:
-        raise InputError(f"pages are written as {' or '.join(SUFFIXES)}, got {form!r}")
+        raise InputError(f"form: expected {' or '.join(SUFFIXES)}, got {form!r}")
     directory = Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
     written = []

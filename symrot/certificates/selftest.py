@@ -47,8 +47,8 @@ class _CheckedFunction:
     def sentence(self, suffix: str) -> str:
         """Return the sentence for a failure of the function, for doubles or floats."""
         if self.allowed == CORRECT:
-            return f"expected {self.name}{suffix} to be rounded correctly: that of this machine is not"
-        return f"expected {self.name}{suffix} right to {self.allowed} ulp: that of this machine errs by more"
+            return f"expected {self.name}{suffix} to be rounded correctly: on this machine it is not"
+        return f"expected {self.name}{suffix} right to {self.allowed} ulp: on this machine its error is larger"
 
 
 def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:

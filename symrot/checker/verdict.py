@@ -1,11 +1,11 @@
 """The verdict on a claim, with its conditions, its evidence, a diagnosis, and true formulas near it."""
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from symrot.exact.evidence import Counterexample
 
-__all__ = ["Diagnosis", "Dimensions", "Repair", "Verdict"]
+__all__ = ["Diagnosis", "Dimensions", "Identification", "Repair", "Verdict"]
 
 
 @dataclass(frozen=True)
@@ -86,13 +86,59 @@ class Dimensions:
 
 
 @dataclass(frozen=True)
+class Identification:
+    """A known formula to which a formula has been proven equal.
+
+    Attributes
+    ----------
+    name : str
+    how : str
+        The change of the formula under which it is equal: ``""`` for none, ``"transposed"``,
+        ``"with the other sign"``.
+    mapping : dict
+        Symbol of the known formula -> symbol of the formula, where their names differ.
+    source : str
+        The place of the formula in symrot: a call, or a page with its step.
+    proven : bool
+        Always true: names without a proof are not returned.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.identify("(A*p**2 + B*q**2 + C*r**2)/2")[0].name
+    'kinetic energy of rotation, principal axes'
+    """
+
+    name: str
+    how: str
+    mapping: dict[str, str]
+    source: str
+    proven: bool = True
+
+    @property
+    def renaming(self) -> str:
+        """The symbols that differ as text, ``"with a for dphi"``; empty if none differs."""
+        pairs = ", ".join(f"{other} for {own}" for own, other in self.mapping.items())
+        return f"with {pairs}" if pairs else ""
+
+    def __str__(self) -> str:
+        return "; ".join(part for part in (self.name, self.how, self.renaming) if part)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the identification as JSON data."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
 class Verdict:
     """The verdict on a claim.
 
     Attributes
     ----------
     verdict : str
-        ``"true"``, ``"false"``, ``"conditional"`` (true under ``requires``) or ``"undecided"``.
+        ``"true"``, ``"false"``, ``"conditional"`` (true under ``requires``) or ``"undecided"``. For a claim that only
+        names a formula, ``I_zz == m/12*(a**2 + b**2)``: ``"recognised"``, ``"doubtful"`` (a single edit makes it a
+        formula that symrot derives) or ``"definition"`` (neither; nothing is claimed about it).
     conditions : tuple of str
         Conditions under which both sides are defined, ``"sin(theta) != 0"``; of a conditional claim the requirements
         first.
@@ -103,6 +149,8 @@ class Verdict:
     diagnosis : Diagnosis
     repairs : tuple of Repair
         At most three, nearest first.
+    recognised_as : tuple of Identification
+        The formulas of symrot to which the named formula, or its repair, is proven equal, the likeliest first.
     reason : str
         The reason why a claim is undecided or refused; otherwise empty.
     dimension : Dimensions
@@ -127,6 +175,7 @@ class Verdict:
     counterexample: Counterexample | None = None
     diagnosis: Diagnosis = Diagnosis("none", "")
     repairs: tuple[Repair, ...] = ()
+    recognised_as: tuple[Identification, ...] = ()
     reason: str = ""
     dimension: Dimensions = Dimensions()
     notes: tuple[str, ...] = ()
@@ -141,7 +190,7 @@ class Verdict:
         return self.counterexample.entry if self.counterexample else None
 
     def __bool__(self) -> bool:
-        return self.verdict == "true"
+        return self.verdict in ("true", "recognised")
 
     def __str__(self) -> str:
         return "\n".join([self.verdict, *(f"  {name}: {text}" for name, text in self.facts())])
@@ -150,8 +199,11 @@ class Verdict:
         """Return the rest of the verdict for a reader, as pairs (name, text)."""
         defined = [condition for condition in self.conditions if condition not in self.requires]
         wrong = self.diagnosis.code != "none"
+        near = self.verdict == "doubtful"
+        kinds = ["near to" if near else "formula of", *["or to" if near else "or of"] * len(self.recognised_as)]
         rows = [
             ("claim", self.text),
+            *((kind, f"the {reading}") for kind, reading in zip(kinds, self.recognised_as, strict=False)),
             ("true if", " or ".join(self.requires)),
             ("where", ", ".join(defined)),
             ("counterexample", str(self.counterexample or "")),
@@ -159,7 +211,7 @@ class Verdict:
             ("units", self.dimension.text),
             *(("note", note) for note in self.notes),
             ("diagnosis", f"{self.diagnosis.text} [{self.diagnosis.code}]" if wrong else ""),
-            *(("true instead", f"{repair.text}  [{repair.code}]") for repair in self.repairs),
+            *(("instead" if near else "true instead", f"{repair.text}  [{repair.code}]") for repair in self.repairs),
         ]
         return [(name, text) for name, text in rows if text]
 
@@ -188,4 +240,5 @@ class Verdict:
                 "status": self.dimension.status, "text": self.dimension.text, "units": self.dimension.units,
             },
             "notes": list(self.notes),
+            "recognised_as": [reading.to_json() for reading in self.recognised_as],
         }  # fmt: skip

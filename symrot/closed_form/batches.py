@@ -1,6 +1,8 @@
-"""The constants of many motions in closed form, as arrays that equal the constants of each single motion bit by bit.
+"""Constants of many motions in closed form, computed as arrays, equal bit by bit to the constants of each single
+motion.
 
-A sum whose digits may all cancel is computed in integers, one motion after the other; pairs of doubles do the rest.
+Sums in which all digits may cancel are computed in integers, one motion after the other. Double-double arithmetic (sums
+of two doubles) computes the rest for all motions at once.
 """
 
 from collections.abc import Callable, Sequence
@@ -23,7 +25,7 @@ from symrot.closed_form.axial.compiled import Constants
 from symrot.closed_form.axial.motion import turned_about
 from symrot.closed_form.build import Floats
 from symrot.closed_form.free_body import bodies
-from symrot.closed_form.free_body.motion import NEGLIGIBLE, Defect, FreeRigidBody, gaps
+from symrot.closed_form.free_body.motion import Defect, FreeRigidBody, gaps
 from symrot.closed_form.heavy_top.motion import Frame
 from symrot.closed_form.many import Batch
 from symrot.closed_form.spin_up.compiled import limits
@@ -35,25 +37,29 @@ __all__ = [
 ]  # fmt: skip
 
 Column = Floats | Fraction
-"""A constant: one value for each motion, shape (n,), or one for all."""
+"""A constant: one value for each motion, shape (n,), or one value for all motions."""
 
 _SPREAD = 2.0**-300  # components of a quaternion farther apart are left to fractions
-_DOUBT = 2.0**-12  # of a step of the grid: pairs of doubles err by less than a quarter of it
-_TIE = 2.0**-40  # of the last bit
-_TURNED = 2.0**-99  # by which products of unit quaternions may err: units by 2^-100, two products by 2^-102 each
+_DOUBT = 2.0**-12  # part of a grid step: double-double numbers have errors of less than a quarter of it
+_TIE = 2.0**-40  # part of the last bit
+_TURNED = 2.0**-99  # error of products of unit quaternions: 2^-100 of the units, 2^-102 of each product
 
 
 def attitudes(quaternions: Floats) -> Floats:
-    """Return unit quaternions as :func:`symrot.closed_form.arithmetic.pairs.attitude` has them, shape (n, 8).
+    """Return unit quaternions as sums of two doubles, shape (n, 8): hi and lo of each component.
 
-    Pairs of doubles decide the last bit of all but about one in a thousand; exact numbers decide it for the others.
+    The numbers equal those of :func:`symrot.closed_form.arithmetic.pairs.attitude`. Where double-double arithmetic
+    leaves the last bit in doubt, for about one quaternion in a thousand, exact numbers decide it.
     """
     high, low = _units(quaternions)
     return _on_grid(high, low, 0.0, lambda i: attitude(_unit(quaternions[i])))
 
 
 def turned(frame: Frame, quaternions: Floats) -> Floats:
-    """Return unit quaternions as :meth:`symrot.closed_form.heavy_top.motion.Frame.start` has them, shape (n, 8)."""
+    """Return attitudes between the axes of a heavy top, shape (n, 8): hi and lo of each component.
+
+    The numbers equal those of :meth:`symrot.closed_form.heavy_top.motion.Frame.start` for each single attitude.
+    """
     attitudes = _units(quaternions)
     if frame.before is not None:
         attitudes = _product(frame.before, True, attitudes)
@@ -67,7 +73,10 @@ def _unit(quaternion: Floats) -> Sequence[Fraction]:
 
 
 def _units(quaternions: Floats) -> dd.Pair:
-    """Return unit quaternions as pairs of doubles, to less than a quarter of :data:`_DOUBT` of each component."""
+    """Return quaternions divided by their norms, as double-double numbers.
+
+    The error of each component is less than a quarter of :data:`_DOUBT`, in units of the rounding grid.
+    """
     scaled = np.ldexp(quaternions, -np.frexp(abs(quaternions).max(axis=1))[1][:, None])
     square = dd.two_product(scaled, scaled)
     total = (square[0][:, 0], square[1][:, 0])
@@ -80,19 +89,22 @@ def _units(quaternions: Floats) -> dd.Pair:
     high = scaled / root
     back = dd.two_product(high, root)
     low = (((scaled - back[0]) - back[1]) - high * rest) / root
-    return high + low, low - ((high + low) - high)
+    return dd.normalized(high, low)
 
 
 def _sign(i: int, j: int) -> float:
-    """Return the sign of the product of two units of the quaternions."""
+    """Return the sign of the product of the quaternion units i and j, which are numbered 0 to 3 (1, i, j, k)."""
     return -1.0 if (i and i == j) or (i, j) in ((1, 3), (2, 1), (3, 2)) else 1.0
 
 
 def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
-    """Return the products of one unit quaternion, before or after, with others (n, 4), to 2^-102 of a unit."""
+    """Return the products of one constant unit quaternion with many, shape (n, 4), to 2^-102.
+
+    ``before`` says that the constant quaternion is the left factor.
+    """
     product: dd.Pair | None = None
     for i, (high, low) in enumerate(map(pair, constant)):
-        places = [i ^ k for k in range(4)]  # of which unit i makes unit k
+        places = [i ^ k for k in range(4)]  # unit j with i*j = k or -k
         signs = np.array([_sign(i, j) if before else _sign(j, i) for j in places])
         term = dd.multiply((high * signs, low * signs), (q[0][:, places], q[1][:, places]))
         product = term if product is None else dd.add(product, term)
@@ -101,9 +113,10 @@ def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
 
 
 def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], Sequence[float]]) -> Floats:
-    """Return pairs as :func:`symrot.closed_form.arithmetic.pairs.on_grid` does; doubtful rows are computed exactly.
+    """Return double-double numbers rounded as :func:`symrot.closed_form.arithmetic.pairs.on_grid` rounds exact ones.
 
-    The error of the pairs is at most a quarter of :data:`_DOUBT` of a grid step of each component, plus ``error``.
+    Rows whose rounding is in doubt are replaced by ``exactly(row)``. The error of the numbers is at most a quarter of
+    :data:`_DOUBT` of a grid step of each component, plus ``error``.
     """
     last = np.where(abs(high) > _SPREAD, np.spacing(abs(high)), 1.0)
     part, steps = abs(low) / last, low / (last * GRID)
@@ -112,21 +125,21 @@ def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], S
     doubtful |= (abs(part - 0.5) < _TIE + wide) | (abs(part - 0.25) < _TIE + wide)
     doubtful |= ((high != 0) | (error > 0)) & (abs(high) <= _SPREAD)
     pairs = np.empty((len(high), 8))
-    pairs[:, ::2], pairs[:, 1::2] = high + 0.0, np.rint(steps) * (last * GRID) + 0.0  # zeros without a sign
+    pairs[:, ::2], pairs[:, 1::2] = high + 0.0, np.rint(steps) * (last * GRID) + 0.0  # -0.0 becomes 0.0
     for i in np.flatnonzero(doubtful.any(axis=1)).tolist():
         pairs[i] = exactly(i)
     return pairs
 
 
 def _pairs(values: Floats) -> Floats:
-    """Return doubles as pairs whose low parts are zero."""
+    """Return doubles as double-double numbers: each double is followed by a low part of zero."""
     pairs = np.zeros((*values.shape[:-1], 2 * values.shape[-1]))
     pairs[..., ::2] = values
     return pairs
 
 
 def _columns(values: Sequence[Column], n: int) -> Floats:
-    """Return constants as pairs, shape (n, 2 k)."""
+    """Return k constants as double-double numbers in an array of shape (n, 2 k), one row for each motion."""
     columns = np.zeros((n, 2 * len(values)))
     for k, value in enumerate(values):
         if isinstance(value, Fraction):
@@ -137,24 +150,27 @@ def _columns(values: Sequence[Column], n: int) -> Floats:
 
 
 def _together(values: Sequence[Column], n: int) -> Floats:
-    """Return constants as pairs, of shape (2 k,) if all motions share them."""
+    """Return k constants as double-double numbers: shape (2 k,) if all n motions share them, else (n, 2 k)."""
     return _columns(values, n)[0] if all(isinstance(value, Fraction) for value in values) else _columns(values, n)
 
 
 def usual(omega: Floats) -> NDArray[np.bool_]:
-    """Return which angular velocities (n, 3) lie in the range where these arrays are exact."""
+    """Return, for each angular velocity (n, 3), whether its size lies in the range where arrays give exact results."""
     largest = abs(omega).max(axis=1)
     is_usual: NDArray[np.bool_] = (largest <= LARGEST) & ((largest >= SMALLEST) | (largest == 0))
     return is_usual
 
 
 def _noticed(omega: Floats) -> Floats:
-    """Return angular velocities with zeros for the components that a single motion treats as zero."""
-    return np.where(abs(omega) < np.ldexp(abs(omega).max(axis=1), -NEGLIGIBLE)[:, None], 0.0, omega)
+    """Return angular velocities in which components too small to affect a motion are set to zero."""
+    return np.where(abs(omega) < np.ldexp(abs(omega).max(axis=1), -number.NEGLIGIBLE_BITS)[:, None], 0.0, omega)
 
 
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of one free body from :func:`usual` angular velocities and attitudes (8,) or (n, 8)."""
+    """Return the motions of one free body from many initial angular velocities and attitudes.
+
+    The angular velocities must be :func:`usual`; the attitudes have shape (8,) or (n, 8), hi and lo of each component.
+    """
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
     if body.axes is None:
@@ -169,10 +185,13 @@ def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
 
 
 def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floats) -> Batch:
-    """Return the motions of free bodies in their principal axes: three moments, the rest as :func:`free_bodies`."""
+    """Return the motions of free bodies in principal axes from their three moments, kg m^2.
+
+    The other arguments are those of :func:`free_bodies`.
+    """
     omega, n = _noticed(omega), len(omega)
     exact, pairs = np.empty((n, 8)), _columns(moments, n)
-    if not pairs[:, 1::2].any():  # moments are doubles
+    if not pairs[:, 1::2].any():  # the low parts are zero, since moments are doubles
         table = np.ascontiguousarray(pairs[:, ::2])
         for k in range(3):
             exact[:, 2 * k], exact[:, 2 * k + 1] = dd.two_sum(table[:, (k + 1) % 3], -table[:, (k + 2) % 3])
@@ -191,9 +210,10 @@ def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floa
 def free_bodies_of_tensors(
     entries: Sequence[Column], omega: Floats, start: Floats
 ) -> tuple[Batch | None, NDArray[np.bool_]]:
-    """Return the motions of free bodies in axes that are not principal, and for which of them the arrays are exact.
+    """Return motions of free bodies in axes that are not principal, and a mask of the motions computed exactly.
 
-    ``entries`` are the tensor's xx, yy, zz, xy, xz and yz, the rest as :func:`free_bodies`.
+    ``entries`` are the tensor's xx, yy, zz, xy, xz and yz, kg m^2; the other arguments are those of
+    :func:`free_bodies`. The motions outside the mask must be computed one by one.
     """
     settled = np.ones(len(omega), np.bool_)
     principal = bodies.principal_bodies(entries, omega)
@@ -204,7 +224,7 @@ def free_bodies_of_tensors(
 
 
 def _integers(values: list[float]) -> list[int]:
-    """Return integers in the ratios of doubles."""
+    """Return integers that are proportional to some doubles: each double times the same power of two."""
     (a, over_a), (b, over_b), (c, over_c) = (value.as_integer_ratio() for value in values)
     if over_a == over_b == over_c:
         return [a, b, c]
@@ -215,9 +235,10 @@ def _integers(values: list[float]) -> list[int]:
 def tops(
     across: Column, own: Column, pull: Floats, frame: Frame, omega: Floats, start: Floats,
 ) -> Batch:  # fmt: skip
-    """Return the motions of heavy tops: weight times height as pairs (2,) or (n, 2), the rest as :func:`free_bodies`.
+    """Return the motions of symmetric heavy tops from many initial states.
 
-    ``start`` holds attitudes between the axes of the frame, see :func:`turned`.
+    ``across`` and ``own`` are the moments across and about the symmetry axis; ``pull`` is weight times height as hi,
+    lo, of shape (2,) or (n, 2); ``start`` holds attitudes between the axes of ``frame``, see :func:`turned`.
     """
     rates = _pairs(np.ascontiguousarray(omega[:, frame.named]))
     axes = None if frame.axes is None else np.array(frame.axes)
@@ -225,7 +246,10 @@ def tops(
 
 
 def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of gyrostats with a rotor along an axis, the rest as :func:`free_bodies`."""
+    """Return the motions of symmetric gyrostats whose rotor lies along one axis, from many initial states.
+
+    ``across`` and ``own`` are the moments across and about that axis, ``rotor`` is the rotor's angular momentum.
+    """
     named = [(axis + 1) % 3, (axis + 2) % 3, axis]
     rates = _pairs(np.ascontiguousarray(omega[:, named]))
     constants = [_together([across, own], len(omega)), _together([rotor], len(omega))]
@@ -233,7 +257,10 @@ def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floa
 
 
 def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of symmetric bodies under a torque about their axis, the rest as :func:`free_bodies`."""
+    """Return the motions of symmetric bodies under a constant torque about their axis, from many initial states.
+
+    ``across`` and ``own`` are the moments across and about that axis.
+    """
     numbers = np.empty((len(omega), 20))
     numbers[:, :6] = _columns([across, own, torque], len(omega))
     numbers[:, 6:12] = _pairs(omega[:, [axis - 2, axis - 1, axis]])
@@ -242,15 +269,16 @@ def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floa
 
 
 def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
-    """Return the rotations of one driven body, or of a body each; the rest as :func:`free_bodies`.
+    """Return the motions of bodies driven about one axis: one body with many initial states, or one body for each
+    state.
 
-    The constants are elementary, and found in integers.
+    The constants are elementary functions and are computed in integers.
     """
     bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis
     turned: NDArray[np.bool_] = (omega[:, [axis - 2, axis - 1]] != 0).any(axis=1)
     moving = zip(bodies, omega[:, axis].tolist(), turned.tolist(), strict=True)
-    records = np.zeros((len(omega), 65))  # `axial` of axial.h
+    records = np.zeros((len(omega), 65))  # numbers in the struct `axial` of axial.h
     records[:, 8:26] = [each.moving(rate, across) for each, rate, across in moving]
     records[turned, 26:40], records[turned, 12:26] = records[turned, 12:26], 0.0
     records[:, :8] = constants.head(False) if isinstance(constants, Constants) else [c.head(False) for c in constants]

@@ -1,9 +1,10 @@
-"""Compile the closed forms, once per machine, and load them: all scenes share them, only their constants differ.
+"""Compilation of the closed forms, once per machine: all scenes share the code; only constants differ.
 
-A closed form is two C files, compiled side by side: ``name.c`` finds the constants of a motion, once, and is compiled
-at -Og, in a third of the time that -O2 takes for 1 us less; ``name_at.c`` holds the loops over samples. Elementary
-constants need no ``name.c``; ``bodies_at.c`` loops over bodies. Error-free arithmetic needs every rounding as written:
-contraction is off, and each prepared motion first asks the compiled code whether that is so.
+A closed form consists of two C files, compiled in parallel. ``name.c`` computes the constants of a motion, once per
+motion; it is compiled at -Og, which takes a third of the time of -O2 and costs 1 us per motion. ``name_at.c`` holds the
+loops over samples. A form with elementary constants has no ``name.c``; ``bodies_at.c`` loops over bodies. Double-double
+arithmetic needs every rounding as written, so contraction to fused operations is off, and each prepared motion first
+tests this in the compiled code.
 """
 
 import ctypes
@@ -37,7 +38,7 @@ FLAGS = (
 INCLUDE = '\n#include "'
 
 PARTS = {"": (*FLAGS, "-Og"), "_at": (*FLAGS, "-O2")}
-"""The two files of a closed form, by what follows its name, with their flags."""
+"""Compiler flags of the two C files of a closed form, by the ending of the file's name."""
 
 _begun: dict[str, list[library.Building]] = {}
 _loaded: dict[str, tuple[Any, ...]] = {}
@@ -45,12 +46,12 @@ _loaded: dict[str, tuple[Any, ...]] = {}
 
 @cache
 def _files() -> dict[str, Path]:
-    """Return the C files and headers of all closed forms by name: arithmetic, and a folder for each form."""
+    """Return the paths of all C files and headers of the closed forms, by file name."""
     return {file.name: file for file in Path(__file__).parent.rglob("*.[ch]")}
 
 
 def source(name: str) -> str:
-    """Return the text of ``name.c`` with its headers put in, each once: a whole translation unit."""
+    """Return the text of ``name.c`` as one translation unit: each header is inserted once."""
     places, seen = _files(), set()
 
     def text(file: str) -> str:
@@ -66,7 +67,9 @@ def source(name: str) -> str:
 
 
 def begin(name: str) -> list[library.Building]:
-    """Return the libraries of a closed form, one for each of its :data:`PARTS`, from the cache or while they compile.
+    """Start to compile the libraries of a closed form and return them; a cached library is not compiled again.
+
+    There is one library for each of its :data:`PARTS`.
 
     Raises
     ------
@@ -83,12 +86,12 @@ def begin(name: str) -> list[library.Building]:
 
 
 def loaded(name: str) -> bool:
-    """Return whether a closed form is at hand, so that no compiler is needed for it."""
+    """Return whether the libraries of a closed form are loaded, so that no compiler is needed."""
     return name in _loaded
 
 
 def load(name: str) -> tuple[Any, ...]:
-    """Return the loaded libraries of a closed form: that of its constants, if C finds them, and that of its samples.
+    """Return the loaded libraries of a closed form: first that of the constants, if it has one, then that of the loops.
 
     Raises
     ------
@@ -102,14 +105,14 @@ def load(name: str) -> tuple[Any, ...]:
             try:
                 _loaded[name] = tuple(ctypes.CDLL(str(part.path())) for part in parts)
                 break
-            except OSError as error:  # another process may have cleared the cache since
+            except OSError as error:  # another process may have cleared the cache in the meantime
                 if attempt == 3 or all(part.path().exists() for part in parts):
                     raise CompilerError(f"the compiled closed form {name!r} cannot be loaded: {error}") from error
     return _loaded[name]
 
 
 def times_of(t: ArrayLike) -> Floats:
-    """Return times as a vector of doubles.
+    """Return times, s, as a vector of doubles.
 
     Raises
     ------
@@ -119,10 +122,10 @@ def times_of(t: ArrayLike) -> Floats:
     try:
         times = np.ascontiguousarray(t, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"times are a number or a sequence of numbers (s), got {show(t)}") from None
+        raise InputError(f"t: expected times in s, a number or a sequence, got {show(t)}") from None
     if times.ndim > 1:
-        raise InputError(f"times are a number or a sequence of numbers (s), got an array of shape {times.shape}")
+        raise InputError(f"t: expected times in s, a number or sequence, got an array of shape {times.shape}")
     times = times.reshape(-1)
     if not isfinite(np.add.reduce(times)) and not np.isfinite(times).all():
-        raise InputError(f"times must be finite, got {times[~np.isfinite(times)][0]}")
+        raise InputError(f"t: expected finite times in s, got {times[~np.isfinite(times)][0]}")
     return times

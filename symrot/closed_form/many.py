@@ -1,7 +1,7 @@
-"""Many motions of one closed form in one call: constants that differ are arrays, shared ones are passed once.
+"""Many motions of one closed form in one call of C: constants that differ are arrays, shared constants are passed once.
 
-The constants and samples of each motion are computed by the same compiled functions from the same numbers as for a
-single motion, so that they are equal bit by bit.
+The same compiled functions compute each motion from the same numbers as for a single motion, so that the results are
+equal bit by bit.
 """
 
 import ctypes
@@ -17,28 +17,28 @@ from symrot.closed_form.motion import functions
 
 __all__ = ["Batch", "evaluate"]
 
-AT_ONCE = 1024  # motions to a call: some 10 ms, after which Python can see an interrupt
+AT_ONCE = 1024  # motions per call of C: some 10 ms, after which Python can react to an interrupt
 
 
 class Batch(NamedTuple):
     """Motions of the closed form ``name``, given by the arguments of its C function `prepare`.
 
-    Each argument is an array of shape (k,) that all motions share, of shape (n, k), or None. For ``axial`` the only
-    argument is the record of constants itself; for ``spin_up`` there are two: its numbers, and the axis with the limits
-    that all motions share.
+    Each argument is an array of shape (k,) that all motions share, an array of shape (n, k), or None. For ``axial`` the
+    only argument is the complete record of constants. For ``spin_up`` there are two arguments: the numbers of each
+    motion, and the axis with the limits that all motions share.
     """
 
     name: str
     arguments: tuple[Floats | None, ...]
 
     def of(self, chosen: NDArray[np.bool_]) -> "Batch":
-        """Return the motions of some rows."""
+        """Return the batch of those motions whose entry in ``chosen`` is true."""
         own = (values[chosen] if values is not None and values.ndim == 2 else values for values in self.arguments)
         return Batch(self.name, tuple(own))
 
 
 class _Motions(ctypes.Structure):
-    """``symrot_many_motions`` of many.c."""
+    """The C struct ``symrot_many_motions`` of many.c."""
 
     _fields_ = (
         ("prepare", ctypes.c_void_p), ("at", ctypes.c_void_p), ("record", ctypes.c_void_p), ("table", ctypes.c_void_p),
@@ -53,7 +53,9 @@ def _place(function: Any) -> int:
 
 
 def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | None, workers: int = 1) -> list[int]:
-    """Write the samples of n motions; return the motions outside the domain, which have to be evaluated alone.
+    """Write the samples of n motions into arrays; return the numbers of the motions that could not be computed.
+
+    Those motions leave the range of the batch arithmetic and have to be evaluated one by one.
 
     Parameters
     ----------
@@ -63,7 +65,7 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
     omega, quaternion : arrays, shapes (n, m, 3) and (n, m, 4), or None
         Written, one motion after the other in memory.
     workers : int
-        Threads; each does its share.
+        Number of threads; each computes a part of the motions.
     """
     run, prepare, at, record, table = _linked(batch)
     arguments = [None if values is None else np.ascontiguousarray(values) for values in batch.arguments]
@@ -94,12 +96,12 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
 
     odd = _shared(share, n, min(workers, max(1, n // AT_ONCE)))
     told = omega if quaternion is None else quaternion
-    ends = told[:, 0, 0] + told[:, -1, -1]  # as a motion alone tells that it leaves the doubles
+    ends = told[:, 0, 0] + told[:, -1, -1]  # a motion evaluated alone reports what overflows
     return sorted({*odd, *np.flatnonzero(np.isnan(ends)).tolist()})
 
 
 class _Linked(NamedTuple):
-    """The loop over motions, and the addresses of the functions of a form that it calls."""
+    """Compiled loop over motions, with the addresses of the C functions of one closed form that it calls."""
 
     run: Any
     prepare: int

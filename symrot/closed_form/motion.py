@@ -18,7 +18,7 @@ from symrot.errors import CompilerError, InputError
 __all__ = ["REGIMES", "ExactMotion", "functions", "prepared"]
 
 REGIMES = ("steady", "circular", "hyperbolic", "separatrix")
-"""The series of a motion: none, theta series, their imaginary transforms, or the functions of a separatrix."""
+"""Kinds of functions in a motion: elementary, theta series, their imaginary transforms, functions of a separatrix."""
 
 _DOMAIN = 1
 _Functions = tuple[Any, Any, Any]
@@ -26,7 +26,10 @@ _bound: dict[str, _Functions] = {}
 
 
 class ExactMotion(ABC):
-    """A motion at any time. Times are counted from the initial state."""
+    """Interface of a motion in closed form, which is evaluated at any time.
+
+    Times are counted from the initial state, s.
+    """
 
     regime: str
     """One of :data:`REGIMES`."""
@@ -65,16 +68,16 @@ class ExactMotion(ABC):
         samples = rates if attitudes is None else attitudes
         if (
             samples is not None and len(times) and isnan(samples.item(0) + samples.item(-1))
-        ):  # of times in order, ends tell
+        ):  # the first and the last of sorted times suffice
             raise InputError(
-                f"expected numbers of a motion that doubles can hold until then, got times {times.item(0)!r} to "
-                f"{times.item(-1)!r} s: nearer times or other units would do"
+                f"expected a motion within the range of doubles, got larger numbers at times {times.item(0)!r} to "
+                f"{times.item(-1)!r} s; use times nearer to the start, or other units"
             )
         return rates, attitudes
 
 
 class _Compiled(ExactMotion):
-    """A motion whose constants and samples are computed in C."""
+    """Motion in closed form whose constants and samples are computed in C."""
 
     def __init__(self, constants: Any, evaluate: Any) -> None:
         self._constants, self._evaluate = constants, evaluate
@@ -86,7 +89,7 @@ class _Compiled(ExactMotion):
 
 
 class _Portable(ExactMotion):
-    """A motion for use without a C compiler: constants computed by mpmath, samples by NumPy."""
+    """Motion in closed form for use without a C compiler: mpmath computes the constants, NumPy the samples."""
 
     def __init__(self, motion: Any) -> None:
         self.regime, self._motion = motion.regime, motion
@@ -96,7 +99,9 @@ class _Portable(ExactMotion):
 
 
 def functions(name: str, arguments: int) -> _Functions:
-    """Return the C functions of a closed form (`prepare`, and the loop over samples) and the type of its record."""
+    """Return the C functions of a closed form, `prepare` and the loop over samples, and the ctypes type of its
+    record.
+    """
     if name not in _bound:
         constants, samples = load(name)
         prepare, length = (getattr(constants, f"symrot_{name}_{part}") for part in ("prepare", "length"))
@@ -110,7 +115,9 @@ def functions(name: str, arguments: int) -> _Functions:
 
 
 def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Callable[[], str]) -> ExactMotion:
-    """Return a motion of ``name.c`` from the arguments of its `prepare`, each a list of doubles or None.
+    """Return the motion that the C function `prepare` of ``name.c`` makes from its arguments.
+
+    Each argument is a list of doubles or None. ``refusal`` returns the error message for numbers outside the domain.
 
     Raises
     ------
@@ -141,5 +148,5 @@ _packing = {length: Struct(f"{length}d").pack for length in (2, 4, 6, 8, 26)}
 
 
 def _packed(values: list[float]) -> bytes:
-    """Return doubles as C reads them; an array of ctypes takes five times as long."""
+    """Return doubles as the bytes that C reads; an array of ctypes takes five times as long to make."""
     return _packing[len(values)](*values)

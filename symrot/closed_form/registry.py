@@ -1,4 +1,4 @@
-"""The table of closed forms: each with its condition on scenes and the function that makes the motion."""
+"""Table of closed forms, each with its condition on scenes and the function that makes the motion."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -16,12 +16,14 @@ __all__ = ["FORMS", "ClosedForm", "Exact", "exact_form", "torque_and_damping"]
 
 
 class Exact(Protocol):
-    """The interface of a motion in closed form; times are counted from the initial state, s."""
+    """Interface of a motion in closed form; times are counted from the initial state, s."""
 
     def evaluate(
         self, t: ArrayLike, omega: bool = True, quaternion: bool = True
     ) -> tuple[Floats | None, Floats | None]:
-        """Return angular velocity (n, 3) in the body and attitude (n, 4); a quantity not requested is None."""
+        """Return angular velocity (n, 3), body axes, and attitude (n, 4) at the times; None for one that is switched
+        off.
+        """
 
 
 Vector = tuple[Fraction, ...]
@@ -29,21 +31,21 @@ Starts = Callable[[Initial], Exact]
 
 
 class ClosedForm(NamedTuple):
-    """A class of motions in closed form: its description, its condition on scenes, and its constructor."""
+    """Class of motions in closed form: a description, a condition on scenes, and a constructor."""
 
     name: str
     applies: Callable[[Scene], bool]
-    starts: Callable[[Scene], Starts]  # with all that motions from different starts share
-    library: str  # what it evaluates, see symrot.closed_form.build; "" for none
-    derivation: str  # what proves it
-    axis: Callable[[Scene], int | None] = lambda scene: None  # of the body, that the motion is about, if any
+    starts: Callable[[Scene], Starts]  # its motions share constants
+    library: str  # name of its C files, see symrot.closed_form.build; "" if it has no C files
+    derivation: str  # the derivation that proves it
+    axis: Callable[[Scene], int | None] = lambda scene: None  # body axis of the motion, if any
 
     def motion(self, scene: Scene) -> Exact:
-        """Return the motion of a scene."""
+        """Return the motion of a scene in this closed form, from the scene's initial state."""
         return self.starts(scene)(scene.initial)
 
     def begin(self) -> None:
-        """Start compiling the form in the background, if it has to be compiled."""
+        """Start to compile the C files of the closed form in the background, if they are not compiled yet."""
         from symrot.closed_form.build import begin
 
         if self.library and not library.missing():
@@ -65,7 +67,7 @@ def _symmetric_about(scene: Scene, axis: int) -> bool:
 
 
 def _only_axis(vector: tuple[Fraction, ...]) -> int | None:
-    """Return the number of the axis that a vector is parallel to, or None."""
+    """Return the number (0, 1 or 2) of the body axis that a vector is parallel to, or None."""
     along = [axis for axis, component in enumerate(vector) if component != 0]
     return along[0] if len(along) == 1 else None
 
@@ -109,7 +111,7 @@ def _gyrostat(scene: Scene) -> Starts:
 
 
 def torque_and_damping(scene: Scene) -> tuple[Vector, Vector]:
-    """Return the constant torque in the body and the coefficients of linear damping."""
+    """Return the constant torque of a scene, body axes, and the coefficients of linear damping."""
     sums = []
     for kind, field in (("constant_body", "torque"), ("damping", "linear")):
         vectors = [torque.vector(field) for torque in scene.torques if torque.kind == kind]
@@ -124,19 +126,25 @@ def _is_driven(scene: Scene) -> bool:
 
 
 def _driven_axis(scene: Scene) -> int | None:
-    """Return the principal axis about which a rotation remains under constant torques and linear damping, or None."""
+    """Return the principal axis about which the whole motion takes place, 0 for a body at rest, or None.
+
+    The scene has constant torques and linear damping only, and its torque and angular velocity lie along that axis.
+    """
     if not _is_driven(scene):
         return None
     push, turning = torque_and_damping(scene)[0], _only_axis(scene.initial.omega_b)
     axis = turning if turning is not None else _only_axis(push)
     across = [*scene.initial.omega_b, *push]
     if not any(across):
-        return 0  # at rest for ever
+        return 0  # the body stays at rest
     return None if any(x for i, x in enumerate(across) if i % 3 != axis) else axis
 
 
 def _driven_symmetry_axis(scene: Scene) -> int | None:
-    """Return the symmetry axis about which a constant torque acts, or None; with an attitude, only without damping."""
+    """Return the symmetry axis about which a constant torque drives the body, or None if the scene is of another kind.
+
+    If the scene needs the attitude, damping is excluded too.
+    """
     if not _is_driven(scene):
         return None
     push, drag = torque_and_damping(scene)
@@ -168,7 +176,10 @@ def _axial(scene: Scene) -> Starts:
 
 
 def _field_axis(name: str) -> Callable[[Scene], int | None]:
-    """Return a function that returns the axis along which a vector field of the only torque lies, or None."""
+    """Return a condition on scenes: it returns the body axis along which the only torque's vector lies, or None.
+
+    ``name`` is the field of the torque that holds the vector.
+    """
     return lambda scene: _only_axis(scene.torques[0].vector(name))
 
 
@@ -232,6 +243,6 @@ FORMS = (
 
 def exact_form(scene: Scene) -> ClosedForm | None:
     """Return the closed form of a scene's motion, or None if no form of the table applies."""
-    if scene.table is not None:  # samples act besides what the forms look at
+    if scene.table is not None:  # a torque by samples acts in addition to the torques that the conditions look at
         return None
     return next((form for form in FORMS if form.applies(scene)), None)

@@ -1,1 +1,1 @@
-"""From proven formulas to kernels: lowering, printing as C and NumPy, building and loading."""
+"""Code generation: from proven formulas to straight-line programs, and from programs to C and NumPy text."""

@@ -1,4 +1,4 @@
-"""Kernels of the library as programs: lowered from their definitions, numbers such as pi in their place."""
+"""Programs of the library's kernels: lowered from their definitions, with constants such as pi as printed numbers."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -31,7 +31,7 @@ def kernel_program(name: str) -> Program:
 
 
 def _with(node: Node, values: Mapping[str, Node]) -> Node:
-    """Return a formula with symbols replaced by formulas."""
+    """Return a formula with some of its symbols replaced by other formulas."""
     if not children(node):
         return values.get(node[1], node) if node[0] == "symbol" else node
     if node[0] == "call":
@@ -42,7 +42,10 @@ def _with(node: Node, values: Mapping[str, Node]) -> Node:
 
 
 def kernel_description(kernel: Definition, target: str, errors: str = "") -> Description:
-    """Return the head of an emitted file; in C it includes the box and the rounding ``errors`` on it."""
+    """Return the text in the head of a library kernel's file.
+
+    In C it includes the ranges of the inputs (the box) and the bounds ``errors`` of rounding errors on them.
+    """
     known = (("Box", _box(kernel.box)), *((("Errors", errors),) if errors else ()))
     return Description(
         title=kernel.title, domain=kernel.domain, derivation=kernel.derivation,

@@ -1,4 +1,4 @@
-"""Load an emitted NumPy kernel: write the text that a person would get, import it, use it."""
+"""Loading of emitted NumPy kernels: the text is written as a module and imported, as a user would do."""
 
 from collections.abc import Callable
 from importlib.util import module_from_spec, spec_from_file_location
@@ -18,7 +18,7 @@ _UNNAMED = Description(
 
 
 def load_numpy_kernel(program: Program) -> Callable[..., Any]:
-    """Return the function of an emitted NumPy module."""
+    """Return the function of the NumPy module that is emitted for a program."""
     with TemporaryDirectory(prefix="symrot-") as directory:
         path = Path(directory) / f"{program.signature.name}.py"
         path.write_text(numpy_source(program, _UNNAMED), encoding="utf-8")

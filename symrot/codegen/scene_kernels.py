@@ -1,4 +1,4 @@
-"""Derive the kernels of a plan: from its structure to programs and C text."""
+"""Kernels of a plan: programs and C text, derived from the structure of the plan."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -75,8 +75,8 @@ def derive_scene_kernel(
 ) -> SceneKernel:
     """Return the kernels of a plan's structure, with its conserved quantities proven.
 
-    ``on_rates`` gets the rates and their C text as soon as they are derived, so that a compiler can work while the rest
-    is derived.
+    ``on_rates`` is called with the rates and their C text as soon as they are derived, so that a compiler can work
+    while the rest is derived.
     """
     equations = equations_of_motion(structure)
     rates = rates_program(equations, RATES)
@@ -93,7 +93,9 @@ def derive_scene_kernel(
 
 
 def rates_source(rates: Lowered) -> str:
-    """Return the C text of the rates under one calling convention: ``(t, y, p, dy)``, with or without parameters."""
+    """Return the C text of the rates as a function with the arguments ``(t, y, p, dy)``, whether or not it has
+    parameters.
+    """
     source = c_function(rates.program, "static inline ")
     if rates.parameters:
         return source
@@ -114,7 +116,10 @@ def with_values(program: Program, parameters: Parameters, constants: Mapping[str
 
 
 def scene_description(title: str, name: str, target: str, bounds: tuple[tuple[str, str], ...] = ()) -> Description:
-    """Return the head of the file of a scene's kernel; in C it includes ``bounds``, pairs of heading and text."""
+    """Return the text in the head of the emitted file of a scene's kernel.
+
+    In C it includes ``bounds``, pairs of heading and text.
+    """
     return Description(
         title=f"equations of motion of the scene {name!r} ({title})",
         domain="all states of finite size; a quaternion is of unit norm, and its rate keeps the norm",

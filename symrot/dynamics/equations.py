@@ -1,8 +1,8 @@
 """Equations of motion of a plan: Euler's equations and the quaternion rates, for the states of the plan only.
 
-Everything is derived here from the plan's structure: ``I domega/dt = tau - omega x (I omega + h)`` in body axes
-about the centre of mass or a fixed point, and ``dq/dt = 1/2 q (0, omega_b)``.
-Proof: ``derivations/euler_equations.md``, ``derivations/quaternion_rates.md``.
+The equations are derived from the plan's structure: ``I domega/dt = tau - omega x (I omega + h)`` in body axes about
+the centre of mass or a fixed point, and ``dq/dt = 1/2 q (0, omega_b)``. Proof: ``derivations/euler_equations.md``,
+``derivations/quaternion_rates.md``.
 """
 
 from dataclasses import dataclass, replace
@@ -29,7 +29,7 @@ TENSOR_NAMES = (("I_xx", "I_xy", "I_xz"), ("I_xy", "I_yy", "I_yz"), ("I_xz", "I_
 
 @dataclass(frozen=True)
 class AngleMotion(Motion):
-    """A motion whose attitude is a set of Euler angles: vectors are rotated by the matrix of the sequence."""
+    """Motion whose attitude is a set of Euler angles: the matrix of the sequence rotates vectors."""
 
     sequence: str
 
@@ -40,7 +40,7 @@ class AngleMotion(Motion):
 
 @dataclass(frozen=True)
 class Equations:
-    """First-order equations of motion, and the quantities from which they were derived."""
+    """First-order equations of motion, with the quantities from which they were derived."""
 
     states: tuple[Symbol, ...]
     rates: tuple[Expr, ...]  # d(states)/dt
@@ -48,12 +48,12 @@ class Equations:
     motion: Motion  # omega_b, attitude and inertia as formulas in t and the states
     laws: tuple[TorqueLaw, ...]
     momentum_b: Matrix  # I omega + h, kg m^2/s, body components
-    relations: tuple[Expr, ...]  # what is zero whatever the motion: unit norms
+    relations: tuple[Expr, ...]  # expressions that are always zero: the squared norms of unit vectors minus 1
     modes: tuple[tuple[Symbol, Expr], ...] = ()  # modes of the guards that the motion slides along, see sliding()
 
     @property
     def explicit_rates(self) -> tuple[Expr, ...]:
-        """Return the rates in the states alone, the named quantities put in."""
+        """Return the rates as formulas of the states alone, with all named quantities substituted."""
         rates = self.rates
         for symbol, value in reversed(self.definitions):
             rates = tuple(rate.xreplace({symbol: value}) for rate in rates)
@@ -67,12 +67,12 @@ class Equations:
 
     @property
     def potential(self) -> Expr:
-        """Return the sum of the potentials in J of the torques that have one."""
+        """Return the total potential energy, J, of the torques that have a potential."""
         return reduce(add, (law.potential for law in self.laws if law.potential is not None), S.Zero)
 
 
 def inertia_matrix(inertia: PrincipalInertia | InertiaTensor) -> Matrix:
-    """Return the tensor of a plan in symbols: one symbol for equal moments, zero for entries that are zero."""
+    """Return the inertia tensor of a plan in symbols: one symbol for equal moments, zero for entries that vanish."""
     if isinstance(inertia, PrincipalInertia):
         moments = dict(zip("ABC", symbols.principal, strict=True))
         return diag(*(moments[name] for name in inertia.moments))
@@ -156,7 +156,7 @@ def inverse(tensor: Matrix) -> Matrix:
 
 
 def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr]]:
-    """Return the motion, the attitude states and the relations of a plan."""
+    """Return the motion of a plan in symbols, its attitude states, and the relations between them."""
     inertia, axis = inertia_matrix(structure.inertia), structure.planar
     turning = [
         S.Zero if pattern is Pattern.ZERO else w for w, pattern in zip(symbols.omega_b, structure.constant, strict=True)
@@ -234,7 +234,7 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
     rest = Matrix(pace).subs(dict.fromkeys(names, S.Zero))
     determinant = matrix.det().expand()
     if matrix.free_symbols & set(names) or determinant == 0:
-        raise InputError("torque: expected switches that hold their guards at zero in one way alone")
+        raise InputError("torque: expected jumps along which the motion can slide in exactly one way")
     modes = tuple(zip(names, -(matrix.adjugate() * rest) / determinant, strict=True))
     still = [S.Zero if state in guards else rate for state, rate in zip(equations.states, equations.rates, strict=True)]
     return replace(equations, rates=tuple(still), definitions=(*modes, *equations.definitions), modes=modes)

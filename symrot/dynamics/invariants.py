@@ -31,11 +31,11 @@ TORQUE_PHRASES = {
 
 @dataclass(frozen=True)
 class Invariant:
-    """A quantity that is constant along a motion; if ``holds`` is false, one that some torque changes."""
+    """Candidate for a conserved quantity; ``holds`` says whether it is conserved, ``reason`` why or why not."""
 
     name: str
     unit: str
-    value: Expr  # in t, the states and the constants
+    value: Expr  # a formula in t, the states and the constants
     holds: bool
     reason: str
 
@@ -47,7 +47,10 @@ def rate_along(expression: Expr, equations: Equations) -> Expr:
 
 
 def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield (name, unit, value, differentiated formula); the formula is the value, or its square if it is a root."""
+    """Yield candidates for conserved quantities: (name, unit, value, formula to differentiate).
+
+    The formula to differentiate is the value itself, or its square if the value is a square root.
+    """
     momentum, energy = equations.momentum_b, equations.kinetic_energy + equations.potential
     yield "energy", "J", energy, energy
     if equations.motion.quaternion is None:
@@ -68,7 +71,7 @@ def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[st
 
 
 def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield the candidates from the direction that a torque singles out: the vertical, the normal of an orbit."""
+    """Yield the candidates that follow from a torque's special direction: the vertical, the normal of an orbit."""
     if not isinstance(torque, FieldTorque):
         return
     if torque.kind == "gravity" and (direction := torque.vector("direction")).count(Pattern.ZERO) < 2:
@@ -93,21 +96,21 @@ def _reason(name: str, holds: bool, equations: Equations, kinds: Sequence[str]) 
     if name == "energy":
         return "; ".join(dict.fromkeys(law.keeps for law in equations.laws if law.keeps)) or f"{acting} does no work"
     if name == "Jacobi integral":
-        return "in axes that turn with the orbit the tide is at rest"
+        return "in axes that rotate with the orbit the tide is at rest"
     if name == "angular momentum":
         return f"{acting} changes only its direction in the body"
     return f"{acting} has no moment about that axis of space"
 
 
 def _listed(kinds: Sequence[str]) -> str:
-    """Return kinds of torque in words, each once."""
+    """Return kinds of torque in words, separated by commas, each once."""
     return " and ".join(TORQUE_PHRASES.get(kind, kind.replace("_", " ")) for kind in dict.fromkeys(kinds))
 
 
 def find_invariants(equations: Equations, structure: Structure) -> tuple[Invariant, ...]:
-    """Return the invariants of a motion, then the candidates that are not conserved.
+    """Return the conserved quantities of a motion, followed by the candidates that are not conserved.
 
-    The components that the plan treats as constant are among the invariants.
+    The components that the plan treats as constant are among the conserved quantities.
     """
     kinds = [torque.kind for torque in structure.torques]
     candidates = []

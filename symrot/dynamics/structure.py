@@ -18,7 +18,7 @@ __all__ = [
 
 
 class Pattern(Enum):
-    """The value of a constant on which the equations may rely: an exact number, or none."""
+    """The value of a constant on which the equations may rely: 0, 1 or -1, or free if they may rely on no value."""
 
     ZERO = "0"
     ONE = "1"
@@ -60,11 +60,11 @@ class TorqueSwitch(NamedTuple):
     where: tuple[tuple[str, int], ...]
     label: str
     at_zero: int
-    choices: str = ""  # the guard with its parts of ``where`` still to be chosen; empty if it has none
+    choices: str = ""  # the guard before a part of each ``where`` is chosen; empty without ``where``
 
 
 class FieldTorque(NamedTuple):
-    """A torque of a kind whose fields are numbers: all kinds but ``expression``.
+    """Torque of a kind whose fields are numbers: all kinds but ``expression``.
 
     Attributes
     ----------
@@ -109,7 +109,7 @@ class FormulaTorque(NamedTuple):
     switches : tuple of TorqueSwitch
         Empty if the formulas are smooth, or if switches are not followed.
     choices : tuple of str
-        The formulas with their parts of ``where`` still to be chosen; empty if they have none.
+        The formulas before a part of each ``where`` is chosen; empty without ``where``.
     held : tuple of str
         Modes whose guards stay at zero: the motion slides along them.
     """
@@ -129,7 +129,7 @@ class FormulaTorque(NamedTuple):
 
     @property
     def has_choices(self) -> bool:
-        """Whether a ``where`` has a part that must not be evaluated where it does not hold."""
+        """Whether a ``where`` in the formulas has a part that must not be evaluated outside its condition."""
         return bool(self.choices) or any(switch.choices for switch in self.switches)
 
 
@@ -180,7 +180,7 @@ class Structure:
 
     @property
     def formula_torques(self) -> Iterator[FormulaTorque]:
-        """The torques that are given by formulas."""
+        """The torques that are given by formulas, one after the other."""
         return (torque for torque in self.torques if isinstance(torque, FormulaTorque))
 
     @property
@@ -190,11 +190,11 @@ class Structure:
 
     @property
     def reductions(self) -> tuple[object, ...]:
-        """What leaves out states because of the initial state or a constant component of omega_b."""
+        """The parts of the structure that remove states: rotation about one axis, constant components of omega_b."""
         return self.planar, self.initial_quaternion, self.constant
 
     def unreduced(self) -> "Structure":
-        """Return the structure whose states are all of omega_b and, if the attitude is computed, the quaternion."""
+        """Return the structure with all states: all of omega_b and, if the attitude is computed, the quaternion."""
         return replace(self, planar=None, initial_quaternion=None, constant=MOVING)
 
     def to_json(self) -> dict[str, object]:

@@ -1,7 +1,7 @@
-"""The torques of a scene as data: one entry per ``kind``, with its fields, units and defaults. Standard library only.
+"""Table of the torques of a scene: one entry per ``kind``, with its fields, units and defaults. Standard library only.
 
-The torques themselves, as formulas with their potentials and the invariants they keep, are in
-:mod:`symrot.dynamics.torques`; the reader of scenes uses this table alone.
+:mod:`symrot.dynamics.torques` has the torques as formulas, with potentials and conserved quantities. The reader of
+scenes uses this table alone.
 """
 
 from fractions import Fraction
@@ -14,7 +14,7 @@ EXPRESSION_NAMES = ("t", "omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3"
 
 
 class Field(NamedTuple):
-    """One field of a torque: ``shape`` and ``sign`` of its value, and the ``default`` of a missing value."""
+    """One field of a kind of torque: shape and sign of its value, and the default."""
 
     name: str
     shape: str  # scalar | vector | scalar or vector | attitude | formulas | parameters | a choice "x|y"
@@ -26,7 +26,9 @@ class Field(NamedTuple):
 
 
 class TorqueKind(NamedTuple):
-    """One kind of torque. ``about`` is the point of motion it needs: ``any``, ``fixed_point`` or ``center_of_mass``."""
+    """One kind of torque. ``about`` is the point of rotation it needs: ``any``, ``fixed_point`` or
+    ``center_of_mass``.
+    """
 
     kind: str
     fields: tuple[Field, ...]

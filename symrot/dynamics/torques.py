@@ -1,7 +1,7 @@
 """The torques of :mod:`symrot.dynamics.torque_kinds` as formulas: one law per kind, in a table.
 
-Each law gives the torque in body components and, if there is one, its potential; :func:`torque_of_potential` derives
-the torque from the potential, so that each is checked against the other.
+Each law gives the torque in body components and, if it has one, its potential; :func:`torque_of_potential` derives the
+torque from the potential, which is a check of each law.
 """
 
 from collections.abc import Callable, Mapping
@@ -51,12 +51,12 @@ __all__ = [
 ]
 
 
-LEVELLING = (tanh, atan, exp, log)  # functions that come so near to a value that doubles cannot tell them from it
+LEVELLING = (tanh, atan, exp, log)  # functions that doubles cannot distinguish from their limits
 
 
 @dataclass(frozen=True)
 class Motion:
-    """The quantities that a torque may depend on, all as formulas in the states."""
+    """The quantities that a torque may depend on, all as formulas of the states."""
 
     omega_b: Matrix  # rad/s, shape (3, 1)
     quaternion: tuple[Expr, ...] | None  # body to space; None when the attitude is not computed
@@ -75,7 +75,7 @@ class TorqueLaw:
     potential: Expr | None = None  # J; None where the torque has none
     momentum: Matrix = field(default_factory=lambda: zeros(3, 1))  # kg m^2/s, relative to the body
     definitions: tuple[tuple[Symbol, Expr], ...] = ()  # named quantities that the torque uses
-    keeps: str = ""  # why energy survives it
+    keeps: str = ""  # why the torque conserves energy
 
 
 def _constant_body(motion: Motion, torque: Matrix) -> TorqueLaw:
@@ -133,11 +133,13 @@ def _expression(motion: Motion, torque: Matrix, frame: str) -> TorqueLaw:
 
 
 def collected_cross(left: Matrix, right: Matrix, variables: Matrix) -> Matrix:
-    """Return ``left x right`` with products of two variables collected: (C - B) r_2 r_3, zero for equal moments."""
+    """Return ``left x right`` with products of two variables collected, as in (C - B) r_2 r_3, zero for equal
+    moments.
+    """
     return _collected_cross(ImmutableMatrix(left), ImmutableMatrix(right), ImmutableMatrix(variables)).as_mutable()
 
 
-@lru_cache(maxsize=64)  # scenes differ in their torques more than in their tensors
+@lru_cache(maxsize=64)  # cached, since scenes differ more in torques than in tensors
 def _collected_cross(left: ImmutableMatrix, right: ImmutableMatrix, variables: ImmutableMatrix) -> ImmutableMatrix:
     pairs = [a * b for a, b in combinations_with_replacement(variables, 2)]
     return ImmutableMatrix(left.cross(right).applyfunc(lambda entry: entry.expand().collect(pairs)))
@@ -154,7 +156,7 @@ LAWS: dict[str, Callable[..., TorqueLaw]] = {
     "expression": _expression,
 }
 if LAWS.keys() != TORQUE_KINDS.keys():
-    raise AssertionError(f"torque kinds without a law, or laws without a kind: {LAWS.keys() ^ TORQUE_KINDS.keys()}")
+    raise AssertionError(f"expected one law per torque kind, differing: {LAWS.keys() ^ TORQUE_KINDS.keys()}")
 
 
 _FUNCTIONS: dict[str, Callable[..., Expr]] = {
@@ -163,7 +165,9 @@ _FUNCTIONS: dict[str, Callable[..., Expr]] = {
 
 
 def formula(node: Node, values: Mapping[str, Expr]) -> Expr:
-    """Return a formula tree as an exact SymPy expression in the given values; ``pi`` is known."""
+    """Return a formula tree as an exact SymPy expression; ``values`` gives the expressions of its names, pi is
+    known.
+    """
     known = {"pi": sympy.pi, **values}
     node = _with_brackets(node, known)
     return evaluate(node, known, _FUNCTIONS, _rational)
@@ -174,9 +178,10 @@ def _rational(value: Fraction) -> Rational:
 
 
 def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
-    """Return a formula with a name for each product of a number and a sum such as 1 + tanh(u), and the names' values.
+    """Return a formula with a new name for each product of a number and a sum such as 1 + tanh(u).
 
-    SymPy would expand the product and combine its constant with others; where the sum is zero, rounding would remain.
+    The values of the new names are added to ``known``. SymPy would expand such a product and combine its
+    constant with others; where the sum is zero, a rounding error would remain.
     """
     if node[0] in ("number", "symbol"):
         return node
@@ -207,7 +212,7 @@ def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:
 
 
 def formula_values(structure: FormulaTorque, motion: Motion) -> dict[str, Expr]:
-    """Return the values of the names in the formulas of an expression."""
+    """Return the values of all names in the formulas of an ``expression`` torque, for the quantities of a motion."""
     values = dict(zip(EXPRESSION_NAMES[:4], (symbols.t, *motion.omega_b), strict=True))
     values.update(zip(EXPRESSION_NAMES[4:], motion.quaternion or (), strict=False))
     values.update({name: constant(f"{structure.prefix}{name}") for name in structure.parameters})
@@ -222,7 +227,7 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
 
 
 def field_value(name: str, pattern: FieldPattern) -> Any:
-    """Return the symbol, exact number, vector (numbered from 1) or quaternion (from 0) of a pattern."""
+    """Return the symbols or exact numbers of a field: a scalar, a vector (numbered from 1) or a quaternion (from 0)."""
     if isinstance(pattern, Pattern):
         return constant(name) if pattern is Pattern.FREE else Integer(pattern.value)
     return Matrix(list(map(field_value, component_names(name, pattern), pattern)))

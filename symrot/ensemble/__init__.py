@@ -1,1 +1,1 @@
-"""Many motions of one scene at once: other initial states, other values of its constants."""
+"""Ensembles: many motions of one scene at once, with different initial states and different constants."""

@@ -1,4 +1,4 @@
-"""Propagate a scene from many initial states and with many values of its constants, all at once."""
+"""Propagation of a scene from many initial states and with many values of its constants, all at once."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -22,7 +22,7 @@ MOST_WORKERS = 1024
 
 
 class EnsembleStats(NamedTuple):
-    """The cost of an ensemble.
+    """Cost of the motions of an ensemble.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class EnsembleStats(NamedTuple):
 
 
 class Ensemble:
-    """n motions of one scene; made by :func:`propagate_ensemble`. Conventions: :mod:`symrot.conventions`.
+    """Result of :func:`propagate_ensemble`: n motions of one scene. Conventions: :mod:`symrot.conventions`.
 
     Attributes
     ----------
@@ -87,8 +87,8 @@ class Ensemble:
         """Attitude, unit, scalar first, body to space, shape (n, m, 4)."""
         if self._quaternion is None:
             raise InputError(
-                "the attitude was not computed, since neither a torque nor the output of the scene asks for it: "
-                'expected "quaternion" among output.quantities'
+                "the attitude was not computed, since neither a torque nor the output of the scene needs it: "
+                'add "quaternion" to output.quantities'
             )
         return self._quaternion
 

@@ -1,7 +1,7 @@
-"""Ensembles in closed form: the choice of a form for each trajectory, and one call for all trajectories of a form.
+"""Ensembles in closed form: one closed form is chosen for each trajectory, and all trajectories of a form are one call.
 
-Trajectories with unusual numbers (beyond 1e205, or varying products of inertia close to zero) are evaluated one by
-one, each as a single motion; if no constant varies, these motions share the constants of the body and its torques.
+Trajectories with unusual numbers (beyond 1e205, or varying products of inertia close to zero) are evaluated one by one,
+each as a single motion. If no constant varies, these motions share the constants of the body and its torques.
 """
 
 from collections.abc import Callable, Hashable, Iterator, Sequence
@@ -28,18 +28,18 @@ if TYPE_CHECKING:
 __all__ = ["ALONE_LOSES_BELOW", "ARRAYS_LOSE_BELOW", "Solved", "choose", "follow_exact", "forms_of"]
 
 Rows = NDArray[np.intp]
-MOST_BITS = 59  # of a pattern, beside those of angular velocity
+MOST_BITS = 59  # initial values in a pattern, in addition to those of angular velocity
 
 
 class Kind(NamedTuple):
-    """The closed form of a motion, and the axis of the body that the form refers to, if any."""
+    """The closed form of a motion, and the body axis that the form refers to, if it refers to one."""
 
     form: ClosedForm | None
     axis: int | None
 
 
 def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
-    """Return the closed forms of an ensemble, each with its trajectories.
+    """Return the closed forms of an ensemble, each with the numbers of its trajectories.
 
     The form depends only on which components are zero and which moments and coefficients are equal, so that one scene
     is examined for each such pattern.
@@ -59,7 +59,9 @@ def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
 
 
 def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
-    """Return the trajectories in groups with the same zeros and the same equal constants, each with its pattern."""
+    """Return the trajectories in groups that have the same zeros and the same equal constants, each with its
+    pattern.
+    """
     columns, n = variation.columns, len(variation)
     code = (variation.omega != 0) @ np.array([1, 2, 4])
     if not columns:
@@ -86,31 +88,34 @@ ARRAYS_LOSE_BELOW = {"symmetric body driven about its axis, angular velocity alo
 """Up to which angle, rad, steps are faster than arrays of a form whose constants do not vary; see :func:`choose`."""
 
 ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
-"""The same of closed forms that are made one by one, by library."""
+"""Up to which angle, rad, steps are faster than motions in closed form that are made one by one; by library."""
 
 
 class Solved(NamedTuple):
-    """Trajectories of one closed form, as arrays if the form has arrays."""
+    """Trajectories of one closed form, as a batch of arrays if the form has one."""
 
     form: ClosedForm
     rows: Rows
     batch: "Batch | None"
-    usual: Any  # which rows the arrays are good for
+    usual: Any  # the rows for which the arrays are exact
 
 
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
-    """Return the trajectories to evaluate in closed form: with ``faster``, only those for which steps take longer.
+    """Return the trajectories to evaluate in closed form.
+
+    With ``faster``, only those trajectories are returned for which steps would take longer.
 
     Measured for 0.01 to 10^4 rad, tolerances of 1e-6 and 1e-12 and 400 trajectories of 101 samples (``python -m
     symrot.bench.starts --ensembles`` prints the same for the scenes' own spans), in microseconds per trajectory:
 
-    - Arrays of closed forms take 4 to 18 where starts alone vary and 4 to 29 where constants do; steps take 13 to 46
-      and 33 to 75 up to 10 rad, and more beyond; with products of inertia that vary 23 and 280.
-    - The exception is the angular velocity alone of a symmetric body that is damped, from starts alone: 12 as an
-      array, 6 to 9 by steps, which are few since the motion ends.
-    - Motions made one by one take 1100 with products of inertia that vary and are as good as zero, or with moments as
-      good as equal, for their principal axes in fractions, and 40 to 80 about one axis or spun up, with constants so
-      large or small that arrays are not made. Steps take as much at the angles of :data:`ALONE_LOSES_BELOW`.
+    - Arrays of closed forms take 4 to 18 where only initial states vary and 4 to 29 where constants vary; steps take
+      13 to 46 and 33 to 75 up to 10 rad, and more beyond; with products of inertia that vary 23 and 280.
+    - One exception is the angular velocity of a symmetric damped body without its attitude, if only initial states
+      vary: 12 as an array, 6 to 9 by steps, which are few since the motion ends.
+    - Motions made one by one take 1100 with products of inertia that vary and nearly vanish, or with nearly equal
+      moments, since their principal axes are computed in fractions; they take 40 to 80 about one axis or spun up, with
+      constants so large or small that arrays are not made. Steps take as long at the angles of
+      :data:`ALONE_LOSES_BELOW`.
 
     The angle is that of the trajectory itself, so that its method does not depend on the others.
     """
@@ -133,7 +138,10 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
 
 
 def _angles(variation: Variation, times: Floats, start: float) -> Floats:
-    """Return the angles, rad, (n,), by which bodies rotate at the rate of their start and under constant torques."""
+    """Return rough angles of rotation of all trajectories, rad, shape (n,).
+
+    They follow from the initial rate of rotation and the constant torques.
+    """
     n = len(variation)
     span = np.broadcast_to(abs(times - start).max(axis=-1, initial=0.0), (n,))
     push: Any = np.zeros(n)
@@ -143,7 +151,7 @@ def _angles(variation: Variation, times: Floats, start: float) -> Floats:
             for axis in (1, 2, 3):
                 value = variation.constant(f"{variation.prefix(k)}torque_{axis}")
                 push = push + abs(float(value) if isinstance(value, Fraction) else value)
-    with np.errstate(all="ignore"):  # what overflows is far
+    with np.errstate(all="ignore"):  # an angle that overflows counts as large
         angles: Floats = np.sqrt((variation.omega**2).sum(axis=1)) * span + 0.5 * push / smallest * span**2
     return np.nan_to_num(angles, nan=np.inf)
 
@@ -152,7 +160,7 @@ def follow_exact(
     variation: Variation, solved: Solved, times: Floats, start: float, omega: Floats, quaternion: Floats | None,
     workers: int,
 ) -> None:  # fmt: skip
-    """Write angular velocity and attitude of trajectories of one form at times (m,) or (n, m), s."""
+    """Write angular velocity and attitude of the trajectories of one closed form at times (m,) or (n, m), s."""
     since = times - start if start else times
     form, rows, batch, usual = solved
     whole = len(rows) == len(variation)
@@ -184,7 +192,7 @@ def follow_exact(
 def _put_starts(
     variation: Variation, rows: Rows, at_start: NDArray[np.bool_], omega: Floats, quaternion: Floats | None
 ) -> None:
-    """Write the initial states, bit by bit, at sample times equal to the initial time, as every method does."""
+    """Write the exact initial states into samples at the initial time, as every method for single motions does."""
     if not at_start.any():
         return
     states = variation.initial_states
@@ -202,7 +210,7 @@ def _put_starts(
 
 
 class _Alone:
-    """Motions one by one; motions of the same form and pattern share the constants that do not depend on the start."""
+    """Motions in closed form made one by one; constants that do not depend on the initial state are shared."""
 
     def __init__(self, variation: Variation, form: ClosedForm) -> None:
         self._variation, self._form = variation, form
@@ -225,7 +233,7 @@ Usual = NDArray[np.bool_] | bool
 
 
 class _Part(NamedTuple):
-    """Trajectories of one form about one axis, with the constants that all forms use."""
+    """Trajectories of one closed form about one axis, with the constants that all forms use."""
 
     variation: Variation
     axis: int | None
@@ -233,12 +241,12 @@ class _Part(NamedTuple):
     omega: Floats  # (n, 3)
 
     def of(self, chosen: NDArray[np.bool_]) -> "_Part":
-        """Return the part of some of the trajectories."""
+        """Return the trajectories of this part whose entry in ``chosen`` is true."""
         return self._replace(rows=self.rows[chosen], omega=self.omega[chosen])
 
     @property
     def start(self) -> Floats:
-        """Unit quaternions as pairs of doubles, (n, 8) or (8,)."""
+        """The initial attitudes as sums of two doubles, (n, 8), or (8,) if all are equal."""
         variation, attitudes = self.variation, self.variation.attitudes
         if attitudes is None:
             own = variation.cached("attitude", lambda: np.array(attitude(variation.scene.initial.quaternion)))
@@ -251,13 +259,16 @@ class _Part(NamedTuple):
         return value if isinstance(value, Fraction) else value[self.rows]
 
     def moments(self) -> tuple[Any, Any]:
-        """Return the moments across the axis and about it."""
+        """Return the moments of inertia across the symmetry axis and about it, each one number or an array."""
         assert self.axis is not None
         return self.constant(PRINCIPAL[self.axis - 2]), self.constant(PRINCIPAL[self.axis])
 
 
 def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
-    """Yield motions as arrays, or None where they are evaluated one by one; and the rows for which the arrays hold."""
+    """Yield the trajectories of one closed form in groups: row numbers, a batch, and the rows for which it is exact.
+
+    The batch is None if the motions of a group have to be evaluated one by one.
+    """
     make = BATCHES.get(kind.form.library) if kind.form else None
     if make is None:
         yield rows, None, None
@@ -267,7 +278,7 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
     for part in _parts(variation, kind, rows):
         batch, fine = make(part)
         if batch is not None and make is _free and not np.all(fine):
-            # principal axes that take fractions are dear: such motions count as made one by one
+            # principal axes in fractions take long: such motions count as made one by one
             clear = np.asarray(fine)
             yield part.rows[~clear], None, None
             if not clear.any():
@@ -282,7 +293,10 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
 
 
 def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
-    """Yield the trajectories of a form; tops are split by the side of the fixed point on which their centre lies."""
+    """Yield the trajectories of one closed form in parts that share an axis.
+
+    Heavy tops are split by the side of the fixed point on which their centre of mass lies.
+    """
     groups = [rows]
     if kind.form and kind.form.library == "heavy_top" and variation.columns:
         height = variation.constant(f"{variation.prefix(0)}center_of_mass_{(kind.axis or 0) + 1}")
@@ -357,7 +371,7 @@ def _gyrostat(part: _Part) -> tuple["Batch | None", Usual]:
 
 
 def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
-    """Return the sum of a component of the torques of a kind; None if it is one of several that vary."""
+    """Return the sum over all torques of a kind of one component; None if it varies and is one of several."""
     variation = part.variation
     components = [
         part.constant(f"{variation.prefix(k)}{field}_{axis % 3 + 1}")
@@ -394,7 +408,7 @@ def _driven(part: _Part) -> tuple["Batch | None", Usual]:
         ratios = [[x.as_integer_ratio() for x in column] for column in columns]
         bodies = [Constants(axis, (a, c), *rest) for a, c, *rest in zip(*ratios, strict=True)]
         return batches.driven(bodies, part.omega, part.start), True
-    except InputError:  # of one trajectory, which says so alone
+    except InputError:  # of one trajectory: its own motion reports the error
         return None, False
 
 

@@ -1,9 +1,9 @@
 """Taylor series with one trajectory in each SIMD lane: the C of :file:`lanes.c` driven from Python.
 
-The counterpart of :mod:`symrot.propagation.steppers.taylor` for many motions: the same series, step rule and
-compensated states, four or eight motions per instruction, each with its own step. A lane whose motion has ended takes
-the next motion. Lanes are independent: the samples of a motion are the same to the last bit for any neighbours, lane
-and number of threads, and a motion that breaks off does not affect the others.
+The series, step rule and compensated sums are those of :mod:`symrot.propagation.steppers.taylor`. Four or eight motions
+share an instruction, each with steps of its own size. A lane whose motion has ended takes the next motion. Lanes are
+independent: the samples of a motion are the same to the last bit for any neighbours, lane and number of threads, and a
+motion that stops early does not affect the others.
 """
 
 import ctypes
@@ -40,9 +40,9 @@ Integers = NDArray[np.int64]
 
 FLAGS = (*library.FLAGS, *library.TUNING)
 MAX_STEPS = 1_000_000_000
-STEPS_PER_CALL = 20_000  # of all lanes at once: some 20 ms, after which Python can see an interrupt
+STEPS_PER_CALL = 20_000  # steps of all lanes in some 20 ms, after which Python can react to an interrupt
 TOO_MANY = 5
-MEASURED = ("reached", "steps", "evaluations")  # of each leg
+MEASURED = ("reached", "steps", "evaluations")  # of each part of a motion to one side of the start (a leg)
 REASONS = {
     NOT_FINITE: "its derivatives are not finite there",
     UNDERFLOW: "the step shrank to nothing, as it does before a singularity",
@@ -54,18 +54,19 @@ ORDERS = (
     (3e-6, 14),
     (3e-9, 16),
     (0.0, 20),
-)  # from which tolerance on which order is fastest, see order_for
+)  # least tolerance, and the fastest order from there on, see order_for
 
 
 def order_for(tolerance: float) -> int:
-    """Return the fastest order for a tolerance, as measured by ``python -m symrot.bench.ensemble --orders``."""
+    """Return the fastest order of the series for a tolerance, by ``python -m symrot.bench.ensemble --orders``."""
     return next(order for least, order in ORDERS if tolerance >= least)
 
 
 def translation_unit(
     program: Program, blocks: Sequence[int], scales: Sequence[float], order: int, width: int | None = None
 ) -> str:
-    """Return the C source of a library: the jet of a right-hand side and the stepper of lanes around it.
+    """Return the C source of a library: the jet of a right-hand side, and the stepper for many motions in lanes around
+    it.
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ def translation_unit(
 
 
 def wrap_translation_unit(definitions: str, width: int | None = None) -> str:
-    """Return the C source of a library from the text of its system; see :func:`translation_unit`."""
+    """Return the C source of a library from the C text of one system; see :func:`translation_unit`."""
     head = "" if width is None else "#define SYMROT_PLAIN\n" if width == 1 else f"#define SYMROT_LANES {width}\n"
     paths = ("ensemble/lanes.h", "propagation/steppers/series.h", "ensemble/lanes.c")
     operations, series, steps = map(c_text, paths)
@@ -98,7 +99,7 @@ _POINTERS = (
 
 
 class _Job(ctypes.Structure):
-    """``symrot_job`` of lanes.c."""
+    """The C struct ``symrot_job`` of lanes.c: the work of one thread."""
 
     _fields_ = (
         ("legs", ctypes.c_int64),
@@ -109,9 +110,9 @@ class _Job(ctypes.Structure):
 
 
 class Outcome(NamedTuple):
-    """The result of n motions: states (n, m, N), with not-a-number at times that a motion did not reach.
+    """The states of n motions at their m times, shape (n, m, N); not-a-number at times that a motion did not reach.
 
-    ``messages`` holds the reasons why motions broke off, empty for the others.
+    ``messages`` holds for each motion the reason why it stopped early, or an empty text.
     """
 
     states: Floats
@@ -121,7 +122,7 @@ class Outcome(NamedTuple):
 
 
 class Lanes:
-    """A library of :func:`translation_unit`."""
+    """A loaded library of :func:`translation_unit`: jet and stepper for many motions in lanes."""
 
     def __init__(self, path: str) -> None:
         self.path = path
@@ -136,7 +137,9 @@ class Lanes:
         self._run.argtypes, self._run.restype = (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64), ctypes.c_int
         carry.argtypes, carry.restype = (ctypes.c_double, ctypes.c_double), ctypes.c_double
         if carry(1.0, 2.0**-60) != 2.0**-60:
-            raise CompilerError(f"the compiled kernel {path} loses the carry of its sums: compile without -ffast-math")
+            raise CompilerError(
+                f"the compiled kernel {path} ignores rounding errors that it should add; compile without -ffast-math"
+            )
 
     def jet(self, t: float, y: Sequence[float], p: Sequence[float], unit: float = 1.0) -> Floats:
         """Return the Taylor coefficients of the states at t, shape (order + 1, N), in powers of ``unit``."""
@@ -149,7 +152,7 @@ class Lanes:
         return coefficients
 
     def work(self, job: _Job, interrupted: Callable[[], bool] = bool) -> None:
-        """Follow the legs of a job to their ends, or until interrupted."""
+        """Follow all motions of a job to their ends, or until ``interrupted`` returns true."""
         memory = ctypes.create_string_buffer(self._memory)
         self._library.symrot_lanes_clear(memory)
         while not interrupted() and self._run(memory, ctypes.addressof(job), STEPS_PER_CALL) != DONE:
@@ -158,12 +161,15 @@ class Lanes:
 
 @cache
 def lanes(path: str) -> Lanes:
-    """Return the loaded library at a path."""
+    """Return the loaded library at a path; each library is loaded once."""
     return Lanes(path)
 
 
 class _Legs(NamedTuple):
-    """The motions cut at t0: sample times of each leg sorted away from it. See ``symrot_job``."""
+    """All motions cut at t0 into legs, which lead to one side of it; the sample times of a leg are sorted away from t0.
+
+    See ``symrot_job`` in lanes.c.
+    """
 
     table: Floats
     rows: Integers  # (4, legs): motion, first of its times, how many, row of the first sample
@@ -188,7 +194,7 @@ def _legs(t0: float, times: Floats, n: int) -> _Legs:
 
 
 class LaneIntegration:
-    """Motions bound to numbers and sample times: prepared once, run any number of times.
+    """Many motions bound to numbers and sample times: prepared once, run any number of times.
 
     Parameters
     ----------
@@ -226,7 +232,7 @@ class LaneIntegration:
         self._rows = self._places(("motion", "first", "count", "row"), self.legs.rows)
 
     def _places(self, names: Sequence[str], table: NDArray[Any]) -> dict[str, int]:
-        """Return where each row of a table of legs begins."""
+        """Return the index of the first column of each named row in a table of legs."""
         place = address(table)
         return {name: place + 8 * self.total * k for k, name in enumerate(names)}
 
@@ -255,7 +261,7 @@ class LaneIntegration:
         return Outcome(grid, counted[0], counted[1], messages)
 
     def _messages(self, status: Integers, reached: Floats) -> tuple[str, ...]:
-        """Return the reasons why motions broke off."""
+        """Return, for each motion, the reason why it stopped early, or an empty text."""
         motion, first, samples, _ = self.legs.rows
         messages = [""] * len(self.y)
         for leg in np.flatnonzero(status != DONE).tolist():
@@ -268,12 +274,12 @@ class LaneIntegration:
 
 
 def follow(*arguments: Any, **options: Any) -> Outcome:
-    """Follow n motions through their sample times; arguments as :class:`LaneIntegration` takes them."""
+    """Return the states of n motions at their sample times; arguments as :class:`LaneIntegration` takes them."""
     return LaneIntegration(*arguments, **options).run()
 
 
 def _share(library: Lanes, jobs: list[Any]) -> None:
-    """Run the jobs, each in a thread; an interrupt stops them all."""
+    """Run each job in its own thread; an interrupt stops them all."""
     if len(jobs) == 1:
         library.work(jobs[0])
         return

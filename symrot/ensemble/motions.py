@@ -1,4 +1,4 @@
-"""The motions of an ensemble, each by the method that suits it: in closed form, in lanes, or one after the other."""
+"""The motions of an ensemble, each followed by the fastest method: closed form, SIMD lanes, or one after the other."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
@@ -49,13 +49,13 @@ class Followed(NamedTuple):
     omega: Floats  # (n, m, 3)
     quaternion: Floats | None  # (n, m, 4)
     methods: tuple[str, ...]
-    messages: tuple[str, ...]  # why a motion broke off, or empty
+    messages: tuple[str, ...]  # why a motion stopped early, or empty
     steps: Integers
     evaluations: Integers
 
 
 class Problem(NamedTuple):
-    """The trajectories to follow, their times, tolerance and number of threads."""
+    """The trajectories to follow, with their times, the tolerance and the number of threads."""
 
     variation: Variation
     plan: Plan
@@ -65,13 +65,13 @@ class Problem(NamedTuple):
     workers: int
 
     def times_of(self, i: int) -> Floats:
-        """Return the times of motion i, s, shape (m,)."""
+        """Return the sample times of motion i, s, shape (m,)."""
         times: Floats = self.times if self.times.ndim == 1 else self.times[i]
         return times
 
 
 def follow(problem: Problem, method: str) -> Followed:
-    """Follow the motions.
+    """Return the samples of all motions of a problem, each followed by the given or the fastest method.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def follow(problem: Problem, method: str) -> Followed:
     count = len(problem.variation)
     name = method.partition(":")[0]
     if method != "auto" and (name not in METHODS or name == "constant" or (":" in method and name != "scipy")):
-        choose_method(problem.plan, method)  # says what there is
+        choose_method(problem.plan, method)  # raises an error that lists the methods
     solved = _solved(problem, method)
     by_steps = np.ones(count, dtype=bool)
     for each in solved:
@@ -90,8 +90,8 @@ def follow(problem: Problem, method: str) -> Followed:
     stepped = np.flatnonzero(by_steps).tolist()
     if method == "exact" and stepped:
         raise InputError(
-            f"method: expected motions with a closed form for 'exact', got none for trajectory {stepped[0]} of the "
-            f"scene {problem.variation.scene.name!r}"
+            f"method: expected motions with a closed form for 'exact', got another one for trajectory {stepped[0]} of "
+            f"the scene {problem.variation.scene.name!r}"
         )
     samples = problem.times.shape[-1]
     attitude = problem.plan.structure.attitude
@@ -119,7 +119,7 @@ def follow(problem: Problem, method: str) -> Followed:
 def _switched(
     problem: Problem, method: str, stepped: Sequence[int], omega: Floats, quaternion: Floats | None
 ) -> Followed:
-    """Follow motions under torques with switches, each by the method for a single motion."""
+    """Return the samples of motions under torques with switches (sign, abs, ..), each followed as a single motion."""
     from symrot.propagation.propagate import propagator
 
     count, messages, methods = len(stepped), list[str](), list[str]()
@@ -146,7 +146,7 @@ def _switched(
 
 
 def _solved(problem: Problem, method: str) -> list[Solved]:
-    """Return the trajectories that a method follows in closed form."""
+    """Return the trajectories that ``method`` evaluates in closed form."""
     if method in ("exact", "auto"):
         return choose(problem.variation, problem.times, problem.t0, faster=method == "auto")
     return []
@@ -158,12 +158,14 @@ def _stepping_method(problem: Problem) -> str:
         return "constant"
     if missing_compiler():
         return "scipy"
-    rough = has_formulas(problem.plan) and non_smooth_torque(problem.plan)  # drag at rest is smooth enough for lanes
+    rough = has_formulas(problem.plan) and non_smooth_torque(problem.plan)  # lanes can step drag, which bends at rest
     return "dop853" if rough or taylor.refusal(scene_kernel(problem.plan).rates) else "taylor"
 
 
 def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
-    """Return the library that steps a plan in lanes, of the order that suits the tolerance."""
+    """Return the compiled library that steps many motions of a plan in lanes; the order of its series suits the
+    tolerance.
+    """
     order = lanes.order_for(tolerance)
     key = f"lanes {order}\n{kernel_key(plan)}"
     system = library.fetch(key)
@@ -176,7 +178,7 @@ def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
 
 
 class _Stepped:
-    """The trajectories that are stepped, bound to numbers."""
+    """The trajectories of an ensemble that are stepped, bound to numbers."""
 
     def __init__(self, problem: Problem, chosen: Sequence[int]) -> None:
         self.problem, self.plan, self.chosen = problem, problem.plan, chosen
@@ -195,11 +197,14 @@ class _Stepped:
             raise IntegrationStopped(self.epoch, NOT_FINITE_SENTENCE) from None
 
     def on_clock(self, times: Floats) -> Floats:
-        """Return times on the clock of the steppers, which shows 0 at the epoch."""
+        """Return times of the scene on the clock of the steppers, which shows 0 at the epoch."""
         return times - self.epoch if self.epoch else times
 
     def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = epoch.compiled) -> Any:
-        """Return the clock of the rates of one motion; arguments as of :func:`symrot.propagation.time_shift.clock`."""
+        """Return, for motion k, a function from an epoch to its rates on a moved clock, and their parameters.
+
+        Arguments are those of :func:`symrot.propagation.time_shift.clock`.
+        """
         if not self.kernel.rates.uses("t"):
             return None
 
@@ -209,7 +214,7 @@ class _Stepped:
         return epoch.clock(moving, self.numbers.constants(k), self.epoch, make)
 
     def read(self, states: Floats, omega: Floats, quaternion: Floats | None) -> None:
-        """Write angular velocity and attitude of the states into their places."""
+        """Write angular velocity and attitude, computed from the states, into the arrays of the ensemble."""
         chosen = list(self.chosen)
         values: dict[str, Any] = dict(zip(self.plan.states, np.moveaxis(states, -1, 0), strict=True))
         values["t"] = self.times
@@ -227,7 +232,7 @@ class _Stepped:
             quaternion[chosen] /= size
 
     def _parameters_of(self, outputs: Sequence[str]) -> Any:
-        """Return the parameters that some quantities depend on."""
+        """Return those parameters of quantities that the named outputs depend on."""
         program, parameters = self.kernel.quantities, self.kernel.quantity_parameters
         needed = set().union(*(names(node) for name, node in program.outputs if name in outputs))
         for name, node in reversed(program.temporaries):
@@ -235,7 +240,7 @@ class _Stepped:
         return tuple([(name, node) for name, node in parameters if name in needed])
 
     def one_by_one(self, integrate: Callable[[int, Floats], tuple[Floats, Any]]) -> lanes.Outcome:
-        """Follow each trajectory with the stepper for a single motion."""
+        """Return the states of all trajectories, each followed by ``integrate``, the stepper for a single motion."""
         samples = self.times.shape[-1]
         states = np.full((len(self.chosen), samples, len(self.plan.states)), np.nan)
         steps, evaluations = (np.zeros(len(self.chosen), dtype=np.int64) for _ in range(2))
@@ -264,7 +269,10 @@ def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
 
 
 def _enclosed(stepped: _Stepped) -> lanes.Outcome:
-    """Follow motions whose steps need an enclosure or a check one after the other, since lanes do neither."""
+    """Return the states of motions whose steps need an enclosure or a check, followed one after the other.
+
+    Lanes support neither.
+    """
     problem, (plan, kernel) = stepped.problem, stepped.moved
     path = taylor_library(plan, kernel, problem.tolerance, projected=False)
 
@@ -315,4 +323,4 @@ STEPPERS: dict[str, Callable[[_Stepped, str], lanes.Outcome]] = {
     "scipy": _scipy,
     "constant": _constant,
 }
-"""Name of a method -> the function that follows motions without a closed form by it."""
+"""Function that follows motions without a closed form, by the name of the method."""

@@ -1,4 +1,4 @@
-"""The parameters of kernels for each trajectory of an ensemble: constants that do not vary are evaluated once."""
+"""Parameters of kernels for each trajectory of an ensemble; constants that do not vary are evaluated once."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
@@ -20,7 +20,7 @@ OMEGA = ("omega_1", "omega_2", "omega_3")
 
 
 class Numbers:
-    """The constants of some trajectories of an ensemble.
+    """The exact constants of some trajectories of an ensemble.
 
     Parameters
     ----------
@@ -42,11 +42,11 @@ class Numbers:
         self._columns = {name: varying[name][self._chosen] for name in plan.constants if name in varying}
 
     def constants(self, k: int) -> dict[str, Fraction]:
-        """Return all constants of the k-th of the trajectories, exact."""
+        """Return all constants of one of the trajectories (the k-th), as exact fractions by name."""
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
     def bound(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
-        """Return parameters for each trajectory, shape (n, k): exact arithmetic, one rounding each.
+        """Return the parameters of a kernel for each trajectory, shape (n, k): exact arithmetic, one rounding each.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""The variation of an ensemble: its arrays, read and checked, and the plan that covers all trajectories."""
+"""Variations: the arrays that describe an ensemble, read and checked, and the plan that covers all trajectories."""
 
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, replace
@@ -25,14 +25,14 @@ __all__ = ["PLACES", "Variation", "read_times", "read_variation"]
 PLACES = {"I_xx": (0, 0), "I_yy": (1, 1), "I_zz": (2, 2), "I_xy": (0, 1), "I_xz": (0, 2), "I_yz": (1, 2)}
 PRINCIPAL = ("I_xx", "I_yy", "I_zz")
 PRODUCTS = ("I_xy", "I_xz", "I_yz")
-CLEARLY = 1e-12  # of the largest moment: doubles tell such a difference
-FIXED = {"direction": "turn the initial quaternions instead", "attitude": "turn the initial quaternions instead"}
+CLEARLY = 1e-12  # relative to the largest moment: doubles resolve such a difference
+FIXED = {"direction": "rotate the initial quaternions instead", "attitude": "rotate the initial quaternions instead"}
 SIGNS = {  # what a field's sign asks of its values, of each trajectory: shape (n, k) -> (n,)
     "positive": lambda values: (values > 0).all(axis=1),
     "nonnegative": lambda values: (values >= 0).all(axis=1),
     "nonzero": lambda values: (values != 0).any(axis=1),
 }
-GENERAL_START = Initial(  # with no component that any rule of the planner could drop
+GENERAL_START = Initial(  # no component has a value that a rule of the planner could use
     (Fraction(3, 7), Fraction(5, 11), Fraction(7, 13)),
     (Fraction(1, 5), Fraction(2, 5), Fraction(4, 5), Fraction(2, 5)),
 )
@@ -42,7 +42,7 @@ BY_ZEROS = {"gravity", "rotor", "constant_body", "damping"}
 DISTINCT = (Fraction(4), Fraction(5), Fraction(6))  # admissible moments of a body of any class
 
 
-_rooms: dict[int, dict[Hashable, Any]] = {}  # of scenes by their ids, as long as they live
+_rooms: dict[int, dict[Hashable, Any]] = {}  # data of scenes by their ids, as long as the scenes live
 
 
 class _Place(NamedTuple):
@@ -50,12 +50,15 @@ class _Place(NamedTuple):
 
     torque: int  # -1: the inertia
     field: str
-    entry: int | str | None  # of a vector, of the parameters by name; None: the field is a number
+    entry: int | str | None  # index in a vector, name of a parameter; None: the field is a number
 
 
 @dataclass(frozen=True)
 class Variation:
-    """n trajectories of one scene: initial states, and columns of the constants that vary, by the planner's names."""
+    """n trajectories of one scene: their initial states, and a column of values for each constant that varies.
+
+    Constants have the names that plans use.
+    """
 
     scene: Scene
     omega: Floats  # (n, 3), rad/s, body components
@@ -78,7 +81,9 @@ class Variation:
         return Initial((x, y, z), _unit(self.quaternion[i].tolist()))
 
     def cached(self, key: Hashable, make: Callable[[], Any]) -> Any:
-        """Return a value that depends on the scene alone: made once for all ensembles of the same scene."""
+        """Return a value that depends on the scene alone; ``make`` is called once for all ensembles of the same
+        scene.
+        """
         place = id(self.scene)
         room = _rooms.get(place)
         if room is None:
@@ -90,7 +95,9 @@ class Variation:
 
     @cached_property
     def attitudes(self) -> Floats | None:
-        """The unit quaternions as pairs of doubles, shape (n, 8); None if all have the attitude of the scene."""
+        """The initial unit quaternions as sums of two doubles, shape (n, 8); None if all have the attitude of the
+        scene.
+        """
         from symrot.closed_form.batches import attitudes
 
         return None if self.quaternion is None else attitudes(self.quaternion)
@@ -106,12 +113,12 @@ class Variation:
 
     @property
     def in_principal_axes(self) -> bool:
-        """Whether no trajectory has a product of inertia."""
+        """Whether the products of inertia are zero in every trajectory."""
         fixed = all(self.scene.body.inertia[i][j] == 0 for name, (i, j) in PLACES.items() if name not in PRINCIPAL)
         return fixed and not any(self.columns[name].any() for name in self.columns if name in PRODUCTS)
 
     def constant(self, name: str) -> Fraction | Floats:
-        """Return a constant by the planner's name: the scene's, or a column (n,)."""
+        """Return a constant by its name in the plan: one number if it is the same for all, else a column (n,)."""
         if name in self.columns:
             return self.columns[name]
         torque, field, entry = self.places[name]
@@ -121,12 +128,14 @@ class Variation:
         return self.scene.torques[torque].constant(*_constant_place(field, entry))
 
     def prefix(self, torque: int) -> str:
-        """Return the prefix of the names of a torque's constants."""
+        """Return the text that precedes the names of a torque's constants, such as ``torque2_``."""
         structure: Structure = self.cached("structure", lambda: general_structure(self.scene))
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
-        """Return the fixed constants of the same field as doubles: values of a column may be equal to them."""
+        """Return the other constants of the same field that do not vary, as doubles; a column may contain equal
+        values.
+        """
         place = self.places[name]
         same = [key for key, other in self.places.items() if other[:2] == place[:2] and key not in self.columns]
         values = {self.constant(key) for key in same if not isinstance(self.places[key].entry, str)}
@@ -135,12 +144,12 @@ class Variation:
     @property
     def negligible(self) -> Floats:
         """The largest products of inertia, kg m^2, for which the given axes count as principal, shape (n,)."""
-        bounds: Floats = np.ldexp(abs(self.moments).max(axis=1), -200)
+        bounds: Floats = np.ldexp(abs(self.moments).max(axis=1), -number.NEGLIGIBLE_BITS)
         return bounds
 
     @property
     def moments(self) -> Floats:
-        """I_xx, I_yy and I_zz of each trajectory, kg m^2, the nearest doubles, shape (n, 3)."""
+        """The moments I_xx, I_yy and I_zz of each trajectory, kg m^2, shape (n, 3), each the nearest double."""
         moments = np.empty((len(self), 3))
         for k, name in enumerate(PRINCIPAL):
             value = self.constant(name)
@@ -184,7 +193,7 @@ class Variation:
         return make_plan(self._with(GENERAL_START, values), switched=switched(self.scene))
 
     def _representative_inertia(self) -> dict[str, Fraction]:
-        """Return a tensor with the equalities and zeros that hold in every trajectory, and no others."""
+        """Return an inertia tensor with those equalities and zeros that hold in every trajectory, and no others."""
         inertia = self.scene.body.inertia
         tensor: dict[str, Fraction] = {}
         for k, name in enumerate(PRINCIPAL):
@@ -197,7 +206,7 @@ class Variation:
         return tensor
 
     def _agree(self, one: str, other: str) -> bool:
-        """Whether two moments are equal in every trajectory."""
+        """Return whether two moments are equal to each other in every trajectory."""
         own = [self.scene.body.inertia[PLACES[name][0]][PLACES[name][1]] for name in (one, other)]
         if one not in self.columns and other not in self.columns:
             return number.equal(*own)
@@ -206,18 +215,18 @@ class Variation:
 
 
 def _constant_place(field: str, entry: int | str | None) -> tuple[str, int | None]:
-    """Return the name of a torque's constant and, of a vector, the component."""
+    """Return the name of the field that contains a torque's constant, and its component if the field is a vector."""
     return (entry, None) if isinstance(entry, str) else (field, entry)
 
 
 def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
-    """Return a quaternion divided by its norm."""
+    """Return a quaternion of doubles divided by its norm, as exact fractions."""
     q0, q1, q2, q3 = number.unit([Fraction(value) for value in row])
     return q0, q1, q2, q3
 
 
 def _representative(column: Floats) -> Fraction:
-    """Return a value that is zero if all are zero."""
+    """Return one value for a whole column: zero if all values are zero, otherwise a value that is not special."""
     return Fraction(float(column[np.argmax(column != 0)]))
 
 
@@ -227,7 +236,7 @@ def _representative(column: Floats) -> Fraction:
 def read_variation(
     scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None, parameters: Mapping[str, ArrayLike] | None
 ) -> Variation:
-    """Return the variation that arguments describe; arguments that are None keep the numbers of the scene.
+    """Return the variation that the arguments of an ensemble describe; None keeps the numbers of the scene.
 
     Raises
     ------
@@ -270,9 +279,9 @@ def read_variation(
 
 
 def _check_bodies(variation: Variation) -> None:
-    """Raise InputError for moments of inertia that no body has, or that leave its motion undetermined.
+    """Raise InputError if a trajectory has moments of inertia that no body has, or that do not determine its motion.
 
-    Doubles are enough where principal moments clearly satisfy their inequalities; other bodies are checked exactly.
+    Doubles suffice where principal moments clearly satisfy the triangle inequalities; other bodies are checked exactly.
     """
     moments: Any = variation.moments
     if not variation.in_principal_axes:
@@ -280,7 +289,7 @@ def _check_bodies(variation: Variation) -> None:
         for name, (i, j) in PLACES.items():
             value = variation.constant(name)
             tensors[:, i, j] = tensors[:, j, i] = float(value) if isinstance(value, Fraction) else value
-        moments = np.linalg.eigvalsh(tensors)  # to some 1e-15 of the largest
+        moments = np.linalg.eigvalsh(tensors)  # errors of some 1e-15 of the largest
     small, middle, large = np.sort(moments, axis=1).T
     doubtful = ~((small > CLEARLY * large) & (small + middle > (1 + CLEARLY) * large))
     for i in np.flatnonzero(doubtful).tolist():
@@ -315,11 +324,11 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
         raise InputError(
             f"{name}: expected finite numbers in {unit}, got {array[tuple(place)]} in trajectory {place[0]}"
         )
-    return array + 0.0  # zeros without a sign, as exact numbers have them
+    return array + 0.0  # -0.0 becomes 0.0, since exact numbers have no sign of zero
 
 
 def _places(scene: Scene) -> dict[str, _Place]:
-    """Return every constant of a scene that may vary, by the planner's name."""
+    """Return the places of all constants of a scene that may vary, by their names in the plan."""
     places = {name: _Place(-1, "inertia", None) for name in PLACES}
     for index, torque in enumerate(general_structure(scene).torques):
         if isinstance(torque, FormulaTorque):
@@ -333,7 +342,7 @@ def _places(scene: Scene) -> dict[str, _Place]:
 
 
 def _columns(scene: Scene, places: dict[str, _Place], name: str, values: ArrayLike) -> dict[str, Floats]:
-    """Return a parameter as columns of constants."""
+    """Return the columns of constants that one entry of ``parameters`` describes."""
     if name == "principal":
         if not scene.body.principal.given_axes:
             raise InputError(
@@ -366,5 +375,5 @@ def _columns(scene: Scene, places: dict[str, _Place], name: str, values: ArrayLi
 
 
 def _field(key: str, place: _Place) -> str:
-    """Return the name of the field that holds a constant, as a scene spells it; of a number, its own name."""
+    """Return the name of the field that contains a constant, as the scene spells it."""
     return key.rpartition("_")[0] if isinstance(place.entry, int) else key

@@ -13,7 +13,7 @@ import sympy
 from mpmath import iv
 from sympy import Expr, S, pi
 
-__all__ = ["DIGITS", "Undefined", "enclosure", "is_negative_at", "is_nonnegative_at", "surely_nonnegative_number"]
+__all__ = ["DIGITS", "Undefined", "enclosure", "is_nonnegative_at", "surely_nonnegative_number"]
 
 DIGITS = 50
 
@@ -119,12 +119,6 @@ def is_nonnegative_at(formula: Expr, values: Mapping[Expr, Any]) -> bool:
     """Return whether a formula is proven to be real and not negative at a point."""
     held = enclosure(formula, values)
     return held is not None and bool(held.a >= 0)
-
-
-def is_negative_at(formula: Expr, values: Mapping[Expr, Any]) -> bool:
-    """Return whether a formula is proven to be real and negative at a point."""
-    held = enclosure(formula, values)
-    return held is not None and bool(held.b < 0)
 
 
 def enclosure(formula: Expr, values: Mapping[Expr, Any] | None = None) -> Any:

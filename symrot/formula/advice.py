@@ -1,4 +1,4 @@
-"""What to write in a formula instead of what other languages call the same thing; imported on the way to an error.
+"""Advice for formulas written as in other languages: the name or sign to write instead. Imported only on errors.
 
 Standard library only.
 """
@@ -89,7 +89,7 @@ MARKS = {
 
 
 def nearest(word: str, known: Collection[str]) -> str:
-    """Return the known word nearest to a mistyped one, or nothing."""
+    """Return the known word nearest to a mistyped one, or an empty text."""
     from difflib import get_close_matches
 
     close = get_close_matches(word.lower(), list(known), 1, 0.5)
@@ -97,7 +97,7 @@ def nearest(word: str, known: Collection[str]) -> str:
 
 
 def function_advice(name: str, known: Collection[str]) -> str:
-    """Return what to write instead of a call of an unknown function or of one with wrong arguments, or nothing."""
+    """Return advice for a call of an unknown function or with wrong arguments; an empty text without any."""
     if name in known:
         return f"write {SIGNATURES.get(name, f'{name}(u)')}"
     if name in JUMPING:
@@ -112,14 +112,14 @@ def function_advice(name: str, known: Collection[str]) -> str:
 
 
 def _called(text: str) -> list[str]:
-    """Return the names before brackets."""
+    """Return the names that a formula calls as functions."""
     import re
 
     return re.findall(r"([a-z]\w*)\(", text)
 
 
 def name_advice(name: str, known: Collection[str]) -> str:
-    """Return what to write instead of an unknown name, or nothing."""
+    """Return advice for an unknown name: what to write instead; an empty text without any."""
     write = NAMES.get(name, "") or NAMES.get(name.lower(), "")
     if write and (write in known or "(" in write or " " in write):
         return f"write {write}"
@@ -128,7 +128,7 @@ def name_advice(name: str, known: Collection[str]) -> str:
 
 
 def mark_advice(source: str, position: int, known: Collection[str]) -> str:
-    """Return what to write instead of a character that no formula has, or of two operands side by side; or nothing."""
+    """Return advice for a character that formulas lack, or two operands side by side; an empty text without any."""
     rest, before = source[position:], source[:position].rstrip()
     if rest[:1] in MARKS:
         return f"write {MARKS[rest[0]]}"

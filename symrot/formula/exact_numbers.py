@@ -4,7 +4,10 @@ A rational value is exact: ``"1/3"``, ``"0.6375"`` (51/80), ``1e-3`` (1/1000). W
 and the circular functions) is rounded once, to a relative error below 2^-300. Standard library only.
 """
 
-__all__ = ["PI", "Angle", "cos", "equal", "read", "read_angle", "show", "sin", "sqrt", "tan", "unit", "without_turns"]
+__all__ = [
+    "NEGLIGIBLE", "NEGLIGIBLE_BITS", "PI", "Angle", "cos", "equal", "read", "read_angle", "show", "sin", "sqrt", "tan",
+    "unit", "without_turns",
+]  # fmt: skip
 
 from collections.abc import Callable, Sequence
 from decimal import Decimal
@@ -18,6 +21,11 @@ from symrot.formula import tree as expression
 
 BITS = 320
 """Working precision of what is not rational."""
+
+NEGLIGIBLE_BITS = 200
+"""Number of bits: a value below 2^-200 of the values that it is compared with counts as zero."""
+
+NEGLIGIBLE = Fraction(1, 1 << NEGLIGIBLE_BITS)
 
 LARGEST_TEXT = 400
 """Longest text of one number, in characters."""
@@ -145,7 +153,7 @@ def _bits_for(value: Fraction) -> int:
 
 
 def without_turns(value: Fraction) -> Fraction:
-    """Return ``value`` (rad) less the whole turns in it: between -pi and pi, error below 2^-300."""
+    """Return an angle in rad reduced by multiples of 2 pi to between -pi and pi, with an error below 2^-300."""
     magnitude = max(0, value.numerator.bit_length() - value.denominator.bit_length())
     turn = 2 * (PI if magnitude < 8 else _pi(BITS + magnitude))
     return value - round(value / turn) * turn
@@ -180,8 +188,8 @@ def tan(value: Fraction) -> Fraction:
 
 
 def equal(a: Fraction, b: Fraction) -> bool:
-    """Return whether two numbers agree to a relative difference below 2^-200: equal, for anything a scene means."""
-    return a == b or abs(a - b) * 2**200 < max(abs(a), abs(b))
+    """Return whether two numbers differ by less than 2^-200 relative, which no scene can mean as a difference."""
+    return a == b or abs(a - b) * NEGLIGIBLE.denominator < max(abs(a), abs(b))
 
 
 class Angle(NamedTuple):
@@ -192,17 +200,17 @@ class Angle(NamedTuple):
 
     @property
     def radians(self) -> Fraction:
-        """The angle in rad; rounded to 2^-300 when it holds a part of pi."""
+        """The angle in rad, rounded to 2^-300 if it contains a multiple of pi."""
         return self.rational + self.half_turns * PI if self.half_turns else self.rational
 
     @property
     def sin(self) -> Fraction:
-        """The sine: exact for every rational value of it, else to 2^-250."""
+        """The sine: exact where it is a rational number, else with an error below 2^-250."""
         return sin(self.radians) if self.rational else _sin_half_turns(self.half_turns)
 
     @property
     def cos(self) -> Fraction:
-        """The cosine: exact for every rational value of it, else to 2^-250."""
+        """The cosine: exact where it is a rational number, else with an error below 2^-250."""
         return cos(self.radians) if self.rational else _sin_half_turns(self.half_turns + Fraction(1, 2))
 
     def scaled(self, factor: Fraction) -> "Angle":
@@ -301,7 +309,7 @@ def _from_float(value: float) -> Angle:
 
 
 def _from_scalar(value: SupportsFloat) -> Angle:
-    """NumPy scalars and SymPy numbers come as the double they hold."""
+    """Return a NumPy scalar or SymPy number as a Python number of the same value."""
     return _from_float(float(value))
 
 
@@ -320,7 +328,7 @@ def _in_range(value: Fraction) -> None:
 
 
 def _read(value: object, where: str, expect: str) -> Angle:
-    """Return ``value`` as rational + half_turns * pi, or raise the sentence of an InputError."""
+    """Return a number as rational + half_turns * pi; raise InputError for text that is no number."""
     kind = type(value)
     if not isinstance(value, bool):
         reader = _READERS.get(kind) or next((r for k, r in _READERS.items() if isinstance(value, k)), None)

@@ -1,6 +1,6 @@
-"""What a kernel is to those who call it, and as data: signature and straight-line program. Standard library only.
+"""A kernel as data: its signature, and its formulas as a straight-line program. Standard library only.
 
-This is the waist between the symbolic and the numeric half: codegen writes it, propagate reads it, and a saved kernel
+It joins the symbolic to the numeric half: code generation writes it, propagation reads it, and a saved kernel
 comes back from JSON without SymPy.
 """
 
@@ -80,7 +80,7 @@ class Program:
         return sum((operations(node) for _, node in self.temporaries + self.outputs), Counter())
 
     def uses(self, symbol: str, only: Collection[str] | None = None) -> bool:
-        """Return whether a symbol stands in the program or, with ``only``, in what just those outputs need."""
+        """Return whether a symbol occurs in the program; with ``only``, in the operations that those outputs need."""
         needed = {name for name, _ in self.outputs} if only is None else set(only)
         for name, node in reversed((*self.temporaries, *self.outputs)):
             needed |= names(node) if name in needed else set()

@@ -1,4 +1,4 @@
-"""Formulas that jump or bend, as smooth formulas with modes: what a stepper follows from one switch to the next.
+"""Formulas that jump or bend, as smooth formulas with modes, which a stepper follows from switch to switch.
 
 A switch is a guard, a formula that changes its sign, and a mode, the number that the smooth formula takes on one side
 of it. While no guard vanishes, the smooth formula with the modes of the moment is the formula itself:
@@ -81,7 +81,7 @@ class Switch(NamedTuple):
 
 
 class Smooth(NamedTuple):
-    """Formulas without switches, and the switches that were in them, each after those that stand in its guard.
+    """Smooth formulas, and the switches that they had; each switch comes after the switches that occur in its guard.
 
     Formulas and guards may hold ``where(p, a, b)``, with p a formula of modes that is 1 or 0, see :func:`chosen`.
     """
@@ -91,7 +91,7 @@ class Smooth(NamedTuple):
 
 
 def has_switches(node: Node) -> bool:
-    """Return whether a formula jumps or bends where what changes (time, state) passes some value."""
+    """Return whether a formula jumps or bends as the time or a state passes some value."""
     if node[0] == "call" and node[1] in SWITCHING:
         return True
     if node[0] == "call" and node[1] in BENDING and names(node) & CHANGING:
@@ -100,7 +100,7 @@ def has_switches(node: Node) -> bool:
 
 
 def condition_error(node: Node) -> str:
-    """Return an empty text, or what is wrong with the conditions in a formula."""
+    """Return a sentence about a fault of the conditions in a formula; an empty text if they are right."""
 
     def wrong(node: Node, condition: bool) -> str:
         if node[0] != "call" or node[1] not in CONDITIONS:
@@ -120,17 +120,17 @@ def condition_error(node: Node) -> str:
 
 
 def hold(conditions: Iterable[tuple[Node, int]], modes: Mapping[str, int], held: Collection[str] = ()) -> bool:
-    """Return whether conditions hold under some modes; one with a mode that is held between its values always does."""
+    """Return whether conditions hold for given modes; one whose mode slides between its values counts as true."""
     return all(names(share) & set(held) or evaluate(share, modes) == value for share, value in conditions)
 
 
 def has_choices(node: Node) -> bool:
-    """Return whether a smooth formula holds a ``where`` whose part is chosen when the modes are known."""
+    """Return whether a smooth formula contains a ``where``, whose part is chosen once the modes are known."""
     return node[:2] == ("call", "where") or any(map(has_choices, children(node)))
 
 
 def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> Node:
-    """Return a smooth formula with the one part of each ``where`` that holds under some modes.
+    """Return a smooth formula in which each ``where`` is replaced by the part that holds for given modes.
 
     Where a mode of the condition is held between its values, both parts hold in shares.
     """
@@ -146,7 +146,7 @@ def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> 
 
 
 def blended(node: Node) -> Node:
-    """Return a smooth formula in which both parts of each ``where`` stand, times their shares."""
+    """Return a smooth formula in which each ``where`` is the sum of both parts, each times its share."""
     return chosen(node, {}, names(node))
 
 
@@ -202,7 +202,7 @@ class _Writer:
         self.conditions: Conditions = ()  # under which what is being rewritten matters
 
     def mode(self, kind: str, guard: Node, where: Conditions = (), at_zero: int = 1) -> Node:
-        """Return the mode of a guard, made when it is first asked for."""
+        """Return the mode of a guard, a new one at the first call."""
         where = self.conditions + where
         for count in range(len(where) + 1):  # one that matters wherever this one does will do
             if (mode := self.known.get((kind, guard, where[:count], at_zero))) is not None:
@@ -287,7 +287,7 @@ class _Writer:
 
 
 def _difference(a: Node, b: Node) -> Node:
-    """Return a - b; less zero it is a, the guard of other functions of a too."""
+    """Return the formula a - b, shortened to a for b = 0, so that functions of a share one guard."""
     return a if b == ("number", 0) else ("-", a, b)
 
 

@@ -14,8 +14,7 @@ from typing import Any, NamedTuple
 
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import PI, show
-from symrot.formula.tree import Node, evaluate, parse
-from symrot.inertia.polynomial import (
+from symrot.formula.polynomial import (
     Polynomial,
     constant,
     cosine,
@@ -25,6 +24,7 @@ from symrot.inertia.polynomial import (
     sine,
     square_root,
 )
+from symrot.formula.tree import Node, evaluate, parse
 from symrot.inertia.shapes import Coordinate, Shape, scalar_names, scalars
 
 __all__ = [

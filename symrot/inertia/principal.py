@@ -10,13 +10,12 @@ from itertools import permutations
 from typing import Any, NamedTuple
 
 from symrot.errors import InputError
-from symrot.formula.exact_numbers import equal, read, show
+from symrot.formula.exact_numbers import NEGLIGIBLE, equal, read, show
 from symrot.inertia.tensor import IDENTITY, Tensor, cross, determinant, dot, matrix, subtract, transpose
 
 __all__ = ["Principal", "principal_axes", "require_admissible", "why_not_propagable"]
 
 DIGITS = 120
-_NEGLIGIBLE = Fraction(1, 2**200)  # of the largest moment, as in number.equal
 _PAIRS = ((0, 1), (0, 2), (1, 2))
 _LARGEST_DENOMINATOR = 10**40  # a moment is looked for among these fractions, and taken only when it is exactly a root
 
@@ -58,7 +57,7 @@ def _read_tensor(inertia: Any, where: str) -> Tensor:
     tensor = matrix([[e if isinstance(e, Fraction) else read(e, where) for e in row] for row in rows])
     largest = max(abs(entry) for row in tensor for entry in row)
     for i, j in _PAIRS:
-        if abs(tensor[i][j] - tensor[j][i]) > largest * _NEGLIGIBLE:
+        if abs(tensor[i][j] - tensor[j][i]) > largest * NEGLIGIBLE:
             raise InputError(
                 f"{_prefix(where)}expected a symmetric inertia tensor, got {float(tensor[i][j])!r} and "
                 f"{float(tensor[j][i])!r} on either side of the diagonal"
@@ -126,7 +125,7 @@ def _directed(columns: list[tuple[Fraction, ...]]) -> Tensor:
 
 def _settle(moments: list[Fraction]) -> tuple[Fraction, Fraction, Fraction]:
     """Return the moments with rounding removed: the negligible become zero, equal ones become exactly equal."""
-    limit = max(map(abs, moments)) * _NEGLIGIBLE
+    limit = max(map(abs, moments)) * NEGLIGIBLE
     settled = [Fraction(0) if abs(moment) <= limit else moment for moment in moments]
     for i, j in _PAIRS:
         if equal(settled[i], settled[j]):
@@ -169,7 +168,7 @@ def principal_axes(inertia: Any, where: str = "") -> Principal:
     (Fraction(3, 1), Fraction(1, 1), Fraction(3, 1))
     """
     tensor = _read_tensor(inertia, where)
-    limit = max(abs(tensor[i][i]) for i in range(3)) * _NEGLIGIBLE
+    limit = max(abs(tensor[i][i]) for i in range(3)) * NEGLIGIBLE
     if all(abs(tensor[i][j]) <= limit for i, j in _PAIRS):
         moments = _settle([tensor[i][i] for i in range(3)])
         return Principal(moments, IDENTITY, *_class(moments), True)

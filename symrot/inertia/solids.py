@@ -38,11 +38,11 @@ from sympy import (
 from symrot import symbols
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import read, show
+from symrot.formula.polynomial import Polynomial, constant, exact_quotient, generator
 from symrot.formula.tree import evaluate, parse
 from symrot.inertia import tensor
 from symrot.inertia.bodies import compose
 from symrot.inertia.integration import LARGEST_DEGREE, Domain, domain, moments_per_measure
-from symrot.inertia.polynomial import Polynomial, constant, exact_quotient, generator
 from symrot.inertia.shapes import SHAPES, Dimension, Shape, check_names, find_shape, scalar_names
 
 __all__ = ["Integral", "Solid", "closed_forms_text", "solid"]
@@ -234,7 +234,7 @@ def _scalar(value: Any) -> Expr:
 
 
 def _formula(text: str, known: Mapping[str, Expr]) -> Expr:
-    """Return the expression that a text stands for; its names are the known ones."""
+    """Return a text as an expression in known names."""
     values = {**known, **_CONSTANTS}
     try:
         return sympify(evaluate(parse(text), values, _FUNCTIONS, _rational))
@@ -258,7 +258,7 @@ def _dimension(value: Any, dimension: Dimension, shape: Shape) -> Expr:
 
 
 def _dimensions(shape: Shape, dimensions: Mapping[str, Any]) -> dict[str, Expr]:
-    """Return an expression for each single number of the shape: the one given, or its default symbol."""
+    """Return an expression for each dimension of a shape: the given value, or the default symbol."""
     check_names(shape, {d.name: None for d in shape.dimensions} | dict(dimensions))
     numbers: dict[str, Expr] = dict(_default_dimensions(shape.name))
     for d in shape.dimensions:
@@ -375,7 +375,7 @@ _MASS = Dimension("mass", "kg", "m")
 
 
 def _weighted(shape: Shape, values: Mapping[str, Expr], profile: Poly, measure: Expr) -> Solid:
-    """Return a body whose density varies: its coefficients stand in the integrand as generators of their own."""
+    """Return a body of varying density; the coefficients of the density are generators of the integrand."""
     known = {name: Fraction(value.p, value.q) for name, value in values.items() if value.is_Rational}
     region = domain(shape, known)
     density, coefficients = constant(0), {}

@@ -129,7 +129,7 @@ def inertia_of_point(mass: Any, position: Any) -> Tensor:
 
 
 def about_point(inertia: Any, mass: Any, offset: Any) -> Tensor:
-    """Return the inertia tensor about a point, from the one about the centre of mass (parallel axes, full tensor).
+    """Return the inertia tensor about a point from the tensor about the centre of mass (parallel-axis theorem).
 
     Parameters
     ----------
@@ -147,5 +147,5 @@ def about_point(inertia: Any, mass: Any, offset: Any) -> Tensor:
 
 
 def about_center_of_mass(inertia: Any, mass: Any, offset: Any) -> Tensor:
-    """Return the inertia tensor about the centre of mass, from the one about a point ``offset`` away."""
+    """Return the inertia tensor about the centre of mass from the tensor about a point that is ``offset`` away."""
     return subtract(inertia, inertia_of_point(mass, offset))

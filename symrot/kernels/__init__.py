@@ -1,1 +1,4 @@
-"""The library of kernels, whose formulas are derived from their names; :mod:`symrot.codegen` prints them."""
+"""The library of kernels: definitions whose formulas are derived from the kernel's name.
+
+:mod:`symrot.codegen` prints them as code.
+"""

@@ -37,13 +37,13 @@ class Definition:
     results: tuple[tuple[Argument, tuple[Expr, ...]], ...]  # output argument, formula of each component
     domain: str
     derivation: str
-    box: Box  # of the inputs, on which its rounding error is bounded unless another is given
+    box: Box  # ranges of the inputs for which rounding errors are bounded by default
     laws: Callable[[], tuple[Law, ...]]
     named: tuple[tuple[Symbol, Expr], ...] = field(default=())  # quantities with a physical name that the formulas use
 
     @property
     def formulas(self) -> tuple[tuple[str, Expr], ...]:
-        """Return (output component, formula) in the order of the outputs."""
+        """Return all formulas as pairs (output component, formula), in the order of the outputs."""
         return tuple(
             (component[0], formula)
             for target, expressions in self.results
@@ -52,7 +52,10 @@ class Definition:
 
 
 def argument(name: str, role: str, components: Sequence[Symbol | str], meaning: str, unit: str = "") -> Argument:
-    """Return an array argument of symbols of :mod:`symrot.symbols`, each with its unit (or ``unit``)."""
+    """Return an input or output array whose components are symbols of :mod:`symrot.symbols`, with their units.
+
+    ``unit`` is for components that are not such symbols.
+    """
     described = []
     for component in components:
         known = unit or symbols.UNIT[component]
@@ -78,5 +81,5 @@ def interval(low: Fraction | int | str, high: Fraction | int | str) -> tuple[Fra
 
 
 def boxed(components: Sequence[Symbol], low: Fraction | int | str, high: Fraction | int | str) -> Box:
-    """Return one range for several inputs."""
+    """Return the ranges of several inputs that share one range, by name."""
     return {str(component): interval(low, high) for component in components}

@@ -39,7 +39,7 @@ _TORQUE = argument("torque", "in", symbols.torque_b, "torque about the same poin
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield name and definition, made on demand, of every kernel of dynamics."""
+    """Yield the name of every kernel of dynamics, with a function that derives its definition."""
     for body in _BODIES:
         yield f"euler_equations_{body}", partial(_euler_equations, f"euler_equations_{body}", body)
     for body in ("tensor", "principal"):
@@ -51,7 +51,9 @@ def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
 
 
 def tensor_argument(body: str = "tensor") -> Argument:
-    """Return the input that holds the inertia of a class of bodies."""
+    """Return the input argument for the inertia of a class of bodies: six entries, or three or two principal
+    moments.
+    """
     return argument("inertia", "in", _BODIES[body][0], _MEANING[body])
 
 
@@ -64,7 +66,7 @@ def _symbols(name: str, count: int = 3) -> tuple[Symbol, ...]:
 
 
 def _solved(inertia: Matrix, omega: Matrix, torque: Matrix) -> tuple[Named, Matrix]:
-    """Return named quantities and the angular acceleration in terms of them."""
+    """Return the angular acceleration, and the named quantities that its formulas use."""
     if inertia.is_diagonal():
         return (), angular_acceleration(inertia, omega, torque)
     momentum, moment = Matrix(_symbols("L")), Matrix(_symbols("M"))
@@ -136,7 +138,7 @@ _DISTANCE = symbols.h
 
 
 def _heavy_top(name: str, body: str) -> Definition:
-    """Return the right-hand side of a top: a symmetric one carries its centre of mass on body axis 3."""
+    """Return the kernel of a heavy top's right-hand side; a symmetric top has its centre of mass on body axis 3."""
     _, inertia = _BODIES[body]
     symmetric = body == "symmetric"
     center = Matrix([0, 0, _DISTANCE]) if symmetric else Matrix(symbols.center_of_mass)
@@ -166,7 +168,7 @@ def _heavy_top(name: str, body: str) -> Definition:
 
 
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
-    """Return twice the weight times the centre of mass as symbols (zero where it is zero), and their definitions."""
+    """Return twice the weight times the centre of mass as symbols (zero for zero components), and their definitions."""
     components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
     return Matrix(components), tuple(
         (symbol, 2 * _WEIGHT * c) for symbol, c in zip(components, center, strict=True) if c

@@ -1,4 +1,4 @@
-"""Kernels of Euler angles: for all 24 sequences the dcm, both rate Jacobians and their inverses, and quaternions."""
+"""Kernels of Euler angles, for all 24 sequences: the dcm, both rate Jacobians and their inverses, and quaternions."""
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
@@ -26,12 +26,14 @@ QUATERNION = argument("q", "in", symbols.quaternion, "attitude, body to space")
 
 
 def prefix(sequence: str) -> str:
-    """Return the beginning of the names of a sequence's kernels; no two differ in case alone."""
+    """Return the first part of the names of a sequence's kernels; the names differ in more than upper and lower
+    case.
+    """
     return f"euler_{sequence.lower()}" if parse_sequence(sequence)[1] else f"euler_extrinsic_{sequence}"
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield name and definition, made on demand, of every kernel of Euler angles."""
+    """Yield the name of every kernel of Euler angles, with a function that derives its definition."""
     for sequence in SEQUENCES:
         for suffix, make in _KINDS.items():
             name = f"{prefix(sequence)}_{suffix}"
@@ -49,16 +51,16 @@ def _lock(sequence: str) -> str:
 
 
 def _regular_box(sequence: str) -> Box:
-    """Return angles away from the lock of a sequence: the middle angle within 1.4 rad of the best place."""
+    """Return ranges of angles away from gimbal lock: the middle angle lies within 1.4 rad of the most regular one."""
     axes, _ = parse_sequence(sequence)
     proper = axes[0] == axes[2]
     return ANGLE_BOX | {"theta": interval("1/10", "304/100") if proper else interval("-7/5", "7/5")}
 
 
 def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
-    """Return products of functions of the first and the last angle as named quantities, and the entries in them.
+    """Return named products of functions of the first and last angle, and the entries of a matrix written with them.
 
-    Their factor, a function of the middle angle, is collected out of the sums.
+    In sums, their common factor, a function of the middle angle, is collected.
     """
     named: dict[Expr, Symbol] = {}
     formulas = []
@@ -129,10 +131,10 @@ def _rates(frame: str, name: str, sequence: str) -> Definition:
 
 
 def _solved(jacobian: RateMatrix, omega: Matrix) -> tuple[Named, list[Expr]]:
-    """Return the rate of an outer angle as a named quantity, and all three rates by it.
+    """Return the rates of all three Euler angles, with the rate of the first or last one as a named quantity.
 
-    The column of the other outer angle is an axis of the frame: along it, omega is that rate and a part of the named
-    one. The row of the named one over the determinant has no other quotient.
+    The column of the other outer angle is an axis of the frame: along it, omega is the sum of that angle's rate and a
+    part of the named rate. The row of the named rate, divided by the determinant, contains the only quotient.
     """
     matrix, determinant = Matrix(jacobian), jacobian.determinant
     last = next(place for place in (0, 2) if not matrix[:, place].free_symbols)
@@ -161,7 +163,7 @@ def _quaternion(name: str, sequence: str) -> Definition:
 
 
 def _wrapped(angle: Expr) -> Expr:
-    """Return an angle in (-2 pi, 2 pi) reduced to [-pi, pi]."""
+    """Return an angle in (-2 pi, 2 pi) reduced to the range [-pi, pi]."""
     return select_ge(pi, angle, select_ge(angle, -pi, angle, angle + 2 * pi), angle - 2 * pi)
 
 

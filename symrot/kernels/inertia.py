@@ -23,9 +23,9 @@ _TENSOR_OUT = "inertia tensor (xx, yy, zz, xy, xz, yz), products with their minu
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield name and definition, made on demand, of every kernel of inertia."""
+    """Yield the name of every kernel of inertia, with a function that derives its definition."""
     for name, shape in SHAPES.items():
-        if shape.position:  # separate points have no fixed number of inputs
+        if shape.position:  # no kernel for separate points, whose number of inputs is not fixed
             yield f"inertia_{name}", partial(_solid, f"inertia_{name}", name)
     yield "inertia_parallel_axis", partial(_parallel_axis, "inertia_parallel_axis")
     yield "inertia_rotated", partial(_rotated, "inertia_rotated")

@@ -18,13 +18,13 @@ def _table() -> dict[str, Callable[[], Definition]]:
 
 
 def kernel_names() -> tuple[str, ...]:
-    """Return the names of all kernels."""
+    """Return the names of all kernels, in the order in which they are printed."""
     return tuple(_table())
 
 
 @cache
 def definition(name: str) -> Definition:
-    """Return the kernel of that name, derived now.
+    """Return the definition of the kernel with the given name, newly derived.
 
     Raises
     ------

@@ -33,16 +33,16 @@ _UNIT = "unit quaternions"
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield name and definition, made on demand, of every kernel of quaternions."""
+    """Yield the name of every kernel of quaternions, with a function that derives its definition."""
     for name, make in _KINDS.items():
         yield name, partial(make, name)
 
 
 def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -> tuple[Named, ImmutableMatrix]:
-    """Return named quantities ``t = doubled`` and the dcm ``1 + scalar [t] + [t][axis]``, [v] the matrix of v x.
+    """Return the dcm ``1 + scalar [t] + [t][axis]`` and the named quantities ``t = doubled`` in it.
 
-    For a unit quaternion (q0, u) and t = 2 u it is the dcm. Since t is along the axis, [t][axis] is symmetric, so that
-    each of its products is computed once.
+    Here [v] is the matrix of the cross product with v. For a unit quaternion (q0, u) and t = 2 u it is the dcm. Since t
+    is along the axis, [t][axis] is symmetric, so that each of its products is computed once.
     """
     twice = tuple(Symbol(f"twice_{i}", real=True) for i in "123")
     square = skew(twice) * skew(axis)
@@ -116,14 +116,16 @@ Branch = tuple[Expr, list[Expr]]  # four times the square of a component, and fo
 
 
 def _branch(matrix: Matrix, pivot: int) -> Branch:
-    """Return ``4 q_pivot^2`` and the row ``4 q_pivot q``, both linear in the dcm."""
+    """Return ``4 q_pivot^2`` and the row ``4 q_pivot q`` of the quaternion of a dcm; the entries of the dcm occur
+    linearly.
+    """
     q = quaternion_of_dcm(matrix, pivot)
     square = 4 * q[pivot] ** 2
     return square, [entry * 2 * sqrt(square) for entry in q]
 
 
 def _larger(left: Branch, right: Branch) -> Branch:
-    """Return the branch with the larger square."""
+    """Return the branch of two whose component has the larger square."""
     (a, row_a), (b, row_b) = left, right
     return select_ge(a, b, a, b), [select_ge(a, b, x, y) for x, y in zip(row_a, row_b, strict=True)]
 
@@ -186,7 +188,11 @@ def _rotate(towards: str, name: str) -> Definition:
 
 
 def turned(q: Sequence[Expr], vector: Matrix) -> tuple[Named, Matrix]:
-    """Return ``v + q0 h + u x h`` with ``h = 2 u x v`` for ``q = (q0, u)``: fewer operations than by the dcm."""
+    """Return the rotated vector ``v + q0 h + u x h`` with ``h = 2 u x v`` for ``q = (q0, u)``, and h as named
+    quantities.
+
+    This takes fewer operations than the dcm.
+    """
     scalar, axis = q[0], Matrix([*q][1:])
     half = Matrix([Symbol(f"twice_cross_{i}", real=True) for i in "123"])
     named = tuple(zip(half, 2 * axis.cross(vector), strict=True))

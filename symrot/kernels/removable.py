@@ -1,16 +1,17 @@
-"""Functions with a removable singularity, as kernels compute them: accurate on the whole line, no epsilon to tune.
+"""Functions with a removable singularity, as kernels compute them: accurate for all numbers, without a threshold to
+tune.
 
-``sin(x)/x`` is accurate except at zero, where a conditional returns its limit. A difference of nearly equal terms,
-``(x - sin x)/x^3``, is summed as its Taylor series near zero, with a truncation error proven below half the last bit,
-and computed directly elsewhere: where the two meet is a property of the function, not a setting.
+``sin(x)/x`` is accurate except at zero, where a conditional returns its limit. A difference of nearly equal terms, ``(x
+- sin x)/x^3``, is summed as its Taylor series near zero, with a truncation error proven below half the last bit, and
+computed directly elsewhere. The point between the two follows from the function; it is not a setting.
 
-What holds, measured by ``python -m symrot.bench.ulps`` in double and float, fused or not:
+Errors measured by ``python -m symrot.bench.ulps`` in double and float, with fused operations or without:
 
 - ``sinc``, ``sine_gap``: within 4 ulp at every finite number (measured 1.4 and 2.1).
 - ``tangent_gap``: within 4 ulp for |x| <= pi (measured 2.3). Beyond, it falls as cos(x)/x^2 and has zeros, the
   solutions of x = tan x, which are no floating-point numbers: a relative error has no bound there. Its absolute error
   is at most 4 * 2^-53/x^2, in float 4 * 2^-24/x^2, or half the least subnormal number (measured
-  2.5 on the whole line).
+  2.5 for all numbers).
 - ``arc_ratio``: within 4 ulp on the half circle that quaternions have (measured 1.6; batches 1.2).
 
 Batches compute them without a branch, with the sine, cosine and arc tangent of ``symrot_math.h``.
@@ -35,7 +36,7 @@ arc_ratio = Function("arc_ratio", real=True)
 copysign = Function("copysign", real=True)
 select_ge = Function("select_ge", real=True)
 
-FUNCTIONS: dict[str, int] = {  # what kernels of the library call beyond the functions of scenes; number of arguments
+FUNCTIONS: dict[str, int] = {  # functions of kernels beyond those of scenes, with their numbers of arguments
     "sinc": 1, "sine_gap": 1, "tangent_gap": 1, "arc_ratio": 2, "copysign": 2, "select_ge": 4,
 }  # fmt: skip
 DIGITS = {"binary64": 53, "binary32": 24}
@@ -45,33 +46,34 @@ _x = Symbol("x", real=True)
 
 @dataclass(frozen=True)
 class Removable:
-    """A function of x that is even and analytic, ``numerator / x^power``, whose quotient is undefined at zero.
+    """An even analytic function of x, ``numerator / x^power``, whose quotient is undefined at zero.
 
-    ``split`` is the square of the |x| below which the series is summed; its terms alternate and decrease there. Beyond
-    it ``scaled/x/x`` is computed, the same quotient without a power of x that would overflow before the result does.
+    ``split`` is the square of the |x| below which the series is summed; its terms alternate and decrease there. For
+    larger
+    |x|, ``scaled/x/x`` is computed, the same quotient without a power of x that would overflow before the result does.
     """
 
     name: str
-    numerator: Expr  # in x
+    numerator: Expr  # a formula in x
     power: int
     split: Fraction
     scaled: Expr  # numerator / x^(power - 2), term by term
     about: str
 
     def formula(self, x: Expr) -> Expr:
-        """Return the quotient at x."""
+        """Return the function at x as a quotient."""
         return self.numerator.xreplace({_x: x}) / x**self.power
 
     def coefficients(self, precision: str = "binary64") -> tuple[Fraction, ...]:
-        """Return the Taylor coefficients in x^2 that are summed for a precision.
+        """Return as many Taylor coefficients of the function, in powers of x^2, as a precision needs.
 
-        There are so many that the first omitted one, times its power of ``split``, is less than a quarter of a unit in
-        the last place of the least value there: the series alternates, so that this bounds the remainder.
+        The first omitted coefficient, times its power of ``split``, is less than a quarter of a unit in the last place
+        of the least value there: the series alternates, so that this bounds the remainder.
         """
         return _summed(self, precision)
 
     def taylor(self, count: int) -> tuple[Fraction, ...]:
-        """Return the first Taylor coefficients in x^2."""
+        """Return the first ``count`` Taylor coefficients of the function, in powers of x^2."""
         return _taylor(self, count)
 
 
@@ -82,7 +84,7 @@ def _summed(which: Removable, precision: str) -> tuple[Fraction, ...]:
         coefficients = which.taylor(count)
         terms = [abs(a) * which.split**k for k, a in enumerate(coefficients)]
         if any(a * b >= 0 for a, b in pairwise(coefficients)) or sorted(terms, reverse=True) != terms:
-            raise AssertionError(f"{which.name}: expected a series that alternates and falls below {which.split}")
+            raise AssertionError(f"{which.name}: expected an alternating, decreasing series for x^2 < {which.split}")
         if terms[-1] < (terms[0] - terms[1]) * Fraction(1, 2 ** (DIGITS[precision] + 2)):
             return coefficients[:-1]
         count += 1
@@ -118,7 +120,10 @@ _EXPLICIT: dict[str, Callable[..., Any]] = {
 
 
 def explicit(expr: Expr) -> Expr:
-    """Return an expression with the removable functions written as quotients, which are valid except at zero."""
+    """Return an expression in which functions with a removable singularity, such as sinc, are written as quotients.
+
+    The quotients are valid except where their denominator is zero.
+    """
     for name, formula in _EXPLICIT.items():
         expr = expr.replace(
             lambda e, name=name: getattr(e.func, "__name__", "") == name, lambda e, formula=formula: formula(*e.args)

@@ -21,7 +21,7 @@ _CALLED = {"rodrigues": "classical Rodrigues parameters", "mrp": "modified Rodri
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield name and definition, made on demand, of every kernel of Rodrigues parameters."""
+    """Yield the name of every kernel of Rodrigues parameters, with a function that derives its definition."""
     for which in (CLASSICAL, MODIFIED):
         for suffix, make in _KINDS.items():
             name = f"{which.name}_{suffix}"
@@ -37,11 +37,14 @@ def _input(which: Projection) -> Argument:
     return argument("parameters", "in", which.parameters, which.about)
 
 
-_SQUARE = Symbol("square", real=True)  # of the length of the parameters
+_SQUARE = Symbol("square", real=True)  # square of the length of the parameters
 
 
 def _ray(which: Projection) -> tuple[Named, Expr]:
-    """Return named quantities and the scalar part of the quaternion (scalar, parameters) on the ray of an attitude."""
+    """Return the scalar s for which the quaternion (s, parameters), not normalised, has the given attitude.
+
+    Named quantities in the formula of s are returned too.
+    """
     if not which.centre:
         return (), Integer(1)
     return ((_SQUARE, sum(p**2 for p in which.parameters)),), (1 - _SQUARE) / 2
@@ -84,7 +87,7 @@ def _quaternion(which: Projection, name: str) -> Definition:
 
 def _of_quaternion(which: Projection, name: str) -> Definition:
     q0, *vector = symbols.quaternion
-    if which.centre:  # of q and -q the one whose projection is the short one
+    if which.centre:  # q or -q, whichever has the shorter parameters
         sign = select_ge(q0, Integer(0), Integer(1), Integer(-1))
         formulas = [sign * entry / (1 + sign * q0) for entry in vector]
     else:

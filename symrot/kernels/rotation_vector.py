@@ -24,13 +24,13 @@ _BOX = boxed(_VECTOR, -3, 3)
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield name and definition, made on demand, of every kernel of rotation vectors."""
+    """Yield the name of every kernel of rotation vectors, with a function that derives its definition."""
     for name, make in _KINDS.items():
         yield name, partial(make, name)
 
 
 def _of_skew(c1: Expr, c2: Expr) -> ImmutableMatrix:
-    """Return ``1 + c1 K + c2 K^2`` of the skew matrix K of the vector."""
+    """Return the matrix ``1 + c1 K + c2 K^2``, where K is the skew matrix of the rotation vector."""
     matrix = skew(_VECTOR)
     return ImmutableMatrix(eye(3) + c1 * matrix + c2 * matrix**2)
 

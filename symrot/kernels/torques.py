@@ -1,4 +1,4 @@
-"""Kernels of the torques of the table, in body components."""
+"""Kernels of the torques that scenes can have, in body components."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -17,7 +17,7 @@ from symrot.kinematics.quaternion import conjugate, quaternion_to_dcm, unit_rela
 
 __all__ = ["definitions"]
 
-# kernel: kind of the table, the fields it takes as inputs; the others are zero
+# name of a kernel: kind of torque, and the fields that are inputs; other fields are zero
 _KERNELS: dict[str, tuple[str, tuple[str, ...]]] = {
     "torque_constant_body": ("constant_body", ("torque",)),
     "torque_constant_space": ("constant_space", ("torque",)),
@@ -33,7 +33,7 @@ _SIZE = {"scalar": 1, "vector": 3, "scalar or vector": 3, "attitude": 4}
 
 
 class _Turned(Motion):
-    """A motion that rotates vectors by the quaternion itself, with fewer operations than by the dcm."""
+    """Motion whose vectors are rotated by the quaternion itself, which takes fewer operations than the dcm."""
 
     def to_body(self, vector_s: Matrix) -> Matrix:
         named, components = turned(conjugate(self.quaternion), vector_s)
@@ -45,7 +45,7 @@ _RANGE: dict[str, str | int] = {"mean_motion": "1/100", "weight": 100}  # larges
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield name and definition, made on demand, of every kernel of torques."""
+    """Yield the name of every kernel of torques, with a function that derives its definition."""
     for name in _KERNELS:
         yield name, partial(_torque, name)
 

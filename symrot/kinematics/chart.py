@@ -77,7 +77,7 @@ class SingularSet:
         return bool(self.values is S.EmptySet)
 
     def points(self) -> tuple[Expr, ...]:
-        """Return the distinct values within one turn, in increasing order: the first turn from 0 that has any."""
+        """Return the distinct singular values in the first period of 2 pi that contains any, in increasing order."""
         for turn in (Interval.Ropen(0, 2 * pi), Interval.Ropen(2 * pi, 4 * pi)):
             points = self.values.intersect(turn)
             if points is not S.EmptySet:
@@ -136,7 +136,7 @@ def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
 
 @dataclass(frozen=True)
 class Limit:
-    """What the inverse rate matrix tends to as the chart approaches a singular point from one side.
+    """The limit of the inverse rate matrix as the parameters approach a singular point from one side.
 
     Attributes
     ----------
@@ -167,7 +167,7 @@ class Limit:
 
 @dataclass(frozen=True)
 class RateFacts:
-    """What is derived together with a rate matrix; see the attributes of :class:`RateMatrix`.
+    """The results that are derived together with a rate matrix; :class:`RateMatrix` describes them.
 
     The determinant depends on the parameters through ``variable`` alone (an angle, a length). ``along(x)`` returns
     the determinant and the inverse with ``variable`` set to x, for x in ``domain``: the way to the singular points.

@@ -15,7 +15,7 @@ __all__ = ["continuous_quaternion", "unwrap_euler"]
 
 
 def continuous_quaternion(q: Any) -> Array:
-    """Return q with signs that make neighbours' dot products positive, shape (n, ..., 4); the first sample stays."""
+    """Return quaternions, shape (n, ..., 4), with signs such that neighbours have positive dot products."""
     q = array_of(q, 4, what="a quaternion")
     turns_over = np.einsum("...i,...i->...", q[1:], q[:-1]) < 0
     sign = np.ones(q.shape[:-1])
@@ -25,7 +25,7 @@ def continuous_quaternion(q: Any) -> Array:
 
 
 def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
-    """Return Euler angles without jumps, shape (n, ..., 3), rad; the attitudes and the first sample stay.
+    """Return Euler angles without jumps of 2 pi, shape (n, ..., 3), rad; attitudes and first sample are unchanged.
 
     Parameters
     ----------

@@ -97,7 +97,7 @@ def _largest(components: Components) -> Array:
 
 
 def _in_range(*components: Array) -> tuple[Components, Array]:
-    """Return the samples, those of extreme magnitude divided by their largest entry, and the squared lengths.
+    """Return samples and squared lengths; samples whose squares would overflow are divided by their largest entry.
 
     Samples that are zero, infinite or NaN become NaN.
     """
@@ -311,7 +311,7 @@ def _rodrigues(*q: Array) -> Components:
 
 
 def quaternion_to_rodrigues(q: Any) -> tuple[Array, Mask]:
-    """Return classical Rodrigues parameters, shape (..., 3), and where there are none, shape (...).
+    """Return classical Rodrigues parameters, shape (..., 3), and a mask of attitudes without any, shape (...).
 
     There are none at a half turn, where they are infinite: the mask is True and the row is NaN.
     """
@@ -372,7 +372,7 @@ def mrp_shadow(s: Any) -> Array:
 
 @np.errstate(all="ignore")
 def mrp_switch(s: Any) -> tuple[Array, Mask]:
-    """Return the shorter of each set and its shadow, shape (..., 3), and where it was the shadow, shape (...).
+    """Return the shorter of each set and its shadow, shape (..., 3), and a mask of the shadows.
 
     For a motion in modified parameters: switch whenever ``|s| > 1``, and |s| stays at most 1.
     """
@@ -385,7 +385,7 @@ def mrp_switch(s: Any) -> tuple[Array, Mask]:
 
 
 def places(sequence: str) -> tuple[tuple[int, int, int], tuple[int, int, int], int, int]:
-    """Return the axes and the places of the factors of ``dcm_sb`` from left to right, and ``e_1 x e_2 = sign e_m``."""
+    """Return axes and places of the factors of ``dcm_sb`` from left to right, and ``e_1 x e_2 = sign e_m``."""
     axes, intrinsic = parse_sequence(sequence)
     (first, middle, last), order = (axes, (0, 1, 2)) if intrinsic else (axes[::-1], (2, 1, 0))
     return (first, middle, last), order, 3 - first - middle, 1 if (middle - first) % 3 == 1 else -1
@@ -420,7 +420,7 @@ def euler_to_quaternion(angles: Any, sequence: str, degrees: bool = False) -> Ar
 
 
 def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: float = LOCK) -> tuple[Array, Mask]:
-    """Return Euler angles in order of application, shape (..., 3), and where they lock, shape (...).
+    """Return Euler angles in order of application, shape (..., 3), and a mask of gimbal lock, shape (...).
 
     Parameters
     ----------
@@ -479,7 +479,7 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
 
 
 def _sum(x: Array, y: Array, odd: Mask) -> Array:
-    """Return ``x + y``, plus or minus pi where ``odd``, in [-pi, pi], for x and y in [-pi/2, pi/2]; rounded once."""
+    """Return ``x + y`` for x and y in [-pi/2, pi/2], shifted by pi into [-pi, pi] where ``odd``, and rounded once."""
     total = x + y
     back = total - x
     error = (x - (total - back)) + (y - back)
@@ -495,5 +495,5 @@ def euler_to_dcm(angles: Any, sequence: str, degrees: bool = False) -> Array:
 
 
 def dcm_to_euler(dcm: Any, sequence: str, degrees: bool = False, lock: float = LOCK) -> tuple[Array, Mask]:
-    """Return Euler angles and where they lock; see :func:`quaternion_to_euler`. NaN where there is no rotation."""
+    """Return Euler angles and a mask of the lock, as :func:`quaternion_to_euler` does; NaN for no rotation matrix."""
     return quaternion_to_euler(dcm_to_quaternion(dcm), sequence, degrees, lock)

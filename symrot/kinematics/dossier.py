@@ -19,7 +19,7 @@ __all__ = ["LockedPoint", "SingularityDossier", "singularity_dossier"]
 
 @dataclass(frozen=True)
 class LockedPoint:
-    """One value of the middle angle at which a sequence locks.
+    """A value of the middle angle at which an Euler sequence is in gimbal lock.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class LockedPoint:
 
 @dataclass(frozen=True)
 class SingularityDossier:
-    """What there is to know about the singularity of an Euler sequence. ``print`` it, or read its parts.
+    """The singularity of an Euler sequence: its place, the lost rates, the sequences that are regular there.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ class SingularityDossier:
 
     @property
     def limits(self) -> tuple[Limit, ...]:
-        """Of the inverse of the body Jacobian."""
+        """The limits of the inverse body Jacobian at the singular value."""
         return self.jacobian_b.limits
 
     def text(self) -> str:
@@ -168,7 +168,7 @@ def _rows(matrix: Matrix, indent: str = "  ") -> list[str]:
 
 
 def _locked_point(sequence: str, middle: Expr) -> LockedPoint:
-    """Return what is lost at a singular value of the middle angle.
+    """Return the rates without effect and the direction out of reach at a singular value of the middle angle.
 
     The first and last axis coincide up to sign there, ``b_first = s b_last``: the rates ``1, 0, -s`` turn nothing,
     and the axis across both of them and the middle one is out of reach.

@@ -134,8 +134,8 @@ def lock_indicator(sequence: str, dcm_sb: Matrix) -> Expr:
 def _core(sequence: str, frame: str, angles: Sequence[Any] | None) -> tuple[Matrix, Matrix, Matrix]:
     """Return ``carry, core, order`` with ``B = carry * core * order``.
 
-    The axes of the three turns are taken into the frame of the middle turn first: there only the middle angle is
-    left. ``carry`` takes them on to the body or to space, ``order`` puts the columns in order of application.
+    ``core`` holds the three axes in the frame of the middle rotation, where only the middle angle occurs. ``carry``
+    takes them from there to the body or to space, and ``order`` puts the columns in order of application.
     """
     first, middle, last = factors(sequence, angles)
     if check_frame(frame) == "body":
@@ -215,7 +215,7 @@ def _is_one(value: Expr) -> bool:
 def rate_jacobian(sequence: str, frame: str = "body", angles: Sequence[Any] | None = None) -> EulerRateMatrix:
     """Return B(q), with ``omega = B(q) * dq/dt``, of an Euler sequence.
 
-    Column i is the axis of turn i, carried by the turns between it and the frame.
+    Column i is the axis of rotation i, in the frame that the rotations between them give.
 
     Parameters
     ----------
@@ -278,7 +278,7 @@ def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> E
 def sequences_at_lock(sequence: str) -> dict[str, Set]:
     """Return, for each other sequence, where on the singular set of ``sequence`` it is singular too.
 
-    With the middle angle at lock the first and last turn are about one line, and the attitude depends on one
+    In gimbal lock the first and the last rotation are about one line, and the attitude depends on one
     combination of them, here the angle of the left factor with that of the right one zero. The values are sets of
     that angle (phi if intrinsic, psi if extrinsic): the empty set for a sequence that is regular at every locked
     attitude, the reals for one that locks with it everywhere.
@@ -298,7 +298,7 @@ def sequences_at_lock(sequence: str) -> dict[str, Set]:
 
 
 def quaternion_of_euler(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
-    """Return the unit quaternion of an Euler sequence, shape (4, 1): the product of its three turns."""
+    """Return the unit quaternion of an Euler sequence, shape (4, 1): the product of its three rotations."""
     turns = (elementary_quaternion(factor.axis, factor.angle) for factor in factors(sequence, angles))
     return ImmutableMatrix(quaternion_product(*turns).applyfunc(expand))
 

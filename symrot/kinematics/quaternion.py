@@ -122,7 +122,7 @@ def unit_relation(q: Sequence[Any] | Matrix = symbols.quaternion) -> Expr:
 
 
 def rotation_relations(matrix: Matrix) -> tuple[Expr, ...]:
-    """Return what vanishes for a rotation: its rows and its columns are right-handed orthonormal frames."""
+    """Return expressions that vanish for a rotation matrix: rows and columns are right-handed orthonormal frames."""
     columns = [matrix[:, i] for i in range(3)]
     cyclic = [*columns, columns[0]]
     crossed = [a.cross(b) - columns[(k + 2) % 3] for k, (a, b) in enumerate(pairwise(cyclic))]
@@ -132,7 +132,7 @@ def rotation_relations(matrix: Matrix) -> tuple[Expr, ...]:
 
 
 def elementary_quaternion(axis: int | str, angle: Any) -> ImmutableMatrix:
-    """Return the unit quaternion of a turn by ``angle`` (rad) about a coordinate axis, shape (4, 1)."""
+    """Return the unit quaternion of a rotation by ``angle`` (rad) about a coordinate axis, shape (4, 1)."""
     half = sympify(angle) / 2
     return ImmutableMatrix([cos(half), *(sin(half) * unit_vector(axis))])
 

@@ -1,1 +1,1 @@
-"""From a scene to its plan: the equations that have to be integrated, and the kernels derived from them."""
+"""Plans: the least set of equations for a scene, and the saved kernels derived from it."""

@@ -1,8 +1,9 @@
-"""Skip what a scene does not need: from a scene to the least set of equations that answers it. No SymPy.
+"""The plan of a scene: the least set of equations that gives the requested output. Does not use SymPy.
 
 A plan starts from the most general structure (full tensor, every constant free, full attitude) and applies a table of
-rules. Each rule looks at exact numbers, changes the structure or leaves it, and names the derivation that justifies
-it. The structure, not the numbers, decides which kernel is needed: a second scene of the same structure has it already.
+rules. Each rule looks at exact numbers, changes the structure or leaves it unchanged, and names the derivation that
+justifies the change. The structure, not the numbers, decides which kernel is needed, so that scenes of the same
+structure share a kernel.
 """
 
 from collections.abc import Callable, Hashable
@@ -26,7 +27,7 @@ from symrot.dynamics.structure import (
 )
 from symrot.errors import InputError
 from symrot.formula import tree as expression
-from symrot.formula.exact_numbers import equal
+from symrot.formula.exact_numbers import NEGLIGIBLE, equal
 from symrot.formula.switches import Switch, blended, has_choices, has_switches, smooth
 from symrot.scene.scene import Initial, Scene
 from symrot.scene.torque import Torque
@@ -36,7 +37,7 @@ __all__ = [
     "make_plan", "structure_key", "switched",
 ]  # fmt: skip
 
-ZERO, ONE, MINUS_ONE, FREE = Pattern  # a name is found faster than a member of an Enum
+ZERO, ONE, MINUS_ONE, FREE = Pattern  # a global name is looked up faster than a member of an Enum
 
 ATTITUDE_QUANTITIES = frozenset(
     {"quaternion", "euler", "dcm", "omega_space", "herpolhode", "angular_momentum_space", "axis"}
@@ -45,7 +46,7 @@ PRODUCTS = {"I_xy": (0, 1), "I_xz": (0, 2), "I_yz": (1, 2)}
 MOMENTS = {"I_xx": (0, 0), "I_yy": (1, 1), "I_zz": (2, 2)}
 NEVER_NEEDS_ATTITUDE = ("constant_body", "damping", "rotor")
 DIRECTED = {"constant_space": "torque", "gravity": "direction"}  # fixed in space: the field that says along what
-UNIT_FIELDS = ("direction", "attitude")  # fields in which a component of exactly one is a pattern of its own
+UNIT_FIELDS = ("direction", "attitude")  # fields in which a component equal to one counts as a special value
 START_CONSTANTS = frozenset({f"omega_{i}" for i in (1, 2, 3)} | {f"initial_q{i}" for i in range(4)})
 """The constants of a structure that are numbers of the initial state; all others are the scene's."""
 RESERVED = frozenset(
@@ -130,7 +131,7 @@ class Plan:
 
     @cached_property
     def _start_places(self) -> tuple[tuple[str, int, int], ...]:
-        """The names of the constants of the start, each with its part of the initial state and its place there."""
+        """The names of the constants that are numbers of the initial state, each with its place there."""
         rates = enumerate(self.structure.constant)
         quaternion = enumerate(self.structure.initial_quaternion or ())
         return (
@@ -140,7 +141,7 @@ class Plan:
 
     @property
     def switches(self) -> list[str]:
-        """The functions with switches in the torques, as the scene writes them; empty unless modes may change."""
+        """The functions with jumps or kinks in the torques, as the scene writes them; empty if modes are not used."""
         return [switch.label for torque in self.structure.formula_torques for switch in torque.switches]
 
     @cached_property
@@ -157,15 +158,15 @@ class Plan:
 
     @cached_property
     def initial_state(self) -> tuple[float, ...]:
-        """The initial values of :attr:`states`."""
+        """The initial values of :attr:`states`, in the same order."""
         start = self.scene.initial
         values = (*start.omega_b, *start.quaternion, 0)
         ratios = [values[place].as_integer_ratio() for place in self._places]
-        return tuple([top / bottom for top, bottom in ratios])  # as float(), at half the price
+        return tuple([top / bottom for top, bottom in ratios])  # as float(), in half the time
 
     @cached_property
     def _places(self) -> tuple[int, ...]:
-        """The place of each state among omega, attitude and the angle of a planar rotation."""
+        """The index of each state among omega, attitude and the angle of a planar rotation."""
         return tuple([STATES.index(name) for name in self.states])
 
     def from_start(self, initial: Initial) -> "Plan":
@@ -180,7 +181,7 @@ class Plan:
 
     @cached_property
     def _shared(self) -> dict[str, Any]:
-        """The attributes that plans from other starts share, by name."""
+        """Attributes, by name, that plans of the same structure from other initial states share."""
         names = ("structure", "rows", "scene_constants", "states", "_places", "_start_places")
         attributes: dict[str, Any] = {name: getattr(self, name) for name in names}
         attributes["_shared"] = attributes
@@ -252,7 +253,7 @@ def structure_key(scene: Scene, initial: Initial) -> Hashable:
 
 
 def switched(scene: Scene) -> bool:
-    """Return whether a torque of a scene jumps or bends somewhere along the motion."""
+    """Return whether a torque of a scene has a jump or a kink that the motion may reach."""
     return any(
         has_switches(expression.parse(formula, switching=True))
         for torque in scene.torques
@@ -261,7 +262,7 @@ def switched(scene: Scene) -> bool:
 
 
 def _switching_function(scene: Scene) -> str:
-    """Return the name of a function with switches in the torques of a scene, or an empty text."""
+    """Return the name of a function with jumps or kinks in the torques of a scene, or an empty text."""
     calls = {
         name
         for torque in scene.torques
@@ -272,14 +273,14 @@ def _switching_function(scene: Scene) -> str:
 
 
 def general_structure(scene: Scene, switched: bool = False) -> Structure:
-    """Return the structure before any rule: full tensor, every constant of every torque free, full attitude."""
+    """Return the structure before any rule is applied: full tensor, free constants of every torque, full attitude."""
     names: set[str] = set(RESERVED)
     torques = [_general_torque(number, torque, names, switched) for number, torque in enumerate(scene.torques, start=1)]
     return Structure(InertiaTensor(tuple(sorted([*MOMENTS, *PRODUCTS]))), tuple(torques))
 
 
 def _general_torque(number: int, torque: Torque, known: set[str], switched: bool) -> TorqueStructure:
-    """Return the structure of one torque, its constants free; their names are added to those ``known``."""
+    """Return the structure of one torque with free constants; their names are added to ``known``."""
     if torque.formulas:
         general = _formula_torque(torque, switched)
         prefix = _prefix(number, list(general.parameters), known)
@@ -292,7 +293,7 @@ def _general_torque(number: int, torque: Torque, known: set[str], switched: bool
 
 
 def _formula_torque(torque: Torque, switched: bool) -> FormulaTorque:
-    """Return the structure of a torque given by formulas, without a prefix."""
+    """Return the structure of a torque given by formulas; its constants keep the names of the scene."""
     formulas, parameters, frame = torque.formulas, tuple(torque.values), torque.frame
     if not (switched and any(has_switches(expression.parse(text, switching=True)) for text in formulas)):
         return FormulaTorque("", formulas, parameters, frame)
@@ -316,7 +317,7 @@ def _switch(switch: Switch) -> TorqueSwitch:
 
 
 def _prefix(number: int, names: list[str], known: set[str]) -> str:
-    """Return a prefix that makes the names of a torque's constants new, and add the new names to those ``known``."""
+    """Return a prefix that makes the names of a torque's constants unique; the new names are added to ``known``."""
     prefix = ""
     while known & {f"{prefix}{name}" for name in names}:
         prefix = f"{prefix}_" if prefix else f"torque{number}_"
@@ -423,7 +424,7 @@ def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
 
 
 def _is_zero(formula: str) -> bool:
-    """Return whether a formula is a number, and zero."""
+    """Return whether a formula is the number zero."""
     node = expression.parse(formula, switching=True)
     if expression.names(node):
         return False
@@ -453,7 +454,7 @@ def _attitude(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _only_along(vector: tuple[Pattern, ...], axis: int) -> bool:
-    """Return whether the components of a vector about the other axes are zero."""
+    """Return whether the components of a vector about the other two axes are zero."""
     return all(vector[i] is ZERO for i in range(3) if i != axis)
 
 
@@ -474,7 +475,7 @@ def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque
 
 
 def _in_body(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[Fraction, ...]:
-    """Return the body components, at the start, of a vector in space components."""
+    """Return the body components of a vector, given in space components, at the initial attitude."""
     q0, *q = initial.quaternion
     twice = [2 * sum(a * b for a, b in zip(q, vector_s, strict=True)) * c for c in q]
     turned = (
@@ -485,15 +486,15 @@ def _in_body(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[Fraction
     return tuple(scalar * v + t - 2 * q0 * c for v, t, c in zip(vector_s, twice, turned, strict=True))
 
 
-CLEARLY = 1e-12  # of a vector: doubles show that a larger component is not zero
+CLEARLY = 1e-12  # part of a vector: doubles show that a larger component is not zero
 
 
 def _negligible(value: Fraction, vector: tuple[Fraction, ...]) -> bool:
-    return abs(value) <= max(map(abs, vector)) / 2**200
+    return abs(value) <= max(map(abs, vector)) * NEGLIGIBLE
 
 
 def _small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[bool, ...]:
-    """Return which body components of a vector, given in space components, are zero at the start, to 2^-200."""
+    """Return, for a vector given in space components, which body components are zero at the start, to 2^-200."""
     if _all_large(vector_s, initial):
         return False, False, False
     vector = _in_body(vector_s, initial)
@@ -501,7 +502,7 @@ def _small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple
 
 
 def _all_large(vector_s: tuple[Fraction, ...], initial: Initial) -> bool:
-    """Return whether doubles settle that no body component is zero, in a tenth of the time of exact numbers."""
+    """Return whether doubles already prove that no body component is zero, in a tenth of the time of exact numbers."""
     ratios = [x.as_integer_ratio() for x in (*initial.quaternion, *vector_s)]
     q0, q1, q2, q3, x, y, z = [top / bottom for top, bottom in ratios]
     along, scalar = 2 * (q1 * x + q2 * y + q3 * z), q0 * q0 - q1 * q1 - q2 * q2 - q3 * q3
@@ -531,7 +532,7 @@ def _one_axis(scene: Scene, structure: Structure) -> RuleOutcome:
     if not along:
         why = "the body does not rotate about one principal axis only"
         if axes and any(structure.formula_torques):
-            why = "a torque given by formulas is not taken to keep the rotation about one axis"
+            why = "a torque given by formulas is assumed to change the axis of rotation"
         return RuleOutcome(structure, False, why)
     axis = along[0]
     start = tuple([_pattern(q, unit=True) for q in scene.initial.quaternion]) if structure.attitude else None
@@ -562,7 +563,10 @@ def _constant_spin(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None, Pattern | None]:
-    """Return the pattern of each constant component of omega_b, zero or free; None for the other axes."""
+    """Return for each component of omega_b its pattern (zero or free) if it is constant, None if it changes.
+
+    ``axes`` are the constant components.
+    """
     first, second, third = (
         _pattern(w, unit=False) if axis in axes else None for axis, w in enumerate(scene.initial.omega_b)
     )
@@ -570,7 +574,7 @@ def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None,
 
 
 def _no_moment_about(torque: TorqueStructure, axis: int) -> bool:
-    """Return whether a torque on a body with symmetry about the axis has no component along it, in every motion."""
+    """Return whether a torque never has a component along the symmetry axis of the body, whatever the motion."""
     if isinstance(torque, FormulaTorque):
         return torque.frame == "body" and torque.formulas[axis].strip() in ("0", "0.0")
     if torque.kind == "constant_body":

@@ -1,4 +1,4 @@
-"""The kernels of one plan as saved data: rates, quantities, conserved quantities, and the C text. No SymPy.
+"""Kernels of a plan as saved data: rates, quantities, conserved quantities, and C text. Does not use SymPy.
 
 :mod:`symrot.codegen.scene_kernels` derives them, the cache stores them as JSON, the propagator binds them to numbers.
 """
@@ -27,7 +27,7 @@ Parameters = tuple[tuple[str, Node], ...]  # name in the kernel, formula over th
 
 
 class Conserved(NamedTuple):
-    """A candidate for a conserved quantity.
+    """Candidate for a conserved quantity: whether it is conserved, and why.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class SceneKernel:
         cls, rates: Program, rate_parameters: Parameters, quantities: Program, quantity_parameters: Parameters,
         conserved: tuple[Conserved, ...], source: str,
     ) -> "SceneKernel":  # fmt: skip
-        """Return the kernel of freshly derived programs."""
+        """Return the kernel made of newly derived programs."""
         return cls(
             {
                 "rates": rates.to_json(),
@@ -100,7 +100,7 @@ class SceneKernel:
 
     @cached_property
     def rates(self) -> Program:
-        """``dy/dt`` of the states."""
+        """The program that computes ``dy/dt``, the rates of the states."""
         return Program.from_json(self.record["rates"])
 
     @cached_property
@@ -125,7 +125,7 @@ class SceneKernel:
 
     @property
     def source(self) -> str:
-        """C text of the rates: the function ``symrot_rates``, which always takes an array of parameters."""
+        """The C text of the rates: the function ``symrot_rates``, which always takes an array of parameters."""
         return self.record["source"]
 
 
@@ -138,6 +138,6 @@ def _loaded(saved: SavedParameters) -> Parameters:
 
 
 def bind(parameters: Parameters, constants: Mapping[str, Fraction]) -> list[float]:
-    """Return the parameters of a kernel for the constants of a scene: exact arithmetic, one rounding each."""
+    """Return the values of a kernel's parameters from the constants of a scene: exact arithmetic, one rounding each."""
     values = {"pi": number.PI, **constants}
     return [float(evaluate(node, values, EXACT_FUNCTIONS)) for _, node in parameters]

@@ -1,1 +1,1 @@
-"""Write derivations whose every step is proven when it is added, and print them as pages."""
+"""Derivations whose every step is proven when it is added, and their pages in Markdown, LaTeX and HTML."""

@@ -1,4 +1,4 @@
-"""Build derivations: sequences of equations, each proven when it is added.
+"""Derivations: sequences of equations, each proven when it is added.
 
 A :class:`Derivation` is built step by step. A step whose two sides are not equal by the exact normal form
 (:mod:`symrot.exact`) raises :class:`ProofError`, so every equation of a finished derivation has been proven.
@@ -37,7 +37,7 @@ __all__ = ["Derivation", "Passage", "PrintedPage", "ProofError", "Section", "Ste
 
 
 class ProofError(SymrotError):
-    """A step of a derivation does not hold.
+    """Error raised if a step of a derivation does not hold.
 
     Examples
     --------
@@ -49,7 +49,7 @@ class ProofError(SymrotError):
 
 @dataclass
 class PrintedPage(Page):
-    """A page with methods that print it; its fields are those of :class:`symrot.proof.page.Page`."""
+    """Page of a derivation with methods that print it; its fields are those of :class:`symrot.proof.page.Page`."""
 
     def markdown(self) -> str:
         """Return the page as Markdown, with the formulas in ``$$``."""
@@ -77,7 +77,7 @@ class PrintedPage(Page):
 
 @dataclass
 class Derivation(PrintedPage):
-    """A page of a textbook in code, proven while it is built.
+    """Derivation of a result as a page of a textbook in code, proven while it is built.
 
     Parameters
     ----------
@@ -113,11 +113,14 @@ class Derivation(PrintedPage):
         self.rates |= rates or {}
 
     def section(self, title: str) -> None:
-        """Begin a section."""
+        """Begin a new section of the page, with a heading."""
         self.items.append(Section(title))
 
     def passage(self, text: str, *equations: tuple[Any, Any]) -> None:
-        """Add assumptions or definitions: text, and optionally equations ``(left, right)``; a str in them is LaTeX."""
+        """Add a paragraph of assumptions or definitions to the page, optionally with equations ``(left, right)``.
+
+        A side that is a str is LaTeX.
+        """
         self.items.append(Passage(text, tuple(equations)))
         for left, right in equations:
             self._note(left, right)
@@ -199,7 +202,7 @@ class Derivation(PrintedPage):
         """
         reduced = factor(normal_form(expression))
         if reduced.is_positive is not True:
-            raise ProofError(f"{self.name}, {claim!r}: the signs of the symbols do not make {reduced} positive")
+            raise ProofError(f"{self.name}, {claim!r}: the signs of its symbols do not prove {reduced} positive")
         return self._add(Step(claim, _frozen(expression), S.Zero, because, ">", named=named, display=reduced))
 
     def _proven(self, claim: str, left: Any, right: Any, relations: Sequence[Any]) -> Decision:
@@ -251,7 +254,7 @@ class Derivation(PrintedPage):
                              for n, side in enumerate(chain))  # fmt: skip
             names.setdefault(key(chain[0]), last)
             if any(other is not None and not is_zero(other - last) for other in others):
-                raise ProofError(f"{self.name}: {text} does not hold where it is displayed")
+                raise ProofError(f"{self.name}: the displayed equation {text} does not hold")
         values = []
         for number, side in enumerate(main):
             try:
@@ -264,7 +267,7 @@ class Derivation(PrintedPage):
         return values
 
     def _note(self, left: Any, right: Any) -> None:
-        """Store the meaning of a name, if the right side is a formula or LaTeX that can be read."""
+        """Store the meaning of a name on the page, if its value is a formula or LaTeX that can be read."""
         if isinstance(right, str):
             try:
                 right = self._read(right)[-1]
@@ -288,7 +291,7 @@ class Derivation(PrintedPage):
 
 
 def _tidied(conditions: Sequence[Any]) -> list[Any]:
-    """Return conditions split into factors, without repetitions; a root is nonzero where its radicand is."""
+    """Return conditions of a step split into factors, without repetitions; a root is nonzero where its radicand is."""
     independent: dict[Any, Any] = {}
     for condition in conditions:
         if not isinstance(condition, Ne):
@@ -316,7 +319,7 @@ def _shape(side: Any) -> Any:
 
 
 def _as_side(display: Any, side: Any) -> Any:
-    """Return a displayed value in the shape of its side: beside a square matrix, a number means a multiple of I."""
+    """Return a displayed value in the shape of its side: opposite a square matrix, a number means a multiple of I."""
     display = _frozen(display)
     if isinstance(side, MatrixBase) and not isinstance(display, MatrixBase):
         if display == 0:

@@ -1,4 +1,4 @@
-"""Represent a page of a derivation as data: headings, passages and proven steps, for the printers."""
+"""Pages of derivations as data: headings, passages and proven steps, for the printers."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -10,14 +10,14 @@ __all__ = ["Page", "Passage", "Section", "Step"]
 
 @dataclass(frozen=True)
 class Section:
-    """A heading."""
+    """Heading on a page."""
 
     title: str
 
 
 @dataclass(frozen=True)
 class Passage:
-    """Assumptions or definitions: text, optionally with equations (left, right); nothing in a passage is proven."""
+    """Paragraph of assumptions or definitions, optionally with equations (left, right); nothing in it is proven."""
 
     text: str
     equations: tuple[tuple[Any, Any], ...] = ()
@@ -25,7 +25,7 @@ class Passage:
 
 @dataclass(frozen=True)
 class Step:
-    """A proven relation ``left = right``, or ``left > 0``.
+    """Proven relation on a page: ``left = right``, or ``left > 0``.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class Step:
 
 @dataclass
 class Page:
-    """A page: assumptions, and the consequences that follow from them step by step.
+    """Page of a derivation: assumptions, and the consequences that follow from them step by step.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Steppers of a motion: DOP853 in C around an emitted kernel, and SciPy where there is no compiler."""
+"""Propagation of scenes: the choice of a method, steppers in C and SciPy, events, switches, and trajectories."""

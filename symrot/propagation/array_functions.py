@@ -1,4 +1,4 @@
-"""The functions that formulas of scenes may call, for NumPy arrays."""
+"""Functions that formulas of scenes may call (such as sin and sign), for NumPy arrays."""
 
 import numpy as np
 

@@ -1,8 +1,7 @@
-"""The parameters of kernels as numbers, for one start of a scene after another.
+"""Numerical values of the parameters of kernels, for many initial states of one scene.
 
-Most parameters depend on the scene alone: masses, moments, torques. They are evaluated once for a structure. Only
-parameters whose formulas contain a number of the initial state, such as a constant spin, are evaluated again for
-another start.
+Most parameters depend on the scene alone: masses, moments, torques. They are evaluated once. Only parameters whose
+formulas contain a number of the initial state, such as a constant spin, are evaluated again for another initial state.
 """
 
 from collections.abc import Callable, Mapping
@@ -18,24 +17,24 @@ __all__ = ["Binding", "folded", "one_double", "two_doubles", "value_of"]
 
 
 def one_double(top: int, bottom: int) -> tuple[float, ...]:
-    """Return the double nearest to a ratio."""
+    """Return the double nearest to the ratio top/bottom, in a tuple of length 1."""
     return (top / bottom,)
 
 
 def two_doubles(top: int, bottom: int) -> tuple[float, ...]:
-    """Return the double nearest to a ratio, and the double nearest to its rounding error."""
+    """Return two doubles whose sum is nearest to the ratio top/bottom: the nearest double and the rounded remainder."""
     return quotient(top, bottom)
 
 
 class Binding:
-    """Parameters of a kernel, with the numbers that all starts of a structure share.
+    """Parameters of a kernel as functions of the initial state; all other numbers are evaluated once.
 
     Parameters
     ----------
     parameters : pairs of name and formula
         Parameters of a :class:`symrot.planning.scene_kernel.SceneKernel`.
     plan : Plan
-        Of the structure, with any start.
+        Plan of the scene, with any initial state.
     rounded : function
         From a ratio of integers to the doubles that represent it.
     known : mapping
@@ -66,7 +65,9 @@ class Binding:
         ]
 
     def __call__(self, plan: Plan) -> list[float]:
-        """Return the numbers for a plan of the structure: exact arithmetic, one rounding each."""
+        """Return the values of the parameters for a plan with another initial state: exact arithmetic, one rounding
+        each.
+        """
         numbers = self._numbers.copy()
         if self._moving:
             constants = plan.start_constants
@@ -76,13 +77,16 @@ class Binding:
 
 
 class _Moving:
-    """A formula in numbers of the start; a monomial in one of them is evaluated with integers, which is faster."""
+    """A formula that contains numbers of the initial state.
+
+    If it is a monomial in one of them, it is evaluated with integers, which is faster than with Fractions.
+    """
 
     def __init__(self, formula: Node) -> None:
         self._formula, self._monomial = formula, _monomial(formula)
 
     def ratio(self, constants: Mapping[str, Fraction]) -> tuple[int, int]:
-        """Return the value as a ratio of integers, of which the second is positive."""
+        """Return the value of the formula as a ratio of integers, the second one positive."""
         if self._monomial is None:
             return value_of(self._formula, constants).as_integer_ratio()
         top, bottom, name, power = self._monomial
@@ -91,7 +95,7 @@ class _Moving:
 
 
 def _monomial(node: Node) -> tuple[int, int, str, int] | None:
-    """Return the coefficient as two integers, the name and the power >= 1 of a monomial; None for other formulas."""
+    """Return a monomial as (numerator, denominator, name, power >= 1), or None if the formula is not a monomial."""
     if node[0] == "symbol":
         return 1, 1, node[1], 1
     if node[0] == "neg" and (inner := _monomial(node[1])):
@@ -108,12 +112,12 @@ def _monomial(node: Node) -> tuple[int, int, str, int] | None:
 
 
 def value_of(formula: Node, constants: Mapping[str, Fraction]) -> Fraction:
-    """Return the exact value of a formula of constants."""
+    """Return the exact value of a formula that contains numbers and named constants only."""
     return Fraction(evaluate(formula, constants, EXACT_FUNCTIONS))
 
 
 def folded(node: Node, known: Mapping[str, Fraction]) -> Node:
-    """Return a formula in which every part that contains known constants only is replaced by its value."""
+    """Return a formula with every part that contains only numbers and known constants replaced by its value."""
     if names(node) <= known.keys():
         return ("number", value_of(node, known))
     if node[0] == "call":

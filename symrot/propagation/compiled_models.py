@@ -1,7 +1,7 @@
-"""The kernel of a plan: from the cache, or derived, emitted, compiled and stored there.
+"""Kernels of plans: loaded from the cache, or derived, emitted, compiled and stored there.
 
-The key is the structure of the plan and the version of symrot's own files; numbers are not part of it. While the
-compiler works on the rates, the invariants are proven.
+The key in the cache is the structure of the plan and the version of symrot's own files; numbers of the scene are not
+part of it. While the compiler works on the rates, the conserved quantities are proven.
 """
 
 import json
@@ -52,10 +52,12 @@ RATE_SCALE = 0.0  # an error of omega counts relative to omega
 
 @cache
 def _version() -> str:
-    """Return a text that identifies the code that derives kernels: names, sizes and times of its files."""
+    """Return a text that changes whenever the code that derives kernels changes: names, sizes and times of its
+    files.
+    """
     states = [(file, (PACKAGE / file).stat()) for file in FILES]
     folders = [str(PACKAGE / folder) for folder in FOLDERS]
-    for folder in folders:  # grows while it is walked
+    for folder in folders:  # the loop appends to this list
         with os.scandir(folder) as entries:
             for entry in entries:
                 if entry.name.endswith(".py"):
@@ -76,9 +78,9 @@ def _structure_text(structure: Structure) -> str:
 
 
 def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda rates, source: None) -> SceneKernel:
-    """Return the kernel of a plan, from the cache or derived.
+    """Return the kernel of a plan, from the cache or newly derived.
 
-    ``on_rates`` gets the rates and their C text as soon as they are derived; it is not called for a cached kernel.
+    ``on_rates`` is called with the rates and their C text as soon as they are derived, but not for a cached kernel.
     """
     saved = library.fetch(kernel_key(plan))
     if saved is not None:
@@ -94,7 +96,7 @@ missing_compiler = library.missing
 
 
 def compiled(plan: Plan) -> tuple[SceneKernel, Path]:
-    """Return the kernel of a plan and the library with kernel and stepper.
+    """Return the kernel of a plan and the compiled library that contains the kernel and its stepper.
 
     Raises
     ------
@@ -122,14 +124,15 @@ def _parameter_count(rates: Program) -> int:
 
 
 def motion_library(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the library that steps a plan by DOP853."""
+    """Return the path of the compiled library that steps the motion of a plan by DOP853 (Dormand-Prince 8(5,3))."""
     return library.build(library_source(plan, kernel), "motion")
 
 
 def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected: bool = True) -> Path:
-    """Return the library that steps a plan by Taylor series, of the order that suits the tolerance.
+    """Return the path of the compiled library that steps the motion of a plan by Taylor series.
 
-    ``projected`` says whether the library projects the motion onto its invariants.
+    The order of the series suits the tolerance. ``projected`` says whether the library projects the motion onto its
+    conserved quantities.
 
     Raises
     ------
@@ -150,7 +153,10 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected:
 
 
 def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
-    """Return the edges and the scales of the blocks of states whose errors are judged apart: omega, attitude."""
+    """Return the edges and scales of the blocks of states (omega, attitude) whose errors are judged separately.
+
+    An error is judged relative to its block's scale; a scale of 0 means relative to the size of the block itself.
+    """
     rates = sum(name.startswith("omega") for name in plan.states)
     count = len(plan.states)
     edges = [0, *([rates] if 0 < rates < count else []), count]
@@ -158,7 +164,7 @@ def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
 
 
 def library_source(plan: Plan, kernel: SceneKernel) -> str:
-    """Return the C text of a library that steps a plan by DOP853: kernel and stepper."""
+    """Return the C text of a library with kernel and stepper for the motion of a plan by DOP853."""
     return _unit(plan, kernel.source, len(kernel.rate_parameters), lambda: kernel.rates)
 
 
@@ -169,21 +175,22 @@ def _unit(plan: Plan, source: str, parameters: int, rates: Callable[[], Program]
 
 
 def has_formulas(plan: Plan) -> bool:
-    """Return whether a torque is given by formulas, which may have features that a step misses."""
+    """Return whether a torque of the plan is given by formulas, whose narrow features a step may miss."""
     return any(plan.structure.formula_torques)
 
 
 def grows_late(plan: Plan) -> bool:
-    """Return whether a torque given by formulas may move a body from rest as a high power of time, of degree 3 or more.
+    """Return whether a torque given by formulas may move a body from rest as a high power of time, 3 or more.
 
-    Such a motion has no coefficient within the order of a series; steps of single motions are checked for it.
+    The first terms of the Taylor series of such a motion vanish, so that they say nothing about its size. The steps of
+    single motions are therefore checked for it.
     """
     formulas = [text for torque in plan.structure.formula_torques for text in torque.formulas]
     return any(_degree(parse(text)) >= 3 for text in formulas)
 
 
 def _degree(node: Node) -> int:
-    """Return the degree of a formula in time and states, functions and quotients counted as one."""
+    """Return the degree of a formula as a polynomial in time and states; a function or quotient counts as degree 1."""
     if node[0] == "symbol":
         return int(node[1] in CHANGING)
     degrees = [_degree(child) for child in children(node)]
@@ -195,9 +202,10 @@ def _degree(node: Node) -> int:
 
 
 def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[str, float]], Deviations] | None":
-    """Return a function from parameters of the rates to the deviations that limit steps in Python.
+    """Return a function from parameters of the rates to bounds that limit the steps of Python's steppers.
 
-    None if no formula of a torque can have a feature that a step misses.
+    The bounds say how far the formulas of torques can deviate inside a step. The result is None if no formula can have
+    a feature that a step misses.
     """
     if not has_formulas(plan):
         return None
@@ -207,13 +215,16 @@ def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[st
 
     try:
         terms = enclosure(recurrences(kernel.rates))
-    except InputError:  # no Taylor series, as of abs
+    except InputError:  # no Taylor series, for example of abs
         return None
     return None if terms is None else deviations_of(terms)
 
 
 def enclosure_text(plan: Plan, rates: Callable[[], Program], edges: Sequence[int]) -> str:
-    """Return the C text of the enclosure of a plan's rates, from the cache or printed."""
+    """Return the C text of a plan's enclosure, from the cache or newly printed.
+
+    An enclosure bounds the rates on discs of the complex plane, which limits the steps.
+    """
     key = f"enclosure {DENSE_ORDER}\n{kernel_key(plan)}"
     text = library.fetch(key)
     if text is None:

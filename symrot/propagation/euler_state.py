@@ -1,8 +1,10 @@
-"""Euler angles as state, for teaching: the state that textbooks use, where it fails, and how to go on there.
+"""Euler angles as state variables, for teaching: the state that textbooks use, where it fails, and how to continue
+there.
 
 The states are omega_b and the three angles of a sequence, with ``dq/dt = B(q)^-1 omega_b``. B is singular at gimbal
-lock: near it the angles change ever faster, steps shrink, and at it the motion cannot be followed. With switching, the
-motion continues well before the lock in angles of another sequence, which is regular there (:func:`partner`).
+lock: near it the angles change ever faster and steps shrink; at gimbal lock the motion cannot be followed. With
+switching, the motion changes well before the lock to angles of another sequence, which is regular there
+(:func:`partner`).
 
 The result is an ordinary trajectory whose quaternion is computed from the angles, so that it can be compared with any
 other trajectory of the scene.
@@ -45,16 +47,16 @@ Floats = NDArray[np.float64]
 
 SWITCH = 0.3  # |det B| below which the sequence is changed; the partner then has sqrt(1 - 0.3^2) = 0.95 or more
 METHODS = ("auto", "taylor", "dop853")
-ROWS = 8  # steps between looks at the regularity
+ROWS = 8  # steps between two checks of the regularity
 NAMES = ("phi", "theta", "psi")
 
 
 def partner(sequence: str) -> str:
-    """Return the sequence to change to near gimbal lock: the same first two rotations and the other third one.
+    """Return the Euler sequence to change to near gimbal lock: the same first two axes, another third axis.
 
-    Each of the two sequences locks where its entry of one row (extrinsic: column) of the attitude matrix is 1 or -1.
-    The squares of the two entries add up to at most 1: where one sequence locks the other is perfectly regular, and
-    one of them always has ``|det B| >= sqrt(1/2)``.
+    Each of the two sequences is singular where its entry of one row (extrinsic: column) of the attitude matrix is 1 or
+    -1. The squares of the two entries add up to at most 1: where one sequence is singular the other is perfectly
+    regular, and one of them always has ``|det B| >= sqrt(1/2)``.
     """
     axes, intrinsic = parse_sequence(sequence)
     other = ({0, 1, 2} - {axes[1], axes[2]}).pop()
@@ -62,7 +64,10 @@ def partner(sequence: str) -> str:
 
 
 def regularity(sequence: str, angles: ArrayLike) -> Floats:
-    """Return ``|det B|``, from 0 at gimbal lock to 1, of angles of shape (..., 3)."""
+    """Return ``|det B|`` of the rate matrix B of an Euler sequence: 0 at gimbal lock, at most 1.
+
+    ``angles`` has shape (..., 3).
+    """
     axes, _ = parse_sequence(sequence)
     middle = np.asarray(angles, dtype=np.float64)[..., 1]
     determinant: Floats = np.abs(np.sin(middle) if axes[0] == axes[2] else np.cos(middle))
@@ -70,7 +75,7 @@ def regularity(sequence: str, angles: ArrayLike) -> Floats:
 
 
 def angles_of(quaternion: Floats, sequence: str) -> Floats:
-    """Return the angles, rad, that give a quaternion back with its sign, shape (3,).
+    """Return Euler angles, rad, shape (3,), whose quaternion equals the given one including its sign.
 
     One more full rotation about the first axis changes that sign. Torques that are odd in q depend on it, so that the
     sign must survive every change of sequence.
@@ -82,7 +87,7 @@ def angles_of(quaternion: Floats, sequence: str) -> Floats:
 
 
 class _Kernel(NamedTuple):
-    """Equations of motion in the angles of one sequence, compiled with a stepper, and their parameters."""
+    """Equations of motion in the angles of one Euler sequence, compiled with a stepper, and their parameters."""
 
     library: Path
     parameters: list[float]
@@ -90,7 +95,7 @@ class _Kernel(NamedTuple):
 
 
 class _Block(NamedTuple):
-    """Some steps in one sequence: first and last time, s, and omega and quaternion between them."""
+    """Part of a motion in one Euler sequence: its first and last time, s, and its states as omega and quaternion."""
 
     first: float
     last: float
@@ -99,9 +104,9 @@ class _Block(NamedTuple):
 
 @final
 class EulerMotion(Motion):
-    """The motion of a scene with Euler angles in place of the quaternion.
+    """Motion of a scene whose attitude is stepped as Euler angles instead of a quaternion.
 
-    It uses the clock of the scene: at a change of sequence the new angles start at a time of the scene.
+    It uses the clock of the scene: after a change of sequence the motion continues at the same time of the scene.
     """
 
     def __init__(self, plan: Plan, method: str, tolerance: float, sequence: str, switching: bool) -> None:
@@ -118,7 +123,7 @@ class EulerMotion(Motion):
         super().__init__(Setup(plan, choice, tolerance, start, lambda: scene_kernel(plan)), plan)
         self.sequence, self.switching = sequence, switching
         self._kernels: dict[str, _Kernel] = {}
-        self._count = [0, 0, 0, 0]  # accepted, rejected, evaluations, switches
+        self._count = [0, 0, 0, 0]  # steps accepted and rejected, evaluations, changes of sequence
         for each in (sequence, partner(sequence)) if switching else (sequence,):
             self._kernel_of(each)
 
@@ -176,7 +181,9 @@ class EulerMotion(Motion):
         )
 
     def _blocks(self, end: float) -> Iterator[_Block]:
-        """Yield the motion from its start to an end, piece by piece, and add its cost to the counts."""
+        """Yield the motion from its start to ``end`` in parts of one Euler sequence each, and add their cost to the
+        counts.
+        """
         count, t, sequence = self._moving, self.start, self.sequence
         whole = np.array(self.plan.initial_state)
         while t != end:
@@ -194,12 +201,12 @@ class EulerMotion(Motion):
                 whole = block.states(np.array([t]))[0]
 
     def _steps(self, integration: Integration, sequence: str, end: float) -> Iterator[tuple[float, float, Floats]]:
-        """Yield the recorded steps of an integration, up to the end or to where the sequence is to be changed."""
+        """Yield the recorded steps of an integration up to ``end``, or until the Euler sequence has to be changed."""
         count, broken = self._moving, None
         try:
             with closing(integration.runs(end)) as runs:
                 run = next(runs)
-                run.pace = abs(end - self.start) * integration.pace  # one allowance for the whole motion
+                run.pace = abs(end - self.start) * integration.pace  # the whole motion shares one limit of steps
                 while run.t != run.stop:
                     first, rows = run.t, np.empty((ROWS, integration.stepper.row))
                     try:
@@ -221,8 +228,8 @@ class EulerMotion(Motion):
             self._count[:3] = (a + b for a, b in zip(self._count, integration.stats()[:3], strict=False))
 
     def _with_hint(self, error: PropagationError, sequence: str) -> PropagationError:
-        hint = f"the Euler angles {sequence} are the state, which fail at gimbal lock"
-        return PropagationError(f"{error} ({hint}{'' if self.switching else '; switching=True goes around it'})")
+        hint = f"the Euler angles {sequence} are the state, which are singular at gimbal lock"
+        return PropagationError(f"{error} ({hint}{'' if self.switching else '; switching=True avoids it'})")
 
     def _states_of(self, integration: Integration, sequence: str, rows: Floats) -> Callable[[Floats], Floats]:
         count = self._moving
@@ -235,7 +242,7 @@ class EulerMotion(Motion):
         return states
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return omega and quaternion at the times, shape (n, N), and their cost."""
+        """Return omega and quaternion at the times, shape (n, 7), and the cost of the motion."""
         began = perf_counter()
         self._count = [0, 0, 0, 0]
         states = np.empty((len(times), len(self.plan.states)))
@@ -251,7 +258,7 @@ class EulerMotion(Motion):
         return states, Stats(accepted, rejected, evaluations, perf_counter() - began, switches)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return omega and quaternion as a function of time."""
+        """Return omega and quaternion as a function of time over a span."""
         sides = [list(self._blocks(end)) if end != self.start else [] for end in span]
 
         def at(times: Floats) -> Floats:
@@ -269,7 +276,7 @@ class EulerMotion(Motion):
 
 
 def _derived(structure: Structure) -> KernelRecord:
-    """Return the saved form of the equations of motion in Euler angles."""
+    """Return the saved form of the equations of motion in Euler angles, derived from a structure."""
     from symrot.codegen.scene_kernels import RATES, rates_program, rates_source
     from symrot.dynamics.equations import equations_of_motion
 
@@ -278,7 +285,7 @@ def _derived(structure: Structure) -> KernelRecord:
 
 
 class EulerPropagator(Propagator):
-    """Propagates a scene with Euler angles as state; made by :func:`symrot.propagator` with ``state``."""
+    """Propagator of a scene with Euler angles as state; made by :func:`symrot.propagator` with ``state``."""
 
     def __init__(self, scene: Scene, method: str, tolerance: float, sequence: str, switching: bool) -> None:
         try:
@@ -294,7 +301,9 @@ class EulerPropagator(Propagator):
         return EulerMotion(plan, self._method, self.tolerance, self._sequence, self._switching)
 
     def __call__(self, t: ArrayLike | None = None, *, events: Any = None, **state: Any) -> Trajectory:
-        """Return the motion as :class:`symrot.propagation.propagator.Propagator` does; events are not searched for."""
+        """Return the motion as :class:`symrot.propagation.propagator.Propagator` does; events are refused with an
+        InputError.
+        """
         if events is not None:
-            raise InputError("events: expected the quaternion as state; events are not located in Euler angles")
+            raise InputError("events: expected state='quaternion'; events are not located with Euler angles as state")
         return super().__call__(t, **state)

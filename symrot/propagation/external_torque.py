@@ -1,7 +1,7 @@
-"""A torque that is no formula: a function in Python or C, or a table of samples, with declared switching times.
+"""Torques without a formula: a function in Python or C, or a table of samples, with declared switching times.
 
-It acts in addition to the torques of the scene. Dormand and Prince's method steps the motion. At every switching time
-it stops exactly and restarts behind it, so that a jump costs no accuracy and no rejected steps.
+Such a torque acts in addition to the torques of the scene. Dormand and Prince's method steps the motion. At every
+switching time it stops exactly and restarts behind it, so that a jump costs no accuracy and no rejected steps.
 """
 
 import ctypes
@@ -39,11 +39,11 @@ CALLBACK = ctypes.CFUNCTYPE(
     ctypes.c_int, ctypes.c_double, ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_double),
     ctypes.POINTER(ctypes.c_double), ctypes.c_void_p,
 )  # fmt: skip
-SAMPLES_PER_STEP = 8.0  # of a table: a longer step could pass over features of the samples
-DEFECT = 1e4  # times the error allowed in a step: more, and the dense output missed something inside
-BEND = 2.0**-50  # of the torque: rounding of samples bends their spline by as much, from one sample to the next
-OVERSHOOT = 100.0  # times the largest sample: a spline that goes so far does not represent the torque
-MOST_STEPS = 30_000_000  # under a table, some 20 s; others end at stepping.MAX_STEPS
+SAMPLES_PER_STEP = 8.0  # samples of a table in one step: a longer step could pass over features of the samples
+DEFECT = 1e4  # times the error allowed in a step: a larger deviation shows that the step missed a feature inside
+BEND = 2.0**-50  # relative to the torque: rounding of samples bends their spline by as much, sample to sample
+OVERSHOOT = 100.0  # times the largest sample: a spline with larger values does not represent the torque
+MOST_STEPS = 30_000_000  # limit of steps under a table, some 20 s; for functions it is stepping.MAX_STEPS
 UNKNOWN = (
     "the torque is a function without a formula: each step is checked inside, but a feature narrower than a step may "
     "be missed; give max_step, in s, below the width of the narrowest"
@@ -52,16 +52,16 @@ FORMS = "a function of (t, omega, quaternion), a C function of ctypes, or a tabl
 
 
 class TorqueSource(ABC):
-    """The source of a torque without a formula: a function in Python, a function in C, or a table.
+    """Interface of a torque without a formula: a function in Python, a function in C, or a table.
 
     Attributes
     ----------
     samples : bool
-        Whether the torque is known by samples, which say how long a step may be.
+        Whether the torque is known by samples, which limit the length of a step.
     longest_step, most_steps : float, int
         Limits of the steps, s, and of their number.
     knots : sequence of float
-        Times, s, at which a step ends since the torque bends there.
+        Times, s, at which a step ends since a derivative of the torque jumps there.
     user : array or None
         The argument ``user`` of the function in C.
     """
@@ -74,11 +74,13 @@ class TorqueSource(ABC):
 
     @abstractmethod
     def pointer_in(self, library: Path) -> Any:
-        """Return the function in C, which may be in the library of the motion."""
+        """Return the torque as a function in C; for a table it is part of the compiled ``library`` of the motion."""
 
     @abstractmethod
     def check(self, low: float, high: float) -> None:
-        """Prepare for a motion over times from ``low`` to ``high``, s, or refuse them."""
+        """Prepare for a motion over times from ``low`` to ``high``, s; raise InputError if the torque is not defined
+        there.
+        """
 
     @abstractmethod
     def failure(self) -> BaseException | None:
@@ -87,7 +89,9 @@ class TorqueSource(ABC):
 
 @final
 class _Function(TorqueSource):
-    """A function in Python, called from C; stores the exception that ends a motion."""
+    """A torque that is a function in Python, called from C; it stores an exception of the function, which ends the
+    motion.
+    """
 
     def __init__(self, function: Callable[[float, Floats, Floats], ArrayLike]) -> None:
         self.function = function
@@ -109,16 +113,16 @@ class _Function(TorqueSource):
         except Exception as error:
             self.error = InputError(f"torque: the function raised {type(error).__name__}: {error}, at t = {t!r} s")
             self.error.__cause__ = error
-        except BaseException as error:  # an interrupt: raised again as it is
+        except BaseException as error:  # an interrupt is raised again unchanged
             self.error = error
         return int(self.error is not None)
 
     def pointer_in(self, library: Path) -> Any:
-        """Return the callback."""
+        """Return the callback through which C calls the Python function."""
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Forget the exception of the last motion."""
+        """Clear the exception of the previous motion; every time is accepted."""
         self.error = None
 
     def failure(self) -> BaseException | None:
@@ -128,26 +132,26 @@ class _Function(TorqueSource):
 
 @final
 class _CFunction(TorqueSource):
-    """A function of a C library: ``int (double, const double[3], const double[4], double[3], void *)``."""
+    """A torque that is a C function: ``int (double, const double[3], const double[4], double[3], void *)``."""
 
     def __init__(self, function: Any) -> None:
         self.pointer = function
 
     def pointer_in(self, library: Path) -> Any:
-        """Return the function."""
+        """Return the user's C function itself."""
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Accept all times."""
+        """Accept every time: the domain of a C function is not known."""
 
     def failure(self) -> BaseException | None:
-        """Return None: a function in C raises nothing."""
+        """Return None: a C function raises no exceptions; it reports an error by its return value."""
         return None
 
 
 @final
 class _Table(TorqueSource):
-    """Samples, interpolated by cubic splines between switching times."""
+    """A torque that is a table of samples, interpolated by cubic splines between switching times."""
 
     samples = True
     most_steps = MOST_STEPS
@@ -177,18 +181,22 @@ class _Table(TorqueSource):
         return ctypes.CDLL(str(library)).symrot_table_torque
 
     def check(self, low: float, high: float) -> None:
-        """Refuse times beyond the table."""
+        """Raise InputError for times beyond the table."""
         if low < self.span[0] or high > self.span[1]:
             beyond = low if low < self.span[0] else high
-            raise InputError(f"torque: the table covers {self.span[0]} to {self.span[1]} s, asked for {beyond} s")
+            raise InputError(f"torque: the table covers {self.span[0]} to {self.span[1]} s, got the time {beyond} s")
 
     def failure(self) -> BaseException | None:
-        """Return None: a table raises nothing."""
+        """Return None: the interpolation of a table raises no exceptions."""
         return None
 
 
 def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floats, list[float]]:
-    """Return the data of ``symrot_table_torque``, a spline between each two switching times, and the ends of steps."""
+    """Return the splines of a table as one array for the C function ``symrot_table_torque``, and the times where steps
+    end.
+
+    There is a separate spline between each two switching times.
+    """
     from scipy.interpolate import CubicSpline
 
     cuts = [0]
@@ -218,14 +226,17 @@ def _check_overshoot(spline: Any, largest: float) -> None:
     before, after = map(float, spline.x[worst : worst + 2])
     if not reach[worst] <= OVERSHOOT * largest:
         raise InputError(
-            f"torque: expected samples that a cubic spline keeps near, got samples of at most {largest:.3g} N m that "
+            f"torque: expected samples that a cubic spline follows, got samples of at most {largest:.3g} N m that "
             f"send it to {reach[worst]:.3g} N m between {before!r} and {after!r} s; a jump is a switching time with "
             "two samples, before and after"
         )
 
 
 def _bends(spline: Any) -> list[float]:
-    """Return the times of samples at which the third derivative jumps, so not inside a straight line or a constant."""
+    """Return the sample times at which the third derivative of a spline jumps.
+
+    Samples inside a straight line or a constant have no such jump.
+    """
     gaps, cubic = np.diff(spline.x)[:, None], spline.c[0]
     jumps = np.abs(np.diff(cubic, axis=0)) * np.minimum(gaps[1:], gaps[:-1]) ** 3
     bends: list[float] = spline.x[1:-1][(jumps > BEND * np.abs(spline.c[3]).max(axis=0)).any(axis=1)].tolist()
@@ -233,7 +244,7 @@ def _bends(spline: Any) -> list[float]:
 
 
 def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
-    """Return the source of a torque in one of the forms that a propagator takes."""
+    """Return the source of a torque from one of the forms that :func:`symrot.propagator` accepts."""
     if isinstance(torque, ctypes._CFuncPtr):  # type: ignore[attr-defined]
         return _CFunction(torque)
     if callable(torque):
@@ -244,7 +255,7 @@ def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
 
 
 def _bits(address: int) -> float:
-    """Return the double whose bits are an address."""
+    """Return the double whose 64 bits are an address, so that an address can be a parameter of a kernel."""
     return ctypes.c_double.from_buffer_copy(ctypes.c_uint64(address)).value
 
 
@@ -255,7 +266,7 @@ def _address(pointer: Any) -> int:
 @final
 @dataclass(frozen=True, eq=False)
 class ExternalSetup:
-    """The part that motions under one more torque share, whatever their start.
+    """Parts that all motions under one torque without a formula share, whatever their initial states.
 
     Attributes
     ----------
@@ -283,7 +294,10 @@ class ExternalSetup:
 def external_setup(
     plan: Plan, tolerance: float, source: TorqueSource, in_space: bool, switching: Sequence[float], max_step: float
 ) -> ExternalSetup:
-    """Return the setup of motions under one more torque, with kernel, torque and stepper in one library."""
+    """Return the shared parts of motions under a torque without a formula.
+
+    Kernel, torque and stepper are compiled into one library.
+    """
     plan = replace(plan, structure=replace(plan.structure.unreduced(), attitude=True))
     scene_alone = scene_kernel(plan)
     own = len(scene_alone.rate_parameters)
@@ -317,19 +331,19 @@ def external_setup(
 
 @final
 class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
-    """The motion of a scene under one more torque, which is evaluated at the times of the scene."""
+    """Motion of a scene under a torque without a formula, which is evaluated at the times of the scene."""
 
     def __init__(self, shared: ExternalSetup, plan: Plan) -> None:
         super().__init__(shared.setup, plan)
         self._shared = shared
 
     def from_start(self, initial: Initial) -> "ExternallyDrivenMotion":
-        """Return the motion from another initial state of the same structure."""
+        """Return the motion from another initial state of the same structure; nothing is derived or compiled again."""
         return ExternallyDrivenMotion(self._shared, self.setup.plan.from_start(initial))
 
     @cached_property
     def stepping(self) -> Integration:
-        """The integration of the motion, restarted at each switching time."""
+        """The integration of the motion by DOP853, restarted at each switching time."""
         shared = self._shared
         return dop853.integration(
             shared.library, [*self.rate_parameters, *shared.torque_parameters], self.plan.initial_state, self.start,
@@ -337,7 +351,9 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         )  # fmt: skip
 
     def _guarded(self, low: float, high: float, run: Callable[[], Result]) -> Result:
-        """Return the result of a run, or raise the exception that the torque raised in it."""
+        """Return the result of ``run``; raise the exception that the torque's function raised in it, if there is
+        one.
+        """
         source = self._shared.source
         source.check(min(low, self.start), max(high, self.start))
         try:
@@ -349,17 +365,17 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
             raise failure from failure.__cause__
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times, shape (n, N), and their cost."""
+        """Return the states at the times, shape (n, N), and the cost of the motion."""
         low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
         return self._guarded(low, high, lambda: self.stepping.restarted().sample(times))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return the states as a function of time."""
+        """Return the states as a function of time over a span."""
         return self._guarded(*span, lambda: self.stepping.restarted().record(span))
 
 
 class ExternallyDrivenPropagator(Propagator):
-    """Propagates a scene under one more torque; made by :func:`symrot.propagator` with ``torque``."""
+    """Propagator of a scene under a torque without a formula; made by :func:`symrot.propagator` with ``torque``."""
 
     def __init__(
         self, scene: Scene, tolerance: float, torque: Any, switching_times: ArrayLike = (), frame: str = "body",

@@ -1,4 +1,4 @@
-"""The invariants of a motion for the Taylor stepper: their C text, and their parameters as numbers.
+"""Conserved quantities of a motion for the Taylor stepper, which projects onto them: C text and parameter values.
 
 The derivation of the kernel proves which quantities are conserved; the norm of the quaternion is added.
 """
@@ -15,7 +15,9 @@ __all__ = ["invariant_parameters", "invariant_source"]
 
 
 def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
-    """Return the argument ``invariants`` of :func:`symrot.propagation.steppers.taylor.translation_unit`."""
+    """Return the C text of the conserved quantities, for
+    :func:`symrot.propagation.steppers.taylor.translation_unit`.
+    """
     from symrot.codegen.taylor.invariant_source import invariant_definitions
 
     outputs = [item.output for item in kernel.conserved if item.holds]
@@ -23,7 +25,9 @@ def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
 
 
 def invariant_parameters(kernel: SceneKernel, plan: Plan) -> list[float]:
-    """Return the parameters of the invariants, each as the nearest double and the double nearest to its error."""
+    """Return the parameters of the conserved quantities: each as the nearest double and the double nearest to its
+    error.
+    """
     values = {"pi": number.PI, **plan.constants}
     pairs: list[float] = []
     for _, node in kernel.quantity_parameters:

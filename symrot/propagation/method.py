@@ -1,4 +1,4 @@
-"""Choose the method that follows a motion, and give the reason."""
+"""Choice of the method that follows a motion, with the reason for it."""
 
 from typing import NamedTuple
 
@@ -22,7 +22,7 @@ METHODS = {
 
 
 class Choice(NamedTuple):
-    """A method, the reason for it and, if it is ``exact``, the closed form of the motion."""
+    """The chosen method, the reason for it and, for the method ``exact``, the closed form of the motion."""
 
     method: str
     reason: str
@@ -30,7 +30,10 @@ class Choice(NamedTuple):
 
 
 def _automatic(plan: Plan) -> Choice:
-    """Return the first method that fits: none for a constant motion, a closed form, Taylor, Dormand-Prince, SciPy."""
+    """Return the first method that can follow the motion of a plan.
+
+    The order is: constant (no state to integrate), closed form, Taylor series, Dormand-Prince, SciPy.
+    """
     if not plan.states:
         return Choice("constant", "the plan leaves no state to integrate")
     if form := exact_form(plan.scene):
@@ -43,12 +46,12 @@ def _automatic(plan: Plan) -> Choice:
     return Choice("taylor", f"the torque is smooth{between}, and a C compiler is there")
 
 
-EXTERNAL_TORQUE = Choice("dop853", "a torque that is no formula has no Taylor series")
+EXTERNAL_TORQUE = Choice("dop853", "a torque without a formula has no Taylor series")
 """The method for motions under a torque that is no formula."""
 
 
 def choose_method(plan: Plan, method: str = "auto") -> Choice:
-    """Return the method for a plan.
+    """Return the method for a plan: the first one that fits for ``"auto"``, otherwise the named one.
 
     Raises
     ------
@@ -59,7 +62,7 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
     """
     if plan.scene.table is not None:
         if method not in ("auto", "dop853"):
-            raise InputError(f"method: expected 'auto' or 'dop853' for a torque that is no formula, got {method!r}")
+            raise InputError(f"method: expected 'auto' or 'dop853' for a torque without a formula, got {method!r}")
         return EXTERNAL_TORQUE
     if method == "auto":
         return _automatic(plan)

@@ -1,7 +1,8 @@
-"""A plan bound to numbers: the states at any times by the chosen method, and quantities of them.
+"""Motions: plans bound to numbers, which give the states at any times by the chosen method.
 
-A :class:`Motion` begins at one start of a scene. Its :class:`Setup` holds the part that all starts of the same
-structure share: the method, the kernel, the numbers of the scene. Each method of following a motion is a final class.
+A :class:`Motion` begins at one initial state of a scene. Its :class:`Setup` holds the parts that all initial states of
+the same structure share: the method, the kernel, the numbers of the scene. There is one final class for each method of
+following a motion.
 """
 
 from abc import ABC, abstractmethod
@@ -53,7 +54,7 @@ def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
 
 
 def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
-    """Return the plan of a motion in closed form: it has all components of the state and skips the stepping."""
+    """Return the plan for a motion in closed form: all components of the state are known and nothing is stepped."""
     structure = plan.structure.unreduced()
     rows, before = [], structure.reductions
     for row in plan.rows:
@@ -71,7 +72,7 @@ def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
 @final
 @dataclass(frozen=True, eq=False)
 class Setup:
-    """The part that motions of one plan share, whatever their start: method, kernel, numbers of the scene.
+    """Parts that all motions of one plan share, whatever their initial states: method, kernel, numbers of the scene.
 
     Attributes
     ----------
@@ -104,56 +105,58 @@ class Setup:
 
     @cached_property
     def kernel(self) -> SceneKernel:
-        """The derived kernels."""
+        """The kernel of the plan, which computes rates and quantities; loaded on first use."""
         return self.load_kernel()
 
     @cached_property
     def moves_clock(self) -> bool:
-        """Whether the clock of the rates is moved along with the steps."""
+        """Whether the origin of time in the kernel moves along with the steps, so that phases keep their digits."""
         return self.allows_time_shift and self.kernel.rates.uses("t")
 
     @cached_property
     def rate_binding(self) -> Binding:
-        """The parameters of the rates, as numbers."""
+        """The parameters of the rates as functions of the initial state, each one double."""
         return Binding(self.kernel.rate_parameters, self.plan, known={EPOCH: Fraction(self.epoch)})
 
     @cached_property
     def quantity_binding(self) -> Binding:
-        """The parameters of the quantities, each as two doubles."""
+        """The parameters of the output quantities as functions of the initial state, each a sum of two doubles."""
         return Binding(self.kernel.quantity_parameters, self.plan, two_doubles)
 
     @cached_property
     def python_rates(self) -> Callable[..., Any]:
-        """The emitted NumPy kernel as ``f(t, y, p)``."""
+        """The rates as a NumPy function ``f(t, y, p)``."""
         return python_rates(self.plan, self.kernel)
 
     @cached_property
     def deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
-        """A function from parameters of the rates to the bounds that limit steps in Python; None without bounds."""
+        """A function from parameters of the rates to the bounds that limit steps in Python, or None if steps need no
+        limit.
+        """
         return formula_deviations(self.plan, self.kernel)
 
     def shifted(self) -> tuple[Plan, SceneKernel]:
-        """Return plan and kernel on a clock that can be moved."""
+        """Return plan and kernel with an epoch as a parameter, so that their clock can be moved."""
         is_shifted = self.plan.structure.clock is not None
         return (self.plan, self.kernel) if is_shifted else time_shift.time_shifted(self.plan, self.kernel)
 
     @cached_property
     def on_own_clock(self) -> "Setup":
-        """A copy on a clock that shows 0 at the start, see :mod:`symrot.propagation.time_shift`."""
+        """A copy of the setup whose clock shows 0 at the start, see :mod:`symrot.propagation.time_shift`."""
         plan, kernel = time_shift.time_shifted(self.plan, self.kernel)
         return replace(self, plan=plan, start=0.0, epoch=self.start, load_kernel=lambda: kernel)
 
 
 @final
 class SteppedSetup:
-    """The part that motions stepped in C share: the setup, and the library of kernel and stepper."""
+    """Parts that motions stepped in C share: the setup, and the library of kernel and stepper."""
 
     def __init__(self, setup: Setup, library: Path) -> None:
         self.setup, self.library = setup, library
 
     @cached_property
     def integration(self) -> Integration:
-        """The integration from the start of the setup's plan, with its input checked."""
+        """The integration from the initial state of the setup's plan; its input is already checked."""
         setup, plan = self.setup, self.setup.plan
         parameters, state = setup.rate_binding(plan), plan.initial_state
         if setup.choice.method == "dop853":
@@ -163,7 +166,7 @@ class SteppedSetup:
 
     @cached_property
     def on_own_clock(self) -> "SteppedSetup":
-        """A copy on a clock that shows 0 at the start."""
+        """A copy of the setup whose clock shows 0 at the start."""
         setup = self.setup.on_own_clock
         if setup.plan is self.setup.plan:  # the rates do not depend on the time
             return SteppedSetup(setup, self.library)
@@ -178,14 +181,14 @@ def _stepped_on_own_clock(setup: Setup) -> SteppedSetup:
 
 @final
 class ClosedFormSetup:
-    """The part that motions in closed form share: the setup, and the form."""
+    """Parts that motions in closed form share: the setup, and the class of closed forms."""
 
     def __init__(self, setup: Setup, form: ClosedForm) -> None:
         self.setup, self.form = setup, form
 
     @cached_property
     def starts(self) -> Starts:
-        """The closed form of the body and its torques, from an initial state to its motion."""
+        """A function from initial states to motions in closed form, for the body and torques of the plan."""
         return self.form.starts(self.setup.plan.scene)
 
 
@@ -193,14 +196,16 @@ class ClosedFormSetup:
 
 
 class Motion(ABC):
-    """A plan with its kernel, bound to numbers. Its clock shows 0 at the time ``epoch`` of the scene."""
+    """A plan with its kernel, bound to numbers and one initial state. Its clock shows 0 at the scene's time
+    ``epoch``.
+    """
 
     def __init__(self, setup: Setup, plan: Plan) -> None:
         self.setup, self.plan = setup, plan
 
     @property
     def choice(self) -> Choice:
-        """The method, and why."""
+        """The method that follows the motion, and the reason for it."""
         return self.setup.choice
 
     @property
@@ -220,22 +225,24 @@ class Motion(ABC):
 
     @property
     def kernel(self) -> SceneKernel:
-        """The derived kernels; of an exact motion, only needed for more than omega and attitude."""
+        """The kernel, which computes rates and quantities; a motion in closed form only needs it for derived
+        quantities.
+        """
         return self.setup.kernel
 
     @property
     def rates(self) -> Callable[..., Any]:
-        """The emitted NumPy kernel as ``f(t, y, p)``."""
+        """The rates as a NumPy function ``f(t, y, p)``."""
         return self.setup.python_rates
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences about accuracy that cannot be guaranteed."""
+        """Sentences about accuracy that cannot be guaranteed for this motion."""
         return self.setup.warnings
 
     @cached_property
     def rate_parameters(self) -> list[float]:
-        """The parameters of the rates, from this start."""
+        """The values of the parameters of the rates, for this initial state."""
         try:
             return self.setup.rate_binding(self.plan)
         except OverflowError:
@@ -247,7 +254,7 @@ class Motion(ABC):
         return dict(zip(names, self.setup.quantity_binding(self.plan)[::2], strict=True))
 
     def evaluate(self, t: Floats, states: Floats, names: Sequence[str]) -> Floats:
-        """Return quantities of the kernel at states of shape (n, N), as an array of shape (n, len(names))."""
+        """Return output quantities, shape (n, len(names)), from states of shape (n, N) at n times."""
         columns = [name.removesuffix(" of t") for name in names]
         if set(columns) <= set(self.plan.states):  # every quantity is a state
             return states[:, [self.plan.states.index(name) for name in columns]]
@@ -263,7 +270,7 @@ class Motion(ABC):
         return np.array([self.start]), np.array([self.plan.initial_state]).reshape(1, -1)
 
     def initial_quantity(self, name: str) -> float:
-        """Return a conserved quantity at the start."""
+        """Return the value of a conserved quantity at the initial time."""
         if name == "quaternion norm":
             return 1.0
         output = next(item.output for item in self.kernel.conserved if item.name == name)
@@ -271,23 +278,26 @@ class Motion(ABC):
 
     @abstractmethod
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats | tuple[Floats, ...], Stats]:
-        """Return the states at the times, shape (n, N), and their cost.
+        """Return the states at the times, shape (n, N), and the cost of the motion.
 
-        An exact motion returns angular velocity and attitude in an array each. ``in_order`` says that the times are
+        A motion in closed form returns two arrays, angular velocity and attitude. ``in_order`` says that the times are
         finite and never fall.
         """
 
     @abstractmethod
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return the states as a function of time."""
+        """Return the states as a function of time over a span, s."""
 
     def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times in one array, shape (n, N), and their cost; see :meth:`follow`."""
+        """Return the states at the times in one array, shape (n, N), and the cost of the motion; see :meth:`follow`."""
         states, stats = self.follow(times, in_order)
         return np.concatenate(states, axis=1) if isinstance(states, tuple) else states, stats
 
     def solution(self, times: Floats, with_attitude: bool) -> Callable[[ArrayLike], Floats]:
-        """Return omega, and perhaps the quaternion, as a function of time from the start over all the times."""
+        """Return omega, with the quaternion if ``with_attitude``, as a function of time.
+
+        The function covers the start and all the times.
+        """
         span = (
             (min(self.start, float(times.min())), max(self.start, float(times.max())))
             if len(times)
@@ -312,9 +322,9 @@ class Motion(ABC):
 
 
 class RestartableMotion(Motion):
-    """A motion that can begin from another initial state of the same structure, with nothing looked up or derived.
+    """A motion that can begin from another initial state of the same structure; nothing is looked up or derived again.
 
-    Starts have the same structure if they have the same :func:`symrot.planning.plan.structure_key`.
+    Initial states have the same structure if they have the same :func:`symrot.planning.plan.structure_key`.
     """
 
     @abstractmethod
@@ -332,7 +342,7 @@ class SteppedInC(ABC):
 
 
 class ShiftableMotion(RestartableMotion):
-    """A motion that is stepped, on the clock of the scene or on one that shows 0 at the start."""
+    """A stepped motion that can use the clock of the scene or a clock that shows 0 at the start."""
 
     @property
     @abstractmethod
@@ -341,10 +351,13 @@ class ShiftableMotion(RestartableMotion):
 
     @abstractmethod
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times on the clock of the motion, shape (n, N), and their cost."""
+        """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion."""
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times, stepped on the clock that suits these times, and their cost."""
+        """Return the states at times of the scene, shape (n, N), and the cost of the motion.
+
+        The motion is stepped on the clock that loses the fewest digits.
+        """
         if not self._shifts(times):
             return self.steps(times, in_order)
         motion = self.on_own_clock
@@ -354,20 +367,20 @@ class ShiftableMotion(RestartableMotion):
             raise error.later(motion.epoch) from None
 
     def _shifts(self, times: Floats) -> bool:
-        """Return whether another clock suits such times better."""
+        """Return whether a clock that shows 0 at the start loses fewer digits for such times."""
         if not (self.start and self.setup.allows_time_shift and len(times)):
             return False
         return time_shift.starts_far(self.start, float(times.min()), float(times.max()))
 
 
 def on_clock(motion: Motion, times: Floats) -> Motion:
-    """Return a motion on the clock that suits such times: its own, or one that shows 0 at the start."""
+    """Return the motion on the clock that suits the times: the present clock, or one that shows 0 at the start."""
     return motion.on_own_clock if isinstance(motion, ShiftableMotion) and motion._shifts(times) else motion
 
 
 @final
 class ConstantMotion(RestartableMotion):
-    """A motion whose plan leaves no state to integrate."""
+    """A motion in which every state keeps its value, so that the plan leaves no state to integrate."""
 
     def from_start(self, initial: Initial) -> "ConstantMotion":
         """Return the motion from another initial state of the same structure."""
@@ -396,16 +409,16 @@ class ClosedFormMotion(RestartableMotion):
 
     @property
     def form(self) -> ClosedForm:
-        """The class of motions in closed form that this one belongs to."""
+        """The class of closed forms that this motion belongs to."""
         return self._shared.form
 
     @cached_property
     def exact(self) -> Exact:
-        """The motion in closed form."""
+        """The motion in closed form, from this initial state."""
         return self._shared.starts(self.plan.scene.initial)
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[tuple[Floats, ...], Stats]:
-        """Return angular velocity and, if it is computed, attitude at the times, in an array each."""
+        """Return angular velocity (n, 3) and, if it is computed, attitude (n, 4) at the times, and the cost."""
         attitude, exact = self.plan.structure.attitude, self.exact
         began, start = perf_counter(), self.start
         omega, quaternion = exact.evaluate(times - start if start else times, quaternion=attitude)
@@ -453,14 +466,14 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def taylor_parameters(self) -> list[float]:
-        """The parameters of the rates, then those of the invariants."""
+        """The parameters of the Taylor library: those of the rates, then those of the conserved quantities."""
         return [*self.rate_parameters, *self.setup.quantity_binding(self.plan)]
 
     @cached_property
     def stepping(self) -> Integration:
-        """The integration of the motion."""
+        """The integration of the motion by its stepper in C, with its input checked."""
         state = self.plan.initial_state
-        if self.choice.method == "taylor":  # which holds the time in two parts and moves no clock
+        if self.choice.method == "taylor":  # the Taylor stepper holds the time in two doubles and moves no clock
             parameters = self.taylor_parameters
             return self._shared.integration.from_start(parameters, state)
         parameters = self.rate_parameters
@@ -471,15 +484,15 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def _clock(self) -> dop853.Clock:
-        """The clock of the rates, once it is moved."""
+        """A function from an epoch, s, to the library and parameters of rates that count time from the epoch."""
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times on the clock of the motion, shape (n, N), and their cost."""
+        """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion."""
         return self.stepping.sample_sorted(times, in_order)
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return the states as a function of time."""
+        """Return the states as a function of time over a span, s."""
         recording = self.stepping.restarted().record(span)
         recording.epoch = self.epoch
         return recording
@@ -487,7 +500,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
 @final
 class SciPyMotion(ShiftableMotion):
-    """A motion that one of SciPy's methods follows."""
+    """A motion that is stepped by one of SciPy's methods."""
 
     def from_start(self, initial: Initial) -> "SciPyMotion":
         """Return the motion from another initial state of the same structure."""
@@ -501,18 +514,18 @@ class SciPyMotion(ShiftableMotion):
 
     @cached_property
     def _clock(self) -> Callable[[float], Any]:
-        """The clock of :attr:`rates`, once it is moved."""
+        """A function from an epoch, s, to rates in Python that count time from the epoch, and their parameters."""
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch, python_rates)
 
     def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
-        """Return the bounds that limit steps in Python, for parameters of the rates."""
+        """Return the bounds that limit SciPy's steps, for parameters of the rates; None if steps need no limit."""
         if self.setup.deviations is None:
             return None
         names = [name for name, _ in self.kernel.rate_parameters]
         return self.setup.deviations(dict(zip(names, parameters, strict=True)))
 
     def options(self, parameters: Sequence[float]) -> "Options":
-        """Return how SciPy steps the motion and judges errors, for parameters of the rates."""
+        """Return the options for SciPy's steps and error control, for parameters of the rates."""
         from symrot.propagation.steppers.fallback import Options
 
         blocks, scales = error_blocks(self.plan)
@@ -521,14 +534,14 @@ class SciPyMotion(ShiftableMotion):
         return Options(self.choice.method, blocks, scales, deviations=deviations, clock=clock)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times on the clock of the motion, shape (n, N), and their cost."""
+        """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion."""
         from symrot.propagation.steppers import fallback
 
         start = (self.rate_parameters, self.plan.initial_state, self.start)
         return fallback.integrate(self.rates, *start, times, self.tolerance, self.options(self.rate_parameters))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return the states as a function of time."""
+        """Return the states as a function of time over a span, s."""
         from symrot.propagation.steppers import fallback
 
         start = (self.rate_parameters, self.plan.initial_state, self.start)
@@ -538,11 +551,14 @@ class SciPyMotion(ShiftableMotion):
 
 
 class MotionInParts(Motion):
-    """A motion that is smooth from one switch of its torques to the next."""
+    """Interface of a motion that is smooth between the switches of its torques."""
 
     @abstractmethod
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to an end as polynomials and at any time, an early end in ``broken``."""
+        """Return the motion from its start to ``end`` as polynomials, and as a function of time.
+
+        An error that ends the motion early is appended to ``broken``.
+        """
 
 
 # ------------------------------------------------------------------------------------------------ from plans to motions
@@ -576,9 +592,9 @@ def stepped_motion(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotio
 
 
 def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion | SciPyMotion:
-    """Return the stepped motion of a plan on a clock that shows 0 at its start; its rates may take any epoch.
+    """Return the stepped motion of a plan on a clock that shows 0 at its start.
 
-    If the rates do not depend on the time, the clock of the scene is used.
+    The epoch is a parameter of its rates. If the rates do not depend on the time, the clock of the scene is used.
     """
     setup = _setup(plan, choice, tolerance)
     timed, steps_in_c = setup.kernel.rates.uses("t"), choice.method in ("taylor", "dop853")

@@ -1,4 +1,4 @@
-"""Report how far a long motion has come, to a reporter such as a command line, if there is one."""
+"""Progress reports of long motions to a reporter, such as a command line, if there is one."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -7,14 +7,17 @@ from contextvars import ContextVar
 __all__ = ["report", "reporting", "within"]
 
 Reporter = Callable[[float, float, float], object]
-"""Takes the time reached, the start and the end, s; it is called every few hundredths of a second."""
+"""Function of the time reached, the start and the end, s; it is called every few hundredths of a second."""
 
 _whole: ContextVar[tuple[float, float, Callable[[], float]] | None] = ContextVar("whole", default=None)
 _reporter: ContextVar[Reporter | None] = ContextVar("reporter", default=None)
 
 
 def report(t: float, start: float, stop: float) -> None:
-    """Call the reporter, if there is one; for a part of a motion, with the span of the whole motion."""
+    """Tell the reporter, if there is one, how far a motion has come: the time ``t`` between ``start`` and ``stop``, s.
+
+    Inside :func:`within`, the span of the whole motion is reported instead of the span of its part.
+    """
     reporter = _reporter.get()
     if reporter is not None:
         whole = _whole.get()
@@ -26,9 +29,9 @@ def report(t: float, start: float, stop: float) -> None:
 
 @contextmanager
 def within(start: float, stop: float, zero: Callable[[], float] = lambda: 0.0) -> Iterator[None]:
-    """Have motions report how far they have come on the way from ``start`` to ``stop``, s, of which they are parts.
+    """Have motions inside the block report as parts of one motion from ``start`` to ``stop``, s.
 
-    ``zero`` returns the time on the clock of the whole at which the clock of the part shows 0.
+    ``zero`` returns the time on the clock of the whole motion at which the clock of the part shows 0.
     """
     token = _whole.set(_whole.get() or (start, stop, zero))
     try:
@@ -39,7 +42,7 @@ def within(start: float, stop: float, zero: Callable[[], float] = lambda: 0.0) -
 
 @contextmanager
 def reporting(reporter: Reporter) -> Iterator[None]:
-    """Have motions report how far they have come, as long as the block runs."""
+    """Have motions inside the block report their progress to ``reporter``."""
     token = _reporter.set(reporter)
     try:
         yield

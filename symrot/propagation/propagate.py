@@ -1,4 +1,4 @@
-"""From a scene to its propagator: the kind of its motion, and the options that this kind takes."""
+"""The propagator of a scene: the kind of its motion, and the options that this kind accepts."""
 
 from math import inf
 from pathlib import Path
@@ -88,14 +88,12 @@ def propagator(
     aim = float(scene.tolerance) if tolerance is None else _tolerance(tolerance)
     if scene.table is not None:
         if torque is not None:
-            raise InputError(
-                f"torque: expected none for a scene with a torque of kind table, got {number.show(torque)}"
-            )
+            raise InputError(f"torque: leave it out for a scene with a torque of kind table, got {number.show(torque)}")
         samples = scene.table
         torque, switching_times, torque_frame = samples[:2], samples.switching_times, samples.frame
     if state != "quaternion":
         if torque is not None:
-            raise InputError(f"state: expected 'quaternion' for a torque that is no formula, got {state!r}")
+            raise InputError(f"state: expected 'quaternion' for a torque without a formula, got {state!r}")
         if switched(scene):
             raise InputError(f"state: expected 'quaternion' for torques that jump or bend, got {state!r}")
         from symrot.propagation.euler_state import EulerPropagator
@@ -104,7 +102,7 @@ def propagator(
     if torque is None:
         if max_step != inf:
             raise InputError(
-                f"max_step: expected none without a torque that is no formula, got {number.show(max_step)}"
+                f"max_step: leave it out unless a torque without a formula acts, got {number.show(max_step)}"
             )
         if switched(scene):
             from symrot.propagation.switched.motion import SwitchedPropagator
@@ -112,10 +110,11 @@ def propagator(
             return SwitchedPropagator(scene, method, aim)
         return Propagator(scene, method, aim)
     if method not in ("auto", "dop853"):
-        raise InputError(f"method: expected 'auto' or 'dop853' for a torque that is no formula, got {method!r}")
+        raise InputError(f"method: expected 'auto' or 'dop853' for a torque without a formula, got {method!r}")
     if switched(scene):
         raise InputError(
-            f"torque: expected none besides formulas that jump or bend (abs, sign, ..), got {number.show(torque)}"
+            "torque: expected no further torque, since a formula of the scene jumps or bends (abs, sign, ..), "
+            f"got {number.show(torque)}"
         )
     from symrot.propagation.external_torque import ExternallyDrivenPropagator
 

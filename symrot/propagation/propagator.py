@@ -1,4 +1,6 @@
-"""Propagate a scene: choose a method, bind the kernel to numbers once, then propagate any number of times."""
+"""The propagator of a scene: it chooses a method and binds the kernel to numbers once, then computes any number of
+motions.
+"""
 
 from fractions import Fraction
 from functools import cached_property
@@ -30,7 +32,7 @@ Floats = NDArray[np.float64]
 
 
 class Propagator:
-    """Propagates one scene; made by :func:`symrot.propagator`.
+    """Function from sample times to the motion of one scene; made by :func:`symrot.propagator`.
 
     Derivation, compilation and binding are done when it is made; a call only computes the motion.
 
@@ -51,7 +53,7 @@ class Propagator:
     def __init__(self, scene: Scene, method: str, tolerance: float) -> None:
         self.scene, self.tolerance, self._method = scene, tolerance, method
         self._motion = self._prepare(self._planned())
-        self._by_structure = {structure_key(scene, scene.initial): self._motion}  # the first start of each
+        self._by_structure = {structure_key(scene, scene.initial): self._motion}  # the first motion of each structure
 
     def _planned(self, initial: Initial | None = None) -> Plan:
         return make_plan(self.scene, initial)
@@ -62,8 +64,8 @@ class Propagator:
     def motion_from(self, initial: Initial) -> Motion:
         """Return the motion from another initial state.
 
-        The first start of each structure is planned and prepared like a new scene. Later starts change only the numbers
-        that depend on the start.
+        The first initial state of each structure is planned and prepared like a new scene. Later ones change only the
+        numbers that depend on the initial state.
         """
         if not isinstance(self._motion, RestartableMotion):
             return self._prepare(self._planned(initial))
@@ -76,26 +78,26 @@ class Propagator:
 
     @property
     def plan(self) -> Plan:
-        """The plan: the parts of the motion that are computed or skipped."""
+        """The plan of the scene: which states and quantities are computed, and which are skipped."""
         return self._motion.plan
 
     @property
     def method(self) -> str:
-        """The name of the method."""
+        """The name of the method that follows the motion, such as ``"taylor"``."""
         return self._motion.choice.method
 
     @property
     def reason(self) -> str:
-        """The reason for the method."""
+        """The reason why the method was chosen."""
         return self._motion.choice.reason
 
     @property
     def kernel(self) -> SceneKernel:
-        """The derived kernels."""
+        """The kernel of the scene, which computes rates and quantities."""
         return self._motion.kernel
 
     def prepare(self) -> None:
-        """Do now the work of the first use: derive the kernel of an exact motion while its form compiles."""
+        """Do the work of the first call now: derive the kernel while the closed form compiles."""
         self._motion.kernel  # noqa: B018
         if isinstance(self._motion, ClosedFormMotion):
             self._motion.exact  # noqa: B018
@@ -154,7 +156,7 @@ class Propagator:
         return Trajectory(motion, times, states, motion.choice.method, stats, message)
 
     def _with_samples(self, error: BaseException, motion: Motion, times: Floats, began: float) -> BaseException:
-        """Return the exception that ends a motion early, with the trajectory of the samples before."""
+        """Return the exception that ends a motion early, with the samples before it attached as ``trajectory``."""
         samples: Samples | None = getattr(error, "samples", None)
         ended: BaseException = error
         if isinstance(error, PropagationError):
@@ -177,7 +179,7 @@ def _times(t: ArrayLike) -> Floats:
 
 
 def _in_order(times: Floats) -> bool:
-    """Return whether times never fall; raise InputError unless they are finite (of sorted times, the ends tell)."""
+    """Return whether times never fall; raise InputError if one is not finite."""
     if not len(times):
         return True
     if isfinite(times.item(0)) and isfinite(times.item(-1)) and is_sorted(times):
@@ -196,21 +198,22 @@ def _vector(values: ArrayLike, size: int, name: str, unit: str) -> list[float]:
 
 
 def _exact(value: float, name: str) -> Fraction:
-    """Return the exact value of a finite double; a subnormal double is an InputError, as in a scene."""
+    """Return the exact value of a finite double; raise InputError for a subnormal double, as scenes do."""
     return _lowest(*value.as_integer_ratio()) if abs(value) >= SMALLEST or not value else number.read(value, name)
 
 
 def _lowest(top: int, bottom: int) -> Fraction:
-    """Return a fraction of numbers without a common divisor, which is not searched for."""
+    """Return the fraction top/bottom of coprime integers, without a search for a common divisor."""
     fraction: Any = object.__new__(Fraction)
     fraction._numerator, fraction._denominator = top, bottom  # as Fraction._from_coprime_ints of Python 3.12 does
     return fraction  # type: ignore[no-any-return]
 
 
 def _unit(q: list[float]) -> tuple[Fraction, ...]:
-    """Return :func:`symrot.formula.exact_numbers.unit` of doubles, with the same accuracy of 2^-320, in half the time.
+    """Return a quaternion of doubles divided by its norm, as exact fractions.
 
-    All denominators are powers of two.
+    Equals :func:`symrot.formula.exact_numbers.unit`, with the same accuracy of 2^-320, in half the time: all
+    denominators are powers of two.
     """
     ratios = [x.as_integer_ratio() for x in q]
     shared = max([bottom for _, bottom in ratios])  # all are powers of two
@@ -225,7 +228,7 @@ def _unit(q: list[float]) -> tuple[Fraction, ...]:
     for x in tops:
         bits = length - x.bit_length()
         if bits > shift and x:
-            # odd, so that nothing cancels: the last of some 322 bits may be either
+            # made odd, so that the fraction is in lowest terms; the last of some 322 bits is arbitrary
             components.append(_lowest((x << bits) // norm | 1, 1 << bits - shift))
         else:
             components.append(Fraction((x << bits) // norm >> bits - shift if x else 0))
@@ -233,7 +236,10 @@ def _unit(q: list[float]) -> tuple[Fraction, ...]:
 
 
 def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None) -> Initial:
-    """Return the exact initial state of a call of a propagator; None stands for the value of the scene."""
+    """Return the exact initial state for a call of a propagator.
+
+    An argument that is None has the value of the scene.
+    """
     initial = scene.initial
     if omega is not None:
         x, y, z = (_exact(value, "omega") for value in _vector(omega, 3, "omega", "rad/s"))

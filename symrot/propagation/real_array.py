@@ -1,4 +1,4 @@
-"""Arrays of real numbers from arguments, refusing values that NumPy would silently convert."""
+"""Arrays of real numbers from arguments; values that NumPy would silently convert raise an error."""
 
 from typing import Any
 
@@ -25,7 +25,7 @@ NO_NUMBERS = (bool, np.bool_, np.datetime64, np.timedelta64, np.complexfloating,
 
 
 def real_array(values: Any, place: str, expected: str, ndmin: int = 0) -> NDArray[np.float64]:
-    """Return a new array of doubles.
+    """Return the argument as a new array of doubles.
 
     Parameters
     ----------

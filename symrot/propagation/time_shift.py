@@ -1,4 +1,4 @@
-"""Motions that start far from t = 0, on a clock that shows 0 at their start.
+"""Clocks that show 0 at the start, for motions that start far from t = 0.
 
 The numbers in the steppers are then small: neither phases such as ``a*t + b`` nor the ends of short steps lose digits.
 The clock is moved only where all differences of times are exact, for times between half the start and twice the start;
@@ -7,7 +7,7 @@ digits of their phases in other ways: Taylor steps hold the time in two parts, D
 repeatedly (:mod:`symrot.propagation.steppers.dop853`), and SciPy restarts on a moved clock where its steps are short
 (:mod:`symrot.propagation.steppers.fallback`).
 
-A torque that is no formula is evaluated at the times of the scene, so that motions under it use the clock of the scene:
+A torque without a formula is evaluated at the times of the scene, so that motions under it use the clock of the scene:
 there a phase ``a*t`` is off by up to ``1e-16*|a*t|`` rad. Motions in Euler angles start on the clock of the scene too.
 """
 
@@ -33,13 +33,19 @@ __all__ = ["ShiftedParameters", "clock", "compiled", "starts_far", "time_shifted
 
 
 def starts_far(start: float, low: float, high: float) -> bool:
-    """Return whether a motion starts so far from t = 0 that its clock is moved, for times from low to high, s."""
+    """Return whether a motion over times from ``low`` to ``high``, s, needs a clock that shows 0 at its start.
+
+    It does if it starts far from t = 0 and all its times minus the start are exact.
+    """
     nearest, farthest = sorted((0.5 * start, 2.0 * start))
     return start != 0.0 and nearest <= low and high <= farthest  # time - start is exact there (Sterbenz)
 
 
 def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
-    """Return a plan and its kernel on a clock that shows 0 at an epoch; unchanged if the rates have no time."""
+    """Return a plan and its kernel with time counted from an epoch, which becomes a constant of the plan.
+
+    They are returned unchanged if the rates do not depend on the time.
+    """
     if not kernel.rates.uses("t"):
         return plan, kernel
     plan = replace(plan, structure=replace(plan.structure, clock=EPOCH))
@@ -54,7 +60,7 @@ def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
 
 
 class ShiftedParameters:
-    """The parameters of formulas with a moved clock, for one epoch after another.
+    """Parameters of formulas on a clock that is moved, as functions of the epoch.
 
     The parts that do not depend on the epoch are computed once.
 
@@ -91,7 +97,7 @@ class ShiftedParameters:
 
 
 def _line(node: Node) -> tuple[int, int, int] | None:
-    """Return integers a, b, c where a formula is (a + b*epoch)/c, or None; integers are divided with one rounding."""
+    """Return integers a, b, c if a formula equals (a + b*epoch)/c and evaluates with one rounding; otherwise None."""
     values = _coefficients(node)
     if values is None:
         return None
@@ -101,7 +107,7 @@ def _line(node: Node) -> tuple[int, int, int] | None:
 
 
 def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
-    """Return a and b where a formula is a + b*epoch, or None."""
+    """Return a and b if a formula equals a + b*epoch; otherwise None."""
     if node[0] == "number":
         return Fraction(node[1]), Fraction(0)
     if node == ("symbol", EPOCH):
@@ -124,7 +130,7 @@ def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
 
 
 def compiled(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the library of kernel and DOP853 for a plan on a moved clock."""
+    """Return the path of the compiled library, kernel and DOP853 stepper, for a plan on a moved clock."""
     return motion_library(plan, kernel)
 
 
@@ -134,10 +140,11 @@ def clock(
     start: float = 0.0,
     make: Callable[[Plan, SceneKernel], Any] = compiled,
 ) -> Callable[[float], tuple[Any, list[float]]]:
-    """Return the clock of the plan and kernel that ``moving`` returns, as :func:`time_shifted` does, on first use.
+    """Return a function from an epoch, s, to a library or function of the rates on a moved clock, and their parameters.
 
-    ``constants`` and ``start`` are arguments of :class:`ShiftedParameters`. ``make`` returns the library that DOP853
-    calls, or the function in Python that SciPy calls.
+    ``moving`` returns plan and kernel as :func:`time_shifted` does; it is called on first use. ``constants`` and
+    ``start`` are arguments of :class:`ShiftedParameters`. ``make`` returns the library that DOP853 calls, or the
+    function in Python that SciPy calls.
     """
 
     @cache
@@ -149,7 +156,7 @@ def clock(
 
 
 def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:
-    """Return a formula in which every part without the epoch is replaced by its value."""
+    """Return a formula with every part that does not contain the epoch replaced by its value."""
     if node == ("symbol", EPOCH):
         return node
     if EPOCH not in names(node):

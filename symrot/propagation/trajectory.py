@@ -1,6 +1,6 @@
-"""A motion at its sample times: states, and quantities that are computed from them on first use."""
+"""Trajectories: the states of a motion at its sample times, and quantities computed from them on first use."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import cached_property
 from typing import NamedTuple
 
@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 
 
 class Invariant(NamedTuple):
-    """A conserved quantity along a trajectory.
+    """Values of a conserved quantity along a trajectory, and how far they drift.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Invariant(NamedTuple):
 
 
 class Trajectory:
-    """The motion that a propagator returns. Conventions: :mod:`symrot.conventions`.
+    """Motion of a scene at its sample times, as a propagator returns it. Conventions: :mod:`symrot.conventions`.
 
     Attributes
     ----------
@@ -110,12 +110,12 @@ class Trajectory:
 
     @property
     def plan(self) -> Plan:
-        """The plan of the motion."""
+        """The plan of the motion: which states and quantities are computed, and which are skipped."""
         return self._motion.plan
 
     @property
     def scene(self) -> Scene:
-        """The scene, with the initial state that was used."""
+        """The scene of the motion, with the initial state that was used."""
         return self._motion.plan.scene
 
     @property
@@ -125,7 +125,7 @@ class Trajectory:
 
     @cached_property
     def _states(self) -> Floats:
-        """The integrated states, shape (n, N); the two arrays of an exact motion are joined on first use."""
+        """The integrated states, shape (n, N); the two arrays of a motion in closed form are joined on first use."""
         return np.concatenate(self._parts, axis=1) if isinstance(self._parts, tuple) else self._parts
 
     @property
@@ -134,7 +134,7 @@ class Trajectory:
         return self._states.T
 
     def _evaluate(self, *names: str) -> Floats:
-        """Return quantities of the kernel, shape (n, len(names))."""
+        """Return the named quantities at the sample times, shape (n, len(names)), computed by the kernel."""
         return self._motion.evaluate(self.t, self._states, names)
 
     @property
@@ -145,8 +145,8 @@ class Trajectory:
     def _need_attitude(self) -> None:
         if not self.has_attitude:
             raise InputError(
-                "the attitude was not computed, since neither a torque nor the output of the scene asks for it: "
-                'expected "quaternion" among output.quantities'
+                "the attitude was not computed, since neither a torque nor the output of the scene needs it: "
+                'add "quaternion" to output.quantities'
             )
 
     @cached_property
@@ -166,7 +166,7 @@ class Trajectory:
 
     @cached_property
     def dcm(self) -> Floats:
-        """``dcm_sb``, shape (n, 3, 3)."""
+        """The attitude as direction cosine matrices ``dcm_sb``, shape (n, 3, 3)."""
         return conversions.quaternion_to_dcm(self.quaternion)
 
     def euler(self, sequence: str, degrees: bool = False) -> Floats:
@@ -178,7 +178,7 @@ class Trajectory:
         return conversions.quaternion_to_euler(self.quaternion, sequence, degrees=degrees)[0]
 
     def gimbal_lock(self, sequence: str) -> NDArray[np.bool_]:
-        """Return where a sequence is singular, shape (n,)."""
+        """Return, for each sample, whether the Euler angles of a sequence are at gimbal lock, shape (n,)."""
         return conversions.quaternion_to_euler(self.quaternion, sequence)[1]
 
     def _to_space(self, vectors_b: Floats) -> Floats:
@@ -222,7 +222,7 @@ class Trajectory:
 
     @property
     def axis_number(self) -> int:
-        """The body axis that :attr:`axis` follows: the symmetry axis, or the third one."""
+        """The number of the body axis that :attr:`axis` follows: the symmetry axis, or the third axis."""
         principal = self.scene.body.principal
         return 2 if principal.symmetry_axis is None or not principal.given_axes else int(principal.symmetry_axis)
 
@@ -262,7 +262,7 @@ class Trajectory:
         return float(max(np.max(np.abs(values)), np.max(np.abs(self.kinetic_energy))))
 
     def sol(self, t: ArrayLike) -> Floats:
-        """Return omega and quaternion at any time of the span by dense output, shape (7, m).
+        """Return omega and quaternion at any m times of the span by dense output, shape (7, m).
 
         Without attitude the shape is (3, m). A single time gives shape (7,). Steps are recorded on the first call.
         """
@@ -281,7 +281,3 @@ class Trajectory:
             return self.euler(output.sequence, degrees=output.degrees)
         value: Floats = getattr(self, name)
         return value
-
-    def as_mapping(self) -> Mapping[str, Floats]:
-        """Return time and the output quantities of the scene, by name."""
-        return {"t": self.t, **{name: self.quantity(name) for name in self.scene.output.quantities}}

@@ -1,4 +1,4 @@
-"""The true and false claims of documents, as a table for the terminal and as the page ``generated/errata.md``."""
+"""Findings about the claims of four documents: a table for the terminal, and the page ``generated/errata.md``."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -16,7 +16,7 @@ Survey = list[tuple[Document, list[Finding]]]
 def survey(
     names: Sequence[str] = DOCUMENTS, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Survey:
-    """Return the findings of some documents."""
+    """Return the findings about the claims of some documents: true or false, with corrections."""
     documents = []
     for name in names:
         source = document(name)
@@ -31,7 +31,7 @@ def _total(items: Sequence[Finding]) -> str:
 
 
 def lines(survey: Survey) -> list[str]:
-    """Return the findings as text: a line for each claim, more lines for one that does not hold, and a summary."""
+    """Return the findings about claims as lines of text: one line per claim, more if it is not true, and a summary."""
     text: list[str] = []
     for source, items in survey:
         text += [f"{source.title} [{source.name}]", ""]
@@ -56,7 +56,7 @@ def _details(item: Finding) -> list[tuple[str, str]]:
 
 
 def facts(survey: Survey) -> list[dict[str, Any]]:
-    """Return the findings as JSON data."""
+    """Return the findings about claims as data for JSON."""
     return [
         {
             "document": source.name,
@@ -74,7 +74,9 @@ def facts(survey: Survey) -> list[dict[str, Any]]:
 
 
 def page(survey: Survey) -> str:
-    """Return ``errata.md``: for each document the claims that do not hold, with right form, reason and proof."""
+    """Return the text of ``errata.md``: the claims of each document that do not hold, with right form, reason and
+    proof.
+    """
     text = [
         "# Errata",
         "",

@@ -1,4 +1,4 @@
-"""A plan as a table: each item kept or skipped, the rule, the derivation behind it, and the operations it saves."""
+"""A plan as a table: each item computed or skipped, the rule, its derivation, and the operations it saves."""
 
 from collections import Counter
 from typing import TYPE_CHECKING
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 __all__ = ["explanation", "facts", "lines"]
 
 HEAD = ("item", "", "rule", "derivation", "operations", "saved")
-FREE = frozenset({"neg"})  # a sign is part of the addition or multiplication it stands in
+FREE = frozenset({"neg"})  # a minus sign counts as part of its addition or multiplication
 
 
 def _operations(structure: Structure) -> Counter[str]:
-    """Count the operations of one evaluation of the rates of a structure."""
+    """Return the counts of operations, by kind, in one evaluation of the rates of a structure."""
     from symrot.codegen.scene_kernels import rates_program
     from symrot.dynamics.equations import equations_of_motion
 
@@ -32,7 +32,9 @@ def _row(item: str, skipped: bool, why: str, derivation: str = "", operations: C
 
 
 def _ladder(plan: Plan) -> "list[PlanRow]":
-    """Return the rows of the rules, from the general structure down, with the operations each leaves and saves."""
+    """Return one row for each rule of the plan, with the operations that remain after the rule and those that it
+    saves.
+    """
     from symrot.planning.plan import general_structure
 
     general = _operations(general_structure(plan.scene, bool(plan.switches)))
@@ -47,7 +49,7 @@ def _ladder(plan: Plan) -> "list[PlanRow]":
 
 
 def _others(plan: Plan) -> "list[PlanRow]":
-    """Return the rows that no rule of the plan decides: states, motion, outputs, derivation."""
+    """Return the rows of the table that no rule decides: states, method, outputs, cached kernel."""
     from symrot.build import cache as library
     from symrot.propagation.compiled_models import kernel_key
     from symrot.propagation.method import choose_method
@@ -73,7 +75,7 @@ BENDS = frozenset({"abs", "min", "max", "clip"})
 
 
 def _formulas(plan: Plan, method: str) -> "list[PlanRow]":
-    """Return the rows on the measures by which no narrow feature and no switch of a formula is stepped over."""
+    """Return the rows that say how steps are kept from missing narrow features and switches of a formula."""
     from symrot.propagation.compiled_models import has_formulas
 
     if not has_formulas(plan):
@@ -101,7 +103,7 @@ def _narrow_features(plan: Plan) -> "PlanRow":
 
 
 def _switches(functions: list[str]) -> "PlanRow":
-    """Return the row of functions with jumps or kinks."""
+    """Return the row of the table about functions with jumps or kinks."""
     named = [(text, text.partition("(")[0] in BENDS) for text in dict.fromkeys(functions)]
     parts = [
         f"{', '.join(text for text, bent in named if bent is bends)} {verb}"
@@ -116,7 +118,7 @@ def _switches(functions: list[str]) -> "PlanRow":
 
 
 def _samples(plan: Plan) -> "list[PlanRow]":
-    """Return the row of a torque given by samples, whose operations are not counted."""
+    """Return the row of the table about a torque given by samples, whose operations are not counted."""
     table = plan.scene.table
     if table is None:
         return []
@@ -127,7 +129,10 @@ def _samples(plan: Plan) -> "list[PlanRow]":
 
 
 def facts(plan: Plan) -> "PlanReport":
-    """Return the table as data for JSON: ``operations`` counts by kind after a row, ``saved`` is the change."""
+    """Return the explained plan as data for JSON.
+
+    In each row, ``operations`` counts the operations by kind after the row, and ``saved`` is the change.
+    """
     scene = plan.scene
     ladder = _ladder(plan)
     rows = [*ladder, *_others(plan)]
@@ -150,7 +155,7 @@ def _counts_text(counts: dict[str, int] | None) -> str:
 
 
 def lines(report: "PlanReport") -> list[str]:
-    """Return the data of :func:`facts` as lines of text; the first is the title."""
+    """Return the explained plan, the data of :func:`facts`, as lines of text; the first line is the title."""
     rows = [HEAD]
     for row in report["rows"]:
         changed = row["saved"] != 0
@@ -167,5 +172,5 @@ def lines(report: "PlanReport") -> list[str]:
 
 
 def explanation(plan: Plan) -> str:
-    """Return the plan as a table for people."""
+    """Return the explained plan as a table of text."""
     return "\n".join(lines(facts(plan)))

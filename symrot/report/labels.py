@@ -1,4 +1,4 @@
-"""The quantities of a trajectory as labelled columns, with meaning, unit and frame."""
+"""The output quantities of a trajectory as labelled columns, with meaning, unit and frame."""
 
 from typing import Any, NamedTuple
 
@@ -33,7 +33,7 @@ FRAMES = {
 
 
 class Labelled(NamedTuple):
-    """One quantity: its name, values of shape (n,) or (n, ...), components, unit, frame and meaning."""
+    """One quantity of a trajectory: name, values of shape (n,) or (n, ...), components, unit, frame and meaning."""
 
     name: str
     values: NDArray[Any]
@@ -51,10 +51,10 @@ def _euler(output: Output) -> tuple[tuple[str, ...], str, str]:
 
 
 def labelled(trajectory: Any) -> list[Labelled]:
-    """Return the time and the output quantities of the scene of a trajectory.
+    """Return the time and the output quantities of a trajectory, each with its labels.
 
-    Euler angles are followed by :data:`LOCK`, which is true where the sequence is at gimbal lock, so that only a sum or
-    a difference of two of its angles is defined.
+    Euler angles are followed by the column :data:`LOCK`, which is true where the sequence is at gimbal lock, so that
+    only a sum or a difference of two of its angles is defined.
     """
     output = trajectory.scene.output
     quantities = [Labelled("t", trajectory.t, ("t",), "s", "", "time")]

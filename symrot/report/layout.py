@@ -11,12 +11,12 @@ from typing import TextIO
 __all__ = ["WIDTH", "apart", "columns", "duration", "emphasis", "exact", "fields", "number_text", "one_line", "room"]
 
 WIDTH = 110
-NARROWEST = 40  # no text is wrapped to less
-MARGIN = 2  # of a terminal: by so much lines may be indented afterwards
-LEAST = 20  # letters of the column that is wrapped first, before others are
+NARROWEST = 40  # least width to which text is wrapped
+MARGIN = 2  # columns of a terminal left free, since lines may be indented afterwards
+LEAST = 20  # least width of the column that is wrapped first, before others are wrapped
 LONGEST_DENOMINATOR = 10**12
-DIGITS = 17  # which tell any two doubles apart
-SEEN = 0.001  # of a distance: to so much of it its ends are shown
+DIGITS = 17  # digits that distinguish any two doubles
+SEEN = 0.001  # part of a distance to which its ends are rounded
 
 
 def one_line(text: str) -> str:
@@ -25,12 +25,12 @@ def one_line(text: str) -> str:
 
 
 def number_text(value: float | Fraction, digits: int = 6) -> str:
-    """Return a number as text with few digits."""
+    """Return a number as text with the given number of significant digits."""
     return f"{float(value):.{digits}g}"
 
 
 def apart(*values: float) -> list[str]:
-    """Return numbers as :func:`number_text` does, with enough digits to tell the two nearest apart."""
+    """Return numbers as text with enough digits to distinguish the two that are nearest to each other."""
     ordered = sorted({float(value) for value in values})
     nearest = min((after - before for before, after in pairwise(ordered)), default=math.inf)
     digits = 6
@@ -40,12 +40,12 @@ def apart(*values: float) -> list[str]:
 
 
 def exact(value: Fraction) -> str:
-    """Return a number for programs: exact text such as ``"51/80"`` if that is short, else the nearest double."""
+    """Return a fraction as text for programs: exact, such as ``"51/80"``, if that is short, else the nearest double."""
     return str(value) if value.denominator <= LONGEST_DENOMINATOR else repr(float(value))
 
 
 def duration(seconds: float) -> str:
-    """Return a duration with a suitable unit."""
+    """Return a duration as text with a suitable unit, such as ``"3.2 ms"``."""
     for unit, size in (("s", 1.0), ("ms", 1e-3)):
         if seconds >= size:
             return f"{seconds / size:.3g} {unit}"
@@ -59,7 +59,7 @@ def emphasis(text: str, stream: TextIO) -> str:
 
 
 def room(most: int = WIDTH) -> int:
-    """Return the width of lines: that of the terminal, at most ``most``; for a pipe or a file ``most``."""
+    """Return the width for lines of text: that of the terminal, at most ``most``; for a pipe or a file ``most``."""
     if not sys.stdout.isatty():
         return most
     from shutil import get_terminal_size  # slow to import, and a pipe needs none
@@ -74,7 +74,7 @@ def _wrapped(text: str, width: int) -> list[str]:
 
 
 def fields(rows: Iterable[tuple[str, str]], width: int | None = None) -> list[str]:
-    """Return lines of (name, text), the texts aligned and wrapped; an empty name continues the one above."""
+    """Return pairs (name, text) as lines with aligned and wrapped texts; an empty name continues the row above."""
     rows, width = list(rows), room() if width is None else width
     first = max((len(name) for name, _ in rows), default=0) + 2
     return [
@@ -87,7 +87,7 @@ def fields(rows: Iterable[tuple[str, str]], width: int | None = None) -> list[st
 def columns(
     rows: Sequence[Sequence[str]], width: int | None = None, wrap: int = -1, right: Sequence[int] = ()
 ) -> list[str]:
-    """Return a table as lines, columns aligned and two blanks apart.
+    """Return a table as lines of text; columns are aligned and two blanks apart.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def columns(
 
 
 def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequence[int]) -> list[int]:
-    """Return the widths of columns: the width of their widest text, and less for wrapped columns."""
+    """Return the widths of the columns of a table: the width of the longest text, less for wrapped columns."""
     count = len(rows[0])
     widths = [max(len(row[i]) for row in rows) for i in range(count)]
     left = width - 2 * (count - 1) - sum(size for i, size in enumerate(widths) if i != wrap)
@@ -140,7 +140,10 @@ def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequenc
 
 
 def _parts(widths: Sequence[int], width: int, right: Sequence[int]) -> list[list[int]]:
-    """Return the columns of each part of a table; parts are printed below one another, each with the first column."""
+    """Return the columns of each part of a table that is too wide for one line.
+
+    Parts are printed below one another, each with the first column.
+    """
     parts = [[0]]
     for i in range(1, len(widths)):
         full = sum(widths[j] + 2 for j in parts[-1]) + widths[i] > width

@@ -22,7 +22,9 @@ ROWS_AT_ONCE = 4096
 
 
 def metadata(trajectory: "Trajectory", arrays: list[Labelled], tolerance: float) -> "FileRecord":
-    """Return the description of a file: scene, method, the content of each array, conventions."""
+    """Return the description that a file of a trajectory contains: scene, method, meaning of each array,
+    conventions.
+    """
     scene, stats = trajectory.scene, trajectory.stats
     return {
         "symrot": __version__,
@@ -83,7 +85,7 @@ def _csv(stream: BinaryIO, arrays: list[Labelled], about: "FileRecord") -> None:
 
 
 def _printed(item: Labelled, part: slice) -> list[list[str]]:
-    """Return the columns of a quantity as text that reads back to the same doubles."""
+    """Return rows of a quantity as columns of text; the text reads back to the same doubles."""
     values = item.values[part].reshape(-1, len(item.components)).T
     return [[str(int(x)) if item.name == LOCK else repr(x) for x in column] for column in values.tolist()]
 
@@ -93,7 +95,7 @@ FORMATS: dict[str, Callable[[BinaryIO, list[Labelled], "FileRecord"], None]] = {
 
 
 def save(trajectory: "Trajectory", path: Path, tolerance: float) -> list[str]:
-    """Write the quantities of a scene to a file and return their names.
+    """Write the output quantities of a trajectory to a file and return their names.
 
     NPZ: arrays by name and ``metadata``, a JSON text; loads with ``allow_pickle=False``. CSV: comment lines, a line of
     column names, numbers with every digit (``pandas.read_csv(file, comment="#")``).

@@ -1,4 +1,4 @@
-"""Write a matplotlib page into a file, PDF, SVG or PNG with a palette (a quarter of the size), without a date."""
+"""Matplotlib figures written to files: PDF, SVG, or PNG with a palette (a quarter of the size), without a date."""
 
 from io import BytesIO
 from pathlib import Path
@@ -13,7 +13,7 @@ PALETTE = 128  # colours: a few curves, their shades on white, greys
 
 
 def save_page(page: Any, path: Path, dpi: int) -> None:
-    """Write a matplotlib Figure; the suffix of ``path`` decides the format.
+    """Write a matplotlib Figure to a file; the suffix of ``path`` decides the format.
 
     Raises
     ------
@@ -29,7 +29,7 @@ def save_page(page: Any, path: Path, dpi: int) -> None:
 
 
 def _palette(page: Any, dpi: int, stream: BinaryIO) -> None:
-    """Write a PNG of few colours with Pillow, on which matplotlib depends."""
+    """Write a figure as a PNG with few colours, by Pillow, on which matplotlib depends."""
     from PIL import Image
     from PIL.PngImagePlugin import PngInfo
 

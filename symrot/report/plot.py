@@ -1,4 +1,4 @@
-"""One page that shows a motion: angular velocity, attitude, conserved quantities, and the paths on the sphere.
+"""Figure of one motion: angular velocity, attitude, conserved quantities, and paths on the sphere.
 
 It is drawn with matplotlib's objects and the Agg canvas: no window, no global figure. Equal motions give equal bytes.
 """
@@ -53,7 +53,7 @@ def _times(trajectory: Any) -> tuple[Floats, str]:
 
 
 def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -> None:
-    """Draw components over time; a steady component that would flatten the others goes to the legend instead."""
+    """Draw components over time; a nearly constant component, which would flatten the others, goes into the legend."""
     low, high = columns.min(axis=0), columns.max(axis=0)
     largest = np.maximum(np.abs(low), np.abs(high))
     steady = high - low <= QUIET * largest
@@ -70,7 +70,7 @@ def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -
 
 
 def _unwrapped(angles: Floats, turn: float) -> Floats:
-    """Return angles with a gap where they jump by 360 degrees, so that no line is drawn there."""
+    """Return angles with a gap (not-a-number) at each jump by a whole turn, so that no line is drawn there."""
     gaps = np.zeros_like(angles, dtype=bool)
     gaps[1:] = np.abs(np.diff(angles)) > 0.5 * turn
     return np.where(gaps, np.nan, angles)
@@ -131,7 +131,10 @@ def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
 
 
 def _body_sphere(axes: Any, trajectory: Any) -> None:
-    """Draw the angular momentum of a free body among its possible curves, or the axis of rotation of another body."""
+    """Draw the path of the angular momentum of a free body among its possible paths.
+
+    For another body, draw the path of its axis of rotation.
+    """
     torques = trajectory.scene.torques
     if any(kind != "rotor" for kind in trajectory.scene.torque_kinds):
         draw_directions(axes, trajectory.omega, ("1", "2", "3"))
@@ -163,7 +166,7 @@ def _space_sphere(axes: Any, trajectory: Any) -> None:
 
 
 def figure(trajectory: Any, tolerance: float) -> Any:
-    """Return a matplotlib Figure of a motion."""
+    """Return a matplotlib Figure of a motion: four panels on one page."""
     from matplotlib.figure import Figure
 
     page = Figure(figsize=(12.0, 8.0))
@@ -186,7 +189,7 @@ def figure(trajectory: Any, tolerance: float) -> Any:
 
 
 def _literal(text: str) -> str:
-    """Return text with dollars escaped, since matplotlib would begin a formula at a dollar."""
+    """Return text with dollar signs escaped, since matplotlib begins a formula at a dollar sign."""
     return one_line(text).replace("\\", "/").replace("$", r"\$")
 
 
@@ -202,7 +205,7 @@ def _words(page: Any, trajectory: Any, tolerance: float) -> None:
 
 
 def save(propagator: Any, trajectory: Any, path: Path) -> None:
-    """Draw a motion into a file; a scene with too few or too many samples is propagated again for it.
+    """Draw a motion into a file; a scene with too few or too many samples is propagated again for the plot.
 
     Parameters
     ----------

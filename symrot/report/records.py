@@ -1,4 +1,4 @@
-"""The records that commands print with ``--json`` and write into files: their keys and types.
+"""Types of the JSON records that commands print with ``--json`` and write into files.
 
 Only type checkers read this module, so that no command waits for it.
 """
@@ -15,7 +15,7 @@ __all__ = [
 
 
 class SceneRecord(TypedDict):
-    """A scene by name, with the path of its file if it has one."""
+    """The scene of a run: its name, and the path of its file if it has one."""
 
     name: str
     title: str
@@ -38,14 +38,14 @@ BodyRecord = TypedDict(
 
 
 class InitialRecord(TypedDict):
-    """An initial state: omega, rad/s, as exact text, and the quaternion."""
+    """The initial state of a run: omega, rad/s, as exact text, and the quaternion."""
 
     omega: list[str]
     quaternion: list[float]
 
 
 class SpanRecord(TypedDict):
-    """A span of time, s, as exact text, and the number of samples in it."""
+    """The span of time of a run, s, as exact text, and its number of samples."""
 
     start: str
     stop: str
@@ -53,7 +53,7 @@ class SpanRecord(TypedDict):
 
 
 class MethodRecord(TypedDict):
-    """A method, the reason for it, and the error to aim for."""
+    """The method of a run, the reason for it, and the tolerance."""
 
     name: str
     reason: str
@@ -61,7 +61,7 @@ class MethodRecord(TypedDict):
 
 
 class RuleRecord(TypedDict):
-    """The decision of one rule of a plan."""
+    """The decision of one rule of a plan, as in :class:`symrot.planning.plan.RuleOutcome`."""
 
     item: str
     skipped: bool
@@ -70,7 +70,7 @@ class RuleRecord(TypedDict):
 
 
 class CostRecord(TypedDict):
-    """The cost of a motion."""
+    """The cost of a motion: steps, evaluations and seconds."""
 
     steps: int
     rejected: int
@@ -99,7 +99,7 @@ class InvariantRecord(TypedDict):
 
 
 class LostRecord(TypedDict):
-    """A quantity that is not conserved, and the reason."""
+    """A candidate for a conserved quantity that is not conserved, and the reason."""
 
     name: str
     unit: str
@@ -107,7 +107,7 @@ class LostRecord(TypedDict):
 
 
 class FinalRecord(TypedDict):
-    """The last sample: t, s, omega, rad/s, and the quaternion if it was computed."""
+    """The last sample of a motion: t, s, omega, rad/s, and the quaternion if it was computed."""
 
     t: float
     omega: list[float]
@@ -115,7 +115,7 @@ class FinalRecord(TypedDict):
 
 
 class WrittenRecord(TypedDict):
-    """A file that was written; one with samples has their number and the names of the arrays."""
+    """A file that a run wrote; for a file with samples, also their number and the names of the arrays."""
 
     file: str
     samples: NotRequired[int]
@@ -123,7 +123,7 @@ class WrittenRecord(TypedDict):
 
 
 class RunReport(TypedDict):
-    """The report of a run."""
+    """The complete report of `symrot run`."""
 
     symrot: str
     scene: SceneRecord
@@ -148,7 +148,10 @@ class RunReport(TypedDict):
 
 
 class PlanRow(TypedDict):
-    """A row of an explained plan; ``operations`` counts by kind after the row, ``saved`` is the change."""
+    """A row of an explained plan.
+
+    ``operations`` counts the operations by kind after the row, ``saved`` is the change.
+    """
 
     item: str
     skipped: bool
@@ -159,14 +162,14 @@ class PlanRow(TypedDict):
 
 
 class OperationsRecord(TypedDict):
-    """Operations of one evaluation of the rates of the general structure and of the plan's."""
+    """Operations of one evaluation of the rates, for the general structure and for the structure of the plan."""
 
     general: int
     specialised: int
 
 
 class NamedScene(TypedDict):
-    """A scene by name."""
+    """The scene of a plan, by name."""
 
     name: str
     title: str
@@ -174,7 +177,7 @@ class NamedScene(TypedDict):
 
 
 class PlanReport(TypedDict):
-    """The report of a plan."""
+    """The complete report of `symrot explain`."""
 
     scene: NamedScene
     rows: list[PlanRow]
@@ -185,7 +188,7 @@ class PlanReport(TypedDict):
 
 
 class ArrayRecord(TypedDict):
-    """An array of a file: its components, unit, frame and meaning."""
+    """The description of one array in a file of samples: components, unit, frame and meaning."""
 
     components: list[str]
     unit: str
@@ -194,7 +197,7 @@ class ArrayRecord(TypedDict):
 
 
 class DriftRecord(TypedDict):
-    """The drift of a conserved quantity."""
+    """The drift of one conserved quantity, in a file of samples."""
 
     name: str
     unit: str
@@ -203,7 +206,7 @@ class DriftRecord(TypedDict):
 
 
 class FileRecord(TypedDict):
-    """The description that a file of samples begins with."""
+    """The description at the beginning of a file of samples."""
 
     symrot: str
     scene: str

@@ -1,4 +1,4 @@
-"""A figure of the savings by specialisation: each motion of the ladder, from the general kernel to its own kernel."""
+"""Figure of the operations and time that specialised kernels save, from the general kernel down to the special one."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,11 +17,11 @@ PANELS = (
     ("motion", 1e-6, "µs of the motion from Python"),
 )
 GENERAL, OWN, AUTO = COLOURS[1], COLOURS[0], COLOURS[6]
-LEAST = 0.6  # where no operation at all is drawn
+LEAST = 0.6  # place on the axis of a motion without any operation
 
 
 def figure(ladder: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of the result of :func:`symrot.bench.skip.measure`."""
+    """Return a matplotlib Figure of the savings that :func:`symrot.bench.skip.measure` measured."""
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
@@ -65,7 +65,7 @@ def figure(ladder: Mapping[str, Any]) -> Any:
 
 
 def save(ladder: Mapping[str, Any], path: Path) -> None:
-    """Draw the ladder into a file, whose suffix decides the format."""
+    """Draw the savings by specialised kernels into a file; the suffix decides the format."""
     import matplotlib
 
     with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):

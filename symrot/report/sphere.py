@@ -1,4 +1,4 @@
-"""Paths of a direction, drawn on a sphere seen from afar, or on its tangent plane where the path is small."""
+"""Paths of a direction, drawn on a sphere seen from far away, or on its tangent plane if the path is small."""
 
 from collections.abc import Callable
 from typing import Any
@@ -11,7 +11,7 @@ __all__ = ["FAINT", "draw_directions", "prefixed"]
 Floats = NDArray[np.float64]
 
 GRID, FAINT, DARK = "#d0d0d0", "#b4b4b4", "#303030"
-ELEVATION, ASIDE = np.radians(24.0), np.radians(28.0)  # where the eye is: above the equator, beside the path's middle
+ELEVATION, ASIDE = np.radians(24.0), np.radians(28.0)  # place of the eye: above the equator, beside the path's middle
 SMALL, STILL = 0.2, 1e-12  # rad: paths smaller than this are drawn on a plane; than that, as a point
 PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "\N{GREEK SMALL LETTER MU}"), (1e-9, "n"), (1e-12, "p"))
 ROOM = 1.26  # half the width of a drawing, in radii
@@ -22,13 +22,13 @@ MOST_VECTORS = 6000  # segments drawn as vectors in a PDF or SVG; beyond, as an 
 
 
 def prefixed(size: float, unit: str) -> tuple[float, str]:
-    """Return a divisor that makes numbers of a size easy to read, and their unit after the division."""
+    """Return a divisor that makes numbers of a given size easy to read, and the unit after the division (mm for m)."""
     factor, prefix = next((pair for pair in PREFIXES if size >= 0.1 * pair[0]), PREFIXES[-1])
     return (factor, f"{prefix}{unit}") if size > 0 else (1.0, unit)
 
 
 def _unit(vectors: Floats) -> Floats:
-    """Return the directions of the vectors, shape (n, 3), without those of vectors close to zero."""
+    """Return the directions of vectors, shape (n, 3), without those of vectors close to zero."""
     length = np.sqrt(np.sum(vectors * vectors, axis=1))
     has_direction = length > 1e-9 * np.max(length, initial=0.0)
     directions: Floats = vectors[has_direction] / length[has_direction, None]
@@ -36,7 +36,7 @@ def _unit(vectors: Floats) -> Floats:
 
 
 def _eye(directions: Floats) -> Floats:
-    """Return the rows right, up, toward the eye of a view in which the path is in front, shape (3, 3)."""
+    """Return the view of the sphere in which the path is in front: rows right, up, toward the eye, shape (3, 3)."""
     middle = directions.mean(axis=0)
     level = np.hypot(middle[0], middle[1])
     azimuth = ASIDE + (np.arctan2(middle[1], middle[0]) if level > 0.05 else 0.0)
@@ -48,7 +48,7 @@ def _eye(directions: Floats) -> Floats:
 
 
 def _curve(axes: Any, points: Floats, view: Floats, **style: Any) -> None:
-    """Draw a thin curve on the sphere, faint where it is behind."""
+    """Draw a thin curve on the sphere, faint where it is behind the sphere."""
     x, y, z = view @ points.T
     for visible, opacity in ((z >= 0, 1.0), (z < 0, BACK)):
         mask = np.where(visible, 1.0, np.nan)
@@ -56,7 +56,7 @@ def _curve(axes: Any, points: Floats, view: Floats, **style: Any) -> None:
 
 
 def _globe(axes: Any, view: Floats, labels: tuple[str, ...]) -> None:
-    """Draw outline, parallels, meridians and the three axes."""
+    """Draw the sphere: its outline, parallels, meridians and the three axes."""
     turn = np.linspace(0.0, 2 * np.pi, 361)
     axes.fill(np.cos(turn), np.sin(turn), facecolor="#fafafa", edgecolor=FAINT, linewidth=0.8, zorder=0)
     for latitude in np.radians([-60.0, -30.0, 0.0, 30.0, 60.0]):
@@ -74,7 +74,7 @@ def _globe(axes: Any, view: Floats, labels: tuple[str, ...]) -> None:
 
 
 def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats]) -> None:
-    """Draw level curves of a function of direction on the near side of the sphere."""
+    """Draw the level curves of a function of direction on the near side of the sphere."""
     line = np.linspace(-1.0, 1.0, FINEST)
     x, y = np.meshgrid(line, line)
     depth = 1.0 - x * x - y * y
@@ -106,7 +106,7 @@ def _path(axes: Any, points: Floats, front: NDArray[np.bool_] | None = None) -> 
 
 
 def _plane(axes: Any, directions: Floats, middle: Floats, extent: float, labels: tuple[str, ...]) -> None:
-    """Draw a small path on the plane that touches the sphere at its middle."""
+    """Draw a small path on the plane that touches the sphere at the middle of the path."""
     first, second = sorted(np.argsort(np.abs(middle))[:2])
     across = np.eye(3)[first] - middle[first] * middle
     across /= np.linalg.norm(across)
@@ -125,7 +125,7 @@ def _plane(axes: Any, directions: Floats, middle: Floats, extent: float, labels:
 def draw_directions(
     axes: Any, vectors: Floats, labels: tuple[str, ...], value: Callable[[Floats], Floats] | None = None
 ) -> bool:
-    """Draw the path of the direction of vectors, shape (n, 3); return whether on a sphere.
+    """Draw the path of the direction of vectors, shape (n, 3); return whether it is drawn on a sphere.
 
     Parameters
     ----------

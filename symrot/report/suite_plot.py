@@ -1,4 +1,4 @@
-"""Two figures of a suite: the ratio of the times of each peer by motion and decade of the error, and all curves."""
+"""Two figures of a benchmark suite: times of other programs over those of symrot, and all work-precision curves."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,7 +17,9 @@ PEERS = ("heyoka", "heyoka, best setting", "SciPy LSODA", "SciPy DOP853", "SciPy
 
 
 def figure(suite: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of a suite: a row for each motion, a dot for each decade, a bar at the median."""
+    """Return a matplotlib Figure of a suite's ratios: a row for each motion, a dot for each decade, a bar at the
+    median.
+    """
     from matplotlib.figure import Figure
 
     studies = list(suite["studies"].values())
@@ -65,7 +67,7 @@ def figure(suite: Mapping[str, Any]) -> Any:
 
 
 def curves(suite: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of a suite: time against error, a panel for each motion, axes shared."""
+    """Return a matplotlib Figure of a suite's curves of time against error, one panel for each motion."""
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
@@ -104,7 +106,7 @@ def curves(suite: Mapping[str, Any]) -> Any:
 
 
 def save(suite: Mapping[str, Any], directory: Path) -> None:
-    """Draw a suite into a folder: ``suite.png`` and ``motions.png``."""
+    """Draw the two figures of a suite into a folder: ``suite.png`` and ``motions.png``."""
     import matplotlib
 
     with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):

@@ -95,7 +95,7 @@ def _numbers(values: list[Any], digits: int = 6) -> str:
 
 
 def _value(text: str) -> float:
-    """Return the number of an exact text, ``"51/80"`` or ``"5"`` or ``"1e-9"``."""
+    """Return the number that an exact text means, such as ``"51/80"``, ``"5"`` or ``"1e-9"``."""
     numerator, _, denominator = text.partition("/")
     return float(numerator) / float(denominator or 1)
 
@@ -146,11 +146,14 @@ def _settings(report: "RunReport") -> list[tuple[str, str]]:
 
 
 def _switches(times: list[float], switchings: "list[SwitchingRecord]", start: str, stop: str) -> list[tuple[str, str]]:
-    """Return a row for each switching function: the times at which it is crossed, holds the motion or releases it."""
+    """Return a row of text for each function that switched, with the times at which it did.
+
+    The motion crosses a switch, is held by it, or is released from it.
+    """
     by_function: dict[str, list[tuple[float, str]]] = {}
     for item in switchings:
         by_function.setdefault(f"{one_line(item['function'])} ", []).append((item["t"], HOW[item["how"]]))
-    if times and not by_function:  # of a table of samples
+    if times and not by_function:  # switching times of a table of samples
         by_function[""] = [(t, "") for t in times]
     listed = dict(list(by_function.items())[:SWITCHES_SHOWN])
     seen = [t for own in listed.values() for t, _ in own[:SWITCHES_SHOWN]]
@@ -184,7 +187,7 @@ def _conserved(report: "RunReport") -> list[str]:
 
 
 def _lost(candidates: "list[LostRecord]") -> list[tuple[str, str]]:
-    """Return the quantities that are not conserved, one line for each reason."""
+    """Return rows of text about the quantities that are not conserved, one row for each reason."""
     names: dict[str, list[str]] = {}
     for item in candidates:
         names.setdefault(item["reason"], []).append(item["name"])
@@ -215,7 +218,7 @@ def _holding(item: "WrittenRecord") -> str:
 
 
 def summary(report: "RunReport") -> list[str]:
-    """Return the data of :func:`facts` as lines of text; the first is the title."""
+    """Return the report of a run, the data of :func:`facts`, as lines of text; the first line is the title."""
     scene = report["scene"]
     source = [f"  {line}" for line in fields([("", one_line(scene["source"]))])] if scene["source"] else []
     settings = [f"  {line}" for line in fields(_settings(report) + _skipped(report))]

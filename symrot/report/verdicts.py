@@ -1,4 +1,4 @@
-"""Verdicts as text: a single claim in full, a file of claims as a list with failed claims in full and a count."""
+"""Verdicts on claims as text: one claim in full, or a file of claims as a list with a count."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -11,6 +11,9 @@ from symrot.report.layout import duration, one_line, room
 
 __all__ = ["check", "lines"]
 
+VERDICTS = ("true", "false", "conditional", "undecided", "recognised", "doubtful", "definition", "refused")
+"""The verdicts in the order in which they are counted."""
+
 
 def check(
     source: str,
@@ -19,7 +22,9 @@ def check(
     repair: bool,
     progress: Callable[[str], None] = lambda text: None,
 ) -> list[Verdict]:
-    """Return the verdicts on a claim as text or LaTeX, or on the claims of a file, where bad claims are ``"refused"``.
+    """Return the verdicts on a claim (text or LaTeX), or on all claims of a file.
+
+    A claim of a file that cannot be read gets the verdict ``"refused"``.
 
     Raises
     ------
@@ -41,7 +46,7 @@ def check(
 
 
 def _units(words: Sequence[str]) -> dict[str, str]:
-    """Return the units of words like ``F=kg m/s^2``."""
+    """Return the units of quantities, by name, from words like ``F=kg m/s^2``."""
     pairs = [word.partition("=") for word in words]
     for word, (name, sign, unit) in zip(words, pairs, strict=True):
         if not (name.strip() and sign and unit.strip()):
@@ -50,12 +55,15 @@ def _units(words: Sequence[str]) -> dict[str, str]:
 
 
 def _is_file(source: str) -> bool:
-    """Return whether an argument names a file: a text without ``=`` is no claim."""
+    """Return whether an argument is the name of a file; a text without ``=`` cannot be a claim."""
     return "=" not in source or (source.endswith(".toml") and "==" not in source and Path(source).is_file())
 
 
 def lines(verdicts: Sequence[Verdict], source: str) -> list[str]:
-    """Return verdicts as lines: a single claim in full; of a file the claims that are not true in full, and a count."""
+    """Return verdicts as lines of text: a single claim in full.
+
+    Of a file, the claims that are not true are shown in full, with a count of all claims.
+    """
     if len(verdicts) == 1 and not _is_file(source):
         return _full(verdicts[0], verdicts[0].verdict)
     text: list[str] = []
@@ -64,9 +72,7 @@ def lines(verdicts: Sequence[Verdict], source: str) -> list[str]:
         name = f"{verdict.verdict:<11} {one_line(verdict.id)}{place}"
         text += [name] if verdict else _full(verdict, name)
     counts = Counter(verdict.verdict for verdict in verdicts)
-    total = ", ".join(
-        f"{counts[name]} {name}" for name in ("true", "false", "conditional", "undecided", "refused") if counts[name]
-    )
+    total = ", ".join(f"{counts[name]} {name}" for name in VERDICTS if counts[name])
     seconds = duration(sum(verdict.seconds for verdict in verdicts))
     return [*text, "", f"{len(verdicts)} claim{'s' if len(verdicts) != 1 else ''}: {total}, in {seconds}"]
 

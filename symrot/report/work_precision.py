@@ -1,4 +1,4 @@
-"""A work-precision study as lines of text, and the comparison of two studies."""
+"""Work-precision studies (time against error, for several methods) as lines of text, and comparison of two studies."""
 
 import json
 import math
@@ -14,7 +14,7 @@ from symrot.report.layout import apart, columns, duration, fields, one_line, roo
 __all__ = ["compared", "lines", "lines_of_comparison", "read_study"]
 
 FORMAT = "symrot work-precision 1"
-ROUNDING = 1e-16  # of what is compared: no two results are nearer for certain
+ROUNDING = 1e-16  # relative rounding error of the compared results
 LARGEST_FILE = 50_000_000
 
 
@@ -25,7 +25,9 @@ def _number(value: float) -> str:
 
 
 def _decades(study: Mapping[str, Any]) -> list[str]:
-    """Return a table with a column for each decade: first the least time, then each method's time over the least."""
+    """Return a table with a column for each decade of the error: the least time, then the ratio of each method to
+    it.
+    """
     table = study["decades"]
     names = list(dict.fromkeys(name for row in table for name in row["methods"]))
     rows = [["error <=", *(f"{row['error']:.0e}" for row in table)]]
@@ -73,7 +75,9 @@ def _against(study: Mapping[str, Any]) -> list[str]:
 
 
 def lines(study: Mapping[str, Any]) -> list[str]:
-    """Return a study (:func:`symrot.bench.comparison.work_precision.study`) as lines of text, the title first."""
+    """Return a study of :func:`symrot.bench.comparison.work_precision.study` as lines of text; the first is the
+    title.
+    """
     scene, reference, machine = study["scene"], study["reference"], study["machine"]
     others = [f"{other['name']} within {max(other['difference'], ROUNDING):.0e}" for other in reference["others"]]
     versions = [f"{name} {machine[name]}" for name in ("python", "numpy", "scipy", "heyoka") if machine[name]]
@@ -103,7 +107,7 @@ def lines(study: Mapping[str, Any]) -> list[str]:
 
 
 def read_study(path: Path) -> dict[str, Any]:
-    """Return a study from the file that ``symrot bench SCENE --out`` wrote.
+    """Return a work-precision study from a file that ``symrot bench SCENE --out`` wrote.
 
     Raises
     ------
@@ -117,9 +121,9 @@ def read_study(path: Path) -> dict[str, Any]:
         expectation = f"a study of `symrot bench`, of at most {LARGEST_FILE // 1_000_000} MB"
         raise InputError(f"{label}: expected {expectation}, got {reason.strerror or reason}") from None
     except (ValueError, RecursionError):
-        raise InputError(f"{label}: expected a study of `symrot bench` as JSON, got other text") from None
+        raise InputError(f"{label}: expected a study of `symrot bench` as JSON, got text that is not JSON") from None
     if not isinstance(study, dict) or study.get("format") != FORMAT:
-        raise InputError(f"{label}: expected a study of `symrot bench`, whose format is {FORMAT!r}")
+        raise InputError(f"{label}: expected a study of `symrot bench` of the format {FORMAT!r}, got another")
     try:
         whole = _positive(study) and bool(lines(study))
     except (KeyError, TypeError, AttributeError, ValueError, IndexError, OverflowError):
@@ -130,7 +134,7 @@ def read_study(path: Path) -> dict[str, Any]:
 
 
 def _positive(study: Mapping[str, Any]) -> bool:
-    """Return whether every time of a study is positive, and no error negative."""
+    """Return whether all times of a study are positive and all errors are zero or positive."""
     times = [cell["seconds"] for row in study["decades"] for cell in (row, *row["methods"].values())]
     errors = [run["error"] for run in study["runs"]] + [row["error"] for row in study["decades"]]
     times += [run["seconds"] for run in study["runs"]]
@@ -138,7 +142,7 @@ def _positive(study: Mapping[str, Any]) -> bool:
 
 
 def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the comparison of a second study with a first: ratios of seconds by decade, and the least errors.
+    """Return the comparison of a second study with a first one: ratios of times by decade, and the least errors.
 
     Raises
     ------
@@ -183,7 +187,7 @@ def _least_errors(study: Mapping[str, Any]) -> dict[str, float]:
 
 
 def lines_of_comparison(comparison: Mapping[str, Any]) -> list[str]:
-    """Return the result of :func:`compared` as lines of text."""
+    """Return the comparison of two studies, the result of :func:`compared`, as lines of text."""
     errors = sorted(
         {error for item in comparison["ratios"].values() for error in item["decades"]}, key=float, reverse=True
     )

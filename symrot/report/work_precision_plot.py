@@ -1,4 +1,4 @@
-"""A work-precision study as a figure: seconds against the error reached, one curve for each method, named at its end.
+"""Figure of a work-precision study: time against error, one curve for each method, labelled at its end.
 
 Both axes are logarithmic; the error grows to the left, so that better is right and faster is down. A curve joins the
 runs that no other run of the same method beats in both; the others are faint points.
@@ -17,14 +17,14 @@ from symrot.report.plot import GREY, STYLE
 
 __all__ = ["LOOKS", "METHOD_LABELS", "OTHER", "OUTERMOST", "figure", "frontier", "save"]
 
-LEAST_ERROR = 1e-17  # what is drawn of an error of zero
-APART = 0.042  # of the height of the panel, between two names
+LEAST_ERROR = 1e-17  # an error of zero is drawn as this error
+APART = 0.042  # part of the panel's height between two names
 DPI = 150
 OUTERMOST = 1.5  # error from which on nothing is shown
 
 
 class Look(NamedTuple):
-    """How the curve of a method is drawn."""
+    """Appearance of a method's curve: colour, marker and dash."""
 
     colour: str
     marker: str
@@ -64,21 +64,23 @@ def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float
     best: list[tuple[float, float]] = []
     rest: list[tuple[float, float]] = []
     least = float("inf")
-    for point in points:  # from the least error on: each must be faster than all before it
+    for point in points:  # by rising error: each point must be faster than all before it
         (best if point[1] < least else rest).append(point)
         least = min(least, point[1])
     return best, rest
 
 
 def _names(axes: Any, ends: list[tuple[float, str, str]]) -> None:
-    """Write names at the right edge, each as close to the height of its curve's end as the other names allow."""
+    """Write the names of methods at the right edge, each as near as possible to the end of its curve, without
+    overlap.
+    """
     low, high = np.log10(axes.get_ylim())
     ends = sorted(ends)
     heights = [(np.log10(value) - low) / (high - low) for value, *_ in ends]
     placed: list[float] = []
     for height in heights:
         placed.append(max(height, placed[-1] + APART) if placed else height)
-    # push back down what has been pushed over the top, and settle in the middle of what was wished
+    # push names that are above the top down again, then centre groups on the ends of their curves
     for number in range(len(placed) - 1, -1, -1):
         ceiling = 1.0 if number == len(placed) - 1 else placed[number + 1] - APART
         placed[number] = min(placed[number], ceiling)
@@ -92,7 +94,7 @@ def _names(axes: Any, ends: list[tuple[float, str, str]]) -> None:
 
 
 def figure(study: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of a study."""
+    """Return a matplotlib Figure of a work-precision study."""
     from matplotlib.figure import Figure
 
     page = Figure(figsize=(8.0, 5.4))
@@ -145,7 +147,7 @@ def _leaders(axes: Any, study: Mapping[str, Any]) -> None:
 
 
 def _literal(text: str) -> str:
-    """Return text with dollars escaped, since matplotlib would begin a formula at a dollar."""
+    """Return text with dollar signs escaped, since matplotlib begins a formula at a dollar sign."""
     return one_line(text).replace("\\", "/").replace("$", r"\$")
 
 
@@ -162,7 +164,7 @@ def _words(page: Any, study: Mapping[str, Any]) -> None:
 
 
 def save(study: Mapping[str, Any], path: Path) -> None:
-    """Draw a study into a file.
+    """Draw a work-precision study into a file.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Scenes: problems as data, read, checked and stored as exact numbers."""
+"""Scenes: problems of rotation as data, read from files, checked, and stored as exact numbers."""

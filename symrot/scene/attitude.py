@@ -1,4 +1,4 @@
-"""An attitude of a scene: quaternion, Euler sequence, axis and angle, or direction cosine matrix, read exactly.
+"""Attitudes in scenes, read exactly: quaternion, Euler sequence, axis and angle, or direction cosine matrix.
 
 All numbers are Fractions, so that a right angle rotates a part of a body by exactly a right angle, and the quaternion
 of an initial attitude has unit norm to 2^-200 for any input. Conventions: :mod:`symrot.conventions`.
@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from symrot.conventions import parse_sequence
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import Angle, equal, read_angle, sqrt
+from symrot.kinematics.hamilton import hamilton
 from symrot.scene.reader import Entry, Reader, fail, flag, number, read_table, table, vector
 
 __all__ = ["ORTHOGONAL", "Attitude", "read_attitude", "read_sequence", "to_body", "to_space"]
@@ -26,22 +27,10 @@ Matrix = tuple[Vector, Vector, Vector]
 
 
 class Attitude(NamedTuple):
-    """An attitude in both forms: the unit quaternion, and ``dcm_sb``, which is exact if the angles are."""
+    """An attitude in two forms: the unit quaternion and the matrix ``dcm_sb``, which is exact if the angles are."""
 
     quaternion: Quaternion
     dcm: Matrix
-
-
-def _product(p: Quaternion, q: Quaternion) -> Quaternion:
-    """Return the Hamilton product p q."""
-    a, b, c, d = p
-    w, x, y, z = q
-    return (
-        a * w - b * x - c * y - d * z,
-        a * x + b * w + c * z - d * y,
-        a * y - b * z + c * w + d * x,
-        a * z + b * y - c * x + d * w,
-    )
 
 
 def _matrix_product(left: Matrix, right: Matrix) -> Matrix:
@@ -51,13 +40,13 @@ def _matrix_product(left: Matrix, right: Matrix) -> Matrix:
 
 
 def to_space(dcm: Matrix, vector_b: Vector) -> Vector:
-    """Return the space components of a vector."""
+    """Return the space components of a vector that is given in body components."""
     x, y, z = (sum(map(Fraction.__mul__, row, vector_b), Fraction(0)) for row in dcm)
     return x, y, z
 
 
 def to_body(dcm: Matrix, vector_s: Vector) -> Vector:
-    """Return the body components of a vector."""
+    """Return the body components of a vector that is given in space components."""
     return to_space(tuple(zip(*dcm, strict=True)), vector_s)  # type: ignore[arg-type]
 
 
@@ -71,7 +60,7 @@ def _unit(q: Quaternion) -> Quaternion:
 
 
 def _dcm(q: Quaternion) -> Matrix:
-    """Return ``dcm_sb`` of a quaternion of any length, rational when it is."""
+    """Return the matrix ``dcm_sb`` of a quaternion of any length; it is rational if the quaternion is."""
     w, x, y, z = q
     s = 2 / sum(map(Fraction.__mul__, q, q), Fraction(0))
     return (
@@ -82,7 +71,7 @@ def _dcm(q: Quaternion) -> Matrix:
 
 
 def _about(axis: Vector, angle: Angle) -> Attitude:
-    """Return the rotation about an axis of any length (Rodrigues)."""
+    """Return the rotation by an angle about an axis of any length (Rodrigues' formula)."""
     x, y, z = axis
     square = x * x + y * y + z * z
     length = sqrt(square)
@@ -106,13 +95,13 @@ def _of_sequence(name: str, angles: tuple[Angle, ...]) -> Attitude:
     turns = [_about(_axis(index), angle) for index, angle in zip(axes, angles, strict=True)]
     first, second, third = turns if intrinsic else reversed(turns)
     return Attitude(
-        _unit(_product(_product(first.quaternion, second.quaternion), third.quaternion)),
+        _unit(hamilton(hamilton(first.quaternion, second.quaternion), third.quaternion)),
         _matrix_product(_matrix_product(first.dcm, second.dcm), third.dcm),
     )
 
 
 def _of_dcm(rows: Matrix, value: object, where: str) -> Attitude:
-    """Return the attitude of a typed matrix, through its quaternion (Shepperd: from the largest component)."""
+    """Return the attitude of a typed matrix, by way of the quaternion (Shepperd: from its largest component)."""
     product = _matrix_product(rows, tuple(zip(*rows, strict=True)))  # type: ignore[arg-type]
     worst = max(abs(product[i][j] - (i == j)) for i in range(3) for j in range(3))
     if worst > ORTHOGONAL:
@@ -151,7 +140,7 @@ def _four(value: Any, where: str) -> Quaternion:
 
 
 def _read_quaternion(value: Any, where: str) -> Attitude:
-    """Read a quaternion (q0, q1, q2, q3), scalar first, of any length but zero."""
+    """Return the attitude of a quaternion (q0, q1, q2, q3) in a scene, scalar first, of any length but zero."""
     q = _four(value, where)
     return Attitude(_unit(q), _dcm(q))
 
@@ -165,7 +154,7 @@ def _rows(value: Any, where: str) -> Matrix:
 
 
 def read_sequence(value: Any, where: str) -> str:
-    """Read the name of an Euler sequence."""
+    """Return the name of an Euler sequence in a scene; raise InputError if it is no such name."""
     try:
         parse_sequence(value)
     except InputError:
@@ -229,7 +218,7 @@ _FORMS: dict[str, Callable[[Mapping[str, Any], str], Attitude]] = {
 
 
 def read_attitude(value: Any, where: str) -> Attitude:
-    """Read an attitude in any of its forms; exactly one of them."""
+    """Return the attitude that a table of a scene describes; exactly one form is allowed."""
     entries = table(value, where, f"an attitude: {FORMS}")
     form = next((reader for key, reader in _FORMS.items() if key in entries), None)
     if form is None:

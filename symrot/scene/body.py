@@ -1,4 +1,4 @@
-"""The body of a scene: exactly one source of its inertia, the point about which it rotates, and its admissibility.
+"""Bodies of scenes: exactly one source of the inertia, the point of rotation, and a check that such a body exists.
 
 The sources are ``shape`` with dimensions and mass or density; ``[[body.part]]``, a composite; ``principal`` moments;
 and ``inertia``, the tensor. The result is exact (Fractions) and in the axes in which the body was given.
@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from symrot.formula import tree as expression
+from symrot.formula.exact_numbers import NEGLIGIBLE
 from symrot.inertia.composite import MassProperties, Part, mass_properties
 from symrot.inertia.principal import Principal, principal_axes, require_admissible, why_not_propagable
 from symrot.inertia.shapes import SHAPES, Shape, check_dimensions
@@ -33,7 +34,6 @@ _UNTURNED: Matrix = (
     (Fraction(0), Fraction(1), Fraction(0)),
     (Fraction(0), Fraction(0), Fraction(1)),
 )
-_NEGLIGIBLE = Fraction(1, 2**200)  # as symrot.formula.exact_numbers.equal
 
 
 class Body(NamedTuple):
@@ -74,13 +74,13 @@ class Body(NamedTuple):
 
 
 def read_body(value: Any, where: str) -> Body:
-    """Read the ``[body]`` of a scene.
+    """Return the body that the table ``[body]`` of a scene describes.
 
     Raises
     ------
     InputError
         Naming file, key, value and expectation: none or several sources of the inertia, unknown shapes and keys,
-        dimensions out of range, an inertia that no body has, a body that cannot turn freely (a needle, a point).
+        dimensions out of range, an inertia that no body has, a body without three positive moments (a needle, a point).
     """
     entries = table(value, where, f"a table with {EXPECTED_SOURCE}")
     sources = [way for way in INERTIA_SOURCES if way in entries]
@@ -98,8 +98,8 @@ def _nearest_source(entries: Mapping[str, Any]) -> str:
 
 
 def _settled(inertia: Matrix) -> Matrix:
-    """Return a tensor without the rounding of irrational rotations: negligible products are zero."""
-    limit = max(abs(inertia[i][i]) for i in range(3)) * _NEGLIGIBLE
+    """Return an inertia tensor with negligible products of inertia, rounding errors of rotations, set to zero."""
+    limit = max(abs(inertia[i][i]) for i in range(3)) * NEGLIGIBLE
     first, second, third = (tuple(Fraction(0) if abs(x) <= limit else x for x in row) for row in inertia)
     return first, second, third  # type: ignore[return-value]
 
@@ -144,11 +144,11 @@ def _tensor(value: Any, where: str) -> Matrix:
 
 
 def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return a body from typed moments about its point of rotation."""
+    """Return a body from moments of inertia in a scene, which are about its point of rotation."""
     about, center = values["about"], values["center_of_mass"]
     if about == "center_of_mass":
         if center is not None and any(center):
-            fail(f"{where}.center_of_mass", 'about = "fixed_point", which it is measured from', center)
+            fail(f"{where}.center_of_mass", 'about = "fixed_point", from which center_of_mass is measured', center)
         center = _ZERO
     description = f"{values['name'] or 'body'} with {source}"
     return Body(values["mass"], inertia, center, about, description, principal_axes(inertia, where))
@@ -173,7 +173,7 @@ def _read_tensor(value: Mapping[str, Any], where: str) -> Body:
 def _no_fixed_point(value: Mapping[str, Any], where: str) -> None:
     if "fixed_point" in value:
         fail(f"{where}.fixed_point", 'a body given by shapes; typed moments are about the fixed point itself '
-                 'already, say only about = "fixed_point"', value["fixed_point"])  # fmt: skip
+                 'already, write only about = "fixed_point"', value["fixed_point"])  # fmt: skip
 
 
 # --- shapes -----------------------------------------------------------------------------------------------------------
@@ -192,7 +192,7 @@ def _any_value(value: Any, where: str) -> Any:
 
 
 def _amount(shape: Shape) -> dict[str, Entry]:
-    """Return the entries of mass and density; separate points carry their masses among their dimensions."""
+    """Return the readers of mass and density for a shape; separate points have their masses among the dimensions."""
     if shape.kind == "points":
         return {}
     return {
@@ -202,7 +202,7 @@ def _amount(shape: Shape) -> dict[str, Entry]:
 
 
 def _density(unit: str) -> Reader:
-    """Return a reader of a positive number, or of a polynomial in x, y, z, which stays text."""
+    """Return a reader of a density: a positive number, or a polynomial in x, y, z, which stays text."""
     uniform = number(f"a density in {unit}", "positive")
 
     def reader(value: Any, where: str) -> Any:
@@ -217,7 +217,7 @@ def _density(unit: str) -> Reader:
 
 
 def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str, Entry]) -> tuple[Part, dict[str, Any]]:
-    """Return the part that a table with ``shape`` describes, and the table's other values."""
+    """Return the solid that a table with the key ``shape`` describes, and the table's other values."""
     if "shape" not in value:
         fail(f"{where}.shape", f"one of the shapes {', '.join(SHAPES)}, the key is missing")
     shape = _shape_name(value["shape"], f"{where}.shape")
@@ -260,7 +260,7 @@ def _bounded(value: Any, where: str) -> None:
 
 
 def _placed(properties: MassProperties, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return a composed body about its centre of mass, or about a fixed point given in its axes."""
+    """Return a composed body about its centre of mass, or about a fixed point that is given in the axes of the body."""
     about, point = values["about"], values["fixed_point"]
     if about == "center_of_mass" and point is not None:
         fail(f"{where}.fixed_point", 'about = "fixed_point" beside it, for the body to turn about it', point)
@@ -271,7 +271,7 @@ def _placed(properties: MassProperties, values: Mapping[str, Any], where: str, s
     if about == "fixed_point":
         x, y, z = (c - p for c, p in zip(properties.center_of_mass, point, strict=True))
         size = max(map(abs, (*properties.center_of_mass, *point)))
-        x, y, z = (Fraction(0) if abs(item) <= size * _NEGLIGIBLE else item for item in (x, y, z))
+        x, y, z = (Fraction(0) if abs(item) <= size * NEGLIGIBLE else item for item in (x, y, z))
         center = (x, y, z)
         inertia = about_point(inertia, properties.mass, center)
     inertia = _settled(inertia)

@@ -1,4 +1,4 @@
-"""Scene files: the file of a name or path, checked to be text and TOML, as a table."""
+"""Scene files: find a file by name or path, check that it contains TOML text, and return its table."""
 
 import re
 from decimal import Decimal
@@ -28,9 +28,10 @@ def shipped_names() -> list[str]:
 
 
 def names_with_kernels() -> list[str]:
-    """Return the names of the scenes with a single set of equations, which can be emitted and certified.
+    """Return the names of the shipped scenes that have a single set of equations.
 
-    A scene with a table of samples has no such equations; functions with jumps or kinks have one set in each mode.
+    Such scenes can be emitted and certified. A scene with a table of samples has no equations; functions with jumps or
+    kinks have one set of equations in each mode.
     """
     return [name for name in shipped_names() if all(map(_has_kernel, _torques(name)))]
 
@@ -46,7 +47,7 @@ def _has_kernel(torque: dict[str, Any]) -> bool:
 
 
 def find_scene(source: str | Path) -> Path:
-    """Return the file of a shipped scene, by name, or of a path.
+    """Return the path of a scene file, from the name of a shipped scene or from a path.
 
     Text without a suffix and without a folder is a shipped name first, and a file in the current folder second.
 
@@ -71,11 +72,11 @@ def find_scene(source: str | Path) -> Path:
         raise InputError(f"{str(source)[:80]}: expected a scene file, got {reason.strerror}") from None
     label = str(source) if str(source).isprintable() else repr(str(source))
     hints = " ".join(filter(None, (nearest(path.stem, names), f"the shipped scenes are {', '.join(names)}")))
-    raise InputError(f"{label}: expected a scene or a scene file, there is none ({hints})")
+    raise InputError(f"{label}: expected a scene or a scene file, but there is none of this name ({hints})")
 
 
 def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
-    """Return the table of a TOML file, of a scene or of other content; numbers with a point are Decimal, as written.
+    """Return the table of a TOML file; numbers with a decimal point are Decimals, exactly as written.
 
     Parameters
     ----------
@@ -108,7 +109,10 @@ def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
 
 
 def _longest_key(text: str) -> int:
-    """Return the number of parts of the longest dotted key: tomllib needs time and memory quadratic in it."""
+    """Return the number of parts of the longest dotted key in TOML text.
+
+    tomllib needs time and memory quadratic in this number.
+    """
     longest = run = 0
     for part in text.split("."):
         run = run + 1 if _KEY.fullmatch(part.strip(" \t")) else 1

@@ -1,7 +1,7 @@
-"""Readers of the values and tables of a scene; every error names the place of its value.
+"""Readers of the values and tables of a scene; every error names the place of the value.
 
 A reader is a function ``(value, where) -> result`` that raises :class:`symrot.errors.InputError` with one sentence:
-file, key, expectation, value. ``where`` reads ``"tumbling.toml: body.mass"``. Standard library only.
+file, key, expectation, value. ``where`` is a place such as ``"tumbling.toml: body.mass"``. Standard library only.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -33,7 +33,7 @@ LARGEST = Fraction(10) ** 100
 
 
 class Entry(NamedTuple):
-    """One key of a table: its reader, whether it is required, and its default value."""
+    """One key of a table: its reader, whether the key is required, and its default value."""
 
     read: Reader
     required: bool = False
@@ -41,7 +41,7 @@ class Entry(NamedTuple):
 
 
 def key_path(where: str, key: str) -> str:
-    """Return the place of a key in the table at ``where``: mass in ``"f.toml: body"`` is ``"f.toml: body.mass"``."""
+    """Return the place of a key in a table, such as ``"f.toml: body.mass"`` for mass in ``"f.toml: body"``."""
     printable = str(key)[:80] if str(key).isprintable() else repr(key)[:80]
     return f"{where}{printable}" if where.endswith(": ") or not where else f"{where}.{printable}"
 
@@ -62,7 +62,7 @@ def nearest(word: object, known: Iterable[str]) -> str:
 
 
 def table(value: object, where: str, expectation: str = "a table") -> Mapping[str, Any]:
-    """Return a value that is a table."""
+    """Return the value if it is a table; raise InputError otherwise."""
     if not isinstance(value, Mapping):
         fail(where, expectation, value)
     return value
@@ -85,7 +85,10 @@ def read_table(value: object, where: str, entries: Mapping[str, Entry], what: st
 
 
 def number(expectation: str = "a number", sign: str = "any") -> Reader:
-    """Return a reader of one number; ``sign`` is any, positive or nonnegative; the expectation begins with "a "."""
+    """Return a reader of one number; ``sign`` is any, positive or nonnegative.
+
+    The text ``expectation`` begins with "a ".
+    """
     expected_number = {
         "any": expectation,
         "positive": f"a positive {expectation.removeprefix('a ')}",
@@ -104,7 +107,7 @@ def number(expectation: str = "a number", sign: str = "any") -> Reader:
 
 
 def vector(unit: str, sign: str = "any") -> Reader:
-    """Return a reader of three numbers; ``sign`` is any, nonzero (not all three) or nonnegative (each)."""
+    """Return a reader of three numbers; ``sign`` is any, nonzero (not all three zero) or nonnegative (each)."""
     expectation = f"three numbers [x, y, z] in {unit}" if unit != "1" else "three numbers [x, y, z]"
     component = number(f"a number in {unit}" if unit != "1" else "a number", "any" if sign == "nonzero" else sign)
 
@@ -120,21 +123,21 @@ def vector(unit: str, sign: str = "any") -> Reader:
 
 
 def text(value: Any, where: str) -> str:
-    """Read a line of text: at most 1000 characters, none of which could disturb a terminal."""
+    """Return the value if it is a line of text of at most 1000 characters, none of which could disturb a terminal."""
     if not isinstance(value, str) or len(value) > 1000 or not value.isprintable():
         fail(where, "a line of text of at most 1000 characters", value)
     return value
 
 
 def flag(value: Any, where: str) -> bool:
-    """Read true or false."""
+    """Return the value if it is true or false; raise InputError otherwise."""
     if not isinstance(value, bool):
         fail(where, "true or false", value)
     return value
 
 
 def choice(*options: str) -> Reader:
-    """Return a reader of one of several words."""
+    """Return a reader that accepts one of several words."""
 
     def reader(value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in options:

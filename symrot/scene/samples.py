@@ -55,7 +55,7 @@ class Table(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """The kind, as for torques given by formulas."""
+        """The kind of this torque, ``"table"``, in the same place as for other torques."""
         return TABLE_KIND.kind
 
 
@@ -103,7 +103,7 @@ def read_samples(
     span: tuple[Fraction, Fraction],
     table_folders: str | Path | Sequence[str | Path] = (),
 ) -> Table:
-    """Read a ``[[torque]]`` of kind table, which must cover the span of its scene.
+    """Return the samples of a ``[[torque]]`` of kind table; they must cover the span of the scene.
 
     Parameters
     ----------
@@ -153,7 +153,9 @@ def read_samples(
 
 
 def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, rows: int) -> None:
-    """Check that times increase, that only switching times occur twice, and that each piece has two samples or more."""
+    """Raise InputError unless times increase, only switching times occur twice, and each piece has two samples or
+    more.
+    """
     if len(times) < 2:
         fail(place, f"two samples or more, got {len(times)}")
     length = 1
@@ -172,7 +174,7 @@ def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, r
 
 
 def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ...], place: str) -> None:
-    """Check that the coefficients of a spline are finite doubles."""
+    """Raise InputError if a coefficient of the interpolating spline is too large to be a finite double."""
     for (before, here), (after, there) in pairwise(zip(times, moments, strict=True)):
         gap, change = after - before, max(abs(y - x) for x, y in zip(here, there, strict=True))
         if gap and not (gap >= 1 / _STEEPEST and change <= gap * _STEEPEST):
@@ -181,9 +183,10 @@ def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ..
 
 
 def _allowed_file(file: str, folder: Path, table_folders: str | Path | Sequence[str | Path], where: str) -> Path:
-    """Return the file of samples that a scene names, links resolved; raise InputError outside the allowed folders.
+    """Return the path of the file of samples that a scene names; raise InputError if it is outside the allowed folders.
 
-    A scene may come from an untrusted source: it must not make symrot open, and quote, another file of the user.
+    Links are followed before the check. A scene may come from an untrusted source: it must not make symrot open, and
+    quote, another file of the user.
     """
     if isinstance(table_folders, str | Path):
         table_folders = (table_folders,)
@@ -225,7 +228,7 @@ def _row(line: str, place: str) -> list[float]:
     def refuse() -> NoReturn:
         raise InputError(f"{place}: expected four finite numbers {', '.join(COLUMNS)}, got {line[:80]!r}")
 
-    if not line.isascii() or "_" in line:  # which float() would read
+    if not line.isascii() or "_" in line:  # float() would accept such a number
         refuse()
     try:
         numbers = [float(cell) for cell in line.split(",")]

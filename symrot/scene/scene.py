@@ -1,4 +1,4 @@
-"""A scene: the problem as data. A TOML file (or a dict) in, exact numbers out; no SymPy.
+"""Scenes: a problem as data, read from a TOML file (or a dict) into exact numbers. Does not use SymPy.
 
 The format is the table :data:`TOP` with the readers that it names. Everything in a scene is checked here, and every
 error is one sentence with file, key, expectation and value (:class:`symrot.errors.InputError`).
@@ -42,11 +42,11 @@ QUANTITIES: dict[str, tuple[str, str]] = {
     "herpolhode": ("rad/s", "path of the angular velocity in space, on the invariable plane"),
     "axis": ("1", "symmetry axis of the body (its third axis when it has none), space components"),
 }
-"""What a scene may ask for: name -> (unit, meaning)."""
+"""Output quantities that a scene may request: name -> (unit, meaning)."""
 
 
 class Initial(NamedTuple):
-    """The initial state.
+    """Initial state of a motion: angular velocity and attitude, exact.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class Initial(NamedTuple):
 
 
 class Span(NamedTuple):
-    """Evenly spaced sample times.
+    """The sample times of a scene, evenly spaced.
 
     Attributes
     ----------
@@ -91,7 +91,7 @@ class Span(NamedTuple):
 
 
 class Output(NamedTuple):
-    """The quantities that a scene writes.
+    """The quantities that a scene writes, and how Euler angles are written.
 
     Attributes
     ----------
@@ -170,7 +170,7 @@ class Scene:
     def from_dict(
         cls, content: Mapping[str, Any], where: str = "scene", *, table_folders: str | Path | Sequence[str | Path] = ()
     ) -> "Scene":
-        """Return the scene of a dict with the keys of a scene file.
+        """Return the scene that a dict with the keys of a scene file describes.
 
         Parameters
         ----------

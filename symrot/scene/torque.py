@@ -1,4 +1,6 @@
-"""The torques of a scene: read by the table of :mod:`symrot.dynamics.torque_kinds`, and fitted to the body."""
+"""Torques of scenes: read according to the table of :mod:`symrot.dynamics.torque_kinds`, and completed from the
+body.
+"""
 
 import math
 from collections.abc import Callable, Mapping
@@ -27,7 +29,7 @@ Value = Fraction | tuple[Fraction, ...]
 
 
 class Torque(NamedTuple):
-    """One torque: its kind and its constants.
+    """One torque of a scene: its kind and its constants.
 
     Attributes
     ----------
@@ -55,23 +57,26 @@ class Torque(NamedTuple):
     frame: str = "body"
 
     def number(self, name: str) -> Fraction:
-        """Return a constant that is a number."""
+        """Return a constant of the torque that is a number."""
         value = self.values[name]
         assert isinstance(value, Fraction)
         return value
 
     def vector(self, name: str) -> tuple[Fraction, ...]:
-        """Return a constant that is a vector or an attitude."""
+        """Return a constant of the torque that is a vector or an attitude."""
         value = self.values[name]
         assert isinstance(value, tuple)
         return value
 
     def constant(self, name: str, component: int | None) -> Fraction:
-        """Return a number by the name of its constant and, for a component of a vector, its index."""
+        """Return a number among the constants of the torque.
+
+        ``component`` is an index into a vector, or None for a constant that is a number.
+        """
         return self.number(name) if component is None else self.vector(name)[component]
 
     def with_constant(self, name: str, component: int | None, value: Fraction) -> "Torque":
-        """Return the torque with another number in one place."""
+        """Return a copy of the torque in which one number has another value."""
         if component is None:
             return self._replace(values={**self.values, name: value})
         vector = tuple(value if k == component else entry for k, entry in enumerate(self.vector(name)))
@@ -100,7 +105,7 @@ def _rest(value: Any, where: str) -> tuple[Fraction, ...]:
 
 
 def _depth(node: expression.Node) -> int:
-    """Return the number of levels of a formula, without recursion: a long sum is deep."""
+    """Return the number of levels of a formula, computed without recursion, since a long sum has very many."""
     depth, level = 0, [node]
     while level:
         depth, level = depth + 1, [child for parent in level for child in expression.children(parent)]
@@ -108,7 +113,7 @@ def _depth(node: expression.Node) -> int:
 
 
 def _formula(value: Any, where: str) -> str:
-    """Read one component: a formula as text, or a plain number."""
+    """Return one component of a torque as formula text; the scene may give a formula or a plain number."""
     if not isinstance(value, str):
         return str(read(value, where, 'a formula as text, such as "-k*omega_1", or a number'))
     if len(value) > LONGEST_FORMULA:
@@ -124,7 +129,7 @@ def _formula(value: Any, where: str) -> str:
 
 
 def _divides_by_zero(node: expression.Node) -> bool:
-    """Whether a formula divides by a number that is zero."""
+    """Return whether a formula contains a division by a number that is zero."""
     if any(map(_divides_by_zero, expression.children(node))):
         return True
     divisor = node[2] if node[0] == "/" else node[1] if node[0] == "**" and node[2] < 0 else None
@@ -185,7 +190,7 @@ def _entries(kind: TorqueKind) -> dict[str, Entry]:
 
 
 def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
-    """Return weight, centre of mass and unit direction, from the body where the scene leaves them to it."""
+    """Return weight, centre of mass and unit direction of gravity; values missing in the scene come from the body."""
     weight, acceleration, center = values["weight"], values["gravity"], values["center_of_mass"]
     if weight is not None and acceleration is not None:
         fail(f"{where}.gravity", "weight or gravity, not both", acceleration)
@@ -221,12 +226,15 @@ def _fit_damping(values: dict[str, Any], body: Body, where: str) -> dict[str, An
 
 
 def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
-    """Check that every name is known; pi becomes a parameter, so that a formula needs no other numbers."""
+    """Return the values of an ``expression`` torque after checking that its formulas contain known names only.
+
+    The number pi becomes a parameter, so that a formula contains no other numbers.
+    """
     parameters = dict(values["parameters"])
     known = {*EXPRESSION_NAMES, *parameters, "pi"}
     for index, formula in enumerate(values["torque"]):
         node = expression.parse(formula, switching=True)
-        if "atan2" in expression.operations(node):  # which is continued where it is cut
+        if "atan2" in expression.operations(node):  # continued across its branch cut, by multiples of pi
             parameters["pi"] = PI
         for name in sorted(expression.names(node)):
             if name not in known:
@@ -242,7 +250,7 @@ def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str,
 
 
 def _check_clips(node: expression.Node, values: Mapping[str, float], where: str, index: int) -> None:
-    """Refuse a clip whose limits are numbers, or parameters, of which the lower one is above the upper one."""
+    """Raise InputError for a ``clip`` whose lower limit is above its upper limit, if both are numbers or parameters."""
     for child in expression.children(node):
         _check_clips(child, values, where, index)
     if node[0] != "call" or node[1] != "clip":
@@ -274,7 +282,7 @@ _ABOUT_ADVICE = {
 
 
 def read_torque(value: Any, body: Body, where: str) -> Torque:
-    """Read one ``[[torque]]`` that is a formula, fitted to the body.
+    """Return the torque that one table ``[[torque]]`` describes by formulas, completed from the body.
 
     Raises
     ------

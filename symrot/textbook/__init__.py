@@ -1,7 +1,7 @@
-"""What four documents on rigid-body rotation say, claim by claim: data, one TOML file per document.
+"""Claims of four documents on rigid-body rotation as data: one TOML file per document.
 
-The data says where a claim stands, as printed and as read; nothing about verdicts, they are computed
-(:mod:`symrot.checker.textbook`).
+The data records where a claim is, its printed text, and the text as read. It contains no verdicts; these are computed
+by :mod:`symrot.checker.textbook`.
 """
 
 import tomllib
@@ -17,7 +17,9 @@ DOCUMENTS = ("chen", "sahakian", "brown", "beer-johnston")
 
 
 class Document(NamedTuple):
-    """A document: its short name, what it is, what its extraction lost, the file of its claims, each claim as data."""
+    """One document: its name and kind, what its text extraction lost, the file of its claims, and the claims as
+    data.
+    """
 
     name: str
     title: str
@@ -28,7 +30,7 @@ class Document(NamedTuple):
 
 
 def document(name: str) -> Document:
-    """Return a document by its short name.
+    """Return one of the documents by its short name.
 
     Raises
     ------
@@ -36,7 +38,7 @@ def document(name: str) -> Document:
         For another name.
     """
     if name not in DOCUMENTS:
-        raise InputError(f"expected one of the documents {', '.join(DOCUMENTS)}, got {name!r}")
+        raise InputError(f"expected the name of a document, one of {', '.join(DOCUMENTS)}; got {name!r}")
     path = Path(__file__).with_name(f"{name}.toml")
     content = tomllib.loads(path.read_text(encoding="utf-8"))
     claims = {claim["id"]: claim for claim in content["claim"]}

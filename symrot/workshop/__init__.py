@@ -1,2 +1,1 @@
-"""The work behind the commands: emit kernels, certify and audit them, bound their errors, look after an
-installation."""
+"""The work behind the commands: emit, certify, audit and bound kernels, and check an installation."""

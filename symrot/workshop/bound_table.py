@@ -1,8 +1,8 @@
-"""Print the table of rounding-error bounds that comes with symrot: ``python -m symrot.workshop.bound_table``.
+"""Table of rounding-error bounds that comes with symrot, printed by ``python -m symrot.workshop.bound_table``.
 
 Only kernels that changed are bounded again, by two processes; all kernels if the sources of the method changed. With
-``--check`` nothing is written, and the exit code is 1 if the table is incomplete, was found by another method, or
-contradicts the error that is computed at one point of each box.
+``--check`` nothing is written, and the exit code is 1 if the table is incomplete, was made by another version of the
+method, or contradicts the error that is computed at one point of each box.
 """
 
 import sys
@@ -46,7 +46,7 @@ def library_tasks() -> dict[str, BoundTask]:
 def table_faults() -> list[str]:
     """Return the faults of the table, a sentence each; an empty list if it is complete and of the present method."""
     required, known = library_tasks(), table()["bounds"]
-    faults = [] if table()["method"] == method() else ["the bounds of the table were found by another method"]
+    faults = [] if table()["method"] == method() else ["another version of the method computed the table"]
     if lacking := len(set(required) - set(known)):
         faults.append(f"{lacking} bounds are not in the table")
     if others := len(set(known) - set(required)):
@@ -62,7 +62,7 @@ def understated(required: Mapping[str, BoundTask]) -> list[str]:
 
 
 def _is_consistent(task: BoundTask, search: SearchResult | None) -> bool:
-    """Return whether a bound is finite and not below the error that the method computes at its worst point."""
+    """Return whether a bound is finite and not below the error that the same method computes at its worst point."""
     if search is None or len(search.worst) != len(task.low):
         return False
     point = np.array(search.worst)
@@ -75,7 +75,7 @@ def _is_consistent(task: BoundTask, search: SearchResult | None) -> bool:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Write the table, or check it."""
+    """Write the table of bounds, or check it; return the exit code."""
     parser = ArgumentParser(prog="python -m symrot.workshop.bound_table", description="Bounds of the library.")
     parser.add_argument("--check", action="store_true", help="compare only")
     parser.add_argument("--workers", type=int, default=2, help="processes (2)")

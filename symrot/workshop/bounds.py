@@ -1,4 +1,4 @@
-"""Bound the rounding errors of a kernel of the library or of a scene, as `symrot bound` does."""
+"""Bounds of the rounding errors of a kernel of the library or of a scene, as `symrot bound` prints them."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -106,7 +106,10 @@ def _of_scene(scene: str, precision: str) -> tuple[Operations, RoundingProblem, 
 
 
 def section(kernel: str, ranges: Sequence[str]) -> dict[str, Any]:
-    """Return the rounding section of a kernel's certificate, in all its precisions; parameters as for :func:`facts`."""
+    """Return the part of a kernel's certificate about rounding errors, in all precisions.
+
+    Parameters are those of :func:`facts`.
+    """
     operations, kernel_problem, box = rounding_problem(kernel, ranges, "double")
     single = rounding_problem(kernel, ranges, "float")[0] if kernel in kernel_names() else None
     with _in_scene_names(kernel):
@@ -143,7 +146,7 @@ def facts(kernel: str, ranges: Sequence[str], precision: str) -> dict[str, Any]:
 
 
 def _names(kernel: str) -> dict[str, str]:
-    """Return place -> name in the scene, for inputs and outputs of its kernel: "y[2]" alone says nothing to a user."""
+    """Return the names in a scene of a kernel's inputs and outputs, by their places such as "y[2]"."""
     if kernel in kernel_names():
         return {}
     return {place: symbol for place, (symbol, _) in scene_inputs(kernel).components.items()}
@@ -170,7 +173,7 @@ def _region_lines(section: Mapping[str, Any]) -> list[str]:
 
 
 def lines(section: Mapping[str, Any]) -> list[str]:
-    """Return the bounds of :func:`facts` as lines of text."""
+    """Return the bounds of rounding errors, the result of :func:`facts`, as lines of text."""
     part = section["precisions"][0]
     names = section["names"]
     unit = f"2^-{DIGITS[part['precision']]}"
@@ -231,7 +234,7 @@ def _free(kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fra
 
 
 def target_lines(resized: Mapping[str, Any]) -> list[str]:
-    """Return the largest box of :func:`target_facts` as lines of text."""
+    """Return the largest box, the result of :func:`target_facts`, as lines of text."""
     return [
         f"{resized['kernel']}: no error is larger than {resized['target']:g}",
         f"for {_box_text(resized['box'], resized['names'])}", *_region_lines(resized),

@@ -1,4 +1,4 @@
-"""Say how the files of a kernel differ from the certified ones: the first line that differs, the output that changed.
+"""Differences between the files of a kernel and the certified files: the first line and the output that changed.
 
 A hash tells only that a file changed; the difference tells whether the kernel still computes its formulas.
 """
@@ -17,7 +17,7 @@ from symrot.workshop.kernel_files import stored_bounds
 
 __all__ = ["difference", "kernel_of"]
 
-LONGEST = 200  # characters of a reason
+LONGEST = 200  # largest number of characters of a reason
 
 
 def kernel_of(name: str) -> str | None:
@@ -28,7 +28,7 @@ def kernel_of(name: str) -> str | None:
 
 
 def difference(certificate: Path) -> str:
-    """Return ": " and how the files next to a certificate differ from the emitted files; empty if they agree."""
+    """Return ": " and how the files next to a certificate differ from the emitted files; empty if they are equal."""
     name = certificate.name.removesuffix(".cert.json")
     kernel = kernel_of(name)
     if kernel is None:
@@ -57,9 +57,9 @@ def _first_line(text: str, emitted: str) -> str:
 
 
 def _meaning(text: str, emitted: KernelUnderTest) -> str:
-    """Return, in brackets, what an edited C text computes: its formulas with other operations, or why not its formulas.
+    """Return, in brackets, how an edited C text differs in meaning from the formulas of its kernel.
 
-    An empty text if the operations are the same.
+    The result is an empty text if its operations are the same.
     """
     file = f"{emitted.name}.c"
     symbols = {place: symbol for place, (symbol, _) in emitted.places.items()}

@@ -1,4 +1,4 @@
-"""Certify a kernel, audit certificates, and bound rounding errors: the functions behind the commands of these names."""
+"""Functions behind the commands certify, audit and bound: certificates of kernels, and bounds of rounding errors."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -27,12 +27,12 @@ Progress = Callable[[str], object]
 
 
 def _silent(line: str) -> None:
-    """Discard a line of progress."""
+    """Ignore a line of progress; the default for functions that report progress."""
 
 
 @dataclass(frozen=True)
 class Certificate:
-    """The proofs about one emitted kernel; ``print`` shows them as `symrot certify` does.
+    """Proofs about one emitted kernel; ``print`` shows them as `symrot certify` does.
 
     Attributes
     ----------
@@ -78,7 +78,9 @@ class Certificate:
 
 @dataclass(frozen=True)
 class Audit:
-    """Certificates that hold; an audit that fails raises CertificateError instead. ``print`` shows the statements.
+    """Result of a successful audit of certificates; ``print`` shows the statements that were checked.
+
+    An audit that fails raises CertificateError instead.
 
     Attributes
     ----------
@@ -103,7 +105,7 @@ class Audit:
 
 @dataclass(frozen=True)
 class OutputError:
-    """The bound of the rounding error of one output.
+    """Bound of the rounding error of one output of a kernel.
 
     Attributes
     ----------
@@ -176,7 +178,7 @@ class RoundingBounds:
 
 @dataclass(frozen=True)
 class LargestBox:
-    """The largest box, of one shape, on which no rounding error exceeds a target.
+    """Largest box of inputs, of given proportions, on which no rounding error of a kernel exceeds a target.
 
     Attributes
     ----------
@@ -328,7 +330,7 @@ def audit(
 
 
 def bound(kernel: str | Path, box: Ranges = (), precision: str = "double") -> RoundingBounds:
-    """Bound the rounding errors of a kernel for all inputs in a box.
+    """Return bounds of the rounding errors of a kernel, valid for all inputs in a box.
 
     Parameters
     ----------

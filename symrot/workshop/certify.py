@@ -1,4 +1,4 @@
-"""Certify kernels and audit certificates, as `symrot certify` and `symrot audit` do."""
+"""Work of `symrot certify` and `symrot audit`: make certificates of kernels, and check certificates."""
 
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -40,11 +40,11 @@ PROOFS = {  # from the derivation to the object code; the names label the lines 
     "object code": "equal to the C text (--objects)",
 }  # fmt: skip
 LABEL = max(map(len, PROOFS)) + 2  # characters
-MANY = 12  # certificates: fewer are audited in this process
+MANY = 12  # number of certificates from which on several processes audit them
 
 
 def _proven_statement(data: Data) -> Data | None:
-    """Return what symrot itself proves about the kernel of a certificate; None if it does not know the kernel.
+    """Return the part of a kernel's certificate that symrot itself can prove; None if it does not know the kernel.
 
     The statement is derived and proven once, then stored in the cache under the digest of the programs.
     """
@@ -78,7 +78,7 @@ def audit_file(
     path: Path, object_file: Path | None = None, rerun: bool = False, coq: bool = False,
     progress: Callable[[str], object] = lambda text: None,
 ) -> list[str]:  # fmt: skip
-    """Check a certificate and return the statements that hold, a line each.
+    """Return the statements of a certificate that were checked and hold, a line each.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def audit_files(
     paths: Sequence[Path], object_file: Path | None = None, rerun: bool = False, coq: bool = False,
     progress: Callable[[str], object] = lambda text: None,
 ) -> dict[str, list[str]]:  # fmt: skip
-    """Return path -> the lines of :func:`audit_file`; a long list is audited by several processes at once.
+    """Return the lines of :func:`audit_file` for each path; several processes audit a long list at once.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def _recomputed_bounds(data: Data, text: str, progress: Callable[[str], object])
 
 
 def flag_lines(flags: str) -> list[str]:
-    """Return, as one line, which statements of any certificate hold under the flags of a compiler.
+    """Return, as a list of one line, which statements of any certificate hold under given compiler flags.
 
     Raises
     ------
@@ -209,7 +209,7 @@ def certify(
     if objects:
         object_code.require_compiler()
     if ranges and not bounds:
-        raise InputError(f"--box: expected no --no-bounds, which leaves the bounds out, got both, with {ranges[0]!r}")
+        raise InputError(f"--box: leave out --no-bounds, which computes no bounds, got both, with {ranges[0]!r}")
     rounding = None
     if bounds and (ranges or name in kernel_names()):
         progress("bounding ..")
@@ -288,14 +288,17 @@ def refuted(certificates: Iterable[Data]) -> bool:
 
 
 def proofs(data: Data) -> tuple[str, ...]:
-    """Return the names of the proofs that a certificate contains, in the order of ``PROOFS``."""
+    """Return the names of the kinds of proof in a certificate, in the order of ``PROOFS``."""
     compared = object_code.holds(data.get("objects"))
     sections = (data["laws"], data["coq"], data["readback"], data.get("rounding"), compared)
     return tuple(proof for proof, section in zip(PROOFS, sections, strict=True) if section)
 
 
 def _emitted(path: str) -> str:
-    """Return the kernel or shipped scene of a C file or certificate; raise unless the file is exactly as emitted."""
+    """Return the name of the kernel or shipped scene that a C file or certificate belongs to.
+
+    Raise an error unless the file is exactly as symrot emits it.
+    """
     file = Path(path)
     name = file.name.removesuffix(".c").removesuffix(".cert.json")
     kernel = kernel_of(name)

@@ -1,4 +1,4 @@
-"""Write the theorems for Coq as files, have Coq check them, and report the outcome, the axioms and the refusals."""
+"""Files with theorems for Coq: write them, have Coq check them, and report the result with the axioms that are used."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -35,7 +35,7 @@ def prove(directory: Path, demanded: bool, progress: Callable[[str], object]) ->
 
 
 def facts(directory: Path, written: list[Path], result: CoqResult | None) -> dict[str, Any]:
-    """Return the outcome of :func:`prove` as plain data for JSON."""
+    """Return the result of :func:`prove`, Coq's check of the theorems, as data for JSON."""
     report: dict[str, Any] = {
         "directory": str(directory),
         "files": [f"{name}.v" for name in (RULES, *coq_file_names(), ASSUMPTIONS)],
@@ -53,7 +53,7 @@ def facts(directory: Path, written: list[Path], result: CoqResult | None) -> dic
 
 
 def lines(directory: Path, result: CoqResult | None) -> list[str]:
-    """Return the outcome of :func:`prove` as lines of text."""
+    """Return the result of :func:`prove`, Coq's check of the theorems, as lines of text."""
     if result is None:
         count = sum(len(coq_file(name).theorems) for name in coq_file_names())
         return [f"{count} theorems written to {directory}, not checked: {MISSING}"]

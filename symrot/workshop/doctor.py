@@ -1,4 +1,4 @@
-"""Check this installation: versions, extras, compiler, cache, and whether a small kernel compiles and runs."""
+"""Check of this installation: versions, extras, compiler, cache, and whether a small kernel compiles and runs."""
 
 import os
 import sys
@@ -81,14 +81,14 @@ def _cached(directory: Path) -> tuple[int, int]:
 
 
 class CompilerRecord(TypedDict):
-    """A C compiler: its command, and the first line that it prints as its version."""
+    """One C compiler: its command, and the first line that it prints about its version."""
 
     command: str
     version: str
 
 
 class CacheRecord(TypedDict):
-    """The cache; ``persistent`` says whether it lasts longer than this process."""
+    """The cache directory of this installation; ``persistent`` says whether it lasts longer than this process."""
 
     directory: str
     files: int
@@ -97,14 +97,14 @@ class CacheRecord(TypedDict):
 
 
 class PythonRecord(TypedDict):
-    """The interpreter."""
+    """The Python interpreter of this installation: version and path."""
 
     version: str
     executable: str
 
 
 class DoctorReport(TypedDict):
-    """The state of an installation; versions of packages are None where one is missing."""
+    """State of this installation; the version of a package that is missing is None."""
 
     symrot: str
     python: PythonRecord
@@ -117,7 +117,7 @@ class DoctorReport(TypedDict):
 
 
 def facts() -> DoctorReport:
-    """Return the state of this installation as data for JSON; ``problems`` are the reasons why symrot works badly."""
+    """Return the state of this installation as data for JSON; ``problems`` lists what makes symrot slow or unusable."""
     cache = build_cache.cache()
     count, size = _cached(cache.directory)
     versions = {name: _version(name) for name in NEEDED}
@@ -169,7 +169,7 @@ ROWS: tuple[tuple[str, Callable[[DoctorReport], str]], ...] = (  # label -> text
 
 
 def lines(report: DoctorReport) -> list[str]:
-    """Return the facts of :func:`facts` as lines of text."""
+    """Return the state of this installation, the result of :func:`facts`, as lines of text."""
     rows = [(name, text(report)) for name, text in ROWS]
     for extra, versions in report["extras"].items():
         hint = "" if all(versions.values()) else f" (pip install 'symrot[{extra}]')"

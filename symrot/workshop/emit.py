@@ -1,4 +1,4 @@
-"""Plan a scene, explain the plan, and emit the text of a kernel: public functions that draw on several packages."""
+"""Public functions that plan a scene, explain the plan, and emit the text of a kernel."""
 
 import re
 from collections.abc import Mapping
@@ -36,7 +36,7 @@ class _Texts(NamedTuple):
 
 
 class Emitted(_Texts):
-    """An emitted kernel: its name, the text, and in C the header (empty otherwise).
+    """Emitted kernel: its name, the text, and in C the header (empty otherwise).
 
     In NumPy the function has the name of the kernel; in C it is ``function``, the name with the prefix ``symrot_``.
 
@@ -65,7 +65,7 @@ class Emitted(_Texts):
     def of(
         cls, kernel: Any, bounds: Mapping[str, Any] | None, name: str, source: str, header: str = ""
     ) -> "Emitted":  # fmt: skip
-        """Return the texts of a kernel, with the kernel itself and the rounding bounds for its certificate."""
+        """Return the emitted texts of a kernel, which keep the kernel and its rounding bounds for the certificate."""
         emitted = cls(name, source, header)
         emitted.kernel, emitted.bounds = kernel, bounds
         return emitted
@@ -77,7 +77,7 @@ class Emitted(_Texts):
 
     @cached_property
     def certificate(self) -> str:
-        """The text of the certificate; raises CertificateError where a proof fails."""
+        """The text of the kernel's certificate; raises CertificateError if a proof fails."""
         from symrot.certificates.certificate import certificate_text, with_sections
 
         text = certificate_text(subject(self.kernel, self.bounds))
@@ -148,7 +148,9 @@ def explain(scene: Scene | str | Path) -> str:
 
 
 def _formulas(scene: Scene | str | Path) -> Plan:
-    """Return the plan of a scene whose torques are formulas: only such a scene has a kernel to print."""
+    """Return the plan of a scene whose torques are all formulas; raise InputError for other scenes, which have no
+    kernel.
+    """
     return make_plan(_scene(scene))
 
 

@@ -1,4 +1,4 @@
-"""Read ``--box NAME=LOW:HIGH``: ranges of the inputs of a kernel and of the physical constants of a scene."""
+"""Reader of ``--box NAME=LOW:HIGH``: ranges of the inputs of a kernel and of the physical constants of a scene."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
@@ -79,7 +79,7 @@ def _check_finite(name: str, ends: Ends, text: str) -> None:
 
 
 def _place(kernel_problem: RoundingProblem, inputs: SceneInputs | None, name: str, text: str) -> str:
-    """Return the place of an input, or the name of a constant in a scene's parameters."""
+    """Return the place of a named input (such as ``angles[1]``), or the name of a constant in a scene's parameters."""
     for place, symbol in kernel_problem.symbols.items():
         if name in (place, symbol):
             return place

@@ -1,4 +1,4 @@
-"""Write emitted kernels as files, one or all, and compare the files on disk with the kernels emitted now."""
+"""Files of emitted kernels: write one or all, and compare the files on disk with the kernels emitted now."""
 
 import json
 import os
@@ -67,8 +67,8 @@ def certificate_files(
 def stored_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, Any] | None:
     """Return the rounding bounds of a scene's kernel from its certificate in a folder, checked as in an audit.
 
-    None for a kernel of the library, which has its own bounds; None also if there is no certificate, or if its bounds
-    are missing, belong to other operations, or fail the check.
+    The result is None for a kernel of the library, which has its own bounds. It is also None if there is no
+    certificate, or if its bounds are missing, belong to other operations, or fail the check.
     """
     if directory is None or kernel in kernel_names():
         return None
@@ -87,7 +87,7 @@ def stored_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, An
 
 
 def _slots(path: Path) -> dict[str, Any]:
-    """Return the certificate on disk, whose bounds and verdicts are reused; an empty dict if it cannot be read."""
+    """Return the certificate on disk, whose bounds and verdicts can be reused; an empty dict if it cannot be read."""
     try:
         certificate = json.loads(read_input(path, LARGEST))
     except (OSError, ValueError, RecursionError):
@@ -96,7 +96,7 @@ def _slots(path: Path) -> dict[str, Any]:
 
 
 def _files_of(name: str, subfolder: str, targets: Sequence[str], directory: Path) -> dict[str, str]:
-    """Return path -> text of one kernel, its certificate included."""
+    """Return all files of one kernel, its certificate included, as path -> text."""
     files: dict[str, str] = {}
     for target in targets:
         bounds = stored_bounds(name, directory / target / subfolder) if target == "c" else None
@@ -108,7 +108,10 @@ def _files_of(name: str, subfolder: str, targets: Sequence[str], directory: Path
 
 
 def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str], object]) -> dict[str, str]:
-    """Return path -> text of the library and of the kernels of all shipped scenes, printed by several processes."""
+    """Return all files of the library and of the kernels of shipped scenes as path -> text.
+
+    Several processes print them.
+    """
     work = [
         (name, subfolder)
         for subfolder, names in (("", kernel_names()), (f"{SCENES}/", names_with_kernels()))

@@ -1,4 +1,4 @@
-"""Compare object code with the C text of a kernel, from the compilers of this machine or from a user's object file."""
+"""Comparison of object code with the C text of a kernel, for the compilers of this machine or a user's object file."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -21,7 +21,7 @@ HOLDS = {IDENTICAL: "rounding for rounding: bits and bounds hold",
 
 
 def require_compiler() -> None:
-    """Raise InputError if no compiler or no disassembler is installed."""
+    """Raise InputError unless a C compiler and a disassembler are installed."""
     if not any(map(compiler_version, COMPILERS)):
         raise InputError(f"--objects: expected {' or '.join(COMPILERS)} on the path to compile with, found neither")
     if why_no_objdump():
@@ -29,7 +29,7 @@ def require_compiler() -> None:
 
 
 def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
-    """Compile a kernel, compare the object code with its C text, and return the objects section of a certificate.
+    """Return the part of a certificate about object code: compile a kernel and compare the results with its C text.
 
     Parameters
     ----------
@@ -54,20 +54,22 @@ def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
 
 
 def holds(section: Data | None) -> bool:
-    """Return whether object code is the C text for every compiler, under all flags that must preserve its bits."""
+    """Return whether the object code of every compiler equals the C text, under all flags that must preserve its
+    bits.
+    """
     strict = [item for item in _objects(section) if item["flags_hold"] == BITS]
     return bool(strict) and all(function["verdict"] == IDENTICAL for item in strict for function in item["functions"])
 
 
 def lines(section: Data | None) -> list[str]:
-    """Return the verdict on the object code of a kernel, a line for each compiler and its flags."""
+    """Return the verdicts on the object code of a kernel as text, a line for each compiler and its flags."""
     verdicts = [f"{item['compiler']} {item['flags']}: {_verdict(item)}" for item in _objects(section)]
     absent = (section or {}).get("missing", ())
     return [*verdicts, *(f"{compiler} is not on the path: not compared" for compiler in absent)]
 
 
 def table(sections: Mapping[str, Data | None]) -> list[str]:
-    """Return, for each compiler and its flags, how many kernels were accepted, and a line for each that was not."""
+    """Return, for each compiler and its flags, how many kernels were accepted, and a line for each one that was not."""
     by_flags: dict[str, dict[str, Data]] = {}
     for name, section in sections.items():
         for item in _objects(section):
@@ -80,7 +82,7 @@ def table(sections: Mapping[str, Data | None]) -> list[str]:
 
 
 def object_lines(text: str, path: Path, where: str) -> list[str]:
-    """Compare an object file with the C text and return a line for each function.
+    """Return a line for each function in an object file, after comparing it with the C text.
 
     Raises
     ------
@@ -100,7 +102,7 @@ def _objects(section: Data | None) -> Iterator[Data]:
 
 
 def _verdict(item: Data) -> str:
-    """Return the verdict on one object as text; for a refusal, the first reason."""
+    """Return the verdict on one object file as text; for a rejected file, the first reason."""
     verdicts = {function["verdict"] for function in item["functions"]}
     if item["accepted"]:
         return f"the C text, {HOLDS[IDENTICAL if verdicts == {IDENTICAL} else CONTRACTED]}"

@@ -1,4 +1,4 @@
-"""Run work in several processes, and end them all immediately when the command is interrupted."""
+"""Pools of processes for long work, which end immediately when the command is interrupted."""
 
 import os
 import signal
@@ -14,7 +14,7 @@ COUNT = min(os.cpu_count() or 1, 4)
 
 
 def _ignored(arguments: object) -> None:
-    """Print nothing about an error in a thread of a pool that is shutting down."""
+    """Ignore an error in a thread of a pool that is shutting down."""
 
 
 @contextmanager
@@ -28,7 +28,7 @@ def workers() -> Iterator[ProcessPoolExecutor]:
         try:
             yield pool
         except BaseException:
-            threading.excepthook = _ignored  # the pool's own thread fails on futures that were cancelled
+            threading.excepthook = _ignored  # the pool's own thread raises an error for cancelled futures
             for process in active_children():
                 process.terminate()
             pool.shutdown(wait=False, cancel_futures=True)

@@ -355,7 +355,7 @@ def test_the_lines_name_references_and_every_method(found):
 
 @pytest.mark.parametrize(
     ("content", "said"),
-    [("{", "other text"), ("[]", "format"), ('{"format": "symrot work-precision 1"}', "parts missing")],
+    [("{", "not JSON"), ("[]", "format"), ('{"format": "symrot work-precision 1"}', "parts missing")],
 )
 def test_a_file_that_is_no_study_is_refused(tmp_path, content, said):
     path = tmp_path / "x.json"
@@ -489,7 +489,7 @@ def test_the_command_studies_compares_and_draws(tmp_path, capsys):
         (["tumbling_prism", "--tolerances", ""], "expected falling numbers"),
         (["tumbling_prism", "--rounds", "0"], "at least 1, got 0"),
         (["--skip", "--rounds", "3"], "takes no --rounds"),
-        (["--suite", "-o", "/dev/null/x"], "cannot be made"),
+        (["--suite", "-o", "/dev/null/x"], "cannot be created"),
         (["tumbling_prism", "--out", "x.txt"], ".json"),
         (["tumbling_prism", "--plot", "x.doc"], ".svg"),
         (["tumbling_prism", "-o", "x"], "takes no -o"),

@@ -56,7 +56,7 @@ def test_the_truth_under_gravity():
 def test_a_motion_that_never_comes_back_is_refused(monkeypatch):
     separatrix = stability._scene("separatrix", {"principal": [3, 4, 6]}, (2, "3/2", 1))
     monkeypatch.setattr(exact_path, "MOST_STEPS", 12)
-    with pytest.raises(InputError, match="does not come back"):
+    with pytest.raises(InputError, match="does not return"):
         exact_path.ExactPath(propagator(separatrix, "taylor", 1e-15)._motion).period()
 
 

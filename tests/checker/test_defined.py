@@ -230,6 +230,27 @@ def test_a_root_of_a_product_with_a_square_is_split_only_where_both_parts_are_re
     assert "a >= 0" in verdict.conditions
 
 
+@pytest.mark.parametrize(
+    "claim", ["log(exp(-(1/2 + 0*log(tanh(x))))) == (-x)**(1/3)", "0*log(tanh(x)) == 1 + sqrt(-x)"]
+)
+def test_a_counterexample_is_no_point_at_which_a_cancelled_logarithm_has_no_value(claim):
+    """tanh(0) = 0: neither side of x = 0 has both a logarithm of tanh(x) and a root of -x."""
+    assert verdict_of(claim) == "undecided"
+
+
+def test_a_divisor_that_is_a_function_of_a_symbol_does_not_vanish_at_a_counterexample():
+    verdict = symrot.check("0/sinh(x) == 1 + sqrt(-x)", repair=False)
+    assert verdict.verdict == "false"
+    assert verdict.counterexample.values["x"] != "0"
+
+
+@pytest.mark.parametrize("claim", [
+    "(-1/(-5 + cos(1)))**(1/3) == 1", "(1/2)**(1/3) == ((cos(1) - 1)/(cos(1) - 5))**(1/3)",
+])  # fmt: skip
+def test_a_root_of_a_quotient_of_two_negative_numbers_is_real(claim):
+    assert verdict_of(claim) == "false"
+
+
 # -- the exact core ---------------------------------------------------------------------------------------------------
 
 

@@ -57,7 +57,7 @@ def test_every_repair_is_true_when_it_is_checked_again(claim):
         assert symrot.check(repair.text).verdict == "true"
 
 
-@pytest.mark.parametrize("claim", ["x == y", "2*x == x", "x == 1", "sin(x) == 0", "2 == 3", "x*y == 0"])
+@pytest.mark.parametrize("claim", ["x == y", "2*x == x", "sin(x) == 0", "2 == 3", "x*y == 0"])
 def test_nothing_is_repaired_by_saying_nothing(claim):
     """No repair makes a side a bare number or both sides zero, none says that x is x."""
     verdict = symrot.check(claim)

@@ -4,11 +4,13 @@ import ctypes
 import random
 from pathlib import Path
 
+import numpy as np
 import pytest
 from mpmath import mp, mpf
 
 from symrot.build.cache import NATIVE, build
 from symrot.closed_form import build as library
+from symrot.closed_form.arithmetic import double_double as dd
 
 U2 = 2.0**-106
 Q0 = (0.1, 0.7, -0.5, 0.5)
@@ -28,7 +30,8 @@ void symrot_each(int which, const double *v, double *to)
     case 4: first = dd_exp(a); break;
     case 5: dd_sincos_turns(a, &first, &second); break;
     case 6: first = dd_agm(a); break;
-    default: first = dd_rf(a, b, c); break;
+    case 7: first = dd_rf(a, b, c); break;
+    default: first = dd_add_fast(a, b); break;
     }
     to[0] = first.hi; to[1] = first.lo; to[2] = second.hi; to[3] = second.lo;
 }
@@ -59,6 +62,7 @@ BOUNDS = {  # over u^2: of the value, of 1 for sines and cosines
     "sine, cosine": lambda a: 8,
     "mean": lambda a: 16,
     "R_F": lambda a, b, c: 16,
+    "fast sum": lambda a, b: 3.1,
 }
 OPERATIONS = {
     "sum": ((signed, signed), lambda a, b: [a + b]),
@@ -69,6 +73,7 @@ OPERATIONS = {
     "sine, cosine": ((near_turns,), lambda a: [mp.sin(2 * mp.pi * a), mp.cos(2 * mp.pi * a)]),
     "mean": ((lambda s: decades(s, -30, 0),), lambda a: [mp.agm(1, a)]),
     "R_F": ((lambda s: decades(s, -40, 3),) * 3, lambda a, b, c: [mp.elliprf(a, b, c)]),
+    "fast sum": ((lambda s: decades(s, -8, 8),) * 2, lambda a, b: [a + b]),  # of positive numbers: nothing cancels
 }
 
 
@@ -122,6 +127,45 @@ def test_a_double_alone_does_not_pass(name):
     rounded = [[high, 0.0, other, 0.0] for _, ((high, _, other, _), _) in draws(name, 20, 9)]
     given = [each for each, _ in draws(name, 20, 9)]
     assert max(error(name, *each) for each in zip(given, rounded, strict=True)) > 1e6
+
+
+ON_ARRAYS = {
+    "sum": dd.add,
+    "difference": dd.subtract,
+    "product": dd.multiply,
+    "quotient": dd.divide,
+    "root": dd.square_root,
+}
+EXACTLY = {name: exactly for name, (_, exactly) in OPERATIONS.items()} | {"difference": lambda a, b: [a - b]}
+
+
+def worst_on_arrays(name, operation):
+    """The largest error of an operation of the Python module over 2^-104: of the value, of the larger term in sums."""
+    source = random.Random(10)
+    terms = [
+        [pair(source, abs(signed(source)) if name == "root" else signed(source)) for _ in range(500)] for _ in "ab"
+    ]
+    terms = terms[: 1 if name == "root" else 2]
+    high, low = operation(*[tuple(np.array(column) for column in zip(*numbers, strict=True)) for numbers in terms])
+    with mp.workdps(60):
+        worst = 0
+        for *numbers, up, down in zip(*terms, high, low, strict=True):
+            exact = [mpf(first) + mpf(second) for first, second in numbers]
+            value = EXACTLY[name](*exact)[0]
+            scale = max(map(abs, exact)) if name in ("sum", "difference") else abs(value)
+            worst = max(worst, abs(mpf(float(up)) + mpf(float(down)) - value) / (scale * mpf(2) ** -104))
+        return float(worst)
+
+
+@pytest.mark.parametrize("name", ON_ARRAYS)
+def test_pairs_in_arrays_have_104_bits(name):
+    assert worst_on_arrays(name, ON_ARRAYS[name]) <= 1
+    assert worst_on_arrays(name, lambda *pairs: (ON_ARRAYS[name](*pairs)[0], np.zeros(500))) > 1e6
+
+
+def test_a_normalized_pair_has_the_same_sum():
+    high, low = dd.normalized(np.array([1.0, -3.0]), np.array([1.0, 2.0**-60]))
+    assert high.tolist() == [2.0, -3.0] and low.tolist() == [0.0, 2.0**-60]
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ from mpmath import mp
 
 from symrot.closed_form.free_body import motion as free_body
 from symrot.errors import InputError
+from symrot.inertia.principal import principal_axes
 from symrot.kinematics import conversions
 from tests.reference import free_body as reference
 from tests.reference import taylor
@@ -210,9 +211,8 @@ def test_s16_magnitudes(moments, omega):
 
 def test_inertia_tensors_in_any_axes():
     """A body given in turned axes moves as in its principal ones; the attitude is that of the given axes."""
-    turned = free_body.motion_of_tensor(
-        [[2, "1/3", 0], ["1/3", 2, 0], [0, 0, 3]], (Fraction(1), Fraction(1, 2), Fraction(2)), Q0
-    )
+    body = free_body.FreeRigidBody(principal_axes([[2, "1/3", 0], ["1/3", 2, 0], [0, 0, 3]]))
+    turned = body.motion((Fraction(1), Fraction(1, 2), Fraction(2)), Q0)
     half = Fraction(1) / 2
     root = 1 / math.sqrt(2)
     to_given = np.array([[root, -root, 0], [root, root, 0], [0, 0, 1]])
@@ -242,7 +242,7 @@ def test_full_tensors_to_fifty_digits(name):
     """Principal axes by Jacobi's rotations to 60 digits, the motion along them by the reference: to a million s."""
     inertia, omega = TENSORS[name]
     inertia, omega = [[Fraction(x) for x in row] for row in inertia], [Fraction(x) for x in omega]
-    motion = free_body.motion_of_tensor(inertia, omega, Q0)
+    motion = free_body.FreeRigidBody(principal_axes(inertia)).motion(omega, Q0)
     times = [0.0, 0.13, 3.7, -11.3, 1e3, -1e6 / 3, 1e6]
     rates, attitudes = motion.evaluate(times)
     with mp.workdps(60):

@@ -13,10 +13,12 @@ from symrot.closed_form.free_body import motion as free_body
 from symrot.closed_form.gyrostat import motion as gyrostat
 from symrot.closed_form.heavy_top import motion as heavy_top
 from symrot.errors import InputError
+from symrot.inertia.principal import principal_axes
 from symrot.propagation.propagate import propagator
 
 Q0 = (0.1, 0.7, -0.5, 0.5)
 BAR = 1e-15  # of q; of omega relative to the largest: each side is within 5e-16 of the motion
+TENSOR = [[2, 0.1, 0.2], [0.1, 3, 0.3], [0.2, 0.3, 4]]
 TOP, ABOVE = (1.0, 1.0, 0.5), (0.0, 0.0, 1.0)
 CASES = {
     "axes renamed": lambda: free_body.motion((3, 1, 2), (-0.3, 1, 0.5), Q0),
@@ -29,7 +31,7 @@ CASES = {
     "at rest": lambda: free_body.motion((3.0, 1.0, 2.0), (0.0, 0.0, 0.0), Q0),
     "nearly spherical": lambda: free_body.motion((1.0, 1 + 1e-10, 1 + 3e-10), (0.3, 1.0, 0.5), Q0),
     "exact numbers": lambda: free_body.motion((Fraction(1, 3), Fraction(2, 3), 1), (Fraction(1, 7), 1, 2), Q0),
-    "full tensor": lambda: free_body.motion_of_tensor(((2, 0.1, 0.2), (0.1, 3, 0.3), (0.2, 0.3, 4)), (0.3, 1, 0.5), Q0),
+    "full tensor": lambda: free_body.FreeRigidBody(principal_axes(TENSOR)).motion((0.3, 1, 0.5), Q0),
     "nutation": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (0.3, -1.8, 4.0), (0.9, 0.3, 0.0, 0.1)),
     "pendulum": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (0.0, 1.0, 0.0), (0.9, 0.1, 0.3, 0.0)),
     "plane separatrix": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (2.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0)),

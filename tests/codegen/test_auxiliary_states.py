@@ -5,6 +5,7 @@ from fractions import Fraction
 import pytest
 
 from symrot.bench import taylor as bench
+from symrot.codegen.taylor import auxiliary_states
 from symrot.codegen.taylor.auxiliary_states import with_companions
 from symrot.codegen.taylor.coefficients import coefficients
 from symrot.codegen.taylor.lanes import cost, lay_out
@@ -77,6 +78,13 @@ def test_no_companions_without_a_constant_norm():
     )
     for system in (recurrences(stretched), recurrences(program({"x": "x*y", "y": "x - y"}))):
         assert with_companions(system) is system
+
+
+def test_a_system_whose_products_grow_too_long_is_left_alone(monkeypatch):
+    system = turning("q0*q1 + q2*q3", "q0*q2 - q1*q3", "0*w3")
+    assert with_companions(system) is not system
+    monkeypatch.setattr(auxiliary_states, "MOST_TERMS", 1)
+    assert with_companions(system) is system
 
 
 def test_a_layout_takes_companions_where_they_save_sums():

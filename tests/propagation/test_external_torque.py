@@ -106,7 +106,7 @@ def test_a_spline_far_from_its_samples_is_refused():
     """Two samples of a jump one bit apart send the spline beside it to 1e30 N m; declared, the jump is one."""
     samples = np.array([[0, 0, 0], [0.1, 0, 0], [-0.1, 1, 0], [0, 0, 0.1]])
     with pytest.raises(
-        InputError, match=r"expected samples that a cubic spline keeps near, .* between 1\.0000000000000002 and 3\.0 s"
+        InputError, match=r"expected samples that a cubic spline follows, .* between 1\.0000000000000002 and 3\.0 s"
     ):
         symrot.propagator(scene(), torque=([0, 1, math.nextafter(1, 2), 3], samples))
     assert symrot.propagator(scene(), torque=([0, 1, 1, 3], samples), switching_times=[1])().success
@@ -187,7 +187,7 @@ def test_what_the_function_raises_comes_out():
         (([0, 1], [[1, 2, 3], [1, 2, math.inf]]), "finite numbers"),
         (([0, 2, 1, 3], [[1, 2, 3]] * 4), "rising times"),
         (([0, 1, 1, 3], [[1, 2, 3]] * 4), "twice the same at switching times alone"),
-        (([0, 1], [[1, 2, 3]] * 2), r"the table covers 0.0 to 1.0 s, asked for 3.0 s"),
+        (([0, 1], [[1, 2, 3]] * 2), r"the table covers 0.0 to 1.0 s, got the time 3.0 s"),
     ],
 )  # fmt: skip
 def test_a_torque_that_cannot_be_used_is_refused(torque, words):
@@ -198,7 +198,7 @@ def test_a_torque_that_cannot_be_used_is_refused(torque, words):
 @pytest.mark.parametrize(
     "more, words",
     [
-        ({"method": "taylor"}, "expected 'auto' or 'dop853' for a torque that is no formula, got 'taylor'"),
+        ({"method": "taylor"}, "expected 'auto' or 'dop853' for a torque without a formula, got 'taylor'"),
         ({"switching_times": [math.inf]}, "switching_times: expected finite times"),
         ({"switching_times": "soon"}, "switching_times: expected finite times"),
         ({"torque_frame": "orbit"}, "torque_frame: expected 'body' or 'space', got 'orbit'"),

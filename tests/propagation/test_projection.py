@@ -88,10 +88,10 @@ def test_invariants_hold_32_digits_and_their_gradients_16():
     probe = """
     SYMROT_EXPORT void probe(const double *y, const double *p, double *value, double *gradient)
     {
-        symrot_pair state[2], found[SYMROT_INVARIANTS];
-        for (int i = 0; i < 2; ++i) state[i] = symrot_pair_of(y[2*i], y[2*i + 1]);
-        symrot_invariants(symrot_pair_of(0.75, 0.0), state, p, found, (double (*)[SYMROT_STATES])gradient);
-        for (int m = 0; m < SYMROT_INVARIANTS; ++m) { value[2*m] = found[m].high; value[2*m + 1] = found[m].low; }
+        dd state[2], found[SYMROT_INVARIANTS];
+        for (int i = 0; i < 2; ++i) state[i] = dd_pair(y[2*i], y[2*i + 1]);
+        symrot_invariants(dd_pair(0.75, 0.0), state, p, found, (double (*)[SYMROT_STATES])gradient);
+        for (int m = 0; m < SYMROT_INVARIANTS; ++m) { value[2*m] = found[m].hi; value[2*m + 1] = found[m].lo; }
     }
     """
     source = taylor.translation_unit(program({"x": "-k*y", "y": "k*x"}), (0, 2), (1.0,), 4, text)

@@ -8,6 +8,8 @@ import pytest
 from tests.reference import stress
 from tests.reference.figures import Figure
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+FLAGS_THAT_SHIP = ("S23", "S28")  # their bars are those of fused operations
 SUITE = ("S17", "S22", "S23", "S24", "S26", "S28", "S30", "S31", "S32", "S34", "S38", "S39", "S42",
          "F1", "F2", "F3", "F4", "F8")  # fmt: skip
 # S1 to S16 and S18 to S21 are tests of their own (test_closed_form_*), as are S35 to S37 (test_conversions)
@@ -17,7 +19,9 @@ def test_the_list_is_complete():
     assert [each.id for each in stress.STRESSES] == [f"S{k}" for k in range(1, 43)]
 
 
-@pytest.mark.parametrize("name", SUITE)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.long_motion] * (name in FLAGS_THAT_SHIP)) for name in SUITE]
+)
 def test_quick_ones_meet_their_bars(name):
     (found,) = (each for each in stress.STRESSES + stress.FOUND if each.id == name)
     for figure in found.run(False):
@@ -25,6 +29,7 @@ def test_quick_ones_meet_their_bars(name):
 
 
 @pytest.mark.campaign
+@pytest.mark.long_motion
 @pytest.mark.parametrize("name", [each.id for each in stress.STRESSES + stress.FOUND if each.id != "S40"])
 def test_all_meet_their_bars_at_full_length(name):
     (found,) = (each for each in stress.STRESSES + stress.FOUND if each.id == name)

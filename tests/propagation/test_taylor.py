@@ -330,7 +330,7 @@ def test_a_recording_agrees_with_samples():
     states, _ = taylor.integration(body(), p, start, 0.0, 1e-12).sample(t)
     assert abs(solution(t) - states).max() < 1e-13
     assert (solution(0.0) == start).all() and solution.span == (-5.0, 20.0)
-    with pytest.raises(InputError, match=r"known from -5\.0 to 20\.0 s, asked for 21\.0 s"):
+    with pytest.raises(InputError, match=r"known from -5\.0 to 20\.0 s, got the time 21\.0 s"):
         solution(21.0)
 
 
@@ -384,7 +384,7 @@ def test_too_many_steps_are_refused():
         ({"y0": [1.0, math.nan]}, "states must be finite numbers"),
         ({"p": []}, "takes 1 parameters"),
         ({"t0": math.inf}, "initial time must be finite"),
-        ({"max_step": 0.0}, "longest step is a positive number"),
+        ({"max_step": 0.0}, "max_step: expected a positive number"),
     ],
 )  # fmt: skip
 def test_bad_input_is_refused_in_one_sentence(change, words):
@@ -419,7 +419,7 @@ def test_flags_that_kill_the_carry_are_noticed():
     with pytest.raises(CompilerError, match="fast-math"):
         small({"x": "-x"}, flags=("-ffast-math",))
     path = small({"x": "-x"}, flags=("-fassociative-math", "-fno-signed-zeros", "-fno-trapping-math"))
-    with pytest.raises(CompilerError, match="loses the carry"):
+    with pytest.raises(CompilerError, match="ignores rounding errors"):
         taylor.integration(path, [0.0], [1.0], 0.0, 1e-6).sample([1.0])
 
 

@@ -127,7 +127,7 @@ def test_a_torque_by_formulas_is_not_said_to_leave_the_axis():
     """This one never leaves axis 3: the plan does not look, and may not say otherwise."""
     scene = Scene.from_dict(wheel("exp(-t)"), "wheel")
     (row,) = [row for row in symrot.plan(scene).rows if row.item == "rotation out of one axis"]
-    assert not row.skipped and "is not taken to keep" in row.why
+    assert not row.skipped and "is assumed to change the axis" in row.why
 
 
 def test_explain_says_what_is_done_about_narrow_features():

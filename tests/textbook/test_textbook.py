@@ -50,5 +50,5 @@ def test_the_table_names_every_claim(survey):
 
 
 def test_an_unknown_document_is_refused():
-    with pytest.raises(InputError, match="expected one of the documents chen, "):
+    with pytest.raises(InputError, match="expected the name of a document, one of chen, "):
         document("goldstein")

@@ -1,4 +1,4 @@
-"""Provide kernels and steppers that symrot is compared with: handwritten in C, or made by other tools."""
+"""Kernels and steppers for comparisons: handwritten in C, or made by other tools."""
 
 from pathlib import Path
 
@@ -8,5 +8,5 @@ BY_HAND = Path(__file__).parent
 
 
 def text_by_hand(name: str) -> str:
-    """Return the text of a C file of this folder."""
+    """Return the text of a handwritten C file of this folder."""
     return (BY_HAND / name).read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Provide heyoka's compiled functions as addresses: its machine code then runs in the same loops as other tools'."""
+"""Compiled functions of heyoka as addresses, so that its machine code runs in the same loops as that of other tools."""
 
 import ctypes
 import subprocess
@@ -39,7 +39,7 @@ def heyoka_code(name: str) -> tuple[Any, Any, Any]:
     """
     states = _function(name).llvm_states
     if not _LOADED.exists():
-        raise ImportError(f"expected {_LOADED}, to find the library of heyoka")
+        raise ImportError(f"expected {_LOADED}, to locate the shared library of heyoka")
     for line in _LOADED.read_text(encoding="utf-8").splitlines():
         if "/libheyoka" in line:
             ctypes.CDLL(line.split(maxsplit=5)[5], ctypes.RTLD_GLOBAL)
@@ -49,7 +49,7 @@ def heyoka_code(name: str) -> tuple[Any, Any, Any]:
 
 
 def _linked(directory: Path, index: int, code: bytes) -> Any:
-    """Return the address of the function in an object file."""
+    """Return the address of the function in heyoka's object code, after linking it into a library in ``directory``."""
     (directory / f"{index}.o").write_bytes(code)
     made = directory / f"{index}.so"
     subprocess.run(

@@ -1,4 +1,4 @@
-"""Make kernels from the same textbook formulas with other tools: SymPy, SymForce, CasADi, heyoka, and by hand.
+"""Kernels made from the same textbook formulas by other tools: SymPy, SymForce, CasADi, heyoka, and by hand.
 
 Each tool gets the formulas as derived, without the named quantities of symrot's own definitions. C code is compiled
 with the flags of symrot's kernels. A tool that is not installed is skipped, and the report names it.
@@ -70,7 +70,7 @@ TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
     "rigid_body_tensor": _rigid_body,
     "heavy_top": _heavy_top,
 }
-"""The kernels that have a formula to compare with, each with its formula as a textbook has it."""
+"""The kernels that other tools can make too, each with the formula that textbooks print."""
 
 
 def textbook(name: str) -> list[sympy.Expr]:
@@ -92,7 +92,7 @@ def input_names(name: str) -> list[str]:
 
 
 def textbook_program(name: str) -> Program:
-    """Return the textbook formulas of a kernel as a program without common subexpressions."""
+    """Return the textbook formulas of a kernel as a program in which common subexpressions are not shared."""
     signature = kernel_program(name).signature
     return Program(signature, (), tuple(zip(_outputs(signature), map(to_node, textbook(name)), strict=True)))
 
@@ -102,7 +102,7 @@ def _outputs(signature: Signature) -> list[str]:
 
 
 def _program(name: str, common: Sequence[tuple[Any, Any]], results: Sequence[Any]) -> str:
-    """Return C of common terms and results, without further simplification."""
+    """Return C text that computes common terms and then results, without further simplification."""
     signature = kernel_program(name).signature
     temporaries = tuple((str(symbol), _products(to_node(value))) for symbol, value in common)
     outputs = tuple(zip(_outputs(signature), (_products(to_node(value)) for value in results), strict=True))
@@ -150,7 +150,10 @@ PEERS_IN_C: dict[str, Callable[[str], str | None]] = {"by hand": by_hand, "SymPy
 
 
 def counted(text: str, name: str) -> Counter[str]:
-    """Return the operations of a C function as :mod:`symrot.certificates.readback` reads it; equal ones count once."""
+    """Return the number of operations of each kind in a C function; equal operations count once.
+
+    :mod:`symrot.certificates.readback` reads the C text.
+    """
     text = re.sub(r"^#include.*\n", "", text, flags=re.MULTILINE)
     counts: Counter[str] = Counter()
     for node in read_kernel(text, c_name(name)).nodes:
@@ -162,7 +165,10 @@ def counted(text: str, name: str) -> Counter[str]:
 
 
 def casadi_function(name: str) -> tuple[Any, Counter[str]]:
-    """Return CasADi's function of one input vector, after common subexpression elimination, and its operations."""
+    """Return CasADi's function for a kernel, with its common subexpressions shared, and its operations by kind.
+
+    All inputs are components of one vector.
+    """
     import casadi
 
     x = casadi.SX.sym("x", len(input_names(name)))

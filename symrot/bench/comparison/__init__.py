@@ -1,1 +1,1 @@
-"""Symrot's methods and other solvers on one scene: the references, the work-precision study, the suite."""
+"""Comparisons of symrot's methods with other solvers on one scene: references, work-precision studies, the suite."""

@@ -1,9 +1,9 @@
-"""Define the contestants of a work-precision study: symrot's methods, SciPy's, and heyoka in each of its settings.
+"""Contestants of a work-precision study: symrot's methods, SciPy's, and heyoka in each of its settings.
 
 For one tolerance, a contestant prepares a function that follows the motion from its start to a time and returns the
 states there and the number of steps. Work that a user does once (deriving, compiling, heyoka's own compiling) is part
-of the preparation and not timed. Everything is called from Python, as a user calls it. SciPy gets the NumPy kernel
-that symrot emits for the scene, rewritten for single states with Python floats and :mod:`math`: half the time.
+of the preparation and not timed. Everything is called from Python, as a user calls it. SciPy gets the NumPy kernel that
+symrot emits for the scene, rewritten for single states with Python floats and :mod:`math`, which takes half the time.
 """
 
 from collections.abc import Callable, Sequence
@@ -36,7 +36,7 @@ ADAPTIVE = tuple(float(Fraction(1, 10**k)) for k in range(2, 14))  # SciPy takes
 
 
 class Contestant(NamedTuple):
-    """One curve of the study.
+    """One contestant of a study: a method with its settings, which gives one curve of time against error.
 
     ``group`` is its name in ``--methods``; ``missing`` returns why it cannot take part, or an empty text; ``prepare``
     returns the run for a tolerance.
@@ -51,7 +51,7 @@ class Contestant(NamedTuple):
     quick: bool = True  # whether it is part of a quick study
 
     def at(self, tolerances: Sequence[float]) -> "Contestant":
-        """Return the contestant with those of the tolerances that it supports; a closed form has no tolerance."""
+        """Return the contestant restricted to the tolerances that it supports; a closed form has no tolerance."""
         least = self.tolerances[-1]
         return self._replace(tolerances=tuple(t for t in tolerances if t >= least)) if least else self
 
@@ -92,7 +92,7 @@ def _symrot(method: str) -> Callable[[Problem, float], Run]:
 
 
 def _last(trajectory: Any) -> Any:
-    """Return the integrated states at the end; for a closed form, which integrates none, the state of the body."""
+    """Return the integrated states at the end of a trajectory; for a closed form, the state of the body there."""
     if trajectory.method != "exact":
         return trajectory.y[:, 0]
     y = trajectory.y[:, 0]
@@ -188,7 +188,7 @@ GROUPS = tuple(dict.fromkeys(contestant.group for contestant in CONTESTANTS))
 
 
 def chosen(methods: str | None, quick: bool) -> Sequence[Contestant]:
-    """Return the contestants of a comma-separated list of groups, or of all groups if ``methods`` is None.
+    """Return the contestants of some groups (a comma-separated list), or of all groups if ``methods`` is None.
 
     Raises
     ------
@@ -203,7 +203,7 @@ def chosen(methods: str | None, quick: bool) -> Sequence[Contestant]:
 
 
 def tolerances_from(text: str) -> tuple[float, ...]:
-    """Return the tolerances of a comma-separated list.
+    """Return the tolerances in a comma-separated list of numbers.
 
     Raises
     ------

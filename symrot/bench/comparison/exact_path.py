@@ -1,8 +1,8 @@
-"""Compute a motion to 30 digits at any time by Taylor series in mpmath; for free bodies, after any number of periods.
+"""Motions computed to 30 digits at any time by Taylor series in mpmath; for free bodies, over any number of periods.
 
-The angular velocity of a free body is periodic, and every period adds the same rotation: with period P and
-``R = q(P) q(0)^-1`` the attitude is ``q(t + n P) = R^n q(t)``. The series of one period therefore give the motion after
-a million periods, and they share nothing with the closed form that is compared with them.
+The angular velocity of a free body is periodic, and every period adds the same rotation: with period P and ``R = q(P)
+q(0)^-1`` the attitude is ``q(t + n P) = R^n q(t)``. The series of one period therefore give the motion after a million
+periods, and they share nothing with the closed form that is compared with them.
 """
 
 from fractions import Fraction
@@ -17,6 +17,7 @@ from symrot.codegen.taylor.recurrences import recurrences
 from symrot.errors import InputError, SymrotError
 from symrot.formula import exact_numbers as number
 from symrot.formula.tree import evaluate
+from symrot.kinematics.hamilton import hamilton
 from symrot.planning.scene_kernel import EXACT_FUNCTIONS
 from symrot.propagation.compiled_models import error_blocks, formula_deviations
 from symrot.propagation.enclosures.step_limit import longest_followed
@@ -29,7 +30,7 @@ Floats = NDArray[np.float64]
 DIGITS, ORDER, TAIL = 40, 32, 1e-28
 FUNCTIONS = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
 MOST_STEPS = 2000
-SLOWEST = 1e-8  # of the initial speed (rad/s if that is zero): errors of slower bodies are relative to it
+SLOWEST = 1e-8  # part of the initial speed (rad/s if it is zero): errors of slower bodies are relative to it
 
 
 def _as_mpf(value: Fraction) -> Any:
@@ -37,7 +38,7 @@ def _as_mpf(value: Fraction) -> Any:
 
 
 class ExactPath:
-    """The integrated states of a motion, computed in 40 digits from the exact numbers of its scene."""
+    """Reference for one motion: its integrated states, computed in 40 digits from the exact numbers of the scene."""
 
     def __init__(self, motion: Motion) -> None:
         self.motion, plan, kernel = motion, motion.plan, motion.kernel
@@ -57,11 +58,11 @@ class ExactPath:
         self.edges = error_blocks(plan)[0]
         self.span = abs(_as_mpf(Fraction(plan.scene.span.stop) - Fraction(plan.scene.span.start)))
         self.slowest = SLOWEST * (max([abs(x) for x in self.start[: self.rates]], default=0) or 1)
-        self.pieces: list[tuple[Any, Any, list[Any]]] = []  # from, to, coefficients of each state
+        self.pieces: list[tuple[Any, Any, list[Any]]] = []  # start and end of the step, coefficients of each state
         self._end: tuple[Any, list[Any]] = (self.t0, self.start)
 
     def _advance(self) -> None:
-        """Add one step."""
+        """Add one Taylor step at the end of the path."""
         now, state = self._end
         known = self.parameters | {"t": now} | dict(zip(self.system.states, state, strict=True))
         series = coefficients(self.system, ORDER, known, self.functions, _as_mpf)
@@ -92,7 +93,7 @@ class ExactPath:
         return [mpmath.polyval(one[::-1], step) for one in series]
 
     def _state(self, t: Any) -> list[Any]:
-        """Return the states at one time, not before the start."""
+        """Return the states at one time, which is not before the start, in 40 digits."""
         while self._end[0] < t:
             self._advance()
         low, high = 0, len(self.pieces)
@@ -132,10 +133,12 @@ class ExactPath:
                         root = self._newton(t)
                         if root is not None and root > self.t0:
                             return root - self.t0
-        raise InputError("the angular velocity does not come back: expected a free body off its separatrix")
+        raise InputError("expected a free body off its separatrix, got one whose angular velocity does not return")
 
     def _newton(self, t: Any) -> Any:
-        """Return the time near t at which the angular velocity has its initial value, or None."""
+        """Return the time near t at which the angular velocity has its initial value, by Newton's method; None if it
+        fails.
+        """
         start = self.start[: self.rates]
         self._state(self.t0)
         speeds = [one[1] for one in self.pieces[0][2][: self.rates]]
@@ -159,7 +162,7 @@ class ExactPath:
         period = self.period()
         with mpmath.workdps(DIGITS):
             first, last = self.start[self.rates :], self._state(self.t0 + period)[self.rates :]
-            turn = _product(last, [first[0], *(-x for x in first[1:])])
+            turn = hamilton(last, [first[0], *(-x for x in first[1:])])
             length = mpmath.sqrt(sum(x * x for x in turn[1:]))
             half, axis = mpmath.atan2(length, turn[0]), [x / length for x in turn[1:]]
             rows = []
@@ -168,12 +171,5 @@ class ExactPath:
                 count = mpmath.floor(t / period)
                 state = self._state(self.t0 + (t - count * period))
                 whole = [mpmath.cos(count * half), *(mpmath.sin(count * half) * x for x in axis)]
-                rows.append([*state[: self.rates], *_product(whole, state[self.rates :])])
+                rows.append([*state[: self.rates], *hamilton(whole, state[self.rates :])])
             return np.array([[float(x) for x in row] for row in rows])
-
-
-def _product(p: list[Any], q: list[Any]) -> list[Any]:
-    a, b, c, d = p
-    e, f, g, h = q
-    return [a * e - b * f - c * g - d * h, a * f + b * e + c * h - d * g, a * g - b * h + c * e + d * f,
-            a * h + b * g - c * f + d * e]  # fmt: skip

@@ -1,4 +1,4 @@
-"""Run heyoka and SciPy on the same right-hand sides that symrot emits, for comparisons."""
+"""Runs of heyoka and SciPy on the same right-hand sides that symrot emits, for comparisons."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -19,7 +19,7 @@ FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log", "tan", "sinh", "cosh", "tanh", 
 
 
 def heyoka_system(rates: Program, parameters: Mapping[str, float]) -> list[Any]:
-    """Return heyoka's form of a right-hand side, its parameters compiled in as numbers."""
+    """Return a right-hand side in heyoka's form; the values of parameters are compiled in as numbers."""
     import heyoka
 
     names = [name for name, *_ in rates.signature.argument("y").components]
@@ -33,9 +33,9 @@ def heyoka_integrator(
     rates: Program, parameters: Mapping[str, float], start: Sequence[float], tolerance: float,
     settings: dict[str, bool], began: float = 0.0,
 ) -> Callable[[float], tuple[Any, int]] | None:  # fmt: skip
-    """Return a function from the end of a span to the last state and the number of steps; ``began`` is its start, s.
+    """Return a function from the end of a span, s, to the last state and the number of steps by heyoka.
 
-    Without heyoka it returns None.
+    ``began`` is the start of the span, s. Without heyoka the result is None.
     """
     try:
         import heyoka
@@ -53,7 +53,8 @@ def heyoka_integrator(
 
 
 def scalar_kernel(program: Program) -> Callable[..., Any]:
-    """Return ``f(t, y, p)`` for SciPy: the emitted NumPy kernel, rewritten for one state at a time as an expert would.
+    """Return the emitted NumPy kernel as ``f(t, y, p)`` for SciPy, rewritten for one state at a time as an expert
+    would.
 
     Python floats and :mod:`math` replace zero-dimensional arrays, which halves the time. The state is a list.
     """

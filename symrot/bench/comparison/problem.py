@@ -1,4 +1,4 @@
-"""Describe a scene for a comparison of methods: plan, kernel, initial state, the times of comparison, the error."""
+"""A scene prepared for a comparison of methods: plan, kernel, initial state, times of comparison, measure of errors."""
 
 import math
 from collections.abc import Sequence
@@ -28,14 +28,14 @@ REST = 1e-3
 
 
 class State(NamedTuple):
-    """The state of a body: angular velocity (3,) in the body frame, rad/s; attitude (4,), or None if not computed."""
+    """State of a body: angular velocity (3,), body axes, rad/s; attitude (4,), or None if it is not computed."""
 
     omega: Floats
     quaternion: Floats | None
 
 
 class Problem:
-    """A scene with its kernel and the numbers of its parameters.
+    """Scene with its kernel and the numbers of its parameters, for a comparison of methods.
 
     ``plan`` may differ from the scene's own plan, for example the most general one.
     """
@@ -51,7 +51,7 @@ class Problem:
 
     @cached_property
     def kernel(self) -> SceneKernel:
-        """The derived kernels."""
+        """The kernel of the scene, which computes rates and quantities."""
         return scene_kernel(self.plan)
 
     @cached_property
@@ -101,7 +101,7 @@ class Problem:
 
     @staticmethod
     def worst(states: Sequence[State], exact: Sequence[State]) -> float:
-        """Return the largest of the errors at several times."""
+        """Return the largest error of a method at several times."""
         largest = max(float(np.linalg.norm(state.omega)) for state in exact)
         return max(
             Problem.error(computed, expected, REST * largest) for computed, expected in zip(states, exact, strict=True)

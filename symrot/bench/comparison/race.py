@@ -1,4 +1,4 @@
-"""Time runs against one another in processor time, alternately, so that all run under the same conditions.
+"""Processor times of several runs that alternate, so that all run under the same conditions.
 
 A run of microseconds is repeated until the clock can resolve it; a run of seconds is timed in fewer rounds. The median
 of the rounds is the result; the least time is recorded too.
@@ -13,20 +13,20 @@ from typing import Any
 
 __all__ = ["Measured", "race", "rounds_for", "seconds_of", "work_ahead"]
 
-SHORTEST = 2e-3  # s, what one turn lasts at least: long enough to find its code and numbers in the caches
+SHORTEST = 2e-3  # s, least duration of one timing: long enough to load code and numbers into the caches
 MOST_REPEATS = 200
-SLOW, SLOW_ROUNDS = 0.2, 2  # a run of that many seconds gets so many turns
+SLOW, SLOW_ROUNDS = 0.2, 2  # a run that takes so many seconds is timed so often
 
 
 @dataclass
 class Measured:
-    """One contestant at one tolerance: its steps and error, and its seconds in each round."""
+    """One contestant at one tolerance: steps, error, and processor seconds in each round."""
 
     name: str
     tolerance: float
     steps: int
     error: float
-    first: float  # seconds of the run that the error was taken from
+    first: float  # seconds of the first run, whose error is recorded
     seconds: list[float] = field(default_factory=list)
 
     @property
@@ -45,7 +45,7 @@ class Measured:
 
 
 def seconds_of(run: Callable[[], object], repeats: int = 1) -> float:
-    """Return the processor seconds of one run."""
+    """Return the processor seconds of one run, averaged over ``repeats`` runs."""
     began = process_time()
     for _ in range(repeats):
         run()
@@ -53,7 +53,7 @@ def seconds_of(run: Callable[[], object], repeats: int = 1) -> float:
 
 
 def rounds_for(seconds: float, rounds: int) -> int:
-    """Return in how many rounds a run of this duration is timed."""
+    """Return the number of rounds in which a run of a given duration, s, is timed."""
     return rounds if seconds < SLOW else min(rounds, SLOW_ROUNDS)
 
 
@@ -62,7 +62,7 @@ def _repeats(seconds: float) -> int:
 
 
 def work_ahead(measured: Iterable[Measured], rounds: int) -> float:
-    """Return an estimate of the seconds that the race takes."""
+    """Return an estimate of the seconds that all rounds will take."""
     return sum(one.first * _repeats(one.first) * rounds_for(one.first, rounds) for one in measured)
 
 

@@ -1,4 +1,4 @@
-"""Compute reference states of a scene's motion in several independent ways, and the differences between them.
+"""Reference states of a scene's motion, computed in several independent ways, and the differences between them.
 
 ===========================  =====================  ============================  ==========================
 reference                    equations              method                        arithmetic
@@ -6,9 +6,9 @@ reference                    equations              method                      
 ``taylor``                   the scene's own        Taylor series of order 28     mpmath, 40 digits
 ``dop853 in long double``    most general: full     Dormand-Prince, fixed steps,  the C compiler's long
                              tensor, no shortcut    halved until nothing changes  double, where it is longer
-``closed form``              none                   theta functions               double-double, double
+``closed form``              (no equations)         theta functions               double-double, double
 ``extrapolated midpoints``   the scene's own        Gragg's rule, order 16,       long double
-                                                    halved likewise
+                                                    steps halved as above
 ===========================  =====================  ============================  ==========================
 
 No reference steps over a feature of a torque, such as a narrow pulse: enclosures of the torque limit the steps of the
@@ -17,8 +17,8 @@ series, and fixed steps are short where the stepper of the scene, limited in the
 The first available reference is used, and the others are compared with it. References that contradict one another are
 an error; errors of methods below the difference between references mean nothing. The last reference is computed only
 where just one of the others is available, as for torques without a Taylor series. All references start from the exact
-numbers of the scene, not from rounded ones: a method that rounds its parameters makes an error by it. References that
-take minutes are stored in the cache of kernels.
+numbers of the scene, so that the rounding of parameters counts as an error of a method. References that take minutes
+are stored in the cache of kernels.
 """
 
 import ctypes
@@ -62,19 +62,19 @@ Progress = Callable[[str], object]
 DIGITS, ORDER, TAIL = 40, 28, 1e-26
 MOST_SECONDS = 150.0  # for the series; it is abandoned as soon as it is bound to take longer
 MOST_LONG_SECONDS = 20.0  # for fixed steps in long double
-MOST_STEPS = 2_000_000  # likewise
+MOST_STEPS = 2_000_000  # limit of fixed steps, like MOST_SECONDS
 FEWEST_STEPS = 64
-GRID_TOLERANCE = 1e-8  # of the motion whose steps show where fixed steps must be short
+GRID_TOLERANCE = 1e-8  # tolerance of the motion whose steps show where fixed steps must be short
 CONTRADICTION = 1e-6  # a larger difference between references means that one of them is wrong
 CONVERGED = 4e-19  # error per radian of rotation (at least one radian) that long double can reach
 ROUNDED = 1e-15  # per radian: smaller changes may be rounding errors, larger ones come from corners in the torque
-LONG_DOUBLE_BITS = 63  # in the fraction, at least; otherwise long double is no better than double
+LONG_DOUBLE_BITS = 63  # bits of the fraction, at least; otherwise long double is no better than double
 LITERAL = re.compile(r"(?<![\w.])(\d+\.\d*(?:[eE][+-]?\d+)?|\d+[eE][+-]?\d+)(?![\w.])")
 CALLS = re.compile(r"\b(sqrt|sin|cos|tan|exp|log|fabs|sinh|cosh|tanh|asin|acos|atan|atan2|pow)\(")
 
 
 class Reference(NamedTuple):
-    """The reference states of a motion, the name of their computation, and the differences of the other ones."""
+    """Reference states of a motion, the name of the computation, and its differences from other computations."""
 
     states: tuple[State, ...]
     name: str
@@ -97,11 +97,11 @@ class Reference(NamedTuple):
 
 
 class _Unavailable(Exception):
-    """Raised by a reference that is not available for this motion or on this machine; the text says why."""
+    """Signal that a reference is not available for this motion or on this machine; the text says why."""
 
 
 def reference(problem: Problem, say: Progress = lambda text: None, seconds: float = MOST_SECONDS) -> Reference:
-    """Return the reference states of a scene's motion, and how far the other references are from them.
+    """Return the reference states of a scene's motion, with the differences of other references from them.
 
     Raises
     ------
@@ -163,7 +163,7 @@ def _exact_start(plan: Plan) -> list[Fraction]:
 
 
 def _taylor(problem: Problem, say: Progress, seconds: float) -> list[State]:
-    """Return the states by Taylor series in 40 digits, or from the cache."""
+    """Return the reference states by Taylor series in 40 digits, computed now or loaded from the cache."""
     import mpmath
 
     rough = non_smooth_torque(problem.plan)
@@ -255,22 +255,22 @@ def longer(source: str) -> str:
 
 
 def _long_double(problem: Problem, say: Progress, seconds: float) -> list[State]:
-    """Return the states by DOP853 with fixed steps, from the most general equations."""
+    """Return the reference states by DOP853 in long double with fixed steps, from the most general equations."""
     general = Problem(problem.scene, Plan(problem.scene, general_structure(problem.scene), ()))
     return _converged(general, "dop853", (HEADER, BY_HAND / "fixed_step.c"), seconds)
 
 
 def _extrapolated(problem: Problem, say: Progress, seconds: float) -> list[State]:
-    """Return the states by extrapolated midpoint rules with fixed steps, from the scene's own equations."""
+    """Return the reference states by extrapolated midpoint rules with fixed steps, from the scene's own equations."""
     return _converged(problem, "extrapolation", (BY_HAND / "extrapolation.c",), seconds)
 
 
 def _converged(general: Problem, name: str, files: Sequence[Path], seconds: float) -> list[State]:
-    """Return the states by fixed steps in long double, shortened until they make no difference."""
+    """Return the reference states by fixed steps in long double, halved until the result no longer changes."""
     if cache.missing():
         raise _Unavailable("no C compiler")
     if np.finfo(np.longdouble).nmant < LONG_DOUBLE_BITS or ctypes.sizeof(ctypes.c_longdouble) == 8:
-        raise _Unavailable("long double is no longer than double here")
+        raise _Unavailable("long double has no more digits than double on this machine")
     sizes = np.array(_sizes(general))
     turned = max(1.0, (general.stop - general.start) * max(sizes))
     steps, before, finest = max(FEWEST_STEPS, int(turned)), None, None
@@ -280,7 +280,7 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
         path = follow(steps)
         if np.isfinite(path.astype(float)).all():
             now = change if before is None else float(np.max(np.abs(path - before) / sizes))
-            if before is not None and now >= change and change <= ROUNDED * turned:  # rounding has taken over
+            if before is not None and now >= change and change <= ROUNDED * turned:  # rounding errors dominate
                 break
             if before is not None:
                 finest, change = path, min(now, change)
@@ -289,7 +289,7 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
             before = path
         steps = int(steps * 1.5)
     if finest is None:
-        raise _Unavailable("it needs more steps than allowed")
+        raise _Unavailable("the fixed steps needed are more than allowed")
     return [_long_state(general, state, end) for state, end in zip(finest, general.ends, strict=True)]
 
 
@@ -350,7 +350,7 @@ def _fixed_steps(
 
 
 def _long_state(general: Problem, y: Any, end: float) -> State:
-    """Return the state of the body, evaluated in long double."""
+    """Return the state of the body from integrated states, evaluated in long double."""
     exact = _exact_parameters(general.kernel.quantity_parameters, general.plan)
     values: dict[str, Any] = dict(zip(general.plan.states, y, strict=True)) | {"t": np.longdouble(end)}
     values |= {name: _long_number(value) for name, value in exact.items()}
@@ -378,7 +378,7 @@ def _long(values: Iterable[Fraction]) -> Any:
 
 def _closed_form(problem: Problem, say: Progress, seconds: float) -> list[State]:
     if exact_form(problem.scene) is None:
-        raise _Unavailable("the motion has no closed form")
+        raise _Unavailable("symrot has no closed form of this motion")
     trajectory = propagator(problem.scene, method="exact")(problem.ends)
     attitude = trajectory.quaternion if problem.plan.structure.attitude else [None] * len(problem.ends)
     return list(map(State, trajectory.omega, attitude))

@@ -1,4 +1,4 @@
-"""Run the suite: a work-precision study of one motion of each kind, with figures and a table.
+"""The benchmark suite: a work-precision study of one motion of each kind, with figures and a table.
 
 ``symrot bench --suite`` writes into a folder (default ``generated/bench``): ``suite.png`` with the ratios of all
 motions, ``motions.png`` with the curves of each motion, ``suite.json`` with every study, and ``suite.md`` with the
@@ -46,7 +46,7 @@ def motions() -> dict[str, tuple[str, Scene]]:
 
 
 class _Checkpoint:
-    """The studies of an interrupted run, in a file that is used only by a run with the same settings."""
+    """Finished studies of an interrupted run, in a file that only a run with the same settings uses."""
 
     def __init__(self, directory: Path, **settings: Any) -> None:
         self.path = directory / "unfinished.json"
@@ -77,7 +77,8 @@ def run(
     tolerances: Sequence[float] = (),
     rounds: int | None = None,
 ) -> tuple[dict[str, Any], list[str]]:
-    """Study every motion, write the files, and return the results as data for JSON and as lines of text.
+    """Return the results of the suite as data for JSON and as lines of text, after studying all motions and writing
+    files.
 
     Raises
     ------
@@ -87,7 +88,7 @@ def run(
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as reason:
-        raise InputError(f"-o: {str(directory)!r} cannot be made: {reason.strerror or reason}") from None
+        raise InputError(f"-o: the folder {str(directory)!r} cannot be created: {reason.strerror or reason}") from None
     check_target(directory / "suite.json", (".json",), "-o")
     drawing = find_spec("matplotlib") is not None
     finished = _Checkpoint(directory, methods=methods, quick=quick, tolerances=list(tolerances), rounds=rounds)
@@ -121,7 +122,7 @@ def run(
 
 
 def _compact(results: Mapping[str, Any]) -> str:
-    """Return JSON with one line for each motion and numbers rounded to their meaningful digits."""
+    """Return the results as JSON text with one line for each motion; numbers are rounded to their meaningful digits."""
     studies = results["studies"].items()
     rows = ",\n".join(f"{json.dumps(name)}: {json.dumps(_short(one), ensure_ascii=False)}" for name, one in studies)
     rest = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in results.items() if key != "studies")
@@ -158,7 +159,7 @@ def _cell(one: Mapping[str, Any], peer: str, side: str = "stepped") -> str:
 
 
 def _ratio(middle: float, least: float) -> str:
-    """Return a median ratio and, in brackets, the least one; each with at least two digits and no power of ten."""
+    """Return a median ratio and, in brackets, the least one as text, each with at least two digits."""
     return " ".join(
         form.format(f"{value:.{0 if value >= 10 else 1}f}") for form, value in (("{}", middle), ("({})", least))
     )
@@ -196,14 +197,14 @@ LEGEND = (
 
 
 def lines(results: Mapping[str, Any]) -> list[str]:
-    """Return the table as lines of text; the first is the title."""
+    """Return the table of the suite as lines of text; the first is the title."""
     rows = _rows(results)
     table = columns(rows, width=room(220), wrap=0, right=range(1, len(rows[0])))
     return ["The suite: times of others over symrot's, at equal error", "", *table, "", *columns([[LEGEND]])]
 
 
 def page(results: Mapping[str, Any]) -> str:
-    """Return the table as a Markdown page."""
+    """Return the table of the suite as a Markdown page."""
     head, *rows = _rows(results)
     one = next(iter(results["studies"].values()))
     machine = one["machine"]

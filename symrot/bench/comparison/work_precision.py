@@ -1,4 +1,4 @@
-"""Study the time and the error of every available method on one scene (a work-precision study).
+"""Work-precision study: time and error of every available method on one scene.
 
 Each contestant runs over a range of tolerances. Its error is the largest at four times of the span, each reached by a
 separate run, against a more precise reference (:mod:`symrot.bench.comparison.reference`). Runs over the whole span are
@@ -38,11 +38,11 @@ OURS = ("exact", "exact with set-up", *STEPPED)
 
 
 class Effort(NamedTuple):
-    """The limits of a study's duration."""
+    """Limits of the duration of a study."""
 
     rounds: int
     longest: float  # s: after a longer run, the tighter tolerances of its contestant are skipped
-    every: int  # of a contestant with two tolerances per decade, each such tolerance is run
+    every: int  # every so many of a contestant's tolerances, two per decade, one is run
     reference: float  # s, for the computation of the reference
 
 
@@ -60,7 +60,7 @@ def study(
     tolerances: Sequence[float] = (),
     rounds: int | None = None,
 ) -> dict[str, Any]:
-    """Return the study as data for JSON.
+    """Return a work-precision study of one scene as data for JSON.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def study(
 
 
 def digest(problem: Problem) -> str:
-    """Return a hash of the motion: equal for equal body, start, torques and span, whatever the title."""
+    """Return a hash of a motion, which is equal for equal body, start, torques and span, whatever the title."""
     scene = problem.scene
     moving = (scene.body.inertia, scene.initial, scene.torques, scene.span.start, scene.span.stop, problem.names)
     return hashlib.sha256(repr(moving).encode()).hexdigest()[:16]
@@ -124,7 +124,7 @@ def digest(problem: Problem) -> str:
 def _entries(
     problem: Problem, contestants: Sequence[Contestant], effort: Effort, exact: Sequence[State], say: Progress
 ) -> tuple[list[Entry], list[dict[str, str]]]:
-    """Return every run with its error, and the methods that were skipped with the reason."""
+    """Return every run of every contestant with its error, and the contestants that were skipped with the reason."""
     entries: list[Entry] = []
     skipped = []
     for contestant in contestants:
@@ -164,7 +164,7 @@ def _entry(problem: Problem, contestant: Contestant, tolerance: float, exact: Se
 
 
 def best(runs: Iterable[dict[str, Any]], error: float) -> dict[str, Any] | None:
-    """Return the fastest of the runs with at most this error, or None."""
+    """Return the fastest run whose error is at most ``error``, or None if there is no such run."""
     good = [run for run in runs if run["error"] <= error]
     return min(good, key=lambda run: float(run["seconds"]), default=None)
 
@@ -195,9 +195,9 @@ def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str
 
 
 def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return, for each peer, the ratios of its time to that of symrot's steppers, and to that of all symrot methods.
+    """Return, for each peer, median and least ratio of its time to symrot's steppers, and to all methods of symrot.
 
-    Each with median and least. If heyoka ran in several settings, the fastest setting at each decade is one more peer.
+    If heyoka ran in several settings, its fastest setting at each decade is one more peer.
     """
     peers = list(dict.fromkeys(name for row in rows for name in row["methods"] if name not in (*OURS, "symrot scipy")))
     settings = [name for name in peers if name.startswith("heyoka")]
@@ -229,7 +229,7 @@ def _ratios(rows: Sequence[dict[str, Any]], ours: Sequence[str], theirs: Sequenc
 
 
 def machine() -> dict[str, Any]:
-    """Return the machine and the versions with which the seconds were measured."""
+    """Return a description of the machine, and the versions of programs, with which times were measured."""
     return {
         "processor": _processor(), "cores": os.cpu_count(), "load": list(os.getloadavg()) if _has_load() else None,
         "python": platform.python_version(), "numpy": np.__version__,

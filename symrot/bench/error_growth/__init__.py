@@ -1,1 +1,1 @@
-"""How errors grow along a motion, at gimbal lock, and in the points of a body."""
+"""Growth of errors along a motion, near gimbal lock, and in the points of a body."""

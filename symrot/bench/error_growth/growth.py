@@ -1,4 +1,4 @@
-"""Measure how the error of each method grows along one motion, and how its invariants drift.
+"""Growth of the error of each method along one motion, and drift of its conserved quantities.
 
 The reference is :class:`symrot.bench.comparison.exact_path.ExactPath`, with at least 30 digits at any time. Every
 method runs at its most accurate: symrot's methods at the tightest tolerance, SciPy's at the least rtol it accepts, and
@@ -30,12 +30,12 @@ __all__ = ["FROM", "METHODS", "Curve", "Track", "exponent", "growth"]
 Floats = NDArray[np.float64]
 
 TIGHTEST, SCIPY_RTOL, SCIPY_ATOL = 1e-15, 3e-14, 1e-15
-STEPS_PER_TURN = 200  # of RK4
+STEPS_PER_TURN = 200  # steps of RK4 per revolution
 FROM = 30.0  # revolutions: the power of growth is fitted from there on
 
 
 class Curve(NamedTuple):
-    """The errors of one method along one motion, at the times of the track; nan after the time where it stopped."""
+    """Errors of one method along one motion, at several times; nan after the time at which it stopped."""
 
     method: str
     attitude: Floats  # rad, shape (n,)
@@ -44,7 +44,7 @@ class Curve(NamedTuple):
 
 
 class Track:
-    """A motion with the times at which its methods are compared.
+    """One motion with the times at which methods are compared.
 
     Parameters
     ----------
@@ -67,15 +67,15 @@ class Track:
 
     @staticmethod
     def rough(scene: Scene) -> str:
-        """Return why a motion has no Taylor series, or an empty text."""
+        """Return a sentence that says why a motion has no Taylor series, or an empty text if it has one."""
         return non_smooth_torque(propagator(scene, "scipy").plan)
 
     def trajectory(self, states: Floats, motion: Motion | None = None) -> Trajectory:
-        """Return the states of a method as a trajectory."""
+        """Return the states that a method computed as a trajectory of the motion."""
         return Trajectory(motion or self.motion, self.times[: len(states)], states, "", Stats(0, 0, 0, 0.0), "")
 
     def curve(self, method: str, trajectory: Trajectory) -> Curve:
-        """Return the errors of a method."""
+        """Return the errors of a method along the motion, from its trajectory."""
         count, blank = len(trajectory), np.full(len(self.times), np.nan)
         q, r = trajectory.quaternion, self.truth.quaternion[:count]
         chord = np.minimum(*(np.linalg.norm(q - sign * r, axis=1) for sign in (1, -1)))
@@ -90,7 +90,7 @@ class Track:
         return Curve(method, attitude, rates, invariants)
 
     def turns(self, t: float) -> float:
-        """Return the revolutions in t s at the initial angular speed."""
+        """Return the number of revolutions in t s at the initial angular speed."""
         return self.speed * t / (2.0 * math.pi)
 
 
@@ -155,7 +155,10 @@ def _rk4(normalised: bool) -> Callable[[Track, Floats], Trajectory | None]:
 
 
 class Method(NamedTuple):
-    """A method: name, description, the most revolutions it runs for (by default, and with ``--long``), and its run."""
+    """One method of following a motion: name, description, limits of revolutions, and the function that runs it.
+
+    There are two limits: the default, and that with ``--long``.
+    """
 
     name: str
     about: str
@@ -189,7 +192,9 @@ def growth(track: Track, long: bool = False, say: Callable[[str], object] = lamb
 
 
 def exponent(revolutions: Floats, errors: Floats) -> float:
-    """Return the exponent k of errors that grow as t^k, fitted after :data:`FROM` revolutions; nan for too few."""
+    """Return the exponent k of errors that grow as t^k, fitted after :data:`FROM` revolutions; nan for too few
+    points.
+    """
     chosen = (revolutions >= FROM) & np.isfinite(errors) & (errors > 0.0) & (errors < 0.5)
     if int(chosen.sum()) < 4:
         return math.nan
@@ -197,6 +202,6 @@ def exponent(revolutions: Floats, errors: Floats) -> float:
 
 
 def median_curve(curves: list[Any], name: str) -> Floats:
-    """Return the median, over several motions, of the column ``name`` of one method's curves."""
+    """Return the median over several motions of one method's errors; ``name`` is the field of :class:`Curve`."""
     medians: Floats = np.exp(np.median(np.log(np.array([getattr(c, name) for c in curves]) + 1e-18), axis=0))
     return medians

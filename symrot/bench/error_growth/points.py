@@ -1,9 +1,10 @@
-"""Move points of a body along their velocity: along the tangent the body grows, along the secant it does not.
+"""Points of a body moved along their velocity: with tangent steps the body grows, with secant steps it does not.
 
-``r + h (omega x r)`` is longer than r, because the step is perpendicular to r:
-``|r'|^2 = |r|^2 + h^2 |omega x r|^2``. For r perpendicular to the axis, the length grows by the factor
-``sqrt(1 + (omega h)^2)``. The secant joins two points of the circle: ``r' = r + h omega x (r + r')/2`` keeps the length
-exactly. These laws are decided exactly for every report (:func:`laws`) and compared with a step-by-step computation.
+``r + h (omega x r)`` is longer than r, because the step is perpendicular to r: ``|r'|^2 = |r|^2 + h^2 |omega x r|^2``.
+For r perpendicular to the axis, the length grows by the factor ``sqrt(1 + (omega h)^2)``. The secant joins two points
+of the circle: ``r' = r + h omega x (r + r')/2`` keeps the length exactly. These laws are decided exactly for every
+report (:func:`laws`) and compared with a step-by-step computation.
+
 Source: Chen, Rigid Body Rotation, slides 25-27.
 """
 
@@ -22,18 +23,18 @@ Floats = NDArray[np.float64]
 
 
 class Carried(NamedTuple):
-    """The result of moving points with one step size: growth of the body, growth by the law, strain, and error."""
+    """Result of moving points of a body with one step size: growth by computation and by the law, strain, and error."""
 
     scheme: str
     h: float  # s
     growth: float  # largest |r| at the end over that at the start
     derived: float  # growth of the tangent step by the law, along the exact motion; 1 for other schemes
     strain: float  # largest relative change of a distance between two points, apart from uniform growth
-    error: float  # of positions, over the size of the body
+    error: float  # largest error of positions, relative to the size of the body
 
 
 def laws() -> list[tuple[str, bool]]:
-    """Decide each law of one step exactly, and return it with whether it holds."""
+    """Return the laws of one tangent or secant step, each with whether it was proven exactly."""
     from sympy import Matrix, eye, symbols
 
     from symrot.exact import is_zero
@@ -96,7 +97,7 @@ SCHEMES = {
 
 
 def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.0, 2.0, 3.0)) -> list[Carried]:
-    """Move the corners of a box along with a motion, and return the result for each scheme and step."""
+    """Return, for each scheme and step size, how a box changes whose corners are moved along a motion."""
     points, results = _corners(size), []
     motion = propagator(scene)
     for h in steps:
@@ -119,7 +120,10 @@ def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.
 
 
 def _strain(first: Floats, last: Floats) -> float:
-    """Return the change of shape, apart from the change of size: the spread of the ratios of distances."""
+    """Return the change of shape between two sets of points: the spread of the ratios of their distances.
+
+    A uniform change of size does not count.
+    """
     pairs = np.triu_indices(len(first), 1)
     before, after = (np.linalg.norm(each[pairs[0]] - each[pairs[1]], axis=1) for each in (first, last))
     ratios = after[before > 0.0] / before[before > 0.0]

@@ -1,4 +1,4 @@
-"""Measure numerical stability: growth of errors, drift of invariants, Euler singularities, moving points of a body.
+"""Numerical stability: growth of errors, drift of invariants, Euler singularities, moving points of a body.
 
     symrot bench --stability [SCENE] [--long] [--plot FILE.png] [--json]
 
@@ -34,8 +34,8 @@ PLATE = (
     3,
     4,
 )  # kg m^2: (B - C)/A and its permutations are exact in doubles, so that all methods rotate the same body
-POWERS = {False: 5, True: 6}  # of ten revolutions
-SAMPLES = 241  # of a scene
+POWERS = {False: 5, True: 6}  # exponent of ten: revolutions, by default and with --long
+SAMPLES = 241  # samples of a scene
 PASSES = ("1/10", "1/1000", "1/100000", "1/10000000", "1/1000000000", 0)  # rad from gimbal lock
 SEQUENCE = "ZXZ"
 STEPS = (0.1, 0.01, 0.001)  # s
@@ -55,7 +55,7 @@ def _scene(title: str, body: Any, omega: Any, attitude: Any = None) -> Scene:
 
 
 def stability(scene: Scene | None = None, long: bool = False, say: Callable[[str], object] = lambda t: None) -> Any:
-    """Return the report as data for JSON.
+    """Return the report on numerical stability as data for JSON.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def _median(rows: list[Floats], count: int) -> Floats:
 
 def _of_scene(scene: Scene, long: bool, say: Callable[[str], object]) -> dict[str, Any]:
     if not scene.span.stop > scene.span.start:
-        raise InputError(f"{scene.name}: span: expected an end after the start")
+        raise InputError(f"{scene.name}: span: expected a last time after the first time")
     times = np.linspace(float(scene.span.start), float(scene.span.stop), SAMPLES)
     say(f"{scene.name}: truth in 30 digits ..")
     track = Track(scene, times, periodic=False)
@@ -143,7 +143,10 @@ def _curve(
 
 
 def passes() -> list[dict[str, Any]]:
-    """Return steps and errors of passes near gimbal lock: with the quaternion, with switched and with fixed angles."""
+    """Return steps and errors of motions that pass near gimbal lock.
+
+    The state is the quaternion, Euler angles with switched sequences, or Euler angles of one sequence.
+    """
     t, rows = np.linspace(-3, 8, 45), []
     for distance in PASSES:
         attitude = {"sequence": SEQUENCE, "angles": ["1/5", distance, "3/10"]}
@@ -187,7 +190,7 @@ def _worst(values: Iterable[float | None]) -> float | None:
 
 
 def lines(results: Any) -> list[str]:
-    """Return the report as lines of text."""
+    """Return the report on numerical stability as lines of text."""
     return [*_growth_lines(results["growth"]), "", *_pass_lines(results["passes"]), "", *_point_lines(results)]
 
 
@@ -260,7 +263,8 @@ def _point_lines(results: Any) -> list[str]:
 
 
 def report(scene: str | None, long: bool, plot: Path | None, say: Callable[[str], object]) -> Any:
-    """Return the report of a shipped scene or a scene file, or of the plate if ``scene`` is None; plot it if asked to.
+    """Return the report on numerical stability of a scene, or of the free plate if ``scene`` is None; plot it on
+    request.
 
     Raises
     ------
@@ -276,7 +280,7 @@ def report(scene: str | None, long: bool, plot: Path | None, say: Callable[[str]
 
 
 def _finite(value: Any) -> Any:
-    """Return data with None in place of nan and infinities, which JSON does not have."""
+    """Return data for JSON with None in place of nan and infinities."""
     if isinstance(value, dict):
         return {key: _finite(each) for key, each in value.items()}
     if isinstance(value, list):

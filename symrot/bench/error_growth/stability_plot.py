@@ -1,4 +1,4 @@
-"""Plot the report of :mod:`~symrot.bench.error_growth.stability` on one page."""
+"""Plot of the report of :mod:`~symrot.bench.error_growth.stability` on one page."""
 
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ LOOKS: dict[str, dict[str, Any]] = {
 
 
 def figure(results: Any) -> Any:
-    """Return the page as a Matplotlib figure."""
+    """Return the report on numerical stability as a Matplotlib figure."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
@@ -60,7 +60,7 @@ def _rates(axes: Any, data: Any) -> None:
 
 
 def _smoothed(at: Any, values: Any, linear: bool) -> Any:
-    """Return the largest value so far along a span, since an error that crosses zero is not small there."""
+    """Return the largest error so far at each time, since an error that crosses zero is not small there."""
     if not linear:
         return values
     largest = np.fmax.accumulate(values)
@@ -102,7 +102,7 @@ def _curves(axes: Any, data: Any, what: str) -> None:
 
 
 def _slopes(axes: Any, at: Any, powers: tuple[float, ...]) -> None:
-    """Draw what grows as powers of the time, for comparison."""
+    """Draw lines that grow as powers of the time, for comparison with the errors."""
     names = {0.5: "$t^{1/2}$", 1.0: "$t$", 1.5: "$t^{3/2}$", 2.0: "$t^2$"}
     for power in powers:
         start = 2e-15 if power < 1.2 else 3e-14
@@ -157,5 +157,5 @@ def _points(axes: Any, rows: Any) -> None:
 
 
 def save(results: Any, path: Path) -> None:
-    """Write the page."""
+    """Write the plot of the report to a file."""
     save_page(figure(results), path, 140)

@@ -70,7 +70,8 @@ def _sequence(d: Derivation, sequence: str) -> None:
         f"The angles lock {_values(body)}.",
         body.det(),
         body.determinant,
-        because="the three axes lie in one plane there, and no rates give an angular velocity across that plane",
+        because="at gimbal lock the three axes lie in one plane, and no angle rates give an angular velocity "
+        "perpendicular to this plane",
         named=r"\det B_b",
     )
 
@@ -82,7 +83,7 @@ def _latex(expression: object) -> str:
 
 
 def _values(jacobian: object) -> str:
-    """Return the singular set within one turn, as LaTeX."""
+    """Return the singular angles of an Euler sequence within one whole rotation, as LaTeX."""
     singular = jacobian.singular_set  # type: ignore[attr-defined]
     points = ", ".join(_latex(point) for point in singular.points())
     return rf"at ${_latex(singular.variable)} \in \{{{points}\}}$ within one turn".replace(r"\{", r"\lbrace ").replace(

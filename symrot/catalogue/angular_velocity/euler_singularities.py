@@ -1,4 +1,4 @@
-"""Where Euler angles lock, and how their rates grow on the way there (Stuelpnagel, SIAM Review 6, 1964, 422-430)."""
+"""Gimbal lock of Euler angles, and how their rates grow near it (Stuelpnagel, SIAM Review 6, 1964, 422-430)."""
 
 from sympy import Matrix, Symbol, eye
 
@@ -55,7 +55,7 @@ def _sequence(d: Derivation, sequence: str) -> None:
         "The determinant times the inverse has no denominator, at any angle.",
         jacobian.determinant * jacobian.inverse,
         adjugate,
-        because="the product is the matrix of cofactors",
+        because=r"$B^{-1} \det B$ is the matrix of cofactors of $B$",
         named=r"\det B \; B^{-1}",
         display=r"\mathrm{adj}\,B",
     )
@@ -76,7 +76,7 @@ def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) 
         f"At ${where}$ the attitude depends on ${_latex(point.combination)}$ alone.",
         silent[0] * outer[0] + silent[2] * outer[1],
         0,
-        because="the first and the last rotation are about one line",
+        because="the first and the last rotation are about the same line",
         named=rf"\left( \partial_\phi {'-' if silent[2] < 0 else '+'} \partial_\psi \right) R",
     )
     d.define("The direction across the axes of the turns there, in the body:", "n", lost)
@@ -84,7 +84,7 @@ def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) 
         "No rates turn the body about it; its length is 1.",
         Matrix([*(jacobian.T * lost), squared(lost)]),
         Matrix([0, 0, 0, 1]),
-        because="this direction is perpendicular to all three axes of rotation",
+        because="the direction is perpendicular to all three axes of rotation",
         named=r"\begin{bmatrix} B^{\mathsf T} n \\ n \cdot n \end{bmatrix}",
     )
     strength = normal_form((adjugate.subs(at) * lost).dot(silent) / silent.dot(silent))
@@ -93,7 +93,7 @@ def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) 
         rf"s\,(n \cdot \omega)$ along the silent combination $s$, however the attitude is approached.",
         adjugate.subs(at),
         strength * silent * lost.T,
-        because="the matrix of cofactors has rank one there",
+        because="the matrix of cofactors has rank one at gimbal lock",
         named=r"\lim\, \det B\; B^{-1}",
         display=rf"{_sign(strength)}s\,n^{{\mathsf T}},\quad s = {_latex(silent)}",
     )

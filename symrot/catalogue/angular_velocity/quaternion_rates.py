@@ -39,7 +39,7 @@ def derive() -> Derivation:
         "It is orthogonal.",
         dcm_sb * dcm_sb.T,
         eye(3),
-        because="the Hamilton product keeps lengths",
+        because="the Hamilton product of quaternions preserves lengths",
         relations=unit,
         named=r"R R^{\mathsf T}",
     )
@@ -59,14 +59,14 @@ def derive() -> Derivation:
         "The norm is kept, exactly and for every norm.",
         rate(norm_squared(symbols.quaternion), body),
         0,
-        because=r"$q$ and $q\,(0, \omega_b)$ are orthogonal",
+        because=r"$q$ and $q\,(0, \omega_b)$ are orthogonal vectors of four components",
         named=r"\frac{d}{dt} |q|^2",
     )
     d.step(
         r"The direction cosine matrix then turns with $\omega_b$, all nine entries.",
         rate(dcm_sb, body),
         dcm_sb * skew(OMEGA),
-        because="the chain rule, and unit norm",
+        because="the chain rule is applied, and the quaternion has unit norm",
         relations=unit,
         named=r"\dot R",
         display=r"R\,[\omega_b]_\times",
@@ -87,7 +87,7 @@ def derive() -> Derivation:
         r"The direction cosine matrix turns with $\omega_s$.",
         rate(dcm_sb, space),
         skew(OMEGA_S) * dcm_sb,
-        because="the chain rule, and unit norm",
+        because="the chain rule is applied, and the quaternion has unit norm",
         relations=unit,
         named=r"\dot R",
         display=r"[\omega_s]_\times R",
@@ -105,7 +105,7 @@ def derive() -> Derivation:
         r"The opposite quaternion is the same attitude.",
         quaternion_to_dcm(tuple(-Q)) - dcm_sb,
         0,
-        because="the matrix is quadratic",
+        because="the matrix $R$ is quadratic in the components of $q$",
         named="R(-q) - R(q)",
     )
     d.step(

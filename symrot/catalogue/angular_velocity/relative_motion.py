@@ -83,7 +83,7 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         "The angular velocity does not depend on which point is called $P$.",
         V + OMEGA.cross(D) + OMEGA.cross(offset - D),
         V + OMEGA.cross(offset),
-        because="the cross product is linear",
+        because="the cross product is linear in each factor",
         named=r"v_Q + \omega \times (r - d)",
         display=r"v_P + \omega \times r",
     )
@@ -101,7 +101,8 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
         "The velocity.",
         dcm_sb.T * (velocity - V),
         OMEGA.cross(D) + U,
-        because="the velocity of the place in the body, and the velocity through the body",
+        because="the velocity of the point is the sum of the velocity of its place in the body and its "
+        "velocity relative to the body",
         relations=UNIT,
         named=r"R^{\mathsf T} (v_Q - v_P)",
         display=r"\omega_b \times d + u",
@@ -110,7 +111,7 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
         "The acceleration: that of the place, Coriolis' part, and the relative one.",
         dcm_sb.T * (rate(velocity, moving) - A),
         DOMEGA.cross(D) + OMEGA.cross(OMEGA.cross(D)) + 2 * OMEGA.cross(U) + W,
-        because=r"the body rotates $u$, and $u$ changes the place in the body: each gives $\omega \times u$ once",
+        because=r"the rotation of $u$ with the body and the change of place by $u$ each contribute $\omega \times u$",
         relations=UNIT,
         named=r"R^{\mathsf T} (a_Q - a_P)",
         display=r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d) + 2\,\omega_b \times u + w",
@@ -151,7 +152,7 @@ def _axis(d: Derivation) -> None:
         "Around it, velocities are as in a turn about a fixed axis.",
         (V + OMEGA.cross(D)).subs(plane),
         OMEGA.cross(D - center).subs(plane),
-        because="the velocity of this point is zero",
+        because="the velocity of the chosen point is zero",
         named=r"v + \omega \times d",
         display=r"\omega \times (d - d_0)",
     )

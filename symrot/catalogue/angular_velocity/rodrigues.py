@@ -103,17 +103,18 @@ def _projection(d: Derivation, which: Projection, form: ProjectionForm) -> None:
         "The direction cosine matrix is rational.",
         quaternion_to_dcm(which.quaternion()),
         form.dcm[0],
-        because="the norm of the quaternion drops out",
+        because="the norm of the quaternion cancels",
         named="R",
         display=form.dcm[1],
     )
-    d.step("It is a rotation.", dcm_sb * dcm_sb.T, ONE, because="the matrix is that of a unit quaternion",
+    d.step("It is a rotation.", dcm_sb * dcm_sb.T, ONE,
+           because="the matrix is the rotation matrix of a unit quaternion",
            named=r"R R^{\mathsf T}")  # fmt: skip
     d.step(
         "The angular velocity in the body, from the rate of the matrix.",
         dcm_rate,
         dcm_sb * skew(body * rates),
-        because=r"all nine entries agree",
+        because=r"all nine entries of the two matrices are equal",
         named=r"\dot R",
         display=rf"R\,[B_b\,\dot {form.letter}]_\times",
     )
@@ -121,7 +122,7 @@ def _projection(d: Derivation, which: Projection, form: ProjectionForm) -> None:
         "The same matrix, collected.",
         body.as_immutable(),
         form.omega[0],
-        because="the entries are polynomials of degree two at most",
+        because="the entries of the matrix are polynomials of degree two at most",
         named="B_b",
         display=form.omega[1],
     )
@@ -129,7 +130,7 @@ def _projection(d: Derivation, which: Projection, form: ProjectionForm) -> None:
         "The angular velocity in space.",
         dcm_rate,
         skew(space * rates) * dcm_sb,
-        because="all nine entries agree",
+        because="all nine entries of the two matrices are equal",
         named=r"\dot R",
         display=rf"[B_s\,\dot {form.letter}]_\times R",
     )
@@ -137,7 +138,7 @@ def _projection(d: Derivation, which: Projection, form: ProjectionForm) -> None:
         "Its matrix is that of the body for the opposite parameters.",
         space.as_immutable(),
         body.as_immutable().xreplace(opposite),
-        because="the two differ by the sign of the skew part",
+        because="the two matrices differ by the sign of their skew part",
         named=f"B_s({form.letter})",
         display=f"B_b(-{form.letter})",
     )
@@ -147,7 +148,7 @@ def _projection(d: Derivation, which: Projection, form: ProjectionForm) -> None:
         "They are the angular velocity times a matrix.",
         body.inverse,
         form.inverse[0],
-        because="the inverse is collected",
+        because="the terms of the inverse are collected",
         named=rf"\dot {form.letter} = B_b^{{-1}} \omega_b, \quad B_b^{{-1}}",
         display=form.inverse[1],
     )

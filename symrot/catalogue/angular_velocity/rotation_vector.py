@@ -26,7 +26,8 @@ def derive() -> Derivation:
     body, space = jacobian("body"), jacobian("space")
     d.notation({"R": dcm_sb, "v": V, "B_b": body, "B_s": space}, pairs(symbols.rotation_vector, DV))
     d.define("Rodrigues' formula, from the eigenvalues $0, \\pm i a$ of the skew matrix; with", "a", size)
-    d.step("The powers of a skew matrix repeat.", v**3, -(size**2) * v, because="Cayley and Hamilton",
+    d.step("The powers of a skew matrix repeat.", v**3, -(size**2) * v,
+           because="a matrix satisfies its characteristic equation (Cayley and Hamilton)",
            named=r"[v]_\times^3", display=r"-a^2\,[v]_\times")  # fmt: skip
     d.passage(
         "Summed by the powers, the exponential series is",
@@ -44,7 +45,7 @@ def derive() -> Derivation:
         "It is the rotation of the quaternion with half the angle.",
         quaternion_to_dcm(quaternion_of_rotation_vector(V)),
         dcm_sb,
-        because="double angles",
+        because="the formulas for double angles are applied",
         named=r"R\left(\cos\tfrac a2,\ \tfrac{v}{a}\sin\tfrac a2\right)",
         display=r"e^{[v]_\times}",
     )
@@ -66,13 +67,14 @@ def derive() -> Derivation:
         named=r"\omega_s",
         display=r"\left(1 + \frac{1 - \cos a}{a^2}[v]_\times + \frac{a - \sin a}{a^3}[v]_\times^2\right) \dot v",
     )
-    d.step("One Jacobian is the transpose of the other.", body, space.T, because="only the odd term changes its sign",
+    d.step("One Jacobian is the transpose of the other.", body, space.T,
+           because="only the term that is odd in $v$ changes its sign",
            named="B_b", display=r"B_s^{\mathsf T}")  # fmt: skip
     d.step("Its inverse.", body * body.inverse, eye(3), because="the three matrices commute",
            named=r"\left(1 - \frac{1 - \cos a}{a^2}[v]_\times + \frac{a - \sin a}{a^3}[v]_\times^2\right)"
            r"\left(1 + \tfrac12 [v]_\times + \frac{1 - \tfrac a2 \cot \tfrac a2}{a^2}[v]_\times^2\right)")  # fmt: skip
     d.step("It is singular at whole turns, $a = 2\\pi, 4\\pi, \\ldots$, and nowhere else.",
            body.det(method="berkowitz"), body.determinant,
-           because="every axis gives the same attitude at whole turns", named=r"\det B_b",
+           because="a whole rotation about any axis gives the same attitude", named=r"\det B_b",
            display=r"\left(\frac{\sin (a/2)}{a/2}\right)^2")  # fmt: skip
     return d

@@ -112,7 +112,7 @@ def _back(d: Derivation) -> None:
         "The skew part gives the sine and the axis.",
         sine,
         sin(ALPHA) * N,
-        because="only one of the three terms is skew",
+        because="only one of the three terms of the matrix is skew",
         relations=UNIT,
         named=r"s = \tfrac12\,\mathrm{vee} \left( R - R^{\mathsf T} \right)",
         display=r"\sin\alpha\;n",
@@ -155,7 +155,7 @@ def _half_turn(d: Derivation) -> None:
         "The sign of $n$ is free: both axes give one rotation.",
         dcm_of_axis_angle(-N, pi) - half,
         0,
-        because="half a turn to the left is half a turn to the right",
+        because="rotations by half a turn to the left and to the right are equal",
         relations=UNIT,
         named=r"R(-n, \pi) - R(n, \pi)",
     )

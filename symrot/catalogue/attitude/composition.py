@@ -70,7 +70,8 @@ def _product(d: Derivation) -> None:
         "The angle of the product (Rodrigues).",
         product[0],
         cosine,
-        because="the scalar part of a product of quaternions is the product of the scalars less the scalar product",
+        because="the scalar part of a product of quaternions is the product of the scalar parts minus the "
+        "scalar product of the vector parts",
         named=r"\cos \tfrac{\text{angle}}{2}",
         display=r"\cos\tfrac\alpha2 \cos\tfrac\theta2 - \sin\tfrac\alpha2 \sin\tfrac\theta2\; n \cdot k",
     )
@@ -83,7 +84,7 @@ def _product(d: Derivation) -> None:
         "Its axis.",
         Matrix(product[1:]),
         vector,
-        because="the vector part of the product",
+        because="the vector part of the product of quaternions is compared",
         named=r"\text{axis}\;\sin \tfrac{\text{angle}}{2}",
         display=r"\sin\tfrac\alpha2 \cos\tfrac\theta2\; n + \cos\tfrac\alpha2 \sin\tfrac\theta2\; k"
         r" + \sin\tfrac\alpha2 \sin\tfrac\theta2\; n \times k",
@@ -98,7 +99,7 @@ def _order(d: Derivation) -> None:
         "The other order has the same angle, and another axis unless the axes are parallel.",
         one - other,
         Matrix([0, *(2 * sin(ALPHA / 2) * sin(BETA / 2) * N.cross(K))]),
-        because="only the cross product changes its sign",
+        because="if the factors are exchanged, only the cross product changes its sign",
         named=r"q_n q_k - q_k q_n",
         display=r"\left( 0,\; 2 \sin\tfrac\alpha2 \sin\tfrac\theta2\; n \times k \right)",
     )
@@ -107,7 +108,7 @@ def _order(d: Derivation) -> None:
         "A quarter turn about $x$ and then one about $z$, or first about $z$.",
         Matrix.hstack(quarter_z * quarter_x, quarter_x * quarter_z),
         Matrix.hstack(*(dcm_of_axis_angle(Matrix([1, s, 1]) / sqrt(3), 2 * pi / 3) for s in (1, -1))),
-        because="both products are rotations by a third of a turn, one about $(1, 1, 1)$, the other about $(1, -1, 1)$",
+        because="both products are rotations by 120 degrees, one about $(1, 1, 1)$, the other about $(1, -1, 1)$",
         named=r"\begin{bmatrix} R_z R_x & R_x R_z \end{bmatrix}_{\alpha = \pi/2}",
     )
     d.step(
@@ -124,7 +125,7 @@ def _order(d: Derivation) -> None:
         "So can two half turns about axes at right angles.",
         half_n * half_k - half_k * half_n,
         0,
-        because="the two products differ only in sign, and $q$ and $-q$ are one attitude",
+        because="the two products differ only in sign, and $q$ and $-q$ are the same attitude",
         relations=[*AXES, N.dot(K)],
         named=r"R(n, \pi)\,R(k, \pi) - R(k, \pi)\,R(n, \pi)",
     )
@@ -146,7 +147,7 @@ def _small(d: Derivation) -> None:
         "To second order they differ by a turn about the cross product of the axes.",
         (one - other).diff(ALPHA, BETA).subs(still),
         skew(N.cross(K)),
-        because=r"the commutator of two skew matrices is that of the cross product",
+        because=r"the commutator of two skew matrices is the skew matrix of the cross product of their vectors",
         named=r"\left. \frac{\partial^2 (R_n R_k - R_k R_n)}{\partial\alpha\,\partial\theta} \right|_0"
         r" = [n]_\times [k]_\times - [k]_\times [n]_\times",
         display=r"[n \times k]_\times",
@@ -183,7 +184,7 @@ def _frames(d: Derivation) -> None:
         "Turning about $z$ and then about the carried $x$ is turning about the fixed $x$ and then about the fixed $z$.",
         dcm_of_axis_angle(second_axis, symbols.theta) * intrinsic[0],
         intrinsic[0] * intrinsic[1],
-        because="the first of these steps is put in; an intrinsic sequence is the extrinsic one read backwards",
+        because="the first of these steps is substituted; an intrinsic sequence is the extrinsic one in reverse order",
         named=r"R(R_z(\phi)\,e_x, \theta)\,R_z(\phi)",
         display=r"R_z(\phi)\,R_x(\theta)",
     )
@@ -191,6 +192,6 @@ def _frames(d: Derivation) -> None:
         "The inverse undoes the turns in reverse order.",
         (intrinsic[0] * intrinsic[1]) * (intrinsic[1].T * intrinsic[0].T),
         eye(3),
-        because="the inner pair cancels first",
+        because="the inner pair of inverse rotations cancels first",
         named=r"R_z R_x \cdot R_x^{\mathsf T} R_z^{\mathsf T}",
     )

@@ -46,14 +46,14 @@ def _precession(d: Derivation) -> None:
                 cos(THETA / 2) * sin(total),
             ]
         ),
-        because="sines and cosines of sums",
+        because="the formulas for sines and cosines of sums are applied",
         named=r"\begin{bmatrix} q_0 \\ q_1 \\ q_2 \\ q_3 \end{bmatrix}",
     )
     d.step(
         "It has unit norm.",
         squared(q),
         1,
-        because="each factor has unit norm",
+        because="each factor of the product has unit norm",
         named="|q|^2",
     )
     tilt = dict(zip(Q, q, strict=True))
@@ -69,7 +69,7 @@ def _precession(d: Derivation) -> None:
         r"\mathrm{atan2}(q_2, q_1)$.",
         Matrix([Q[3] * cos(total) - Q[0] * sin(total), Q[2] * cos(difference) - Q[1] * sin(difference)]).subs(tilt),
         0,
-        because="the parameters of the first step are put in; an angle is defined where its two parameters are not "
+        because="the parameters of the first step are inserted; an angle is defined where its two parameters are not "
         "both zero",
         named=r"\begin{bmatrix} q_3 \cos\frac{\phi+\psi}{2} - q_0 \sin\frac{\phi+\psi}{2} \\"
         r" q_2 \cos\frac{\phi-\psi}{2} - q_1 \sin\frac{\phi-\psi}{2} \end{bmatrix}",
@@ -110,7 +110,7 @@ def _all(d: Derivation) -> None:
         "An extrinsic sequence is the intrinsic one read backwards, and so are its parameters.",
         quaternion_of_euler("zyx"),
         Matrix(quaternion_of_euler("XYZ")).subs({PHI: PSI, PSI: PHI}, simultaneous=True),
-        because="a rotation about an axis of space is a factor on the left",
+        because="a rotation about an axis of space multiplies the quaternion from the left",
         named=r"q_{\mathrm{zyx}}(\phi, \theta, \psi)",
         display=r"q_{\mathrm{XYZ}}(\psi, \theta, \phi)",
     )

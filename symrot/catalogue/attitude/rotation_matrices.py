@@ -1,4 +1,6 @@
-"""Rotation matrices: what keeps lengths (Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 4.2)."""
+"""Rotation matrices: the matrices that preserve lengths (Goldstein et al., Classical Mechanics, 3rd ed., section
+4.2).
+"""
 
 from itertools import product
 
@@ -15,7 +17,10 @@ SIZES = (2, 3, 4, 5)
 
 
 def skew_dimension(size: int) -> int:
-    """Return how many directions S in the space of matrices solve ``S + S^T = 0``: all, less the rank of the map."""
+    """Return the number of independent solutions S of ``S + S^T = 0`` for matrices of a given size.
+
+    It is the dimension of the space of matrices minus the rank of the map S -> S + S^T.
+    """
     images = []
     for i, j in product(range(size), repeat=2):
         unit = zeros(size)
@@ -59,7 +64,7 @@ def derive() -> Derivation:
         "Then angles are kept as well.",
         (MATRIX * U).dot(MATRIX * V) - U.dot(V),
         U.dot(excess * V),
-        because="the same matrix stands between two different vectors",
+        because=r"the same matrix $R^{\mathsf T} R$ occurs in the product of two different vectors",
         named=r"R u \cdot R v - u \cdot v",
         display=r"u^{\mathsf T} \left( R^{\mathsf T} R - 1 \right) v",
     )
@@ -67,7 +72,8 @@ def derive() -> Derivation:
         r"The determinant is $1$ or $-1$.",
         (MATRIX.T * MATRIX).det(method="berkowitz"),
         MATRIX.det() ** 2,
-        because=r"a matrix and its transpose have one determinant, and here the left side is $\det 1$",
+        because=r"a matrix and its transpose have the same determinant, and $R^{\mathsf T} R = 1$ has the "
+        r"determinant 1",
         named=r"\det \left( R^{\mathsf T} R \right)",
         display=r"\left( \det R \right)^2",
     )
@@ -143,7 +149,7 @@ def _angle(d: Derivation) -> None:
             "It is a rotation.",
             turn.T * turn,
             eye(3),
-            because="one axis stays, and the plane across it rotates",
+            because="one axis is fixed, and the plane perpendicular to it rotates",
             named=rf"R_{name}^{{\mathsf T}} R_{name}",
         )
     cayley = _cayley()
@@ -158,7 +164,7 @@ def _angle(d: Derivation) -> None:
         "Its determinant is 1.",
         cayley.det(),
         1,
-        because="a matrix and its transpose have one determinant",
+        because="a matrix and its transpose have the same determinant",
         named=r"\det R",
     )
     d.step(

@@ -44,7 +44,7 @@ def derive() -> Derivation:
         "To first order in the size of the body, the tidal force stretches along the radius and squeezes across it.",
         tidal,
         mass * n**2 * (3 * R.dot(P) * R - P),
-        because="the derivative at the centre of mass, where the radius has length 1",
+        because="the derivative is taken at the centre of mass, where the radius has length 1",
         relations=unit,
         named=r"\frac{1}{a} \left. \frac{\partial F}{\partial \epsilon} \right|_0",
         display=r"m\,n^2 \left( 3\,(r \cdot \rho)\,r - \rho \right)",
@@ -66,7 +66,7 @@ def derive() -> Derivation:
         "It has no component along the radius.",
         torque.dot(R),
         0,
-        because="a vector product is at right angles to its factors",
+        because="a vector product is perpendicular to its factors",
         named=r"\tau \cdot r",
     )
 
@@ -103,7 +103,7 @@ def derive() -> Derivation:
         "What the orbit gives in energy it gives in angular momentum about its normal.",
         rate(K.dot(TENSOR * OMEGA), motion),
         torque.dot(K),
-        because="the rate of a component of angular momentum along a fixed direction is that of the torque",
+        because="the rate of a component of angular momentum along a fixed direction is the component of the torque",
         named=r"\frac{d}{dt} \left( k \cdot I\,\omega \right)",
         display=r"k \cdot \tau",
     )
@@ -111,7 +111,7 @@ def derive() -> Derivation:
         "So the energy in axes that turn with the orbit is kept (the Jacobi integral).",
         rate(kinetic + potential - n * K.dot(TENSOR * OMEGA), motion),
         0,
-        because="the tide is at rest in the axes of the orbit",
+        because="the gravity gradient is constant in axes that rotate with the orbit",
         named=r"\frac{d}{dt} \left( \tfrac12\,\omega \cdot I\,\omega + \tfrac32 n^2\, r \cdot I\,r"
         r" - n\, k \cdot I\,\omega \right)",
     )

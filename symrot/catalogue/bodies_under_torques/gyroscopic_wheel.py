@@ -33,7 +33,7 @@ def derive() -> Derivation:
 
 
 def _momentum() -> tuple[Matrix, dict]:  # type: ignore[type-arg]
-    """Return the angular momentum in space at constant nutation, and the rates of the angles."""
+    """Return the angular momentum of the wheel in space at constant nutation, and the rates of its Euler angles."""
     omega = rate_jacobian("ZXZ") * Matrix([PRECESSION, 0, SPIN])
     return Matrix(dcm("ZXZ")) * diag(A, A, C) * omega, pairs((PHI, PSI), (PRECESSION, SPIN))
 
@@ -52,7 +52,7 @@ def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motio
         "The rate of angular momentum is along the line of nodes: this torque keeps the precession going.",
         torque,
         total * line,
-        because="angular momentum lies in the plane of the vertical and the axle, and turns with it",
+        because="angular momentum lies in the plane of the vertical and the axle, and rotates with this plane",
         named=r"\dot L_s",
         display=r"\left( C\,\omega_3 - A\,\dot\phi \cos\theta \right) \dot\phi \sin\theta\;e, \quad \omega_3 = "
         r"\dot\psi + \dot\phi \cos\theta",
@@ -62,7 +62,7 @@ def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motio
         "It is the precession's turning of the angular momentum.",
         torque,
         (PRECESSION * vertical).cross(momentum),
-        because=r"$L_s$ is carried round the vertical at the rate $\dot\phi$",
+        because=r"$L_s$ rotates about the vertical at the rate $\dot\phi$",
         named=r"\dot L_s",
         display=r"\dot\phi\,e_z \times L_s",
     )
@@ -70,8 +70,8 @@ def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motio
         "It does no work.",
         torque.dot(Matrix(dcm("ZXZ")) * rate_jacobian("ZXZ") * Matrix([PRECESSION, 0, SPIN])),
         0,
-        because="the line of nodes is at right angles to the vertical and to the axle, of which angular velocity "
-        "consists",
+        because="the line of nodes is perpendicular to the vertical and to the axle, and the angular velocity lies in "
+        "their plane",
         named=r"\dot L_s \cdot \omega_s",
     )
 
@@ -85,7 +85,7 @@ def _level(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix) -> Non
         "With the axle level the term with $A$ is gone: spin times precession times the moment of the wheel.",
         torque.subs(level),
         C * SPIN * PRECESSION * line,
-        because=r"$\cos\frac\pi2 = 0$; exact, for slow and fast precession",
+        because=r"$\cos\frac\pi2 = 0$; the result is exact for slow and fast precession",
         named=r"\dot L_s",
         display=r"C\,\dot\psi\,\dot\phi\;e",
     )
@@ -94,7 +94,7 @@ def _level(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix) -> Non
         r"The weight $W$ of the wheel, at $c_3$ from the support, has this moment.",
         weight,
         W * ARM * line,
-        because="a force downwards at a level arm",
+        because="the weight points down, and the arm is horizontal",
         named=r"c_3\,a \times (-W e_z)",
         display=r"W c_3\;e",
     )
@@ -111,7 +111,7 @@ def _level(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix) -> Non
         "The axle follows the torque: the angular momentum of the spin moves towards its direction.",
         axle.diff(PHI),
         line,
-        because="a level axle, carried round the vertical",
+        because="the axle is horizontal and rotates about the vertical",
         named=r"\frac{\partial a}{\partial \phi}",
         display="e",
     )
@@ -134,13 +134,13 @@ def _reactions(d: Derivation) -> None:
         r"Turning the frame of a spinning wheel with $\omega$ asks the bearings for a moment across both axes.",
         turning.cross(rotor),
         C * SPIN * Matrix([symbols.omega_2, -symbols.omega_1, 0]),
-        because="the angular momentum of the spin is carried round",
+        because="the angular momentum of the spin rotates about the vertical",
         named=r"\omega \times C\,\dot\psi\,e_3",
     )
     d.step(
         "Two equal wheels that spin oppositely ask for none together.",
         turning.cross(rotor) + turning.cross(-rotor),
         0,
-        because="their angular momenta cancel",
+        because="the angular momenta of the two wheels cancel",
         named=r"\omega \times \left( C\,\dot\psi\,e_3 - C\,\dot\psi\,e_3 \right)",
     )

@@ -1,4 +1,4 @@
-"""A body with a rotor inside (Hughes, Spacecraft Attitude Dynamics, chapter 6)."""
+"""Conserved quantities of a gyrostat, a body with a rotor inside (Hughes, Spacecraft Attitude Dynamics, chapter 6)."""
 
 from sympy import Matrix
 
@@ -42,7 +42,7 @@ def derive() -> Derivation:
         "This is the torque if the angular acceleration is as follows.",
         TENSOR * acceleration + OMEGA.cross(momentum_b),
         TORQUE,
-        because="the tensor has an inverse",
+        because="the inertia tensor has an inverse",
         named=r"\dot\omega_b = I^{-1} \left( \tau_b - \omega_b \times (I\,\omega_b + h) \right)"
         r"\quad\Rightarrow\quad I\,\dot\omega_b + \omega_b \times (I\,\omega_b + h)",
         display=r"\tau_b",
@@ -61,7 +61,7 @@ def derive() -> Derivation:
         "So is its length.",
         rate(squared(momentum_b), free),
         0,
-        because="a rotation keeps lengths",
+        because="a rotation preserves lengths",
         named=r"\frac{d}{dt}\,|I\,\omega_b + h|^2",
     )
     d.step(

@@ -12,7 +12,7 @@ DPHI, DTHETA, DPSI = symbols.angle_rates
 A, C, W, ARM = symbols.A, symbols.C, symbols.W, symbols.c_3
 P_PHI, P_THETA, P_PSI = symbols.momenta
 HALF = Rational(1, 2)
-RATE = symbols.n  # of steady precession
+RATE = symbols.n  # rate of steady precession
 
 
 def derive() -> Derivation:
@@ -74,7 +74,7 @@ def _lagrangian(d: Derivation, kinetic: Expr, lagrangian: Expr) -> None:
         r"$\dot\psi = \frac{p_\psi}{C} - \dot\phi \cos\theta$.",
         momenta,
         Matrix([P_PHI, P_PSI]),
-        because="the two linear equations are solved",
+        because="the two linear equations for the rates are solved",
         named=r"\left. \begin{bmatrix} \partial \mathcal L / \partial \dot\phi \\ \partial \mathcal L / \partial "
         r"\dot\psi "
         r"\end{bmatrix} \right|_{\dot\phi, \dot\psi}",
@@ -108,7 +108,7 @@ def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
         "Energy: one angle is left.",
         (kinetic + W * ARM * cos(THETA)).subs(rates),
         HALF * A * DTHETA**2 + potential,
-        because="the rates of the cyclic angles are put in",
+        because="the rates of the cyclic angles are substituted",
         named="T + V",
         display=r"\tfrac12\,A\,\dot\theta^2 + U(\theta), \quad U = \frac{(p_\phi - p_\psi \cos\theta)^2}{2 A "
         r"\sin^2\theta} + "
@@ -120,7 +120,7 @@ def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
         "Lagrange's equation for the nutation is that of a point in this potential.",
         nutation.subs(rates),
         A * symbols.ddtheta + potential.diff(THETA),
-        because="the rates are put in after differentiating",
+        because="the rates are substituted after differentiating",
         named=r"\frac{d}{dt} \frac{\partial \mathcal L}{\partial \dot\theta} - \frac{\partial \mathcal L}{\partial "
         r"\theta}",
         display=r"A\,\ddot\theta + \frac{\partial U}{\partial \theta}",
@@ -146,7 +146,7 @@ def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
         "At the poles the cubic is not positive: the axis reaches the vertical only if both momenta agree.",
         Matrix([cubic.subs(height, 1), cubic.subs(height, -1)]),
         -Matrix([(P_PHI - P_PSI) ** 2, (P_PHI + P_PSI) ** 2]) / A**2,
-        because="$1 - u^2$ is zero",
+        because="$1 - u^2$ is zero at the vertical",
         named=r"\begin{bmatrix} \dot u^2 |_{u = 1} \\ \dot u^2 |_{u = -1} \end{bmatrix}",
     )
     return potential
@@ -165,7 +165,7 @@ def _steady(d: Derivation, potential: Expr) -> None:
         "The condition is quadratic in the rate.",
         potential.diff(THETA).subs(steady),
         -sin(THETA) * slope,
-        because="the potential must be stationary",
+        because="in steady precession the effective potential is stationary",
         named=r"\frac{\partial U}{\partial \theta}",
         display=r"-\sin\theta \left( A\,n^2 \cos\theta - p_\psi\,n + W c_3 \right)",
     )
@@ -178,7 +178,7 @@ def _steady(d: Derivation, potential: Expr) -> None:
         "Both satisfy the condition.",
         Matrix([slope.subs(RATE, fast), slope.subs(RATE, slow)]),
         0,
-        because="the roots are put in",
+        because="the roots of the quadratic equation are substituted",
         named=r"A\,n_\pm^2 \cos\theta - p_\psi\,n_\pm + W c_3",
     )
     d.step(
@@ -186,7 +186,7 @@ def _steady(d: Derivation, potential: Expr) -> None:
         r"p_\psi$.",
         Matrix([fast + slow, fast * slow]),
         Matrix([P_PSI, W * ARM]) / (A * cos(THETA)),
-        because="the coefficients of the quadratic equation give both (Vieta)",
+        because="the coefficients of the quadratic equation give sum and product of its roots (Vieta)",
         named=r"\begin{bmatrix} n_+ + n_- \\ n_+\,n_- \end{bmatrix}",
     )
     d.step(
@@ -200,8 +200,8 @@ def _steady(d: Derivation, potential: Expr) -> None:
         "A small nutation about steady precession swings with this frequency squared, times $A$.",
         (potential.diff(THETA, 2).subs(steady) * RATE**2).subs(P_PSI, (A * RATE**2 * cos(THETA) + W * ARM) / RATE),
         (A**2 * RATE**4 - 2 * A * W * ARM * RATE**2 * cos(THETA) + (W * ARM) ** 2) / A,
-        because=r"$p_\psi$ is taken from the condition; the right side is positive, being "
-        r"$(A n^2 - W c_3 \cos\theta)^2 + (W c_3 \sin\theta)^2$ over $A$",
+        because=r"the condition for steady precession gives $p_\psi$; the right side is positive: it is "
+        r"$(A n^2 - W c_3 \cos\theta)^2 + (W c_3 \sin\theta)^2$ divided by $A$",
         named=r"n^2\,\frac{\partial^2 U}{\partial \theta^2}",
     )
     d.step(
@@ -214,7 +214,7 @@ def _steady(d: Derivation, potential: Expr) -> None:
 
 
 def _rates() -> tuple[Expr, Expr]:
-    """Return the fast and the slow rate of steady precession."""
+    """Return the fast and the slow rate of steady precession of a heavy top, rad/s."""
     root = sqrt(P_PSI**2 - 4 * A * W * ARM * cos(THETA))
     return (P_PSI + root) / (2 * A * cos(THETA)), (P_PSI - root) / (2 * A * cos(THETA))
 

@@ -1,4 +1,4 @@
-"""What a heavy top keeps (Landau & Lifshitz, Mechanics, 3rd ed., section 35, problem 1)."""
+"""Conserved quantities of a heavy top (Landau & Lifshitz, Mechanics, 3rd ed., section 35, problem 1)."""
 
 from sympy import Matrix, diag
 
@@ -46,7 +46,7 @@ def derive() -> Derivation:
         "Energy is kept.",
         rate(energy, motion),
         0,
-        because="the power of the weight is the loss of potential energy",
+        because="the power of the weight is minus the rate of potential energy",
         named=r"\frac{d}{dt} \left( \tfrac12\,\omega \cdot I\,\omega - W\, c \cdot \gamma \right)",
     )
     d.step(
@@ -60,7 +60,7 @@ def derive() -> Derivation:
         "The direction stays a unit vector.",
         rate(squared(DOWN), motion),
         0,
-        because="the rate of the direction is at right angles to it",
+        because="the rate of a unit vector is perpendicular to it",
         named=r"\frac{d}{dt}\,|\gamma|^2",
     )
     d.section("The symmetric top")
@@ -86,7 +86,7 @@ def derive() -> Derivation:
         r"function of time.",
         left,
         right,
-        because="energy and both angular momenta determine the transverse angular velocity",
+        because="energy and the two conserved angular momenta determine the transverse angular velocity",
         relations=[squared(DOWN) - 1],
         named=r"A\,\dot u^2",
         display=r"\left( 2 E - C \omega_3^2 + 2 W c_3\, u \right) \left( 1 - u^2 \right)"

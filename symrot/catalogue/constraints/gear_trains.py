@@ -50,21 +50,21 @@ def _contacts(d: Derivation) -> Matrix:
         "Sun and planet, where they touch:",
         velocity(origin, 0, SUN, inner) - velocity(middle, carried, PLANET, inner),
         Matrix([0, unit * (Z_S * (SUN - CARRIER) + Z_P * (PLANET - CARRIER)), 0]),
-        because=r"$v + \omega \times r$ on both gears",
+        because=r"the velocity $v + \omega \times r$ of the contact point is the same on both gears",
         named="v_S - v_P",
     )
     d.step(
         "The ring touches the planet from outside, which takes so many teeth:",
         outer[0] / unit,
         Z_S + 2 * Z_P,
-        because="the ring's radius is the sun's and twice the planet's",
+        because="the ring's radius is the sun's radius plus twice the planet's radius",
         named="Z_R",
     )
     d.step(
         "Planet and ring, where they touch:",
         velocity(middle, carried, PLANET, outer) - velocity(origin, 0, RING, outer),
         Matrix([0, unit * (Z_P * (PLANET - CARRIER) - (Z_S + 2 * Z_P) * (RING - CARRIER)), 0]),
-        because=r"$v + \omega \times r$ on both gears",
+        because=r"the velocity $v + \omega \times r$ of the contact point is the same on both gears",
         named="v_P - v_R",
     )
     return Matrix(
@@ -82,7 +82,7 @@ def _willis(d: Derivation, contacts: Matrix) -> None:
         "Seen from the carrier the rates of sun and ring are in the inverse ratio of their teeth, the sense reversed.",
         Z_S * (SUN - CARRIER),
         -Z_R * (RING - CARRIER),
-        because="the planet is eliminated: it is idle",
+        because="the rate of the planet, which is an idle gear, is eliminated",
         relations=list(contacts),
         named=r"Z_S (\omega_S - \omega_C)",
     )
@@ -112,21 +112,21 @@ def _willis(d: Derivation, contacts: Matrix) -> None:
         "Nothing held: the carrier has the mean of both rates, weighted with the teeth.",
         solve(willis, CARRIER)[0],
         (Z_S * SUN + Z_R * RING) / (Z_S + Z_R),
-        because="Willis' formula is linear",
+        because="Willis' formula is linear in the rates",
         named=r"\omega_C",
     )
     d.step(
         "With as many teeth on both sides, as in the differential of a car, half the sum.",
         solve(willis.subs(Z_R, Z_S), CARRIER)[0],
         (SUN + RING) / 2,
-        because="the weights are equal",
+        because="the two weights in Willis' formula are equal",
         named=r"\omega_C",
     )
     d.step(
         "All turning as one is a motion of the train.",
         contacts.subs(dict.fromkeys((*RATES, CARRIER), symbols.Omega), simultaneous=True),
         0,
-        because="nothing moves relative to the carrier then",
+        because="then no gear moves relative to the carrier",
         named=r"\begin{bmatrix} v_S - v_P \\ v_P - v_R \end{bmatrix}",
     )
 

@@ -49,7 +49,7 @@ def _slider(d: Derivation) -> None:
         "The rate of the rod.",
         rod_rate,
         CRANK * cos(PHI) / (ROD * cos(PSI)) * DPHI,
-        because="the condition is differentiated, and is linear in the rates",
+        because="the differentiated condition is linear in the rates",
         named=r"\dot\psi",
     )
     velocity = rate(place, MOTION).subs(DPSI, rod_rate)
@@ -57,7 +57,7 @@ def _slider(d: Derivation) -> None:
         "The velocity of the slider.",
         velocity,
         -CRANK * sin(PHI + PSI) / cos(PSI) * DPHI,
-        because="the rate of the rod is put in",
+        because="the rate of the rod is substituted",
         named=r"\dot x",
     )
     ends = {PHI: 0, PSI: 0}
@@ -65,7 +65,7 @@ def _slider(d: Derivation) -> None:
         "It is at rest at the dead centres, where crank and rod are in line.",
         velocity.subs(ends),
         0,
-        because=r"$\sin(\phi + \psi) = 0$ there",
+        because=r"$\sin(\phi + \psi) = 0$ at this position",
         named=r"\dot x|_{\phi = \psi = 0}",
     )
     steady = {PHI: DPHI, PSI: rod_rate}
@@ -83,7 +83,7 @@ def _slider(d: Derivation) -> None:
         "Seen from there both its ends, $A$ at the crank and $B$ at the slider, move across.",
         Matrix([(pin - center).dot(rate(pin, MOTION)), (slider - center).dot(Matrix([velocity, 0]))]),
         0,
-        because="the crank's end moves across the crank, the slider along its line",
+        because="the crank's end moves perpendicular to the crank, the slider along its line",
         named=r"\begin{bmatrix} (r_A - c) \cdot \dot r_A \\ (r_B - c) \cdot \dot r_B \end{bmatrix}",
     )
     force = symbols.F_x
@@ -92,7 +92,7 @@ def _slider(d: Derivation) -> None:
         "A force $F_x$ on the slider is balanced by this torque on the crank.",
         torque,
         force * CRANK * sin(PHI + PSI) / cos(PSI),
-        because="without friction their powers add to zero",
+        because="without friction the powers of torque and force add to zero",
         named=r"\tau_3",
     )
 
@@ -110,14 +110,15 @@ def _four_bars(d: Derivation) -> None:
         "The rates of coupler and rocker.",
         Matrix([rates[DTHETA], rates[DPSI]]),
         DPHI * Matrix([a * sin(PHI - PSI) / (b * sin(PSI - THETA)), a * sin(PHI - THETA) / (c * sin(PSI - THETA))]),
-        because="the closed polygon, differentiated, is two linear equations",
+        because="the condition that the polygon closes gives, if differentiated, two linear equations for the rates",
         named=r"\begin{bmatrix} \dot\theta \\ \dot\psi \end{bmatrix}",
     )
     d.step(
         "They fail where coupler and rocker are in line.",
         closure.jacobian([THETA, PSI]).det(),
         b * c * sin(THETA - PSI),
-        because="the determinant of the equations is zero there: the linkage may go on in two ways",
+        because="the determinant of the equations is zero at this position, so that the linkage can continue "
+        "in two ways",
         named=r"\det \frac{\partial\,\text{closure}}{\partial (\theta, \psi)}",
     )
     coupler = _bar(c, PSI) + Matrix([ground, 0]) - _bar(a, PHI)
@@ -126,7 +127,7 @@ def _four_bars(d: Derivation) -> None:
         "Freudenstein's equation: the coupler's angle eliminated.",
         squared(coupler) - b**2,
         freudenstein,
-        because="the coupler keeps its length",
+        because="the length of the coupler is constant",
         named=r"|c\,e_\psi + h\,e_x - a\,e_\phi|^2 - b^2",
     )
     d.step(

@@ -43,7 +43,7 @@ def _ball(d: Derivation) -> None:
         "With this velocity of the centre the point of contact is at rest.",
         velocity + OMEGA_S.cross(contact),
         0,
-        because=r"the point of contact is at $-R\,n$ from the centre",
+        because=r"the vector from the centre to the point of contact is $-R\,n$",
         named=r"v + \omega \times (-R\,n)",
     )
     d.step(
@@ -66,7 +66,7 @@ def _ball(d: Derivation) -> None:
         "The force of contact does no work.",
         force.dot(velocity) + contact.cross(force).dot(OMEGA_S),
         0,
-        because="the force acts on a point at rest",
+        because="the contact force acts on a point at rest",
         named=r"F \cdot v + (-R\,n \times F) \cdot \omega",
     )
 
@@ -125,7 +125,7 @@ def _slope(d: Derivation) -> None:
             {speed: solution[acceleration], symbols.x: speed},
         ),
         0,
-        because=r"the force of contact acts on a point at rest",
+        because=r"the contact force acts on a point at rest",
         named=r"\frac{d}{dt} \left( \tfrac12 m v^2 + \tfrac12 C \frac{v^2}{R^2} - m g x \sin\alpha \right)",
     )
     bodies = {"a ring": 1, "a disk": HALF, "a ball": Rational(2, 5)}
@@ -142,7 +142,7 @@ def _slope(d: Derivation) -> None:
         r"It slips where friction, at most $\mu_f$ times the normal force, would not reach this ratio.",
         solution[friction] / (M * G * cos(slope)),
         gyration / (gyration + M * R**2) * sin(slope) / cos(slope),
-        because="friction is solved for",
+        because="the equations are solved for the friction",
         named=r"\frac{F_x}{m g \cos\alpha}",
     )
 
@@ -164,7 +164,7 @@ def _nonholonomic(d: Derivation) -> None:
         "Turn, roll, turn back, roll back: to second order the wheel has moved aside, which it cannot do at once.",
         bracket,
         aside,
-        because="the bracket of the two motions is the change of one along the other",
+        because="the Lie bracket of two motions is the change of one along the other",
         named=r"[\text{turn}, \text{roll}] = \frac{\partial\,\text{roll}}{\partial (x, y, \psi, \theta)}\,\text{turn}",
     )
     d.step(
@@ -173,7 +173,7 @@ def _nonholonomic(d: Derivation) -> None:
         "between the coordinates stands for the constraint.",
         Matrix.hstack(roll, turn, aside, aside.jacobian(state) * turn).det(),
         -(R**2),
-        because="the four motions are independent, having this determinant",
+        because="the determinant of the four motions is not zero",
         named=r"\det \begin{bmatrix} \text{roll} & \text{turn} & [\text{turn}, \text{roll}] & [\text{turn}, "
         r"[\text{turn}, "
         r"\text{roll}]] \end{bmatrix}",

@@ -1,4 +1,4 @@
-"""When the angular velocity can be found without the attitude."""
+"""Conditions under which the angular velocity can be computed without the attitude."""
 
 from sympy import Matrix, diag, sqrt
 

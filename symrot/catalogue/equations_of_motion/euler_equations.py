@@ -48,7 +48,7 @@ def derive() -> Derivation:
         "This is the torque in the body if the angular acceleration is as follows: Euler's equations, full tensor.",
         moving.subs(pairs(symbols.omega_rates, acceleration)),
         TORQUE,
-        because=r"$\tau_b = R^{\mathsf T} \tau_s$, and the tensor has an inverse",
+        because=r"$\tau_b = R^{\mathsf T} \tau_s$, and the inertia tensor has an inverse",
         named=r"\dot\omega_b = I^{-1} \left( \tau_b - \omega_b \times I\,\omega_b \right)"
         r"\quad\Rightarrow\quad I\,\dot\omega_b + \omega_b \times I\,\omega_b",
         display=r"\tau_b",
@@ -63,7 +63,7 @@ def derive() -> Derivation:
         "Along principal axes, with moments $A, B, C$, the products of inertia are gone.",
         principal,
         Matrix([((b - c) * w2 * w3 + first) / a, ((c - a) * w3 * w1 + second) / b, ((a - b) * w1 * w2 + third) / c]),
-        because="the tensor is diagonal",
+        because="the inertia tensor is diagonal",
         named=r"\dot\omega_b",
     )
     d.step(
@@ -78,7 +78,7 @@ def derive() -> Derivation:
         "With three equal moments, all are.",
         principal,
         TORQUE / a,
-        because="the factors are zero",
+        because="the factors $B - C$, $C - A$ and $A - B$ are zero",
         relations=[a - b, b - c],
         named=r"\dot\omega_b",
     )

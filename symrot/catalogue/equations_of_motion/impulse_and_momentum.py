@@ -64,7 +64,7 @@ def _place(d: Derivation, change: Matrix) -> None:
         "And positive: the place gives way to every blow.",
         J.dot(MOBILITY * J),
         squared(J) / M + PLACE.cross(J).dot(INERTIA.inv() * PLACE.cross(J)),
-        because="both terms are positive",
+        because="both terms of the sum are positive",
         named=r"J \cdot K J",
         display=r"\tfrac1m\,|J|^2 + (d \times J) \cdot I^{-1} (d \times J)",
     )
@@ -80,7 +80,7 @@ def _energy(d: Derivation, dv: Matrix, domega: Matrix, struck: Matrix, change: M
         "The blow does the work of the impulse on the mean of the velocities before and after, at the place struck.",
         energy(V + dv, OMEGA + domega) - energy(V, OMEGA),
         J.dot(struck + change / 2),
-        because="kinetic energy is quadratic",
+        because="kinetic energy is quadratic in the velocities",
         named=r"T' - T",
         display=r"J \cdot \left( v_d + \tfrac12\,\Delta v_d \right)",
     )
@@ -88,7 +88,7 @@ def _energy(d: Derivation, dv: Matrix, domega: Matrix, struck: Matrix, change: M
         "A body at rest takes up half the product of impulse and velocity gained (Kelvin).",
         energy(dv, domega),
         HALF * J.dot(MOBILITY * J),
-        because="the velocity before is zero",
+        because="the velocity before the blow is zero",
         named="T'",
         display=r"\tfrac12\,J \cdot K J",
     )
@@ -115,7 +115,7 @@ def _wall(d: Derivation, struck: Matrix) -> None:
         r"The energy lost: none at $\epsilon = 1$.",
         -after,
         HALF * (1 - restitution**2) * speed**2 / give,
-        because="the blow works on the mean of both velocities",
+        because="the work of a blow is its impulse times the mean of the velocities before and after",
         relations=[squared(N) - 1],
         named=r"T - T'",
         display=r"\frac{1 - \epsilon^2}{2} \, \frac{(n \cdot v_d)^2}{n \cdot K n}",
@@ -141,7 +141,7 @@ def _percussion(d: Derivation) -> None:
         "The two distances have a constant product: either point is the centre of percussion of the other.",
         -rest * h,
         symbols.C / M,
-        because="the product is the square of the radius of gyration",
+        because="the product of the two distances is the square of the radius of gyration",
         named=r"-x\,h",
     )
     rod = {symbols.C: M * symbols.L**2 / 12}

@@ -52,7 +52,8 @@ def _transposition(d: Derivation) -> None:
             f"{sequence}.",
             lagrange(MOMENTUM.dot(omega)),
             body.T * omega.cross(MOMENTUM),
-            because="the columns of $B$ are axes that the rotations of the sequence carry along",
+            because="the columns of $B$ are the axes of the rotations, which rotate with the later rotations "
+            "of the sequence",
             named=r"E[\mu \cdot \omega]",
             display=r"B^{\mathsf T} \left( \omega \times \mu \right)",
         )
@@ -96,7 +97,7 @@ def _torques(d: Derivation) -> None:
         "The generalised forces are the torques about the axes of the turns.",
         TORQUE.dot(body * RATES),
         (body.T * TORQUE).dot(RATES),
-        because="the power of the torque is one number in both descriptions",
+        because="the power of the torque is the same in both descriptions",
         named=r"\tau \cdot \omega",
         display=r"\left( B^{\mathsf T} \tau \right) \cdot \dot q = Q \cdot \dot q",
     )

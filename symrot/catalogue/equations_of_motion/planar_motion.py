@@ -1,4 +1,4 @@
-"""Rotation about one principal axis stays rotation about that axis."""
+"""Planar motion: a body that rotates about one principal axis keeps rotating about this axis."""
 
 from sympy import Matrix, cos, diag, sin
 
@@ -64,7 +64,7 @@ def derive() -> Derivation:
         "A torque that is constant in space and along the axis.",
         (dcm_start * turning).T * (dcm_start * vector),
         vector,
-        because="the axis does not move",
+        because="the axis of rotation is fixed",
         relations=[unit_relation()],
         named=r"\tau_b",
     )
@@ -75,7 +75,7 @@ def derive() -> Derivation:
         "Gravity, when the axis is level and the centre of mass beside it: a pendulum.",
         gravity[:2, :],
         0,
-        because="arm and weight lie in the plane of the motion",
+        because="the arm and the weight lie in the plane of the motion",
         named=r"(\tau_1, \tau_2)",
     )
     spinning = Matrix([0, 0, symbols.omega_3])

@@ -48,7 +48,7 @@ def _forces(d: Derivation) -> None:
         "A couple, $F$ at $r$ and $-F$ at $d$: its power does not depend on the point.",
         FORCE.dot(V + OMEGA.cross(POINT)) - FORCE.dot(V + OMEGA.cross(OTHER)),
         (POINT - OTHER).cross(FORCE).dot(OMEGA),
-        because="the velocity of the point cancels",
+        because="the velocity of the reference point cancels",
         named=r"F \cdot v_r - F \cdot v_d",
         display=r"\left( (r - d) \times F \right) \cdot \omega",
     )
@@ -67,7 +67,7 @@ def _forces(d: Derivation) -> None:
         "Power is the same in body and space components.",
         (dcm_sb * second).dot(dcm_sb * OMEGA),
         second.dot(OMEGA),
-        because="a rotation keeps scalar products",
+        because="a rotation preserves scalar products",
         relations=[unit_relation()],
         named=r"\tau_s \cdot \omega_s",
         display=r"\tau_b \cdot \omega_b",
@@ -83,7 +83,7 @@ def _energy(d: Derivation) -> None:
         "Of turning: the torque's power, for any tensor.",
         rate(HALF * OMEGA.dot(TENSOR * OMEGA), motion),
         TORQUE.dot(OMEGA),
-        because=r"the gyroscopic term is at right angles to $\omega$",
+        because=r"the gyroscopic term is perpendicular to $\omega$",
         named=r"\frac{d}{dt}\,\tfrac12\,\omega \cdot I\,\omega",
         display=r"\tau \cdot \omega",
     )
@@ -129,7 +129,7 @@ def _kinds(d: Derivation) -> None:
         "A rotor that turns at a constant rate relative to the body: no power.",
         (-OMEGA.cross(rotor)).dot(OMEGA),
         0,
-        because="the torque of the rotor on the body is at right angles to the angular velocity",
+        because="the torque of the rotor on the body is perpendicular to the angular velocity",
         named=r"-(\omega \times h) \cdot \omega",
     )
     linear = diag(*symbols.damping)

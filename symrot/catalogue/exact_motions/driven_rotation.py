@@ -55,14 +55,14 @@ def _pushed(d: Derivation) -> None:
         "The rate obeys the equation of motion.",
         C * STEADY.diff(T),
         PUSH,
-        because="the rate is linear in time",
+        because="the angular velocity is linear in time",
         named=r"C\,\dot\omega_3(t)",
     )
     d.step(
         "It is the rate of the angle.",
         ANGLE.diff(T),
         STEADY,
-        because="a quadratic is differentiated",
+        because="the angle, which is quadratic in time, is differentiated",
         named=r"\dot\theta(t)",
         display=r"\omega_3(t)",
     )
@@ -81,7 +81,7 @@ def _pushed(d: Derivation) -> None:
 
 
 def _decay() -> tuple[Expr, Expr, Expr]:
-    """Return the rate, the angle, and the decaying factor with damping."""
+    """Return angular velocity and angle under damping, and the factor that decays in both."""
     decay = exp(-DRAG * T / C)
     final = PUSH / DRAG
     return final + (START - final) * decay, final * T + (START - final) * C / DRAG * (1 - decay), decay
@@ -133,7 +133,7 @@ def _braked(d: Derivation) -> None:
         "The same, in a form that holds without damping too.",
         Matrix([speed, angle]),
         Matrix([START * decay + PUSH / C * T * first, START * T * first + PUSH / C * T**2 * second]),
-        because="the fractions are multiplied out",
+        because="the equation is multiplied by the denominators",
         named=r"\begin{bmatrix} \omega_3(t) \\ \theta(t) \end{bmatrix}",
         display=r"\begin{bmatrix} \omega_3\,e^x + \frac{\tau_3}{C}\,t\,f_1 \\ \omega_3\,t\,f_1 + \frac{\tau_3}{C}\,t^2 "
         r"f_2 \end{bmatrix}",
@@ -174,7 +174,7 @@ def _across(d: Derivation) -> None:
         "With a constant torque the phase is quadratic in time: integrals over it are those of Fresnel.",
         ((C - A) / A * ANGLE).diff(T, 2),
         (C - A) / (A * C) * PUSH,
-        because="twice the coefficient of $t^2$",
+        because="the angular acceleration of the phase is twice the coefficient of $t^2$",
         named=r"\frac{d^2}{dt^2} \left( \frac{C - A}{A}\,\theta(t) \right)",
     )
 
@@ -198,7 +198,7 @@ def _attitude(d: Derivation) -> None:
         "They obey the equations of a two-level system that is swept through resonance.",
         rate(Matrix([first, second]), motion),
         HALF * Matrix([I * sweep * first - across * second, across * first - I * sweep * second]),
-        because="the quaternion equation, in pairs",
+        because="the rates of the quaternion are written as two complex equations",
         relations=[imaginary()],
         named=r"\begin{bmatrix} \dot\alpha \\ \dot\beta \end{bmatrix}",
         display=r"\tfrac12 \begin{bmatrix} i \Omega\,\alpha - \omega_1\,\beta \\ \omega_1\,\alpha - i \Omega\,\beta "
@@ -208,7 +208,7 @@ def _attitude(d: Derivation) -> None:
         r"One alone obeys Weber's equation, $\dot\Omega$ being constant: parabolic cylinder functions of time.",
         rate(rate(first, motion), motion),
         (I * growth / 2 - (sweep**2 + across**2) / 4) * first,
-        because="the second number is eliminated",
+        because="the second complex number is eliminated",
         relations=[imaginary()],
         named=r"\ddot\alpha",
         display=r"\left( \frac{i}{2}\,\dot\Omega - \frac{\Omega^2 + \omega_1^2}{4} \right) \alpha",

@@ -48,7 +48,7 @@ def _definition(d: Derivation) -> None:
         "Two sums of squares are constant, hence what they are at the start: 1.",
         Matrix([rate(CN**2 + SN**2, derivatives()), rate(DN**2 + MU * SN**2, derivatives())]),
         0,
-        because="the derivatives cancel",
+        because="the derivatives of the terms cancel",
         named=r"\frac{d}{du} \begin{bmatrix} \mathrm{cn}^2 + \mathrm{sn}^2 \\ \mathrm{dn}^2 + \mu\,\mathrm{sn}^2 "
         r"\end{bmatrix}",
     )
@@ -86,7 +86,7 @@ def _sums(d: Derivation) -> None:
         r"solution with a given start: $S, \hat C, \hat D$ are sn, cn, dn of $u + w$. These are the addition theorems.",
         Matrix([s, c, dn]).subs({SN: 0, CN: 1, DN: 1}),
         Matrix([SN_W, CN_W, DN_W]),
-        because="sn is 0, cn and dn are 1 at $u = 0$",
+        because="at $u = 0$ sn is 0, and cn and dn are 1",
         named=r"\begin{bmatrix} S \\ \hat C \\ \hat D \end{bmatrix}_{u = 0}",
     )
     d.step(
@@ -116,7 +116,7 @@ def _zeta(d: Derivation) -> None:
         r"\mathrm{sn}_w\,\mathrm{sn}\,\mathrm{sn}(u + w)$.",
         dn**2 - DN**2,
         rate(-MU * SN_W * SN * s, along),
-        because="the addition theorem of dn is put in, and the squares of cn and dn",
+        because="the addition theorem of dn and the squares of cn and dn are substituted",
         relations=BOTH,
         named=r"\mathrm{dn}^2(u + w) - \mathrm{dn}^2",
         display=r"\frac{d}{du} \left( -\mu\,\mathrm{sn}_w\,\mathrm{sn}\,S \right)",
@@ -125,7 +125,7 @@ def _zeta(d: Derivation) -> None:
         r"With both signs of $w$, of which $2 Z(w)$ is the constant part, $Z(u + w) - Z(u - w) - 2 Z(w)$ is this:",
         -MU * SN_W * SN * (s + shifted(-1)[0]),
         -2 * MU * SN_W * CN_W * DN_W * SN**2 / BELOW,
-        because="$Z$ is odd",
+        because="the zeta function $Z$ is odd",
         named=r"-\mu\,\mathrm{sn}_w\,\mathrm{sn} \left( \mathrm{sn}(u + w) + \mathrm{sn}(u - w) \right)",
         display=r"-\frac{2 \mu\,\mathrm{sn}_w\,\mathrm{cn}_w\,\mathrm{dn}_w\,\mathrm{sn}^2}{\Delta}",
     )

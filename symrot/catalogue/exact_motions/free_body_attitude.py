@@ -43,7 +43,7 @@ def derive() -> Derivation:
 
 
 def smallest_turn() -> Matrix:
-    """Return the smallest rotation that takes the angular momentum to axis 3 of space."""
+    """Return the rotation by the smallest angle that takes the angular momentum to axis 3 of space."""
     return Matrix(
         [
             [1 - L1**2 / (H * (H + L3)), -L1 * L2 / (H * (H + L3)), -L1 / H],
@@ -91,7 +91,7 @@ def _two_turns(d: Derivation) -> None:
         "body is called the third.",
         smallest * MOMENTUM,
         H * Matrix([0, 0, 1]),
-        because="the relation of the step before is put in",
+        because="the relation of the previous step is substituted",
         relations=LENGTH,
         named=r"P\,L",
         display=r"H\,e_3",
@@ -122,7 +122,7 @@ def _two_turns(d: Derivation) -> None:
         "In terms of the third component alone: a constant, and a part that depends on it.",
         turning_rate(),
         H / C + (2 * T - H**2 / C) / (H + L3),
-        because="the fraction is divided out",
+        because="the polynomial division of the fraction is carried out",
         named=r"\dot\psi",
     )
     d.notation({r"\dot\psi": speed})
@@ -167,7 +167,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
         "Euler's equations hold, about either outer axis.",
         rate(momentum, along),
         momentum.cross(omega),
-        because="each derivative is the product of the two other functions",
+        because="the derivative of each elliptic function is a multiple of the product of the two other functions",
         relations=[SIGN**2 - 1],
         named=r"\dot L",
         display=r"L \times \omega",
@@ -193,7 +193,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
         "The relation between the amplitudes.",
         two**2,
         ONE**2 + parameter * THREE**2,
-        because=r"$\ell_2$, $p$ and $\mu$ are put in",
+        because=r"$\ell_2$, $p$ and $\mu$ are substituted",
         relations=[SIGN**2 - 1],
         named=r"\ell_2^2",
         display=r"\ell_1^2 + \mu\,\ell_3^2",
@@ -202,7 +202,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
         r"The parameter is 1 on the separatrix, where $H^2 = 2 T B$, and less elsewhere.",
         (1 - parameter) * THREE**2 * A * (C - B),
         C * A * (C - B) / C * THREE**2 - C * (B - A) * ONE**2,
-        because="both sides are expanded",
+        because="both sides of the equation are expanded",
         relations=[SIGN**2 - 1],
         named=r"(1 - \mu)\,A (C - B)\,\ell_3^2",
     )
@@ -210,7 +210,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
         "The right side in terms of energy and angular momentum.",
         A * (C - B) * THREE**2 - C * (B - A) * ONE**2,
         A * C * ((ONE**2 + THREE**2) - B * (ONE**2 / A + THREE**2 / C)),
-        because="both sides are expanded",
+        because="both sides of the equation are expanded",
         named=r"A (C - B)\,\ell_3^2 - C (B - A)\,\ell_1^2",
         display=r"A C \left( H^2 - 2 T B \right)",
     )
@@ -239,7 +239,7 @@ def _third_kind(d: Derivation, constants: dict[str, Expr]) -> None:
         "The factor above it.",
         ONE**2 / A + THREE**2 / C - H**2 / C,
         SIGN * constants["speed"] * ONE * two / THREE,
-        because=r"$p$ is put in",
+        because=r"$p$ is substituted",
         relations=[SIGN**2 - 1, H**2 - ONE**2 - THREE**2],
         named=r"2 T - \frac{H^2}{C}",
         display=r"\sigma\,p\,\frac{\ell_1 \ell_2}{\ell_3}",
@@ -253,7 +253,7 @@ def _third_kind(d: Derivation, constants: dict[str, Expr]) -> None:
         r"Hence the rate, $\ell_2$ and $p$ kept as they are,",
         rate_of_turn,
         H / C + SIGN * symbols.p * TWO / (ONE * THREE) * (H - THREE * DN) / below,
-        because="the two steps before are put in",
+        because="the two previous steps are substituted",
         relations=[H**2 - ONE**2 - THREE**2, *squares()],
         named=r"\dot\psi",
         display=r"\frac{H}{C} + \sigma\,p\,\frac{\ell_2}{\ell_1 \ell_3}\,\frac{H - \ell_3\,\mathrm{dn}}{\Delta}",
@@ -296,7 +296,8 @@ def _theta(d: Derivation, constants: dict[str, Expr]) -> None:
         "That function is a constant less what the third angle asks for.",
         argument,
         H * TWO / (2 * ONE * THREE) - TWO / (2 * ONE * THREE) * (H - THREE * DN) / below,
-        because=r"$\mathrm{sn}_w, \mathrm{cn}_w, \mathrm{dn}_w$ are put in, and the fraction is divided out",
+        because=r"$\mathrm{sn}_w, \mathrm{cn}_w, \mathrm{dn}_w$ are substituted, and the polynomial division "
+        r"is carried out",
         relations=relations,
         named=r"\frac{-\mu\,\mathrm{sn}_w \mathrm{cn}_w \mathrm{dn}_w\,\mathrm{sn}^2 / i + \mathrm{dn}\,\mathrm{dn}_w}"
         r"{2 \Delta}",
@@ -310,7 +311,7 @@ def _theta(d: Derivation, constants: dict[str, Expr]) -> None:
         HALF * (H / C + SIGN * symbols.p * TWO / (ONE * THREE) * (H - THREE * DN) / below)
         + SIGN * symbols.p * argument,
         H / (2 * C) + SIGN * symbols.p * H * TWO / (2 * ONE * THREE),
-        because="the fraction with dn is in both, with opposite signs",
+        because="the fraction with dn occurs in both terms with opposite signs",
         relations=relations,
         named=r"\tfrac12\,\dot\psi + \sigma\,p \left( \frac{d}{du} \arg N(u + w) - \frac{Z(w)}{2 i} \right)",
     )
@@ -347,7 +348,7 @@ def _special(d: Derivation) -> None:
         "The angular momentum goes round the axis of the body at a constant rate.",
         MOMENTUM.cross(OMEGA).subs(B, A),
         (1 / A - 1 / C) * L3 * Matrix([-L2, L1, 0]),
-        because="equal moments cancel on axis 3",
+        because="the gyroscopic torque about axis 3 contains the difference of two equal moments",
         named=r"\left. \dot L \right|_{B = A}",
     )
     d.step(

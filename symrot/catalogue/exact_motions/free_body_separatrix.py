@@ -74,7 +74,7 @@ def derive() -> Derivation:
         "Euler's equations hold.",
         rate(momentum, _share(SPEED)),
         momentum.cross(omega),
-        because="$B$ and $p$ are put in",
+        because="$B$ and $p$ are substituted",
         relations=RELATIONS,
         named=r"\dot L",
         display=r"L \times \omega",
@@ -133,7 +133,7 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         r"The attitude satisfies its equation, all nine entries: $R = R_3(\psi)\,P$, with both put in.",
         rate(rotation, _share(SPEED) | {PSI: H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2])}),
         rotation * skew(omega),
-        because="the rates of the steps before are put in",
+        because="the rates of the previous steps are substituted",
         relations=RELATIONS,
         named=r"\dot R",
         display=r"R\,[\omega]_\times",
@@ -148,5 +148,5 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
 
 
 def _share(speed: Expr) -> dict[Symbol, Expr]:
-    """Return the rate of h for the frequency."""
+    """Return the value of the angle h's rate for a given frequency, as a substitution."""
     return {SHARE: speed * (1 - SHARE**2) * Rational(1, 2)}

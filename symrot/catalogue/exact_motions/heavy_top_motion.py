@@ -41,7 +41,7 @@ def derive() -> Derivation:
 
 
 def cubic(height: Expr) -> Expr:
-    """Return the square of the rate of cos(theta), from the three heights that are its zeros."""
+    """Return the square of the time derivative of cos(theta), a cubic given by its three zeros."""
     return 2 * W * ARM / A * (height - U1) * (height - U2) * (height - U3)
 
 
@@ -64,7 +64,7 @@ def _nutation(d: Derivation) -> None:
         "With these constants the cubic of energy and momenta has these zeros.",
         (energy - 2 * W * ARM * u) * (1 - u**2) / A - (momentum - spin * u) ** 2 / A**2,
         cubic(u),
-        because="both sides agree at $u = 1$, at $u = -1$, and in two coefficients",
+        because="both sides are cubics with equal values at $u = 1$ and $u = -1$ and two equal coefficients",
         named=r"\frac{1 - u^2}{A} \left( 2 E - \frac{p_\psi^2}{C} - 2 W c_3 u \right) - "
         r"\frac{(p_\phi - p_\psi u)^2}{A^2}",
         display=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
@@ -92,7 +92,7 @@ def _nutation(d: Derivation) -> None:
         "It has its acceleration too, so that it does not stay where the rate is zero.",
         rate(speed, along),
         cubic(u).diff(u).subs(u, HEIGHT) / 2,
-        because="the derivative of the step before, less its factor $\\dot u$; proven by itself",
+        because="the previous step is differentiated and divided by $\\dot u$; the result is proven separately",
         relations=squares(PARAMETER),
         named=r"\ddot u",
         display=r"\frac{W c_3}{A} \frac{\partial}{\partial u} (u - u_1)(u - u_2)(u - u_3)",
@@ -115,14 +115,14 @@ def _rates(d: Derivation) -> None:
                 (P_PHI - P_PSI) / (A * (1 - u)) - P_PSI * (1 / C - 1 / A),
             ]
         ),
-        because=r"partial fractions in $\cos\theta$",
+        because=r"the rate is split into partial fractions in $\cos\theta$",
         named=r"\begin{bmatrix} \dot\phi + \dot\psi \\ \dot\phi - \dot\psi \end{bmatrix}",
     )
     d.step(
         "Each alone has both.",
         dphi,
         (P_PHI + P_PSI) / (2 * A * (1 + u)) + (P_PHI - P_PSI) / (2 * A * (1 - u)),
-        because="half the sum of the two rates is taken",
+        because="the phase rate is half the sum of the two rates",
         named=r"\dot\phi",
     )
 
@@ -148,7 +148,7 @@ def _attitude(d: Derivation) -> None:
         "It gives the rotation of the angles of ZXZ.",
         quaternion_to_dcm(quaternion),
         dcm("ZXZ"),
-        because="double angles",
+        because="the formulas for double angles are applied",
         named=r"R(q)",
         display=r"R_3(\phi)\,R_1(\theta)\,R_3(\psi)",
     )
@@ -184,7 +184,7 @@ def _theta(d: Derivation) -> None:
         "This addition has one denominator.",
         c_sum * d_sum / at_sum - MU * s * SN * at_sum,
         (SN * CN * DN - s * c * dn) / (SN**2 - s**2),
-        because="the addition theorems are put in",
+        because="the addition theorems are substituted",
         relations=[*squares(), *squares(fixed=True)],
         named=r"\frac{\mathrm{cn}(u + w)\,\mathrm{dn}(u + w)}{\mathrm{sn}(u + w)} - \mu\,\mathrm{sn}_w\,\mathrm{sn}\,"
         r"\mathrm{sn}(u + w)",
@@ -204,7 +204,7 @@ def _theta(d: Derivation) -> None:
             r"$\mathrm{cn}_w^2$ and $\mathrm{dn}_w^2$ are these.",
             Matrix([1 - s2, 1 - PARAMETER * s2]),
             Matrix([c2, d2]),
-            because="the two quadratic relations between sn, cn and dn give both",
+            because="the two quadratic relations between sn, cn and dn are substituted",
             named=r"\begin{bmatrix} 1 - \mathrm{sn}_w^2 \\ 1 - \mu\,\mathrm{sn}_w^2 \end{bmatrix}",
         )
         d.step(
@@ -229,7 +229,7 @@ def _theta(d: Derivation) -> None:
             r"{2 A\,p\,(u_2 - u_1)}$:",
             s2 * c2 * d2,
             (I * momentum / (2 * A * SPEED * (U2 - U1))) ** 2,
-            because=r"$p$ and the momenta are put in, in terms of the zeros",
+            because=r"$p$ and the momenta are substituted in terms of the zeros",
             relations=[imaginary()],
             named=r"\mathrm{sn}_w^2\,\mathrm{cn}_w^2\,\mathrm{dn}_w^2",
             display=rf"\left( \frac{{i\,(p_\phi {sign} p_\psi)}}{{2 A\,p\,(u_2 - u_1)}} \right)^2",

@@ -78,7 +78,10 @@ def _plane(d: Derivation) -> None:
 def _holds(
     d: Derivation, claim: str, motion: tuple[Expr, ...], along: dict[Symbol, Expr], hypotheses: list[Expr]
 ) -> None:
-    """Add the step that sine and cosine of the half angle, and the rate, satisfy the pendulum's equations."""
+    """Add the step that a motion satisfies the equations of a pendulum.
+
+    The motion is given by sine and cosine of half the angle, and by the angular rate.
+    """
     s, c, speed = motion
     half = Rational(1, 2)
     d.notation({"s": s, "c": c, r"\dot\theta": speed, r"\ddot\theta": rate(speed, along), "p": P}, along)
@@ -86,7 +89,7 @@ def _holds(
         claim,
         rate(Matrix([s, c, speed]), along),
         Matrix([half * speed * c, -half * speed * s, -2 * P**2 * s * c]),
-        because="each derivative is put in",
+        because="each derivative is substituted",
         relations=hypotheses,
         named=r"\begin{bmatrix} \dot s \\ \dot c \\ \ddot\theta \end{bmatrix}",
         display=r"\begin{bmatrix} \tfrac12 \dot\theta\,c \\ -\tfrac12 \dot\theta\,s \\ -2 p^2 s\,c \end{bmatrix}",
@@ -102,7 +105,7 @@ def _turning(d: Derivation) -> None:
         "height of the highest place.",
         cubic(symbols.gamma_3).subs(flat),
         2 * W * ARM / A * (U2 - symbols.gamma_3) * (1 - symbols.gamma_3**2),
-        because="$1 - u^2$ is a factor",
+        because="$1 - u^2$ is a common factor",
         named=r"\dot u^2",
         display=r"\frac{2 W c_3}{A} (u_2 - u)(1 - u^2)",
     )

@@ -1,4 +1,4 @@
-"""Through the vertical, and into sleep (Klein & Sommerfeld, The Theory of the Top, vol. 2, chapters 4 and 6)."""
+"""Heavy tops through the vertical, and into sleep (Klein & Sommerfeld, Theory of the Top, vol. 2, chapters 4 and 6)."""
 
 from sympy import Integer, Matrix, Symbol, atan, sqrt, tanh
 
@@ -106,7 +106,7 @@ def _separatrix(d: Derivation) -> None:
         "The height has the rate that the cubic asks for.",
         rate(height, along) ** 2,
         cubic(height).subs(both),
-        because="$u - 1$ is twice a factor of it",
+        because="$u - 1$ is a double factor of the cubic",
         named=r"\dot u^2",
         display=r"\frac{2 W c_3}{A} (u - u_1)(u - 1)^2",
     )
@@ -114,7 +114,7 @@ def _separatrix(d: Derivation) -> None:
         "It has its acceleration too.",
         rate(rate(height, along), along),
         cubic(symbols.gamma_3).diff(symbols.gamma_3).subs(both).subs(symbols.gamma_3, height) / 2,
-        because="half the derivative of the cubic by the height",
+        because="the acceleration of the height is half the derivative of the cubic",
         named=r"\ddot u",
         display=r"\frac{W c_3}{A} \frac{\partial}{\partial u} (u - u_1)(u - 1)^2",
     )
@@ -126,7 +126,7 @@ def _separatrix(d: Derivation) -> None:
         r"reach for $u_1 \to 1$.",
         momentum**2,
         2 * A * W * ARM * (1 + lowest),
-        because="the double zero is put in",
+        because="the double zero is substituted",
         named=r"p_\psi^2",
     )
     d.step(
@@ -142,7 +142,7 @@ def _separatrix(d: Derivation) -> None:
         "The half angle is a hyperbolic secant: the axis goes back the way it came, and does not pass the vertical.",
         (1 - height) / 2,
         (1 - lowest) / 2 * (1 - h**2),
-        because="$1 - u$ is put in",
+        because="$1 - u$ is substituted",
         named=r"\sin^2 \tfrac\theta2",
         display=r"\tfrac12 (1 - u_1)\,\mathrm{sech}^2\,p\,t",
     )

@@ -44,7 +44,7 @@ def derive() -> Derivation:
         r"The angular velocity is $L/A$ and a rotation about the axis at a constant rate $\nu$.",
         OMEGA,
         momentum / A + own * AXIS,
-        because="the tensor is $A$ times 1, but for axis 3",
+        because="the inertia tensor is $A$ times the unit matrix, except along axis 3",
         named=r"\omega",
         display=r"\frac{L}{A} + \nu\,e_3, \quad \nu = \frac{(A - C)\,\omega_3 - h_3}{A}",
     )
@@ -70,7 +70,7 @@ def _body(d: Derivation, alpha_b: Matrix) -> None:
         "The spin is constant, and the transverse angular velocity turns at a constant rate.",
         alpha_b,
         turning * Matrix([-symbols.omega_2, symbols.omega_1, 0]),
-        because="equal moments cancel on axis 3, and the rotor is along it",
+        because="the two equal moments cancel in the equation of axis 3, and the rotor lies along axis 3",
         named=r"\dot\omega_b",
     )
     rates = symbols.Omega, symbols.p
@@ -116,7 +116,8 @@ def _attitude(d: Derivation) -> None:
         "direction $n$ as seen from the body.",
         attitude.diff(T),
         quaternion_rates("body", attitude) * omega,
-        because="a factor on the left rotates about an axis of space, a factor on the right about an axis of the body",
+        because="a left factor of the quaternion rotates about an axis of space, a right factor about an "
+        "axis of the body",
         relations=relations,
         named=r"\dot q(t)",
         display=r"\tfrac12\,q(t)\,(0,\ 2 p\,n_b + 2 \Omega\,e_3)",
@@ -125,7 +126,7 @@ def _attitude(d: Derivation) -> None:
         r"The turn about $n$ itself does not matter for it.",
         Matrix(quaternion_to_dcm(attitude)).T * direction,
         turned,
-        because="a rotation does not move its own axis",
+        because="a rotation leaves its own axis fixed",
         relations=relations,
         named=r"R(t)^{\mathsf T} n",
         display=r"R\left( q\,(\cos(\Omega t),\ e_3 \sin(\Omega t)) \right)^{\mathsf T} n",
@@ -140,13 +141,13 @@ def _rotor(d: Derivation, momentum: Matrix, own: object) -> None:
         "dual-spin satellite keeps its face.",
         own.subs(ROTOR, (A - C) * SPIN),  # type: ignore[attr-defined]
         0,
-        because=r"$\nu$ is put in",
+        because=r"$\nu$ is substituted",
         named=r"\left. \nu \right|_{h_3 = (A - C)\,\omega_3}",
     )
     d.step(
         "The rate of the precession grows with the rotor.",
         squared(momentum) / A**2,
         (A**2 * (symbols.omega_1**2 + symbols.omega_2**2) + (C * SPIN + ROTOR) ** 2) / A**2,
-        because="$|L|/A$ is the rate",
+        because="the precession rate is $|L|/A$",
         named=r"\frac{H^2}{A^2}",
     )

@@ -56,7 +56,7 @@ def _functions(d: Derivation) -> None:
         "Two sums of squares are constant, and 1 at the start:",
         Matrix([rate(CN**2 + SN**2, rates), rate(DN**2 + MU * SN**2, rates)]),
         0,
-        because="the derivatives cancel",
+        because="the derivatives of the terms cancel",
         named=r"\frac{d}{dt} \begin{bmatrix} \mathrm{cn}^2 + \mathrm{sn}^2 \\ \mathrm{dn}^2 + \mu\,\mathrm{sn}^2 "
         r"\end{bmatrix}",
     )
@@ -64,14 +64,16 @@ def _functions(d: Derivation) -> None:
         r"So $\mathrm{dn}$ and $\mathrm{cn}$ are one function at $\mu = 1$, where they do not oscillate.",
         DN**2 - CN**2,
         (1 - MU) * SN**2,
-        because="the two sums of squares are subtracted",
+        because="the two sums of squares are subtracted from each other",
         relations=squares,
         named=r"\mathrm{dn}^2 - \mathrm{cn}^2",
     )
 
 
 def _amplitudes() -> tuple[Matrix, object, object]:
-    """Return amplitudes, frequency and parameter in terms of the first and third component at the start."""
+    """Return amplitudes, frequency and parameter of Jacobi's solution, from the first and third component at the
+    start.
+    """
     second = THIRD * sqrt(C * (A - C) / (B * (A - B)))
     p = (A - C) / B * FIRST * THIRD / second
     parameter = (B - C) / A * second * THIRD / (p * FIRST)
@@ -97,7 +99,8 @@ def _solution(d: Derivation) -> None:
         "All three of Euler's equations hold.",
         INERTIA * rate(omega, rates),
         INERTIA * angular_acceleration(INERTIA, omega, 0 * omega),
-        because="each derivative is the product of the two other functions, as each of Euler's equations asks",
+        because="the derivative of each elliptic function is a multiple of the product of the two others, as "
+        "Euler's equations require",
         named=r"I\,\dot\omega",
         display=r"-\omega \times I\,\omega",
     )
@@ -114,7 +117,7 @@ def _solution(d: Derivation) -> None:
         "So is the length of angular momentum.",
         squared(INERTIA * omega),
         A**2 * FIRST**2 + C**2 * THIRD**2,
-        because="the same two relations are put in",
+        because="the same two quadratic relations are substituted",
         relations=squares,
         named="L^2",
     )
@@ -145,7 +148,7 @@ def _constants(d: Derivation) -> None:
         "The frequency.",
         p**2,  # type: ignore[operator]
         (A - B) * (square - twice * C) / (A * B * C),
-        because=r"$a_2$ is put in",
+        because=r"$a_2$ is substituted",
         named="p^2",
         display=r"\frac{(A - B) (L^2 - 2 T C)}{A B C}",
     )
@@ -153,7 +156,7 @@ def _constants(d: Derivation) -> None:
         "The parameter.",
         parameter,
         (B - C) * (twice * A - square) / ((A - B) * (square - twice * C)),
-        because=r"$a_2$ and $p$ are put in",
+        because=r"$a_2$ and $p$ are substituted",
         named=r"\mu",
         display=r"\frac{(B - C) (2 T A - L^2)}{(A - B) (L^2 - 2 T C)}",
     )
@@ -161,7 +164,7 @@ def _constants(d: Derivation) -> None:
         r"It is 1 on the separatrix, $L^2 = 2 T B$, and below 1 on this side of it.",
         (1 - parameter) * (A - B) * (square - twice * C),  # type: ignore[operator]
         (A - C) * (square - twice * B),
-        because="both sides are expanded",
+        because="both sides of the equation are expanded",
         named=r"(1 - \mu)\,(A - B) (L^2 - 2 T C)",
         display=r"(A - C) (L^2 - 2 T B)",
     )

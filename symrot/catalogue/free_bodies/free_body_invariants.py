@@ -1,4 +1,4 @@
-"""What a free body keeps (Landau & Lifshitz, Mechanics, 3rd ed., section 37)."""
+"""Conserved quantities of a free body (Landau & Lifshitz, Mechanics, 3rd ed., section 37)."""
 
 from sympy import Matrix, Rational, diag
 
@@ -32,7 +32,7 @@ def derive() -> Derivation:
         "Kinetic energy is kept.",
         rate(OMEGA.dot(momentum_b) / 2, motion),
         0,
-        because=r"the gyroscopic torque is at right angles to $\omega$",
+        because=r"the gyroscopic torque is perpendicular to $\omega$",
         named=r"\frac{d}{dt}\,\tfrac12\,\omega_b \cdot I\,\omega_b",
     )
     d.step(
@@ -47,7 +47,7 @@ def derive() -> Derivation:
         "So is its length, which needs no attitude.",
         rate(squared(momentum_b), motion),
         0,
-        because="a rotation keeps lengths",
+        because="a rotation preserves lengths",
         named=r"\frac{d}{dt}\,|I\,\omega_b|^2",
     )
     d.section("The polhode")
@@ -66,7 +66,7 @@ def derive() -> Derivation:
         "It is kept as well.",
         rate(squared(inertia * OMEGA) - c * doubled, along),
         0,
-        because="both of its terms are constant",
+        because="both terms of the sum are constant",
         named=r"\frac{d}{dt} \left( |L|^2 - 2 C E \right)",
     )
     d.section("The herpolhode")
@@ -75,7 +75,7 @@ def derive() -> Derivation:
         "its tip moves in the invariable plane.",
         OMEGA.dot(momentum_b) - 2 * (Rational(1, 2) * OMEGA.dot(TENSOR * OMEGA)),
         0,
-        because=r"$\omega \cdot L$ is twice the kinetic energy, and $|L|$ is kept",
+        because=r"$\omega \cdot L$ is twice the kinetic energy, and $|L|$ is conserved",
         named=r"\omega \cdot L - 2 E",
     )
     return d

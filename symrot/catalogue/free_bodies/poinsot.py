@@ -48,7 +48,7 @@ def _rolling(d: Derivation) -> None:
         r"The normal of the ellipsoid $2 T = \text{constant}$ at the end of $\omega$ is the angular momentum.",
         Matrix([TWICE_ENERGY.diff(w) / 2 for w in OMEGA]),
         MOMENTUM,
-        because="the gradient of a quadratic form",
+        because=r"the gradient of a quadratic form $x \cdot I\,x$ is $2\,I\,x$",
         named=r"\frac{\partial T}{\partial \omega}",
         display=r"I\,\omega = L",
     )
@@ -64,7 +64,7 @@ def _rolling(d: Derivation) -> None:
         r"Its distance from the centre is $\omega \cdot L / |L| = 2 T / |L|$, a constant: the plane does not move.",
         Matrix([OMEGA.dot(MOMENTUM), rate(TWICE_ENERGY, FREE), rate(SQUARE, FREE)]),
         Matrix([TWICE_ENERGY, 0, 0]),
-        because="energy and angular momentum are kept",
+        because="energy and angular momentum are conserved",
         named=r"\begin{bmatrix} \omega \cdot L \\ d(2 T)/dt \\ d(L^2)/dt \end{bmatrix}",
         display=r"\begin{bmatrix} 2 T \\ 0 \\ 0 \end{bmatrix}",
     )
@@ -73,7 +73,7 @@ def _rolling(d: Derivation) -> None:
         "slip.",
         OMEGA.cross(OMEGA),
         0,
-        because="the point is on the axis of rotation",
+        because="the point of contact is on the axis of rotation",
         named=r"\omega \times \omega",
     )
     axis = Matrix(symbols.axis)
@@ -83,7 +83,7 @@ def _rolling(d: Derivation) -> None:
         "$2 T = 1$.",
         ray.dot(INERTIA * ray),
         1,
-        because=r"the point $n/p$ is on it for $p^2 = n \cdot I\,n$",
+        because=r"for $p^2 = n \cdot I\,n$ the point $n/p$ is on the ellipsoid",
         relations=[symbols.p**2 - axis.dot(INERTIA * axis)],
         named=r"\frac{n}{p} \cdot I\,\frac{n}{p}",
     )
@@ -97,7 +97,7 @@ def _polhode(d: Derivation) -> None:
         "It lies on a cone.",
         sum(moment * (SQUARE - TWICE_ENERGY * moment) * w**2 for moment, w in zip((A, B, C), OMEGA, strict=True)),
         0,
-        because="$L^2$ times one equation less $2 T$ times the other leaves no constant",
+        because="in $L^2$ times one equation minus $2 T$ times the other the constants cancel",
         named=r"A (L^2 - 2 T A)\,\omega_1^2 + B (L^2 - 2 T B)\,\omega_2^2 + C (L^2 - 2 T C)\,\omega_3^2",
     )
     d.step(
@@ -136,7 +136,7 @@ def _polhode(d: Derivation) -> None:
                 B * two * w2**2 + C * (one + two) * w3**2,
             ]
         ).subs(ordered),
-        because="all coefficients are positive",
+        because="all coefficients of the expression are positive",
         named=r"\begin{bmatrix} L^2 - 2 T C \\ 2 T A - L^2 \end{bmatrix}",
         display=r"\begin{bmatrix} A (\delta_1 + \delta_2)\,\omega_1^2 + B\,\delta_1 \omega_2^2 \\ "
         r"B\,\delta_2 \omega_2^2 + C (\delta_1 + \delta_2)\,\omega_3^2 \end{bmatrix}",
@@ -159,7 +159,7 @@ def _herpolhode(d: Derivation) -> None:
         "The point of contact moves between two circles: its distance changes where no component is zero.",
         rate(squared(OMEGA), FREE) / 2,
         (A - B) * (B - C) * (A - C) / (A * B * C) * w1 * w2 * w3,
-        because="Euler's equations, each times its component",
+        because=r"each of Euler's equations is multiplied by its component of $\omega$",
         named=r"\tfrac12 \frac{d}{dt}\,|\omega|^2",
     )
     along = OMEGA.dot(MOMENTUM) / SQUARE * MOMENTUM
@@ -176,7 +176,7 @@ def _herpolhode(d: Derivation) -> None:
         "In space only its part across $L$ moves.",
         Matrix([*angular_acceleration(INERTIA, OMEGA, 0 * OMEGA)]).dot(MOMENTUM),
         0,
-        because=r"$\omega \cdot L$ is kept and $L$ is fixed",
+        because=r"$\omega \cdot L$ is conserved and $L$ is fixed",
         named=r"\dot\omega \cdot L",
     )
     d.step(

@@ -1,4 +1,4 @@
-"""A body with three equal moments."""
+"""The spherical body, whose three principal moments are equal: its angular velocity is constant."""
 
 from sympy import Matrix, diag
 
@@ -26,7 +26,7 @@ def derive() -> Derivation:
         "The tensor is the same in all axes.",
         dcm_sb * inertia * dcm_sb.T,
         inertia,
-        because="the tensor is a multiple of the unit matrix",
+        because="the inertia tensor is a multiple of the unit matrix",
         relations=[unit_relation()],
         named=r"R\,I\,R^{\mathsf T}",
     )
@@ -50,7 +50,7 @@ def derive() -> Derivation:
         "With a torque, the body answers like a point mass in three directions.",
         angular_acceleration(inertia, OMEGA, Matrix(symbols.torque_b)),
         Matrix(symbols.torque_b) / symbols.A,
-        because="there is no gyroscopic term",
+        because="the gyroscopic term is zero",
         named=r"\dot\omega_b",
     )
     return d

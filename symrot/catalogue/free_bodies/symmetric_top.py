@@ -48,7 +48,7 @@ def derive() -> Derivation:
         "The transverse part of the angular velocity turns at a constant rate, $\\lambda$.",
         Matrix(alpha_b[:2]),
         turning * Matrix([-symbols.omega_2, symbols.omega_1]),
-        because="Euler's equations on axes 1 and 2",
+        because="Euler's equations about axes 1 and 2 are inserted",
         named=r"\begin{bmatrix} \dot\omega_1 \\ \dot\omega_2 \end{bmatrix}",
         display=r"\lambda \begin{bmatrix} -\omega_2 \\ \omega_1 \end{bmatrix}, "
         r"\quad \lambda = \frac{C - A}{A}\,\omega_3",
@@ -69,7 +69,7 @@ def derive() -> Derivation:
         "The angular velocity is one part along the angular momentum and one along the axis.",
         OMEGA,
         momentum / a + spin * AXIS,
-        because="the tensor is $A$ times 1, but for axis 3",
+        because="the inertia tensor is $A$ times the unit matrix, except along axis 3",
         named=r"\omega",
         display=r"\frac{L}{A} + \frac{A - C}{A}\,\omega_3\,e_3",
     )
@@ -77,7 +77,7 @@ def derive() -> Derivation:
         "So the symmetry axis turns about the fixed angular momentum, at the constant rate $|L|/A$.",
         OMEGA.cross(AXIS),
         (momentum / a).cross(AXIS),
-        because=r"the other part of $\omega$ is along the axis and does not move it",
+        because=r"the other part of $\omega$ is along the symmetry axis and does not move this axis",
         named=r"\omega \times e_3",
         display=r"\frac{L}{A} \times e_3",
     )
@@ -85,7 +85,7 @@ def derive() -> Derivation:
         "The angle between them is constant, $\\cos\\theta = C \\omega_3 / |L|$.",
         rate(momentum.dot(AXIS), along),
         0,
-        because=r"$L \cdot e_3 = C\,\omega_3$, and $|L|$ is kept",
+        because=r"$L \cdot e_3 = C\,\omega_3$, and $|L|$ is conserved",
         named=r"\frac{d}{dt} \left( L \cdot e_3 \right)",
     )
     d.step(
@@ -179,7 +179,7 @@ def _angles(d: Derivation) -> None:
         "rolls off as much as the other.",
         squared(omega.cross(axis_s)) * rates[0] ** 2,
         squared(omega.cross(axis_b)) * rates[2] ** 2,
-        because=r"$\omega \times \omega = 0$, with the sum put in for one factor",
+        because=r"$\omega \times \omega = 0$, with the sum substituted for one factor",
         named=r"\dot\phi^2\,|\omega|^2 \sin^2 \angle(\omega, L)",
         display=r"\dot\psi^2\,|\omega|^2 \sin^2 \angle(\omega, e_3)",
     )

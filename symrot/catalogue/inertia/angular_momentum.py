@@ -48,7 +48,7 @@ def _one_particle(d: Derivation) -> None:
         "The matrix of this map, written out: moments on the diagonal, products with the minus sign beside it.",
         momentum.jacobian(OMEGA),
         Matrix(inertia_of_point(mass, point)),
-        because="the coefficients are read off",
+        because=r"the coefficients of the components of $\omega$ are compared",
         named=r"I = \frac{\partial L}{\partial \omega}",
     )
 
@@ -120,14 +120,14 @@ def _properties(d: Derivation) -> None:
         "No moment exceeds the sum of the other two.",
         tensor[0, 0] + tensor[1, 1] - tensor[2, 2],
         2 * sum(m * p[2] ** 2 for m, p in zip(MASSES, POINTS, strict=True)),
-        because="one of the two moments holds $x^2$, the other $y^2$, and the third moment holds both",
+        because="of $x^2$ and $y^2$, one occurs in each of the first two moments, and both occur in the third",
         named=r"I_{xx} + I_{yy} - I_{zz}",
     )
     d.step(
         "Half the trace is the polar moment, the same in all axes.",
         tensor.trace() / 2,
         sum(m * squared(p) for m, p in zip(MASSES, POINTS, strict=True)),
-        because="every square is in two of the three moments",
+        because="each of $x^2$, $y^2$, $z^2$ occurs in two of the three moments",
         named=r"\tfrac12\,\mathrm{tr}\,I",
         display=rf"{COUNT} m_i\,|r_i|^2",
     )
@@ -137,13 +137,13 @@ def _properties(d: Derivation) -> None:
         "the products lead it aside.",
         (TENSOR * about_third).cross(about_third),
         symbols.omega_3**2 * Matrix([symbols.I_yz, -symbols.I_xz, 0]),
-        because="the third column of the tensor has three entries",
+        because="the third column of the inertia tensor has three entries",
         named=r"I\,\omega \times \omega\ \text{for}\ \omega = \omega_3\,e_3",
     )
     d.step(
         "Of bodies, it is a needle along axis 3 that meets the bound: its moment about itself is zero.",
         Matrix(inertia_of_point(symbols.m, Matrix([0, 0, symbols.z]))) * Matrix([0, 0, 1]),
         0,
-        because="all particles of a needle are on the axis",
+        because="all particles of a needle lie on its axis",
         named=r"I\,e_3\ \text{for}\ r = z\,e_3",
     )

@@ -84,7 +84,7 @@ def _forms(d: Derivation) -> None:
         "Its gradient is the angular momentum.",
         Matrix([energy.diff(w) for w in OMEGA]),
         TENSOR * OMEGA,
-        because="the tensor is symmetric",
+        because="the inertia tensor is symmetric",
         named=r"\frac{\partial T}{\partial \omega}",
         display=r"I\,\omega",
     )
@@ -104,7 +104,7 @@ def _forms(d: Derivation) -> None:
         "It is the same in the axes of space, where the tensor changes with time.",
         HALF * (dcm_sb * OMEGA).dot(turned * dcm_sb * OMEGA),
         energy,
-        because=r"$R^{\mathsf T} R = 1$, twice",
+        because=r"$R^{\mathsf T} R = 1$ is applied twice",
         relations=[unit_relation()],
         named=r"\tfrac12\,\omega_s \cdot I_s\,\omega_s",
         display=r"\tfrac12\,\omega_b \cdot I_b\,\omega_b",

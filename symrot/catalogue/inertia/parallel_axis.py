@@ -29,7 +29,7 @@ def derive() -> Derivation:
         "Seen from a point at $-d$, it has its own tensor, the tensor of the offset, and a part linear in $r$.",
         crossed,
         linear,
-        because=r"the tensor is quadratic in $r + d$",
+        because=r"the inertia tensor is quadratic in $r + d$",
         named="I(r + d) - I(r) - I(d)",
         display=r"m \left( 2\,(d \cdot r)\,\mathbf{1} - d\,r^{\mathsf T} - r\,d^{\mathsf T} \right)",
     )
@@ -38,7 +38,7 @@ def derive() -> Derivation:
         r"The linear part is additive, so summed over the body it is the linear part at $\sum m\,r = 0$.",
         linear.subs(dict(zip(R, R + second, strict=True)), simultaneous=True),
         linear + linear.subs(dict(zip(R, second, strict=True)), simultaneous=True),
-        because="this part is linear in the positions",
+        because="the mixed part is linear in the positions",
         named="F(r + r')",
         display="F(r) + F(r')",
     )
@@ -46,21 +46,21 @@ def derive() -> Derivation:
         "There it vanishes: this is the theorem of parallel axes.",
         linear.subs(dict.fromkeys(R, S.Zero)),
         0,
-        because="the positions are counted from the centre of mass",
+        because="the positions are measured from the centre of mass",
         named=r"F\left(\textstyle\sum m\,r\right)",
     )
     d.step(
         "For a body of mass $m$ with the tensor $I$ about its centre of mass:",
         Matrix(about_point(TENSOR, mass, D)),
         TENSOR + mass * (D.dot(D) * Matrix.eye(3) - D * D.T),
-        because="the sum over its points",
+        because="the inertia tensor of a body is the sum over its points",
         named="I_O",
     )
     d.step(
         "The way back.",
         Matrix(about_center_of_mass(about_point(TENSOR, mass, D), mass, D)),
         TENSOR,
-        because="the same term is subtracted",
+        because="the term of the parallel axis theorem is subtracted",
         named=r"I_O - m \left( |d|^2\,\mathbf{1} - d\,d^{\mathsf T} \right)",
     )
     d.step(

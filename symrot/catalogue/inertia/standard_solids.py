@@ -80,7 +80,7 @@ def _shape(d: Derivation, body: Solid) -> None:
 
 
 def _limits(body: Solid) -> str:
-    """Return the limits of all coordinates, as a sentence."""
+    """Return the limits of all integration coordinates of a solid, as a sentence."""
     return ", ".join(f"${_latex(u)}$ from ${_latex(low)}$ to ${_latex(high)}$" for u, low, high in body.limits)
 
 
@@ -96,7 +96,7 @@ def _moments(d: Derivation, body: Solid, letter: str) -> None:
             "Of the first and second moments these vanish.",
             Matrix([moments[axes] for axes in zero]),
             0,
-            because="the integrals are zero term by term",
+            because="the integral of each term is zero",
             named=r"\frac{m}{" + letter + r"} \int \left( " + r",\ ".join(_product(axes) for axes in zero)
             + rf" \right) d{letter}",
         )  # fmt: skip
@@ -132,13 +132,17 @@ def _tensor(d: Derivation, body: Solid, moments: Moments) -> None:
         "The tensor of inertia about the centre of mass.",
         about_origin - body.mass * (center.dot(center) * eye(3) - center * center.T),
         body.inertia,
-        because="moments sum two squares, products carry a minus sign, and the theorem of parallel axes is applied",
+        because="a moment is the integral of the sum of two squares, a product of inertia has a minus sign, "
+        "and the parallel axis theorem is applied",
         named="I",
     )
 
 
 def _stages(body: Solid, axes: Sequence[int]) -> tuple[Expr, tuple[Stage, ...]]:
-    """Return the integral of a product of x, y, z over the map as a constant factor and the stages of integration."""
+    """Return the integral of a product of x, y, z over a solid: a constant factor, and the stages of integration.
+
+    ``axes`` names the factors of the product.
+    """
     coordinates = [variable for variable, _, _ in body.limits]
     constant, weight = body.jacobian.as_independent(*coordinates, as_Add=False)
     for axis in axes:
@@ -147,13 +151,15 @@ def _stages(body: Solid, axes: Sequence[int]) -> tuple[Expr, tuple[Stage, ...]]:
 
 
 def _integral(body: Solid, axes: Sequence[int]) -> Expr:
-    """Return the iterated integral of a product of coordinates x, y, z over the map, in closed form."""
+    """Return the integral of a product of coordinates x, y, z over a solid, in closed form."""
     constant, stages = _stages(body, axes)
     return constant * stages[-1].value
 
 
 def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
-    """Return the antiderivatives as the text of a reason, innermost first; only the last if they are long."""
+    """Return the antiderivatives of an integral as text for a reason, innermost first; only the last if they are
+    long.
+    """
     constant, stages = _stages(body, axes)
     formulas = [f"${_latex(factor_terms(stage.antiderivative))}$ in ${_latex(stage.variable)}$" for stage in stages]
     before = "" if constant == 1 else f", before the factor ${_latex(constant)}$"
@@ -163,7 +169,7 @@ def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
 
 
 def _between(body: Solid, axes: Sequence[int]) -> list[tuple[str, Expr, Expr]]:
-    """Return, for each stage, the words and the equation for the antiderivative between its limits."""
+    """Return, for each stage of an integral, words and the equation for the antiderivative between its limits."""
     equations = []
     for stage in _stages(body, axes)[1]:
         upper, lower = (stage.antiderivative.subs(stage.variable, end) for end in (stage.upper, stage.lower))

@@ -1,4 +1,4 @@
-"""The inertia tensor in other axes."""
+"""The inertia tensor in rotated axes."""
 
 from sympy import Matrix, eye
 
@@ -27,7 +27,7 @@ def derive() -> Derivation:
         "A point that is turned has the turned tensor.",
         Matrix(inertia_of_point(symbols.m, dcm_sb * point)),
         Matrix(rotate(inertia_of_point(symbols.m, point), dcm_sb)),
-        because="$R$ keeps lengths, and $(R r)(R r)^{\\mathsf T} = R\\,r\\,r^{\\mathsf T} R^{\\mathsf T}$",
+        because="$R$ preserves lengths, and $(R r)(R r)^{\\mathsf T} = R\\,r\\,r^{\\mathsf T} R^{\\mathsf T}$",
         relations=unit,
         named="I(R r)",
         display=r"R\,I(r)\,R^{\mathsf T}",
@@ -51,7 +51,7 @@ def derive() -> Derivation:
         "they fix the principal moments.",
         turned.trace(),
         TENSOR.trace(),
-        because="the trace of a product is cyclic",
+        because="the trace of a product does not change under cyclic permutation of its factors",
         relations=unit,
         named=r"\mathrm{tr}\,I_s",
         display=r"\mathrm{tr}\,I_b",
@@ -84,7 +84,7 @@ def derive() -> Derivation:
         "It stays constant if the body is spherical.",
         rate(dcm_sb * (symbols.A * eye(3)) * dcm_sb.T, attitude_rates()),
         0,
-        because="a multiple of 1 commutes with everything",
+        because="a multiple of the unit matrix commutes with every matrix",
         relations=unit,
         named=r"\dot I_s",
     )

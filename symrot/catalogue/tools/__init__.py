@@ -1,1 +1,1 @@
-"""Provide tools that several derivations use: elliptic functions, integrals, motions, power series, swept bodies."""
+"""Tools that several derivations share: elliptic functions, integrals, motions, power series, swept bodies."""

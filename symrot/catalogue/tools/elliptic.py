@@ -1,4 +1,4 @@
-"""Represent Jacobi's elliptic functions as symbols, with derivatives, quadratic relations and addition theorems."""
+"""Jacobi's elliptic functions as symbols, with derivatives, quadratic relations and addition theorems."""
 
 from sympy import Expr, S, Symbol
 
@@ -14,7 +14,7 @@ I = Symbol("i")  # noqa: E741
 
 
 def imaginary() -> Expr:
-    """Return the hypothesis i^2 = -1."""
+    """Return the hypothesis i^2 + 1 = 0 about the symbol i, as an expression that is zero."""
     return I**2 + 1
 
 
@@ -24,7 +24,10 @@ def derivatives(speed: Expr = S.One, parameter: Expr = MU) -> dict[Symbol, Expr]
 
 
 def squares(parameter: Expr = MU, fixed: bool = False) -> list[Expr]:
-    """Return the two quadratic relations as expressions that are zero; with ``fixed``, for the values at w."""
+    """Return the two quadratic relations of sn, cn, dn as expressions that are zero.
+
+    With ``fixed`` they are for the values of the functions at the fixed argument w.
+    """
     s, c, d = W_VALUES if fixed else (SN, CN, DN)
     return [c**2 - 1 + s**2, d**2 - 1 + parameter * s**2]
 

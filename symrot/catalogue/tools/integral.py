@@ -1,4 +1,4 @@
-"""Compute iterated integrals from antiderivatives, each proven by differentiation."""
+"""Iterated integrals, computed from antiderivatives that are proven by differentiation."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -14,7 +14,7 @@ __all__ = ["Stage", "antiderivative", "iterated"]
 
 @dataclass(frozen=True)
 class Stage:
-    """One integration: variable, antiderivative, limits, and the value between them."""
+    """One stage of an iterated integral: variable, antiderivative, limits, and the value between them."""
 
     variable: Symbol
     antiderivative: Expr
@@ -58,13 +58,13 @@ def antiderivative(integrand: Expr, variable: Symbol) -> Expr:
         for (power,), coefficient in Poly(integrand, variable).terms():
             total += coefficient * variable ** (power + 1) / (power + 1)
     if not is_zero(total.diff(variable) - integrand):
-        raise ProofError(f"{total} is no antiderivative of {integrand} in {variable}")
+        raise ProofError(f"expected an antiderivative of {integrand} in {variable}, got {total}")
     return total
 
 
 @cache
 def iterated(integrand: Any, limits: tuple[tuple[Symbol, Expr, Expr], ...]) -> tuple[Stage, ...]:
-    """Integrate over each (variable, lower, upper), the first one innermost, and return all stages."""
+    """Return all stages of an iterated integral over (variable, lower, upper); the first variable is innermost."""
     stages = []
     for variable, lower, upper in limits:
         primitive = antiderivative(expand(integrand), variable)

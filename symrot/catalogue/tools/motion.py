@@ -1,4 +1,4 @@
-"""Differentiate along a motion by the chain rule, and define the motions that derivations share."""
+"""Time derivatives along a motion by the chain rule, and the motions that derivations share."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -22,12 +22,12 @@ TENSOR = Matrix(
 
 
 def pairs(variables: Sequence[Symbol], rates: Any) -> dict[Symbol, Expr]:
-    """Return a mapping from each variable to its rate."""
+    """Return a mapping from each variable to its rate of change."""
     return dict(zip(variables, list(rates), strict=True))
 
 
 def attitude_rates() -> dict[Symbol, Expr]:
-    """Return the rate of the quaternion for the angular velocity ``OMEGA`` in the body."""
+    """Return the rates of q0..q3 for the angular velocity ``OMEGA`` in body axes, by symbol."""
     return pairs(symbols.quaternion, quaternion_rates("body") * OMEGA)
 
 

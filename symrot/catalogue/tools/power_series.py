@@ -1,4 +1,4 @@
-"""Insert power series into linear differential equations: the coefficient of any power, for a symbolic index."""
+"""Power series in linear differential equations: the coefficient of any power, for a symbolic index."""
 
 from collections.abc import Mapping
 
@@ -8,12 +8,12 @@ __all__ = ["coefficient", "indexed"]
 
 
 def indexed(name: str, index: Symbol, shift: int = 0) -> Symbol:
-    """Return the symbol of a coefficient, e.g. ``a_{n-1}``."""
+    """Return the symbol of a coefficient of a power series, e.g. ``a_{n-1}``."""
     return Symbol(f"{name}_{{{index.name}{f'{shift:+d}' if shift else ''}}}")
 
 
 def coefficient(terms: Mapping[str, Mapping[int, Expr]], variable: Symbol, index: Symbol) -> Expr:
-    """Return the coefficient of ``variable^index`` in a sum of series, their derivatives, and polynomials times them.
+    """Return the coefficient of ``variable^index`` in a sum of power series and their derivatives times polynomials.
 
     Parameters
     ----------

@@ -1,4 +1,7 @@
-"""Derive formulas for a body swept through resonance: recurrences of series, and phases without cancellation."""
+"""Formulas for a body swept through resonance: recurrences of series, and phases without cancellation.
+
+Such a body rotates at a constant rate across its axis and at a linearly growing rate about it.
+"""
 
 from sympy import Expr, Matrix, Rational, S, Symbol, sqrt
 
@@ -14,7 +17,10 @@ V, X, R, KAPPA = Symbol("v"), Symbol("x"), Symbol("r"), Symbol("kappa")
 
 
 def far(d: Derivation) -> None:
-    """Append the coefficients of the vector at rest, and of the small angle about this vector."""
+    """Append steps on the coefficients of the series far from resonance to a derivation.
+
+    They describe the vector at rest in space, and the small angle about this vector.
+    """
     d.section("The coefficients far from resonance")
     _vector(d)
     _small_angle(d)
@@ -108,7 +114,7 @@ def _small_angle(d: Derivation) -> None:
 
 
 def near(d: Derivation) -> None:
-    """Append the Taylor series of the attitude about an expansion point, and its symmetry."""
+    """Append steps on the Taylor series of the attitude near resonance, and on its symmetry, to a derivation."""
     d.section("Near resonance")
     place, step = Symbol("X"), Symbol("u")
     names = r"\alpha", r"\beta"
@@ -141,14 +147,14 @@ def near(d: Derivation) -> None:
         "$x = 0$ the attitude there differs in the sign of $q_1$ and $q_2$.",
         rate(pair, back),
         Rational(1, 2) * Matrix([I * X * pair[0] - KAPPA * pair[1], KAPPA * pair[0] - I * X * pair[1]]),
-        because="both the time and the sweep change their signs",
+        because="time and sweep both change their signs",
         relations=[imaginary()],
         named=r"\frac{d}{dx} \begin{bmatrix} \alpha(-x) \\ -\beta(-x) \end{bmatrix}",
     )
 
 
 def weak(d: Derivation) -> None:
-    """Append the phase under a weak torque, a power series of the time."""
+    """Append steps on the phase under a weak torque, a power series of the time, to a derivation."""
     d.section("A weak torque")
     h, c = Symbol("h"), Symbol("c")
     f = sqrt(1 + 2 * c * h + h**2)
@@ -205,7 +211,7 @@ def weak(d: Derivation) -> None:
         "These obey the recurrence.",
         recurrence.subs(solution),
         0,
-        because="every $P$ follows from two that are neighbours",
+        because="the three Legendre polynomials follow from two that are neighbours",
         named=r"(k + 1)\,a_{k+1} - (1 - 2 k)\,c\,a_k - (2 - k)\,a_{k-1}",
     )
     legendre, series = {0: S.One, 1: -c}, {-1: S.Zero, 0: S.One}
@@ -216,13 +222,13 @@ def weak(d: Derivation) -> None:
         "And they are where it has come to at $k = 3$.",
         Matrix([(legendre[n - 2] - legendre[n]) / (2 * n - 1) for n in (2, 3)]),
         Matrix([series[2], series[3]]).expand(),
-        because="the first four $P$ are $1$, $-c$, $(3 c^2 - 1)/2$, $(3 c - 5 c^3)/2$",
+        because="the first four Legendre polynomials of $-c$ are $1$, $-c$, $(3 c^2 - 1)/2$, $(3 c - 5 c^3)/2$",
         named=r"\begin{bmatrix} a_{2} \\ a_{3} \end{bmatrix}",
     )
 
 
 def _by_legendre(c: Expr) -> dict[Symbol, Expr]:
-    """Return a_{k+1}, a_k, a_{k-1} from Legendre's P_k and P_{k-1}."""
+    """Return the coefficients a_{k+1}, a_k, a_{k-1} as substitutions by Legendre polynomials P_k and P_{k-1}."""
     above, below = Symbol("P_{k}"), Symbol("P_{k-1}")
     p = {0: above, -1: below, 1: (-(2 * K + 1) * c * above - K * below) / (K + 1)}
     for i in (-2, -3):  # the recurrence for the next higher index, solved for the lowest coefficient
@@ -231,7 +237,7 @@ def _by_legendre(c: Expr) -> dict[Symbol, Expr]:
 
 
 def between(d: Derivation) -> None:
-    """Append the phase between two times as a sum of positive terms."""
+    """Append steps on the phase between two times, a sum of positive terms, to a derivation."""
     d.section("Between two times")
     omega, start, speed, there, across = (Symbol(name) for name in ("Omega", "Omega_0", "S", "S_0", "W"))
     together = there * speed + start * omega
@@ -267,7 +273,7 @@ def between(d: Derivation) -> None:
         "nothing cancels: both terms are positive.",
         together * z * root,
         (omega * speed - start * there) / 2,
-        because="the same two relations are put in, and $t / (2 D) = z / s$",
+        because="the same two relations are substituted, and $t / (2 D) = z / s$",
         relations=squares,
         named=r"E\,z\,w",
         display=r"\tfrac12 \left( \Omega S - \Omega_0 S_0 \right)",

@@ -26,10 +26,10 @@ from symrot.certificates.laws.law_proof import (
     UndecidedChoice,
 )
 from symrot.errors import CertificateError
-from symrot.kernels.definition import Definition, Law
+from symrot.kernels.definition import Law
 from symrot.kinematics.quaternion import quaternion_to_dcm, rotation_relations
 
-__all__ = ["LawProof", "hypotheses", "prove_law", "prove_laws"]
+__all__ = ["LawProof", "hypotheses", "prove_law"]
 
 FEWEST = 8  # generators in the ring of the first attempt at a proof; a later attempt has twice as many
 
@@ -48,18 +48,6 @@ class LawProof:
     hypothesis_names: tuple[str, ...]
     cases: tuple[CaseProof, ...]
     witness: tuple[tuple[str, str], ...]  # (input, number)
-
-
-def prove_laws(kernel: Definition) -> tuple[LawProof, ...]:
-    """Prove every law of a kernel, in every case of its choices.
-
-    Raises
-    ------
-    CertificateError
-        If a law does not follow from the formulas.
-    """
-    formulas = {str(symbol): value for symbol, value in kernel.named} | dict(kernel.formulas)
-    return tuple(prove_law(kernel.name, law, formulas) for law in kernel.laws())
 
 
 def prove_law(name: str, law: Law, formulas: Mapping[str, Expr]) -> LawProof:

@@ -20,12 +20,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-__all__ = ["BINARY", "RELATIONS", "UNARY", "GraphBuilder", "Node", "Operations", "operands"]
+__all__ = ["RELATIONS", "GraphBuilder", "Node", "Operations", "operands"]
 
 Node = tuple[Any, ...]
 
-UNARY = ("neg", "abs", "sqrt")
-BINARY = ("add", "sub", "mul", "div", "copysign")
 RELATIONS: dict[str, Callable[[Any, Any], bool]] = {
     "<": lambda a, b: a < b,
     "<=": lambda a, b: a <= b,

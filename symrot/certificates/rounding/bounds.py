@@ -233,7 +233,7 @@ def _assumptions(libm_ulp: float) -> list[str]:
     return [
         "IEEE 754, rounding to nearest, subnormal numbers kept; operations as written, fused only where it is said",
         f"sin, cos and atan2 within {libm_ulp:g} unit in the last place; sin and cos within [-1, 1], sincos alike",
-        "link 3: constants are rounded to nearest from what it reads; "
+        "each constant is the floating-point number nearest to its exact value in the formula; "
         "series leave out at most a quarter of a unit in the last place",
     ]
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from sympy import Expr, Symbol
 
@@ -23,7 +23,8 @@ from symrot.errors import InputError
 from symrot.exact.decision import ShapeMismatch, matched_sides
 
 __all__ = [
-    "Claim", "Definitions", "Refusal", "claim_of_text", "named_formula", "read_claims", "read_entries", "relation_text",
+    "Claim", "Definitions", "NamedFormula", "Refusal", "claim_of_text", "named_formula", "read_claims", "read_entries",
+    "relation_text",
 ]  # fmt: skip
 
 
@@ -229,8 +230,16 @@ def claim_of_text(source: str, assume: Sequence[str] = (), units: Mapping[str, s
     )
 
 
-def named_formula(claim: Claim) -> tuple[str, Node] | None:
-    """Return (name, formula) of a claim that only gives a formula a name; None for any other claim.
+class NamedFormula(NamedTuple):
+    """A formula with a name that nothing defines: the name, the side on which it stands, and the formula."""
+
+    name: str
+    side: Node
+    formula: Node
+
+
+def named_formula(claim: Claim) -> NamedFormula | None:
+    """Return the name and the formula of a claim that only gives a formula a name; None for any other claim.
 
     The name is a symbol, a function of time or its derivative, and occurs nowhere else in the claim.
     """
@@ -243,7 +252,7 @@ def named_formula(claim: Claim) -> tuple[str, Node] | None:
         if _is_name(inner) and inner.value not in known and not _is_name(formula):
             elsewhere = [node for tree in (formula, *others) for _, node in walk(tree)]
             if side not in elsewhere and not (inner is side and inner.value in [n.value for n in elsewhere]):
-                return str(inner.value), formula
+                return NamedFormula(str(inner.value), side, formula)
     return None
 
 

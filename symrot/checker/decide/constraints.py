@@ -38,6 +38,8 @@ class Constraints:
         Further polynomials that are >= 0: a root times the divisor under it, radicands of the text.
     free : frozenset of int
         Generators that may have any value that these polynomials and signs allow.
+    unconstrained : tuple of PolyElement
+        Divisors in which a generator is not free. Points are drawn without regard to them.
     complete : bool
         False if a hypothesis involves a generator that is not free, so that ``zeros`` leave something out.
     real : bool
@@ -53,6 +55,7 @@ class Constraints:
     whole: frozenset[int] = frozenset()
     products: tuple[PolyElement, ...] = ()
     free: frozenset[int] = frozenset()
+    unconstrained: tuple[PolyElement, ...] = ()
     complete: bool = True
     real: bool = True
 
@@ -121,7 +124,8 @@ def constraints_of(ring: FormulaRing) -> Constraints:
         target, (*zeros, *stated), tuple(poly for poly in factors if occurring([poly]) <= free),
         positive=having("is_positive"), nonnegative=having("is_nonnegative") | frozenset(even),
         negative=having("is_negative"), whole=having("is_integer"), products=tuple(products),
-        free=frozenset(free), complete=len(stated) == len(hypotheses),
+        free=frozenset(free), unconstrained=tuple(poly for poly in factors if not occurring([poly]) <= free),
+        complete=len(stated) == len(hypotheses),
         real=not any(root.expression is I for root in ring.roots),
     )  # fmt: skip
 

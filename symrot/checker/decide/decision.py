@@ -428,7 +428,8 @@ def _branches(
 def _obstacle(ring: FormulaRing) -> str:
     """Return the reason why no decision was reached."""
     if ring.outside_scope:
-        terms = ", ".join(as_text(term) for term in ring.outside_scope[:3])
+        named = ring.outside_scope[:3]
+        terms = ", ".join(f"functions of {as_text(term)}" if term.is_Rational else as_text(term) for term in named)
         return f"too little is known here about {terms}, and no point was found where the sides provably differ"
     if ring.roots:
         roots = ", ".join(as_text(root.expression) for root in list(ring.roots)[:3])

@@ -158,11 +158,9 @@ class Hypotheses:
         """Return whether needs provably hold at one of the exact points that obey the hypotheses."""
         if not self.constraints.complete:
             return False
-        leaves = leaves_of(need.formula for need in needs)
+        formulas = [need.formula for need in needs]
         for point in self.points(attempts):
-            values = self._values(point)
-            values.update((leaf, OTHER_VALUES[n % len(OTHER_VALUES)]) for n, leaf in enumerate(leaves)
-                          if leaf not in values)  # fmt: skip
+            values = self._values_for(formulas, point)
             if all(holds(need, values) for need in needs):
                 return True
         return False
@@ -174,6 +172,13 @@ class Hypotheses:
             if place in point.values and is_leaf(atom):
                 sine, cosine = (point.number(point.values[n]) for n in (place, self.ring.cosines[atom]))
                 values[atom] = atan2(sine, cosine) * atom / base_angle(atom, self.ring.bases[atom])
+        return values
+
+    def _values_for(self, formulas: Sequence[Expr], point: RealPoint) -> dict[Expr, Expr]:
+        """Return the values at a point, and values for symbols of the formulas on which no hypothesis bears."""
+        values = self._values(point)
+        for number, leaf in enumerate(leaves_of(formulas)):
+            values.setdefault(leaf, OTHER_VALUES[number % len(OTHER_VALUES)])
         return values
 
     @cached_property
@@ -239,7 +244,7 @@ class Hypotheses:
             return self._by_enclosures(left, right, entry, attempts)
         candidates = []
         for point in self.points(attempts):
-            if value_at(residual, point):
+            if value_at(residual, point) and self._other_divisors_nonzero(point):
                 candidates.append(point)
             if len(candidates) == CANDIDATES:
                 break
@@ -305,6 +310,13 @@ class Hypotheses:
                 coordinates = sorted(((name, value) for name, value in values.items() if name in used), key=str)
                 return Counterexample(tuple(coordinates), entry, *sides)
         return None
+
+    def _other_divisors_nonzero(self, point: RealPoint) -> bool:
+        """Return whether the divisors on which the drawing of points does not look, such as tanh(x), do not vanish."""
+        factors = [factor.as_expr(*self.ring.generators) for factor in self.constraints.unconstrained]
+        values = self._values_for(factors, point)
+        enclosures = [enclosure(factor, values) for factor in factors]
+        return all(interval is not None and 0 not in interval for interval in enclosures)
 
     def _divisors_nonzero(self, values: dict[Expr, Expr]) -> bool:
         factors = [factor.as_expr(*self.ring.generators) for factor in self.ring.ratios.factors]

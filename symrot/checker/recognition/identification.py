@@ -5,7 +5,7 @@ for either order of a quaternion's components. Every name that is returned has b
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cache
 from itertools import islice, permutations, product
 from typing import Any
@@ -20,6 +20,7 @@ from symrot.checker.claim.tree import walk
 from symrot.checker.latex.reader import read_latex_formula
 from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, Values, fingerprint, values_at
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
+from symrot.checker.verdict import Identification
 from symrot.errors import InputError, complaint
 from symrot.exact.decide import decide
 from symrot.exact.decision import flatten
@@ -38,50 +39,6 @@ FACTORS = tuple(Rational(*pair) for pair in ((1, 1), (-1, 1)))
 SCALES = (*FACTORS, *(Rational(*pair) for pair in ((2, 1), (-2, 1), (1, 2), (-1, 2), (4, 1), (1, 4))))
 LAST_FIRST = (3, 0, 1, 2)
 """The order of the rows of a scalar-last quaternion that puts the scalar first."""
-
-
-@dataclass(frozen=True)
-class Identification:
-    """A known formula to which a formula has been proven equal.
-
-    Attributes
-    ----------
-    name : str
-    how : str
-        The change of the formula under which it is equal: ``""`` for none, ``"transposed"``,
-        ``"with the other sign"``.
-    mapping : dict
-        Symbol of the known formula -> symbol of the formula, where their names differ.
-    source : str
-        The place of the formula in symrot: a call, or a page with its step.
-    proven : bool
-        Always true: names without a proof are not returned.
-
-    Examples
-    --------
-    >>> import symrot
-    >>> symrot.identify("(A*p**2 + B*q**2 + C*r**2)/2")[0].name
-    'kinetic energy of rotation, principal axes'
-    """
-
-    name: str
-    how: str
-    mapping: dict[str, str]
-    source: str
-    proven: bool = True
-
-    @property
-    def renaming(self) -> str:
-        """The symbols that differ as text, ``"with a for dphi"``; empty if none differs."""
-        pairs = ", ".join(f"{other} for {own}" for own, other in self.mapping.items())
-        return f"with {pairs}" if pairs else ""
-
-    def __str__(self) -> str:
-        return "; ".join(part for part in (self.name, self.how, self.renaming) if part)
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the identification as JSON data."""
-        return asdict(self)
 
 
 @dataclass(frozen=True)
@@ -134,7 +91,7 @@ def _value(formula: Any) -> Any:
         raise InputError(f"expected a formula as text or a SymPy value to identify, got {type(formula).__name__}")
     latex = "\\" in formula or "$" in formula
     if "=" in formula and (named := named_formula(claim_of_text(formula))) is not None:
-        return Interpreter(implied=True).read(named[1], formula)
+        return Interpreter(implied=True).read(named.formula, formula)
     if not latex and "=" in formula:
         raise complaint(formula, "", formula.index("="), "one formula without '=' to identify")
     text = read_latex_formula(formula) if latex else formula

@@ -37,6 +37,12 @@ class Dual:
         other = as_dual(other)
         return Dual(self.value * other.value, self.value * other.slope + self.slope * other.value)
 
+    def __sub__(self, other: Any) -> "Dual":
+        return self.__add__(-other)
+
+    def __rsub__(self, other: Any) -> "Dual":
+        return (-self).__add__(other)
+
     __radd__, __rmul__ = __add__, __mul__
     __array_ufunc__ = None  # an array leaves sums and products with a dual number to this class
 

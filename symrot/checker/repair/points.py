@@ -36,7 +36,6 @@ from symrot.checker.repair.rows import (
     determinant,
     dot,
     entries_of,
-    hamilton,
     inverted,
     is_matrix,
     mapped,
@@ -48,6 +47,7 @@ from symrot.checker.repair.rows import (
     times,
     transposed,
 )
+from symrot.kinematics.hamilton import hamilton
 
 __all__ = ["Point", "UndefinedValue", "agree", "entries_of", "points"]
 
@@ -272,7 +272,7 @@ def _hstack(*parts: Any) -> Rows:
 
 
 def _product_of_quaternions(*factors: Any) -> Rows:
-    total = [1.0, 0.0, 0.0, 0.0]
+    total: tuple[Any, ...] = (1.0, 0.0, 0.0, 0.0)
     for factor in factors:
         total = hamilton(total, [row[0] for row in needed(factor, (4, 1))])
     return column(total)

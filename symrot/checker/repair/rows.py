@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from symrot.checker.repair.dual import UndefinedValue, cosine, inverse, plain, sine
+from symrot.kinematics.hamilton import hamilton
 
 __all__ = [
     "Rows",
@@ -12,7 +13,6 @@ __all__ = [
     "determinant",
     "dot",
     "entries_of",
-    "hamilton",
     "inverted",
     "is_matrix",
     "mapped",
@@ -144,16 +144,6 @@ def rotation(axis: int) -> Callable[[Any], Rows]:
         return tuple(map(tuple, rows))
 
     return matrix
-
-
-def hamilton(p: Sequence[Any], q: Sequence[Any]) -> list[Any]:
-    """Return the product of quaternions, scalar first."""
-    a, b, c, d = p
-    e, f, g, h = q
-    return [
-        a * e + -(b * f) + -(c * g) + -(d * h), a * f + b * e + c * h + -(d * g),
-        a * g + -(b * h) + c * e + d * f, a * h + b * g + -(c * f) + d * e,
-    ]  # fmt: skip
 
 
 def rotation_of_quaternion(*q: Any) -> Rows:

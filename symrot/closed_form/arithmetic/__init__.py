@@ -1,1 +1,1 @@
-"""Arithmetic on pairs of doubles, in C and in Python, and the functions that all closed forms share."""
+"""Exact numbers, sums of two doubles (double-double arithmetic), and changes of axes, which all closed forms use."""

@@ -38,11 +38,6 @@ static inline dd dd_add(dd a, dd b)
     return quick_two_sum(s.hi, s.lo + t.lo);
 }
 
-static inline dd dd_negative(dd a)
-{
-    return dd_pair(-a.hi, -a.lo);
-}
-
 static inline dd dd_sub(dd a, dd b)
 {
     return dd_add(a, dd_negative(b));
@@ -124,7 +119,6 @@ static const dd DD_INVERSE_FACTORIALS[] = {
     {0x1.88e85fc6a4e5ap-89, -0x1.71c37ebd16540p-143}, /* 1/26! */
     {0x1.d1ab1c2dccea3p-94, 0x1.054d0c78aea14p-149}, /* 1/27! */
 };
-#define DD_TERMS ((int)(sizeof DD_INVERSE_FACTORIALS/sizeof DD_INVERSE_FACTORIALS[0]))
 
 /* exp(a): 2^k times the 64th power of exp of what is left; 0 below the smallest double. */
 ONE_COPY dd dd_exp(dd a)

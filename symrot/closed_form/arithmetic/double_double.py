@@ -1,7 +1,8 @@
-"""Arithmetic on arrays of pairs of doubles, ``high + low``, to about 2^-104, and the exponential in it.
+"""Double-double arithmetic on arrays: each number is an unevaluated sum ``high + low`` of two doubles.
 
-The algorithms need every rounding as written, which NumPy does. Sums and products: Dekker, Numer. Math. 18 (1971) 224;
-Knuth, The Art of Computer Programming, vol. 2, section 4.2.2. The exponential: 2^(j/8) from a table times a series.
+Relative errors are about 2^-104. The algorithms need every operation rounded as it is written, which NumPy does. Sums
+and products: Dekker, Numer. Math. 18 (1971) 224; Knuth, The Art of Computer Programming, vol. 2, section 4.2.2. The
+exponential is 2^(j/8) from a table times a power series.
 """
 
 from fractions import Fraction
@@ -15,7 +16,10 @@ from symrot.closed_form.arithmetic.pairs import pair
 from symrot.closed_form.build import Floats
 from symrot.formula import exact_numbers as number
 
-__all__ = ["NEAR", "Pair", "add", "exponential", "ln2", "multiply", "second", "two_product", "two_sum"]
+__all__ = [
+    "NEAR", "Pair", "add", "divide", "exponential", "ln2", "multiply", "normalized", "second", "square_root",
+    "subtract", "two_product", "two_sum",
+]  # fmt: skip
 
 Pair = tuple[Any, Any]
 """High and low, each an array or a float."""
@@ -23,22 +27,22 @@ Pair = tuple[Any, Any]
 NEAR = 1 / 16
 """Largest argument for which the series of :func:`second` is accurate."""
 
-_SPLITTER = 134217729.0  # 2^27 + 1
-_PARTS = 8  # of an octave, in the table of the exponential
+_SPLITTER = 134217729.0  # 2^27 + 1: multiplication by it splits a double into two halves
+_PARTS = 8  # parts of an octave (a factor of 2) in the table of the exponential
 _SHORT = 39  # bits of ln 2/8 that can be multiplied by any j (14 bits) without rounding
-_LEAST = -745.2  # below it the exponential is 0
-_HEAD, _TAIL = 8, 16  # NEAR^8/10! < 2^-53, so the terms from the 8th on need doubles; NEAR^16/18! < 2^-116 ends them
+_LEAST = -745.2  # for a smaller argument the exponential is 0
+_HEAD, _TAIL = 8, 16  # doubles suffice from term 8 on: NEAR^8/10! < 2^-53; the series ends at 16: NEAR^16/18! < 2^-116
 
 
 def two_sum(a: Any, b: Any) -> Pair:
-    """Return a + b and its rounding error."""
+    """Return the rounded sum of two doubles and its rounding error, which is a double too."""
     total = a + b
     part = total - a
     return total, (a - (total - part)) + (b - part)
 
 
 def two_product(a: Any, b: Any) -> Pair:
-    """Return a*b and its rounding error."""
+    """Return the rounded product of two doubles and its rounding error, which is a double too."""
     product = a * b
     wide_a, wide_b = _SPLITTER * np.asarray(a), _SPLITTER * np.asarray(b)
     high_a, high_b = wide_a - (wide_a - a), wide_b - (wide_b - b)
@@ -46,21 +50,44 @@ def two_product(a: Any, b: Any) -> Pair:
     return product, ((high_a * high_b - product) + high_a * low_b + low_a * high_b) + low_a * low_b
 
 
-def _renewed(high: Any, low: Any) -> Pair:
+def normalized(high: Any, low: Any) -> Pair:
+    """Return the pair of the same sum whose low part is at most half a unit in the last place of its high part."""
     total = high + low
     return total, low - (total - high)
 
 
 def add(a: Pair, b: Pair) -> Pair:
-    """Return a + b, to 2^-104 of the larger of the two."""
+    """Return the sum of two double-double numbers, with an error of 2^-104 of the larger of the two."""
     total, error = two_sum(a[0], b[0])
-    return _renewed(total, error + (a[1] + b[1]))
+    return normalized(total, error + (a[1] + b[1]))
+
+
+def subtract(a: Pair, b: Pair) -> Pair:
+    """Return a - b, to 2^-104 of the larger of the two."""
+    return add(a, (-b[0], -b[1]))
 
 
 def multiply(a: Pair, b: Pair) -> Pair:
-    """Return a*b."""
+    """Return the product of two double-double numbers."""
     product, error = two_product(a[0], b[0])
-    return _renewed(product, error + (a[0] * b[1] + a[1] * b[0]))
+    return normalized(product, error + (a[0] * b[1] + a[1] * b[0]))
+
+
+def divide(a: Pair, b: Pair) -> Pair:
+    """Return a/b by long division: three quotients of doubles."""
+    first = a[0] / b[0]
+    rest = subtract(a, multiply((first, 0.0), b))
+    second = rest[0] / b[0]
+    rest = subtract(rest, multiply((second, 0.0), b))
+    return add(two_sum(first, second), (rest[0] / b[0], 0.0))
+
+
+def square_root(a: Pair) -> Pair:
+    """Return the square root of positive pairs of arrays: two Newton steps from the square root of the high part."""
+    root: Pair = (np.sqrt(a[0]), 0.0)
+    for _ in range(2):
+        root = add(root, (subtract(a, multiply(root, root))[0] / (2.0 * root[0]), 0.0))
+    return root
 
 
 @cache
@@ -80,7 +107,10 @@ def _coefficients() -> list[tuple[float, float]]:
 
 @cache
 def _octave() -> tuple[tuple[Floats, Floats], tuple[float, float, float]]:
-    """Return the table of 2^(j/8), and ln 2/8 in three parts, the first two short."""
+    """Return the table of 2^(j/8) as pairs of doubles, and ln 2/8 as a sum of three doubles.
+
+    The first two of the three have few bits, so that their products with any j are exact.
+    """
     root, step = Fraction(2), _PARTS
     while step > 1:
         root, step = number.sqrt(root), step // 2
@@ -93,7 +123,7 @@ def _octave() -> tuple[tuple[Floats, Floats], tuple[float, float, float]]:
 
 
 def second(x: Pair) -> Pair:
-    """Return (exp(x) - 1 - x)/x^2 for \\|x\\| <= NEAR."""
+    r"""Return (exp(x) - 1 - x)/x^2 of double-double numbers with \|x\| <= NEAR, by its power series."""
     coefficients, (high, low) = _coefficients(), x
     total: Any = 0.0
     for coefficient, _ in reversed(coefficients[_HEAD:]):
@@ -102,13 +132,13 @@ def second(x: Pair) -> Pair:
     for known, error in reversed(coefficients[:_HEAD]):
         product, lost = two_product(total, high)
         rest = lost + (total * low + rest * high) + error
-        total = known + product  # of which the known one is larger
+        total = known + product  # the constant term is the larger of the two summands
         rest = rest + (product - (total - known))
-    return _renewed(total, rest)
+    return normalized(total, rest)
 
 
 def exponential(x: Pair) -> Pair:
-    """Return exp(x) for x <= 709; the low part is lost with the smallest numbers."""
+    """Return exp(x) of double-double numbers x <= 709; results near the smallest doubles have no low part."""
     (high, low), (first, middle, last) = _octave()
     above = np.maximum(x[0], _LEAST)
     j = np.rint(above * (_PARTS / float(ln2(number.BITS))))

@@ -1,14 +1,12 @@
-"""Changes of axes to 30 digits for the closed forms: rotation matrices of Fractions and their quaternions."""
+"""Rotation matrices of exact fractions and their quaternions, correct to 30 digits, for changes of axes."""
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import TypeVar
 
 from symrot.formula.exact_numbers import unit
 
-__all__ = ["Rows", "product", "quaternion_of", "to_axis"]
+__all__ = ["Rows", "quaternion_of", "to_axis"]
 
-Exact = TypeVar("Exact", int, Fraction)
 Rows = Sequence[Sequence[Fraction]]
 
 
@@ -24,20 +22,12 @@ def quaternion_of(r: Rows) -> tuple[Fraction, ...]:
     return unit(max(candidates, key=lambda row: sum(x * x for x in row)))
 
 
-def product(a: Sequence[Exact], b: Sequence[Exact]) -> tuple[Exact, Exact, Exact, Exact]:
-    """Return the product of two quaternions, scalar first, of integers or of fractions."""
-    a0, a1, a2, a3 = a
-    b0, b1, b2, b3 = b
-    return (
-        a0 * b0 - a1 * b1 - a2 * b2 - a3 * b3,
-        a0 * b1 + a1 * b0 + a2 * b3 - a3 * b2,
-        a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1,
-        a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0,
-    )
-
-
 def to_axis(direction: Sequence[Fraction]) -> tuple[tuple[Fraction, ...], ...]:
-    """Return a rotation whose third column is the unit vector along ``direction``; an axis along it is not moved."""
+    """Return a rotation matrix that maps the third axis onto ``direction``: its third column is the unit vector along
+    it.
+
+    If ``direction`` lies along the third axis, the matrix only contains 0, 1 and -1.
+    """
     third = unit(direction)
     if third[0] == third[1] == 0:
         sign = 1 if third[2] > 0 else -1

@@ -1,4 +1,4 @@
-"""Exact numbers as pairs of doubles, ``hi + lo``, to 31 digits. Standard library only."""
+"""Sums ``hi + lo`` of two doubles that represent exact numbers to 31 digits. Uses the standard library only."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -32,13 +32,16 @@ SMALLEST = 1e-205
 """Smallest moment of inertia, kg m^2."""
 
 GRID = 2.0**-33
-"""Step of lo in the last bit of hi: lo of an attitude is rounded to a multiple of it."""
+"""Step, in units of the last bit of ``hi``, to whose multiples ``lo`` of an attitude is rounded."""
 
 _BITS = 600  # 2^600 and its inverse lie inside these bounds
 
 
 def quotient(numerator: int, denominator: int) -> tuple[float, float]:
-    """Return numerator/denominator as hi, lo. Python's division of integers rounds correctly."""
+    """Return numerator/denominator as a sum of two doubles (hi, lo).
+
+    Python rounds quotients of integers correctly, so that both doubles are the nearest ones.
+    """
     hi = numerator / denominator
     top, bottom = hi.as_integer_ratio()
     rest = numerator * bottom - top * denominator
@@ -46,12 +49,12 @@ def quotient(numerator: int, denominator: int) -> tuple[float, float]:
 
 
 def pair(value: Number) -> tuple[float, float]:
-    """Return a number as hi, lo."""
+    """Return a number as a sum of two doubles (hi, lo)."""
     return (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
 
 
 def flatten_pairs(values: Sequence[Number]) -> list[float]:
-    """Return hi, lo of each number in one list."""
+    """Return several numbers as one list hi, lo, hi, lo, ..: each number is the sum of two doubles."""
     result: list[float] = []
     for value in values:
         result += (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
@@ -59,15 +62,16 @@ def flatten_pairs(values: Sequence[Number]) -> list[float]:
 
 
 def attitude(values: Sequence[Number]) -> list[float]:
-    """Return hi, lo of each component of a quaternion in one list, to 2^-86 of the component.
+    """Return a quaternion as one list of 8 doubles: hi and lo of each component, correct to 2^-86 of the component.
 
-    An attitude needs no more digits, and arithmetic on arrays of pairs gives the same numbers for many attitudes.
+    No more digits are needed for an attitude. With this rounding, arithmetic on arrays of double-double numbers gives
+    the same doubles for many attitudes at once.
     """
     return on_grid([value.as_integer_ratio() for value in values])
 
 
 def on_grid(values: Sequence[tuple[int, int]]) -> list[float]:
-    """Return hi, lo of each ratio in one list, lo rounded to a multiple of :data:`GRID` of the last bit of hi."""
+    """Return ratios of integers as one list hi, lo, hi, lo, ..; lo is rounded to multiples of GRID last bits of hi."""
     result: list[float] = []
     for top, bottom in values:
         hi = top / bottom
@@ -79,12 +83,12 @@ def on_grid(values: Sequence[tuple[int, int]]) -> list[float]:
 
 
 def same(a: Number, b: Number) -> bool:
-    """Return whether two numbers are equal, to 2^-200."""
+    """Return whether two numbers are equal up to a relative difference of 2^-200."""
     return a == b or (not (isinstance(a, float) and isinstance(b, float)) and equal(Fraction(a), Fraction(b)))
 
 
 def over_common_denominator(values: Sequence[Number]) -> tuple[list[int], int]:
-    """Return integers and the denominator that they share."""
+    """Return the integer numerators of some numbers over one common denominator, and this denominator."""
     ratios = [value.as_integer_ratio() for value in values]
     shared = ratios[0][1]
     if {bottom for _, bottom in ratios} == {shared}:
@@ -94,7 +98,9 @@ def over_common_denominator(values: Sequence[Number]) -> tuple[list[int], int]:
 
 
 def numbers(what: str, values: Sequence[Number], length: int, least: float = -LARGEST) -> list[Number]:
-    """Check numbers, each a float (also of NumPy), an int or a Fraction, and return them unchanged.
+    """Return ``values`` unchanged if they are ``length`` real numbers of a size that a motion can use.
+
+    Floats (also NumPy's), ints and Fractions are accepted; ``what`` names the argument in error messages.
 
     Raises
     ------
@@ -122,9 +128,11 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
 
 
 def _moderate(value: Fraction, least: float) -> bool:
-    """Return whether the length in bits proves that a fraction lies within the bounds of :func:`numbers`."""
+    """Return whether a quick comparison of bit lengths proves that a fraction lies within the bounds of
+    :func:`numbers`.
+    """
     top, bottom = value.as_integer_ratio()
-    size = top.bit_length() - bottom.bit_length()  # of the power of two next to it, or one more
+    size = top.bit_length() - bottom.bit_length()  # the exponent of the next power of two, or one more
     return size < _BITS and (least < 0 or (top > 0 and size > -_BITS))
 
 

@@ -1,10 +1,12 @@
-"""The angle of rotation about one axis under constant torque and linear damping, in turns, without whole turns.
+"""The angle of rotation about one axis under a constant torque and linear damping, in revolutions modulo 1.
 
-At time t it is ``rate t (exp(x) - 1)/x + push t^2 (exp(x) - 1 - x)/x^2`` turns from the start, with ``x = -decay t``;
-away from ``x = 0`` the same is ``(push/decay) t + (rate - push/decay) (1 - exp(x))/decay``. Doubles compute it with a
-relative error of 1e-16, which is enough for small angles only. Larger angles take pairs of doubles, with an error of
-1e-20 of a turn. A few times at once, and angles of more than 1e10 turns, take integers with as many bits as the motion
-needs: for a few times these are faster than a call of NumPy. Pairs and integers round to the same double.
+After time t the angle is ``rate t (exp(x) - 1)/x + push t^2 (exp(x) - 1 - x)/x^2`` revolutions, with ``x = -decay t``.
+Away from ``x = 0`` the equal expression ``(push/decay) t + (rate - push/decay) (1 - exp(x))/decay`` is computed.
+
+Three arithmetics share the work. Doubles have a relative error of 1e-16, which suffices for small angles. Larger angles
+use double-double numbers, with an error of 1e-20 of a revolution. A few times at once, and angles above 1e10
+revolutions, use integers with as many bits as the motion needs: for a few times they are faster than one call of NumPy.
+Double-double numbers and integers round to the same double.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -28,24 +30,24 @@ SMALL = 1 / 16
 """Largest angle, in turns, for which doubles suffice; their error is 2e-16 rad."""
 
 LARGE = 1e10
-"""Angle, in turns, from which on pairs of doubles do not suffice."""
+"""Angle, in turns, above which double-double numbers do not suffice and integers are used."""
 
-_BLOCK = 4096  # times at once: what they need stays in the caches
-_BITS = 192  # behind the point of a turn, with 64 for the size of the time
-_HALVINGS = 8  # of the argument of the exponential in integers
-_GROWN = 1500.0  # the exponential of more is beyond all doubles, times the smallest of them too
-_GUARD = 16  # bits for what they lose
-_TERMS = 20  # of the series of (exp(x) - 1 - x)/x^2 for |x| <= 1, whose next is 2^-70
+_BLOCK = 4096  # times in one block: their arrays stay in the caches of the processor
+_BITS = 192  # bits of an angle in turns after the binary point, 64 of them for the size of the time
+_HALVINGS = 8  # bits of the argument of the exponential, computed in integers
+_GROWN = 1500.0  # exp of a larger number exceeds the largest double even after multiplication by the smallest one
+_GUARD = 16  # guard bits against the rounding errors of integer arithmetic
+_TERMS = 20  # terms of the series of (exp(x) - 1 - x)/x^2 for |x| <= 1; the next term is below 2^-70
 
 
 def exp_and_expm1(high: Floats, low: Floats) -> tuple[Floats, Floats]:
-    """Return exp(x) and exp(x) - 1 of pairs, rounded to doubles."""
+    """Return exp(x) and exp(x) - 1 of double-double numbers x = high + low, both rounded to doubles."""
     grown = np.exp(high)
     return grown * (1.0 + low), np.expm1(high) + grown * low
 
 
 def _second(x: Floats) -> Floats:
-    """Return (exp(x) - 1 - x)/x^2 for \\|x\\| <= 1."""
+    r"""Return (exp(x) - 1 - x)/x^2 of doubles with \|x\| <= 1, by its power series."""
     series = np.full_like(x, 1.0 / (_TERMS + 2))
     for n in range(_TERMS + 1, 1, -1):
         series = (1.0 + series * x) / n
@@ -59,14 +61,14 @@ def _less_whole_turns(turns: dd.Pair) -> Floats:
 
 
 class Turning:
-    """An angle with its constants, each rounded once from exact numbers.
+    """Multiple of the angle of rotation of a driven body, as a function of time; its constants are rounded once.
 
     Parameters
     ----------
     share : Fraction
         The factor by which the angle is multiplied.
     rate : Fraction
-        rad/s, at the start.
+        Angular velocity at the start, rad/s.
     push : Fraction
         Angular acceleration by the constant torque, rad/s^2.
     decay : Fraction
@@ -83,15 +85,15 @@ class Turning:
             self._final, self._rest = pair(final * turn), pair(rest * turn)
         except OverflowError:
             raise InputError(
-                "expected no damping, or one that ends the motion within turns that doubles can count, got a decay of "
+                "expected no damping, or one with a final angle that doubles can represent, got a decay of "
                 f"{float(decay)!r} 1/s under {float(push)!r} rad/s^2"
             ) from None
         self._bits = _BITS + max(int(abs(x)) for x in self._exact).bit_length()
         self._scaled: dict[int, tuple[int, int, int, int]] = {}
 
-    @np.errstate(over="ignore")  # of a size: what is so large is a matter of integers
+    @np.errstate(over="ignore")  # upper bounds; angles above them are computed in integers
     def __call__(self, t: Floats) -> Floats:
-        """Return the turns at each time, from -1/2 to 1/2."""
+        """Return the angle at each time in revolutions without whole ones, from -1/2 to 1/2."""
         if len(t) > _BLOCK:
             return np.concatenate([self(t[k : k + _BLOCK]) for k in range(0, len(t), _BLOCK)])
         x = self._decay[0] * t
@@ -119,7 +121,7 @@ class Turning:
         return self._rate[0] * t * (1.0 + x * series) + self._push[0] * t * t * series
 
     def _near(self, t: Floats) -> Floats:
-        """Return the turns in pairs, by the series about x = 0."""
+        """Return the angle in revolutions as double-double numbers, by the series about ``x = -decay t = 0``."""
         time = t, np.zeros_like(t)
         x = dd.multiply(time, self._decay)
         series = dd.second(x) if self._decay[0] else (0.5, 0.0)
@@ -128,7 +130,7 @@ class Turning:
         return _less_whole_turns(dd.add(dd.multiply(dd.multiply(time, self._rate), first), pushed))
 
     def _far(self, t: Floats) -> Floats:
-        """Return the turns in pairs, as the sum of the steady and the transient part."""
+        """Return the angle in revolutions as double-double numbers, as the sum of a steady and a transient part."""
         time = t, np.zeros_like(t)
         high, low = dd.exponential(dd.multiply(time, self._decay))
         left = dd.multiply(dd.add((1.0, 0.0), (-high, -low)), self._rest)
@@ -138,7 +140,10 @@ class Turning:
         return np.array([self._exactly(time) for time in t.tolist()])
 
     def _integers(self, bits: int) -> tuple[int, int, int, int]:
-        """Return the final rate and the rest in turns, the decay and ln 2, as fixed-point integers of ``bits`` bits."""
+        """Return four constants as fixed-point integers of ``bits`` bits, for exact computation of the angle.
+
+        They are the final rate and the excess of the initial rate, in revolutions, the decay rate and ln 2.
+        """
         if bits not in self._scaled:
             from mpmath import mp
 
@@ -155,9 +160,9 @@ class Turning:
         return self._scaled[bits]
 
     def _exactly(self, t: float) -> float:
-        """Return the turns at one time, in integers."""
+        """Return the angle at one time, in revolutions from -1/2 to 1/2, computed in integers."""
         top, bottom = t.as_integer_ratio()
-        growth = max(0.0, self._decay[0] * t)  # of which each octave takes a bit from all others
+        growth = max(0.0, self._decay[0] * t)  # each factor 2 of the exponential costs one bit of the other terms
         if growth > _GROWN:
             raise InputError(f"expected times at which the angular velocity is a finite number, got {t!r} s")
         bits = self._bits + 64 * int(growth / 32)
@@ -173,7 +178,7 @@ class Turning:
 
 
 def _exponential(x: int, bits: int, octave: int) -> int:
-    """Return exp(x) in fixed point, with as many bits behind the point as x has."""
+    """Return exp(x) of a fixed-point integer x, with ``bits`` bits after the binary point as in x."""
     if x < -bits << bits:
         return 0
     octaves, rest = divmod(x << _GUARD, octave)

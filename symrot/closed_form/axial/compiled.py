@@ -1,7 +1,8 @@
 """Rotation about one axis by compiled loops: :file:`axial_at.c`, with constants from exact integers.
 
-The angle of a driven body grows with the square of time: its phase at 1e15 s needs constants of 212 bits. The constants
-are quotients, so that Python's integers compute them with any number of bits and C receives them complete.
+The angle of a driven body grows with the square of time, so that its phase at 1e15 s needs constants of 212 bits.
+Python's integers compute these constants, which are quotients, to any number of bits; C receives each one as a sum of
+several doubles.
 """
 
 import ctypes
@@ -25,26 +26,26 @@ Ratio = tuple[int, int]
 TOO_MANY_TURNS, OUT_OF_RANGE = 1, 2
 """Return values of the loops: a sample has too many turns, or the numbers at a time leave the range of doubles."""
 
-_LARGEST = 200  # 2^200 stands for what is larger: whatever it multiplies is more turns than the loops know
-_BITS = 260  # more than four doubles hold
-_WIDE, _WIDER, _PAIR = 3, 4, 2  # parts of a constant
-_TURNING = 14  # doubles of a `turning` of axial.h
-_TURN_BITS = 340  # of a share of the angle in turns to a radian
-_EXPONENT = 700.0  # the exponential of more leaves the doubles
+_LARGEST = 200  # 2^200 replaces larger numbers: a product with it is already more turns than the loops can count
+_BITS = 260  # bits: more than a sum of four doubles represents
+_WIDE, _WIDER, _PAIR = 3, 4, 2  # doubles whose sum is one constant
+_TURNING = 14  # doubles in a struct `turning` of axial.h
+_TURN_BITS = 340  # bits of the factor from radians to a multiple of the angle in turns
+_EXPONENT = 700.0  # exp of a larger number is beyond the largest double
 _PI_TOP, _PI_BOTTOM = number.PI.as_integer_ratio()
 _bound: dict[str, tuple[Any, Any]] = {}
 
 
 def parts(top: int, bottom: int, count: int) -> list[float]:
-    """Return top/bottom as the sum of ``count`` doubles, each the rounded remainder of the ones before.
+    """Return top/bottom as a list of ``count`` doubles whose sum is nearest to it.
 
-    Equal ratios give the same doubles.
+    Each double is the rounded remainder after the ones before it. Equal ratios give the same doubles.
     """
     sign, top = (-1, -top) if top < 0 else (1, top)
     size = top.bit_length() - bottom.bit_length()
     shift, doubles = _BITS - size, []
     left = (top << shift) // bottom if shift > 0 else top // (bottom << -shift)
-    if left >> _BITS:  # one bit more: for other integers of the same ratio it may not be there
+    if left >> _BITS:  # one bit more, so that the result does not depend on whether the ratio is in lowest terms
         left, shift = left >> 1, shift - 1
     if shift < _BITS - _LARGEST:
         return [sign * 2.0**_LARGEST, *[0.0] * (count - 1)]
@@ -57,29 +58,30 @@ def parts(top: int, bottom: int, count: int) -> list[float]:
 
 
 class Loops(NamedTuple):
-    """The constants of one motion, and the compiled loops that compute its samples."""
+    """Constants of one motion, together with the compiled loops that compute its samples."""
 
     evaluate: Any
     constants: Any
     place: int
 
     def __call__(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> int:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times, where an array is given; return a status.
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times into the arrays; an array that is None is
+        skipped.
 
-        The status is 0; or :data:`TOO_MANY_TURNS`, with NaN in the rows of these samples; or :data:`OUT_OF_RANGE`, with
-        nothing written.
+        Return 0 if all samples are valid; :data:`TOO_MANY_TURNS` if some samples rotate too far for this arithmetic
+        (their rows are NaN); :data:`OUT_OF_RANGE` if a number exceeds the range of doubles (then nothing is written).
         """
         status: int = self.evaluate(self.place, len(times), address(times), address(omega), address(quaternion))
         return status
 
 
 def available() -> bool:
-    """Return whether the loops are loaded, or there is a compiler."""
+    """Return whether the compiled loops can be used: they are loaded already, or there is a C compiler."""
     return bool(_bound) or not codegen.missing()
 
 
 def functions() -> tuple[Any, Any]:
-    """Return the loop over samples, and the type of a record of constants.
+    """Return the compiled loop over samples, and the ctypes type of the record of constants that it reads.
 
     Raises
     ------
@@ -99,7 +101,7 @@ def functions() -> tuple[Any, Any]:
 
 
 class Constants:
-    """The constants of a driven body; a call returns the constants of one start as a record of axial.h.
+    """Constants of a body driven about one axis; a call with an initial state returns the compiled :class:`Loops`.
 
     Parameters
     ----------
@@ -131,13 +133,14 @@ class Constants:
         self._turns: dict[bool, tuple[int, int, list[float]]] = {}
 
     def head(self, turned: bool) -> list[float]:
-        """Return the first numbers of the record; ``turned`` if the body also rotates across the axis."""
+        """Return the first numbers of the C record; ``turned`` says that the body also rotates across the axis."""
         return [float(bool(self._decay)), 1.0, float(turned), *self._head]
 
     def moving(self, rate: Fraction | float, turned: bool) -> list[float]:
-        """Return the numbers of the record `axial` of axial.h for a rate, rad/s, with the `turning` that it needs.
+        """Return the numbers of the C struct `axial` (axial.h) for an initial rate about the axis, rad/s.
 
-        That is `half` for the attitude or `lag` for a rate across the axis.
+        They include one struct `turning`: `half` (half the angle, for the attitude), or, if ``turned``, `lag` (the
+        rotation of the transverse angular velocity in the body).
         """
         turn, bits, fixed = self._turns.get(turned) or self._turning(turned)
         top, bottom = rate.as_integer_ratio()
@@ -156,7 +159,10 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, turned: bool) -> tuple[int, int, list[float]]:
-        """Return the factor of the angle in turns per radian, its bits behind the point, and the shared constants."""
+        """Return the factor from radians to the needed multiple of the angle in revolutions, and constants for C.
+
+        The factor is an integer with a number of bits after the binary point, which is the second result.
+        """
         turn, bits = _HALF
         if turned:
             (a, over_a), (c, over_c) = self._moments
@@ -170,7 +176,7 @@ class Constants:
         return self._turns[turned]
 
     def __call__(self, rates: Sequence[Fraction], attitude: tuple[list[float], list[float]]) -> Loops:
-        """Return the loops of a motion.
+        """Return the compiled loops of the motion from one initial state.
 
         Parameters
         ----------
@@ -190,7 +196,7 @@ class Constants:
         return Loops(evaluate, constants, ctypes.addressof(constants))
 
     def shapes(self, one: Any, other: Any) -> list[Any]:
-        """Return the nine numbers of `omega` of axial.h, by rows."""
+        """Return the matrix `omega` of axial.h row by row: it maps axial and transverse rates to body components."""
         rows: list[list[Any]] = [[0.0] * 3 for _ in range(3)]
         rows[self.axis][2] = 1.0
         rows[self.axis - 2][:2] = one, -other
@@ -199,17 +205,17 @@ class Constants:
 
 
 def _turns_of(top: int, bottom: int) -> tuple[int, int]:
-    """Return top/bottom radians in turns, as (an integer, its number of bits behind the point)."""
+    """Return top/bottom radians as revolutions: an integer, and its number of bits after the binary point."""
     top, bottom = top * _PI_BOTTOM, 2 * bottom * _PI_TOP
     bits = max(0, _TURN_BITS + bottom.bit_length() - top.bit_length())
     return (top << bits) // bottom, bits
 
 
-_HALF = _turns_of(1, 2)  # of half the angle
+_HALF = _turns_of(1, 2)  # bits of half the angle
 
 
 def _nearest(top: int, bottom: int) -> float:
-    """Return the double nearest to a ratio."""
+    """Return the double nearest to the ratio top/bottom; raise InputError if it exceeds the largest double."""
     try:
         return top / bottom
     except OverflowError:

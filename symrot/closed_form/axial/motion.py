@@ -5,9 +5,10 @@ transverse angular velocity rotates in the body by ``(C - A)/A`` times the angle
 damping. The attitude then needs parabolic cylinder functions, see :mod:`symrot.closed_form.spin_up.motion`; with
 damping it has no closed form here.
 
-Angles are represented in turns, as pairs of doubles: the error of the attitude stays at a few 1e-16 for any number of
-turns, with damping or without. With a compiler, C computes the samples (:file:`axial_at.c`), except those of more than
-1e10 turns of transient or 1e30 turns in all; NumPy and Python's integers compute these, and all without a compiler.
+Angles are sums of two doubles, in turns of 2 pi, without whole turns: the error of the attitude stays at a few 1e-16
+for any number of turns, with damping or without. With a compiler, C computes the samples (:file:`axial_at.c`). NumPy
+and Python's integers compute all samples without a compiler, and always those beyond 1e10 turns of transient or 1e30
+turns in all.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -32,9 +33,9 @@ __all__ = ["AxialMotion", "Driven", "motion", "starts", "turned_about"]
 
 
 class AxialMotion:
-    """One motion. Times are counted from the initial state."""
+    """Motion of one body driven and damped about one axis. Times are counted from the initial state, s."""
 
-    regime = "steady"  # see symrot.closed_form.motion.REGIMES: no series of its own
+    regime = "steady"  # elementary functions only, see symrot.closed_form.motion.REGIMES
 
     def __init__(self, body: "Driven", rates: list[Fraction], attitude: tuple[list[float], list[float]]) -> None:
         self._axis, self._rate, (self._push, self._decay) = body.axis, rates[body.axis], body.driven
@@ -47,13 +48,15 @@ class AxialMotion:
 
     @property
     def has_attitude(self) -> bool:
-        """Whether the attitude is known in closed form, since the body does not turn across the axis."""
+        """Whether this class knows the attitude, which requires that the body does not rotate across the driven
+        axis.
+        """
         return not any(self._across)
 
     def evaluate(
         self, t: ArrayLike, omega: bool = True, quaternion: bool = True
     ) -> tuple[Floats | None, Floats | None]:
-        """Return angular velocity and attitude at any times; as :meth:`.ExactMotion.evaluate`.
+        """Return angular velocity (n, 3) and attitude (n, 4) at any times; see :meth:`.ExactMotion.evaluate`.
 
         Raises
         ------
@@ -63,7 +66,7 @@ class AxialMotion:
         """
         if quaternion and not self.has_attitude:
             raise InputError(
-                "the attitude of a body that is driven about its axis and turns across it too has another closed form, "
+                "the attitude of a body that is driven about its axis and rotates across it has another closed form, "
                 "that of symrot.closed_form.spin_up.motion, and none with damping"
             )
         times = times_of(t)
@@ -89,7 +92,7 @@ class AxialMotion:
         )
 
     def _angle(self, t: Floats, share: Fraction) -> tuple[Floats, Floats]:
-        """Return sine and cosine of a multiple of the angle about the axis."""
+        """Return sine and cosine of ``share`` times the angle of rotation about the driven axis."""
         turning = self._known.get(share)
         if turning is None:
             turning = self._known[share] = Turning(share, self._rate, self._push, self._decay)
@@ -109,7 +112,7 @@ class AxialMotion:
         return rates
 
     def _axial(self, t: Floats) -> Floats:
-        """Return the angular velocity about the axis."""
+        """Return the angular velocity about the driven axis at the times, rad/s."""
         rate, push, (high, low) = float(self._rate), float(self._push), pair(-self._decay)
         spin: Floats = rate + push * t
         if not high:
@@ -118,7 +121,7 @@ class AxialMotion:
         left, lost = exp_and_expm1(x, error + t * low)
         spin = rate * left + push * (lost / high)
         early = x > 1.0
-        if early.any():  # where rate and push would all but cancel
+        if early.any():  # here the difference of rate and push would lose most digits
             final = self._push / self._decay
             spin[early] = float(final) + float(self._rate - final) * left[early]
         return spin
@@ -159,7 +162,7 @@ def motion(
     Raises
     ------
     InputError
-        If the body turns across the axis without being symmetric about it, or a number is outside its domain.
+        If the body rotates across the axis without being symmetric about it, or a number is outside its domain.
     """
     return Driven(inertia, axis, torque, damping, damping_across).motion(omega0, quaternion0)
 
@@ -167,13 +170,16 @@ def motion(
 def starts(
     inertia: Sequence[Number], axis: int, torque: Number, damping: Number = 0.0, damping_across: Number = 0.0
 ) -> Callable[[Initial], AxialMotion]:
-    """Return a function of the initial state that returns its motion; see :func:`motion`."""
+    """Return a function from initial states to motions of one driven body; arguments as :func:`motion` takes them.
+
+    Constants that do not depend on the initial state are computed once.
+    """
     body = Driven(inertia, axis, torque, damping, damping_across)
     return lambda start: body.moving(start.omega_b, [float(x) for x in start.quaternion])
 
 
 class Driven:
-    """A driven body with the exact quotients of constants that all its motions share."""
+    """Driven body with the exact constants that all its motions share."""
 
     def __init__(
         self, inertia: Sequence[Number], axis: int, torque: Number, damping: Number, damping_across: Number
@@ -198,26 +204,28 @@ class Driven:
         self.constants = axial_compiled.Constants(axis, (across.as_integer_ratio(), own.as_integer_ratio()), *driving)
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> AxialMotion:
-        """Return the motion from an initial state."""
+        """Return the motion from an initial state: angular velocity, rad/s, and attitude, body to space."""
         axis, rates = self.axis, [Fraction(x) for x in numbers("omega", omega0, 3)]
         components = numbers("quaternion", quaternion0, 4)
         if not any(components):
             raise InputError(f"expected a quaternion that is not zero, got {list(quaternion0)}")
         if (rates[axis - 2] or rates[axis - 1]) and not self._symmetric:
             raise InputError(
-                "a body that turns across the driven axis must be symmetric about it, got moments "
+                "a body that rotates across the driven axis must be symmetric about it, got moments "
                 f"{[float(x) for x in self._moments]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
             )
         return self.moving(rates, [float(x) for x in number.unit([Fraction(x) for x in components])])
 
     def moving(self, rates: Sequence[Number], attitude: list[float]) -> AxialMotion:
-        """Return the motion from an admissible initial state with a unit quaternion."""
+        """Return the motion from initial rates and a unit attitude that :meth:`motion` has already checked."""
         exact = [Fraction(x) for x in numbers("omega", rates, 3)]
         return AxialMotion(self, exact, (attitude, turned_about(self.axis, attitude)))
 
 
 def turned_about(axis: int, q: Sequence[Any]) -> list[Any]:
-    """Return the product of a quaternion and an axis of the body."""
+    """Return the quaternion product ``q * e``, where e is the unit quaternion of a rotation by 180 degrees about a body
+    axis.
+    """
     product: list[Any] = [None] * 4
     product[0], product[axis + 1] = -q[axis + 1], q[0]
     product[(axis + 1) % 3 + 1], product[(axis + 2) % 3 + 1] = q[(axis + 2) % 3 + 1], -q[(axis + 1) % 3 + 1]

@@ -1,1 +1,1 @@
-"""The free rigid body."""
+"""Motion of a free rigid body in closed form, by elliptic functions."""

@@ -1,7 +1,7 @@
-"""The constants of many free bodies, computed in one call of C (:file:`bodies_at.c`).
+"""Constants of many free bodies, computed in one call of C (:file:`bodies_at.c`).
 
-Each pair of doubles is the correctly rounded one, or marked as doubtful if 248 bits do not decide it; the caller
-then computes it with fractions.
+Each constant is a correctly rounded sum of two doubles. If 248 bits do not decide the rounding, the constant is marked
+as doubtful and the caller computes it with fractions.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ _TERMS = 5  # doubles that a fraction is the sum of, to 2^-265
 
 
 class _Tensors(Structure):
-    """``tensors`` of bodies_at.c."""
+    """The C struct ``tensors`` of bodies_at.c: arrays of inertia tensors."""
 
     _fields_ = (
         ("entries", c_void_p * 6), ("strides", c_ssize_t * 6), ("terms", c_ssize_t), ("exact", c_int32 * 6)
@@ -49,7 +49,10 @@ def _functions() -> tuple[Any, Any, Any]:
 
 
 def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray[np.uint64]:
-    """Return moments, scaled so that the largest is between 1/2 and 1, and axes, both in units of 2^-248 for C."""
+    """Return principal moments and principal axes of one body as integers for C, in units of 2^-248.
+
+    The moments are scaled by a power of two so that the largest lies between 1/2 and 1.
+    """
     largest = max(moments)
     length = largest.numerator.bit_length() - largest.denominator.bit_length()  # the power of two, or one more
     if largest >= Fraction(2) ** length:
@@ -60,7 +63,12 @@ def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray
 
 
 def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floats, Doubtful]:
-    """Return rates along principal axes (n, 6), defects (n, 2) and the doubtful rows of a :func:`fixed_body`."""
+    """Return angular velocities of a :func:`fixed_body` along its principal axes, their defects, and a mask of doubtful
+    rows.
+
+    The shapes are (n, 6) and (n, 2), hi and lo of each number. A defect is |L|^2 - 2 T I_mid; its sign tells whether
+    the motion goes around the axis of the least or of the largest moment. Doubtful rows need exact arithmetic.
+    """
     n = len(omega)
     rates, exact, doubtful = np.empty((n, 6)), np.empty((n, 8)), np.empty(n, np.uint8)
     omega = np.ascontiguousarray(omega)
@@ -69,7 +77,11 @@ def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floa
 
 
 def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
-    """Return defects (n, 2) for principal moments (n, 3), and the doubtful rows."""
+    """Return the defects |L|^2 - 2 T I_mid of free bodies, shape (n, 2), and a mask of rows that need exact arithmetic.
+
+    ``moments`` are principal moments and ``omega`` angular velocities along the principal axes, both of shape (n, 3).
+    The sign of a defect tells whether the motion goes around the axis of the least or of the largest moment.
+    """
     n = len(omega)
     exact, doubtful = np.empty((n, 8)), np.empty(n, np.uint8)
     moments, omega = np.ascontiguousarray(moments), np.ascontiguousarray(omega)
@@ -78,7 +90,9 @@ def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
 
 
 class PrincipalBodies(NamedTuple):
-    """The arguments of symrot_free_body_prepare for each body, and the bodies that need fractions."""
+    """Arguments of the C function symrot_free_body_prepare for many bodies, and a mask of bodies that need
+    fractions.
+    """
 
     moments: Floats  # (n, 6)
     rates: Floats  # (n, 6)
@@ -88,9 +102,10 @@ class PrincipalBodies(NamedTuple):
 
 
 def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodies | None:
-    """Return the principal bodies of tensors from their xx, yy, zz, xy, xz and yz, kg m^2: arrays, or one for all.
+    """Return bodies in principal axes from inertia tensors and angular velocities.
 
-    Return None if a constant of all bodies is too large or small for a sum of doubles.
+    ``entries`` are xx, yy, zz, xy, xz and yz, kg m^2: arrays with a value for each body, or one value for all. The
+    result is None if a constant that all bodies share is too large or too small to be a sum of doubles.
     """
     n, tensors, arrays = len(omega), _Tensors(terms=_TERMS), []
     for k, entry in enumerate(entries):
@@ -111,7 +126,7 @@ def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodie
 
 
 def _sum_of_doubles(value: Fraction) -> tuple[Floats, bool]:
-    """Return doubles whose sum is nearest to a fraction, and whether the sum is exact."""
+    """Return a few doubles whose sum is nearest to a fraction, and whether the sum equals it."""
     terms = np.zeros(_TERMS)
     for k in range(_TERMS):
         terms[k] = float(value)

@@ -1,8 +1,9 @@
-"""The free rigid body at any time, exactly: spherical, symmetric, asymmetric, about either outer axis, on separatrices.
+"""Motion of a free rigid body at any time in closed form, for spherical, symmetric and asymmetric bodies.
 
-No stepping: each sample costs the same however far it lies from the start, forward or backward, and carries an error
-of a few 1e-16, since the constants of the motion are found to 31 digits and phases are carried in turns. The formulas
-are in :file:`free_body.c`.
+All motions are covered: about the axis of least or largest moment, and on the separatrix between the two. No steps are
+taken: each sample costs the same however far it lies from the start, forward or backward. Its error is a few 1e-16,
+since the constants of the motion have 31 digits and phases are reduced to a fraction of a turn. The formulas are in
+:file:`free_body.c`.
 
 Source: Whittaker, Analytical Dynamics, 4th ed., section 69; van Zon & Schofield, J. Comput. Phys. 225 (2007) 145.
 
@@ -24,12 +25,11 @@ from symrot.closed_form.arithmetic.pairs import (
     quotient,
 )
 from symrot.closed_form.motion import ExactMotion, prepared
-from symrot.inertia.principal import Principal, principal_axes
+from symrot.formula.exact_numbers import NEGLIGIBLE_BITS
+from symrot.inertia.principal import Principal
 from symrot.scene.scene import Initial
 
-__all__ = ["NEGLIGIBLE", "Defect", "FreeRigidBody", "gaps", "motion", "motion_of_tensor", "starts"]
-
-NEGLIGIBLE = 200  # bits: what is smaller is taken for zero, as in number.equal
+__all__ = ["Defect", "FreeRigidBody", "gaps", "motion", "starts"]
 
 
 def motion(
@@ -63,27 +63,18 @@ def motion(
     return _prepared(flatten_pairs(moments), flatten_pairs(rates), start, exact, None)
 
 
-def motion_of_tensor(
-    inertia: Sequence[Sequence[Number]],
-    omega0: Sequence[Number],
-    quaternion0: Sequence[Number] = (1.0, 0.0, 0.0, 0.0),
-) -> ExactMotion:
-    """Return the motion of a free body whose axes need not be principal; omega and attitude refer to the given axes.
-
-    The principal axes are found to 110 digits and turn into the constants of the motion before anything is rounded to a
-    double. Arguments as :func:`motion`, but ``inertia`` is a symmetric 3x3 tensor (kg m^2).
-    """
-    return FreeRigidBody(principal_axes([list(row) for row in inertia])).motion(omega0, quaternion0)
-
-
 def starts(principal: Principal) -> Callable[[Initial], ExactMotion]:
-    """Return a function of the initial state that returns the body's motion; see :func:`motion_of_tensor`."""
+    """Return a function of the initial state that returns the motion of a body whose axes need not be principal.
+
+    Angular velocity and attitude refer to the given axes. The principal axes have 110 digits, and the constants of the
+    motion follow from them before anything is rounded to a double.
+    """
     body = FreeRigidBody(principal)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
 class FreeRigidBody:
-    """A free body with the constants that its motions share: moments, their differences, and its principal axes."""
+    """Free body with the constants that all its motions share: moments, their differences, and principal axes."""
 
     def __init__(self, body: Principal) -> None:
         integers, shared = over_common_denominator(body.moments)
@@ -94,20 +85,20 @@ class FreeRigidBody:
             (),
             [],
             [],
-        )  # the last, which the next may share
+        )  # of the previous motion, for reuse by the next
         self._attitude: tuple[Sequence[Number], list[float]] = (), []
         self.axes = None if body.given_axes else flatten_pairs([*entries, *quaternion_of(body.axes)])
         self._principal = body
 
     @cached_property
     def fixed(self) -> Any:
-        """Moments and axes as C takes them to compute the angular velocities of many motions along the axes."""
+        """Moments and axes in the form in which C computes many angular velocities along the principal axes."""
         from symrot.closed_form.free_body.bodies import fixed_body
 
         return fixed_body(self._principal.moments, [x for row in self._principal.axes for x in row])
 
     def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
-        """Return angular velocity along the principal axes, as integers over one denominator."""
+        """Return an angular velocity along the principal axes as integer numerators over one common denominator."""
         rates, shared = over_common_denominator(omega0)
         x, y, z = rates
         largest = max(abs(x), abs(y), abs(z))
@@ -115,12 +106,12 @@ class FreeRigidBody:
             xx, xy, xz, yx, yy, yz, zx, zy, zz = self._axes
             rates = [xx * x + yx * y + zx * z, xy * x + yy * y + zy * z, xz * x + yz * y + zz * z]
             largest, shared = largest * self._unit, shared * self._unit
-        if largest.bit_length() <= NEGLIGIBLE:  # not even 1 is
+        if largest.bit_length() <= NEGLIGIBLE_BITS:  # even the integer 1 is not negligible
             return rates, shared
-        return [0 if abs(x) << NEGLIGIBLE < largest else x for x in rates], shared
+        return [0 if abs(x) << NEGLIGIBLE_BITS < largest else x for x in rates], shared
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
-        """Return the motion from an initial state along the given axes."""
+        """Return the motion from an initial angular velocity and attitude, both along the given axes of the body."""
         omega_before, omega, exact = self._rates
         if omega0 is not omega_before:
             rates, shared = self.along(numbers("omega", omega0, 3))
@@ -135,24 +126,34 @@ class FreeRigidBody:
 
 
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
-    """Return I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid, scaled as free_body.c takes it, as hi, lo."""
+    """Return constants of a free body as one list hi, lo, hi, lo, ..: I2 - I3, I3 - I1, I1 - I2 and |L|^2 - 2 T I_mid.
+
+    They are scaled as free_body.c expects; computing them exactly avoids the cancellation of digits.
+    """
     integers, shared = over_common_denominator(moments)
     return [*gaps(integers, shared), *Defect(integers)(over_common_denominator(omega)[0])]
 
 
 def gaps(i: list[int], shared: int) -> list[float]:
-    """Return I2 - I3, I3 - I1, I1 - I2 of moments as integers over one denominator, as hi, lo."""
+    """Return the differences I2 - I3, I3 - I1, I1 - I2 of moments as one list hi, lo, hi, lo, ..
+
+    The moments are integer numerators ``i`` over the common denominator ``shared``.
+    """
     differences: list[float] = []
     for k in range(3):
         difference = i[(k + 1) % 3] - i[(k + 2) % 3]
-        if abs(difference) << NEGLIGIBLE < max(i[(k + 1) % 3], i[(k + 2) % 3]):
+        if abs(difference) << NEGLIGIBLE_BITS < max(i[(k + 1) % 3], i[(k + 2) % 3]):
             difference = 0
         differences += quotient(difference, shared)
     return differences
 
 
 class Defect:
-    """|L|^2 - 2 T I_mid over the square of the largest moment times the largest rate, for moments as integers."""
+    """The quantity |L|^2 - 2 T I_mid of one body as a function of its rates, scaled and exact.
+
+    The sign tells which axis a free body's motion goes around. The scale is the square of the largest moment times the
+    largest rate; the moments are integers.
+    """
 
     def __init__(self, i: list[int]) -> None:
         middle = sorted(i)[1]
@@ -160,14 +161,14 @@ class Defect:
         self._largest = max(i)
 
     def __call__(self, w: list[int]) -> tuple[float, float]:
-        """Return it for rates as integers, as hi, lo."""
+        """Return the scaled defect |L|^2 - 2 T I_mid as hi, lo, for body rates that are integers."""
         x, y, z = w
         one, two, three = self._one * x * x, self._two * y * y, self._three * z * z
         defect, largest = one + two + three, self._largest * max(abs(x), abs(y), abs(z))
         if not defect:
             return 0.0, 0.0
         widest = max(one.bit_length(), two.bit_length(), three.bit_length())
-        if defect.bit_length() + NEGLIGIBLE < widest + 2 and abs(defect) << NEGLIGIBLE < max(
+        if defect.bit_length() + NEGLIGIBLE_BITS < widest + 2 and abs(defect) << NEGLIGIBLE_BITS < max(
             abs(one), abs(two), abs(three)
         ):
             return 0.0, 0.0

@@ -1,1 +1,1 @@
-"""A free symmetric body with a rotor along its axis."""
+"""Motion in closed form of a free symmetric body with a rotor along its symmetry axis."""

@@ -1,6 +1,7 @@
-"""A free symmetric body with a constant rotor along its axis, at any time, exactly: two steady rotations.
+"""A free symmetric body with a constant rotor along its axis, at any time: two steady rotations, in closed form.
 
-The formulas are in :file:`gyrostat.c`. Source: Landau & Lifshitz, Mechanics, 3rd ed., section 33, for no rotor.
+The formulas are in :file:`gyrostat.c`. Source: Landau & Lifshitz, Mechanics, 3rd ed., section 33, for a body without a
+rotor.
 
 Proof: ``derivations/symmetric_gyrostat.md``.
 """
@@ -41,13 +42,13 @@ def motion(
 
 
 def starts(inertia: Sequence[Number], rotor: Sequence[Number]) -> Callable[[Initial], ExactMotion]:
-    """Return a function of the initial state that returns its motion; see :func:`motion`."""
+    """Return a function from initial states to motions of one gyrostat; arguments as :func:`motion` takes them."""
     body = Gyrostat(inertia, rotor)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
 class Gyrostat:
-    """A gyrostat with the constants that all its motions share."""
+    """Symmetric body with a rotor along its axis, with the constants that all its motions share."""
 
     def __init__(self, inertia: Sequence[Number], rotor: Sequence[Number]) -> None:
         self._inertia = moments = numbers("inertia", inertia, 3, SMALLEST)
@@ -64,7 +65,7 @@ class Gyrostat:
         self.moments, self.rotor = flatten_pairs([moments[axis - 2], moments[axis]]), flatten_pairs([momentum[axis]])
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
-        """Return the motion from an initial state."""
+        """Return the motion from an initial angular velocity, rad/s, and attitude, body to space."""
         rates, start = numbers("omega", omega0, 3), attitude(numbers("quaternion", quaternion0, 4))
         named = flatten_pairs([rates[k] for k in self.named])
         return prepared(

@@ -1,1 +1,1 @@
-"""The symmetric heavy top."""
+"""Motion in closed form of the symmetric heavy top (Lagrange's top) and of pendulums."""

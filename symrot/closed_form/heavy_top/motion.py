@@ -1,8 +1,9 @@
-"""The symmetric heavy top at any time, exactly: Lagrange's top, spherical and physical pendulums, spinning or not.
+"""The symmetric heavy top at any time in closed form: Lagrange's top, spherical and physical pendulums, spinning or
+not.
 
-All starts are covered: hanging, upright, exactly vertical, passing through the vertical, near and on the separatrix of
-the sleeping top. Each sample takes the same time however far it is from the start, with an error of a few 1e-16. The
-formulas are in :file:`heavy_top.c`.
+All initial states are covered: hanging, upright, exactly vertical, passing through the vertical, near and on the
+separatrix of the sleeping top. Each sample takes the same time however far it is from the start, with an error of a few
+1e-16. The formulas are in :file:`heavy_top.c`.
 
 Source: Klein & Sommerfeld, Theory of the Top, vol. 2, chapter 6; Whittaker, Analytical Dynamics, 4th ed., section 72.
 
@@ -12,7 +13,7 @@ Proof: ``derivations/heavy_top_motion.md``, ``derivations/pendulum.md``, ``deriv
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from symrot.closed_form.arithmetic.frames import product, quaternion_of, to_axis
+from symrot.closed_form.arithmetic.frames import quaternion_of, to_axis
 from symrot.closed_form.arithmetic.pairs import (
     SMALLEST,
     Number,
@@ -26,6 +27,7 @@ from symrot.closed_form.arithmetic.pairs import (
 from symrot.closed_form.free_body import motion as free_body
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.errors import InputError
+from symrot.kinematics.hamilton import hamilton
 from symrot.scene.scene import Initial
 
 __all__ = ["Frame", "Top", "motion", "starts"]
@@ -76,16 +78,16 @@ def motion(
 def starts(
     inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number] = _DOWN
 ) -> Callable[[Initial], ExactMotion]:
-    """Return a function of the initial state that returns its motion; it computes shared constants once.
+    """Return a function from initial states to motions of one heavy top; arguments as :func:`motion` takes them.
 
-    See :func:`motion`.
+    Constants that do not depend on the initial state are computed once.
     """
     top = Top(inertia, weight, center_of_mass, direction)
     return lambda start: top.motion(start.omega_b, start.quaternion)
 
 
 class Top:
-    """A heavy top with the constants that all its motions share: its moments, its pull, and its axes."""
+    """Symmetric heavy top with the constants that all its motions share: moments, weight times distance, and axes."""
 
     def __init__(
         self, inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number]
@@ -96,7 +98,7 @@ class Top:
         down = numbers("direction", direction, 3)
         along = [k for k in range(3) if center[k]]
         if not any(down):
-            raise InputError("direction: expected the direction of gravity, got zero")
+            raise InputError("direction: expected a direction of gravity that is not the zero vector, got zero")
         if len(along) > 1 or (along and not same(moments[along[0] - 2], moments[along[0] - 1])):
             raise InputError(
                 "a symmetric heavy top has its centre of mass on one axis of the body and equal moments about the two "
@@ -112,7 +114,7 @@ class Top:
         self.frame = Frame(axis, [-Fraction(x) if pull > 0 else Fraction(x) for x in down])
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
-        """Return the motion from an initial state."""
+        """Return the motion from an initial angular velocity, rad/s, and attitude, body to space."""
         rates, attitude = numbers("omega", omega0, 3), numbers("quaternion", quaternion0, 4)
         if self.free:
             return free_body.motion(self._inertia, rates, attitude)
@@ -129,7 +131,9 @@ class Top:
 
 
 class Frame:
-    """The axes of space and body in which the formulas of a heavy top hold: up and the symmetry axis are the third.
+    """Axes of space and of the body in which the formulas of a heavy top hold.
+
+    The third axis in space points up, and the third axis of the body is the symmetry axis.
 
     Parameters
     ----------
@@ -142,8 +146,8 @@ class Frame:
     def __init__(self, axis: int, up: Sequence[Fraction]) -> None:
         self.named = [(axis + 1) % 3, (axis + 2) % 3, axis]  # e1, e2, e3 among the body's axes, in cyclic order
         self.space, self.axes = _UPRIGHT, None
-        self.before, self.after = None, None  # what an attitude is multiplied by
-        if up[0] or up[1] or up[2] < 0:  # turned so that the third axis points up
+        self.before, self.after = None, None  # factors of an attitude, left and right
+        if up[0] or up[1] or up[2] < 0:  # rotated so that the third axis points up
             turn = quaternion_of(to_axis(up))
             self.space, self.before = flatten_pairs(turn), (turn[0], -turn[1], -turn[2], -turn[3])
         if axis != 2:
@@ -156,16 +160,19 @@ class Frame:
 
     @property
     def plain(self) -> bool:
-        """Whether these axes are the given ones, so that no attitude has to be rotated."""
+        """Whether the scene already uses these axes, so that no attitude has to be converted."""
         return self._before is self._after is None
 
     def start(self, quaternion: Sequence[Number]) -> list[float]:
-        """Return an attitude between these axes, as :func:`symrot.closed_form.arithmetic.pairs.attitude` has it."""
+        """Return an attitude between these axes as 8 doubles, hi and lo of each component.
+
+        See :func:`symrot.closed_form.arithmetic.pairs.attitude`.
+        """
         if self.plain:
             return attitude(quaternion)
         integers, shared = over_common_denominator(quaternion)
         if self._before is not None:
-            integers, shared = list(product(self._before[0], integers)), shared * self._before[1]
+            integers, shared = list(hamilton(self._before[0], integers)), shared * self._before[1]
         if self._after is not None:
-            integers, shared = list(product(integers, self._after[0])), shared * self._after[1]
+            integers, shared = list(hamilton(integers, self._after[0])), shared * self._after[1]
         return on_grid([(x, shared) for x in integers])

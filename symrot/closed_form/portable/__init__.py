@@ -1,7 +1,8 @@
-"""The motions in closed form for use without a C compiler: constants by mpmath, samples by NumPy, the same formulas.
+"""Motions in closed form for use without a C compiler: mpmath computes the constants, NumPy the samples.
 
-They are slower (milliseconds for the constants, about a microsecond for each sample) and equally accurate: the
-constants have 120 digits, and phases are represented in turns. Tests compare the results of C with them.
+The formulas are those of the C files. These motions are slower (milliseconds for the constants, about a microsecond for
+each sample) and equally accurate: constants have 120 digits, and phases are reduced to a fraction of a turn. Tests
+compare them with the results of C.
 """
 
 from collections.abc import Callable
@@ -18,4 +19,4 @@ MOTIONS: dict[str, Callable[..., Any]] = {
     "gyrostat": PortableGyrostat,
     "heavy_top": PortableHeavyTop,
 }
-"""The motions by the names of their C files, with the arguments of the C functions."""
+"""The motions of this folder by the names of the corresponding C files; arguments as the C functions take them."""

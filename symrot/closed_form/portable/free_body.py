@@ -1,5 +1,6 @@
-"""A free body by mpmath and NumPy; the formulas are those of :file:`free_body.h`."""
+"""Motion of a free body by mpmath and NumPy, without a C compiler; the formulas are those of :file:`free_body.h`."""
 
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -8,16 +9,19 @@ from mpmath import mp, mpf
 
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import DIGITS, TERMS, Phase, multiples, number, power_of_two, turned_by, vector
-from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, matrix_quaternion, product, unit
+from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, matrix_quaternion, unit
+from symrot.kinematics.hamilton import hamilton
 
 __all__ = ["PortableFreeBody"]
 
-SWITCH = 0.7  # the modulus from which on the imaginary transforms are summed
-NEGLIGIBLE = mpf(10) ** -150  # of the largest component of omega
+SWITCH = 0.7  # above this modulus, theta functions are summed by their imaginary transforms
+NEGLIGIBLE = mpf(10) ** -150  # relative to the largest component of omega
 
 
 class PortableFreeBody:
-    """One motion; arguments as ``symrot_free_body_prepare`` takes them, in lists of hi, lo."""
+    """Motion of a free body, made from the arguments of the C function ``symrot_free_body_prepare`` (lists of hi,
+    lo).
+    """
 
     def __init__(
         self,
@@ -45,7 +49,7 @@ class PortableFreeBody:
         self.scale = power_of_two(fastest)
         w = [mpf(0) if abs(x) < NEGLIGIBLE * self.scale else x / self.scale for x in w]
         frame = Axes(axes)
-        start = product(unit(vector(quaternion)), frame.quaternion)
+        start = hamilton(unit(vector(quaternion)), frame.quaternion)
         if exact is None:
             differences, defect = _differences(inertia, omega, w)
             defect /= self.scale**2
@@ -57,20 +61,20 @@ class PortableFreeBody:
             return
         self._elliptic(moments, w, differences, defect, start, frame)
 
-    def _steady(self, w: list[Any], start: list[Any], frame: Axes) -> None:
+    def _steady(self, w: list[Any], start: Sequence[Any], frame: Axes) -> None:
         self.regime = "steady"
         speed = mp.sqrt(sum(x * x for x in w))
         axis = [mpf(0), *(x / speed if speed else mpf(0) for x in w)]
         back = conjugate(frame.quaternion)
         zero = [mpf(0)] * 4
-        self.attitude = mapping([product(start, back), product(product(start, axis), back), zero, zero])
+        self.attitude = mapping([hamilton(start, back), hamilton(hamilton(start, axis), back), zero, zero])
         self.omega = np.array(
             [[float(sum(m * x for m, x in zip(row, w, strict=True)) * self.scale)] for row in frame.matrix]
         )
         self.turning = Phase.of(speed / (4 * mp.pi))
 
     def _elliptic(
-        self, moments: list[Any], w: list[Any], differences: list[Any], defect: Any, start: list[Any], frame: Axes
+        self, moments: list[Any], w: list[Any], differences: list[Any], defect: Any, start: Sequence[Any], frame: Axes
     ) -> None:
         axis, direction, s = _canonical(moments, w, differences, defect)
         inertia = [moments[k] for k in axis]
@@ -90,7 +94,7 @@ class PortableFreeBody:
         k = mp.pi / (2 * mp.agm(1, mp.sqrt(complement))) if complement else mp.inf
         k_prime = mp.pi / (2 * mp.agm(1, mp.sqrt(m))) if m else mp.inf
         eta = amplitudes[2] / total * mp.elliprf(a1 / total**2, (a1 + m * a3) / total**2, 1)
-        turning = (energy + total * amplitudes[2] / inertia[2]) / (total + amplitudes[2]) / 2  # of psi/2 where u = 0
+        turning = (energy + total * amplitudes[2] / inertia[2]) / (total + amplitudes[2]) / 2  # psi/2 at u = 0
         series = self._circular if m < SWITCH else self._hyperbolic
         kappa, n_start, lead = series(m, k, k_prime, eta, s, rate, u, turning)
         self.turning = Phase.of(kappa / (2 * mp.pi))
@@ -105,10 +109,10 @@ class PortableFreeBody:
         ]
         rows = [[direction[k] if axis[k] == j else 0 for j in range(3)] for k in range(3)]
         renaming = matrix_quaternion(rows)
-        left = product(start, conjugate(product(unit(x), renaming)))
-        right = product(renaming, conjugate(frame.quaternion))
+        left = hamilton(start, conjugate(hamilton(unit(x), renaming)))
+        right = hamilton(renaming, conjugate(frame.quaternion))
         basis = [[mpf(int(i == j)) for j in range(4)] for i in range(4)]
-        self.attitude = mapping([product(product(left, e), right) for e in basis])
+        self.attitude = mapping([hamilton(hamilton(left, e), right) for e in basis])
         signs = (1, s, 1)
         self.momentum = [float(signs[i] * amplitudes[i] / total) for i in range(3)]
         rates = [signs[i] * direction[i] * amplitudes[i] / inertia[i] * self.scale for i in range(3)]
@@ -168,7 +172,9 @@ class PortableFreeBody:
         return kappa - slope * mp.pi / k * rate, start, u / k / 2 * slope
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times, where an array is given."""
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times into the arrays; an array that is None is
+        skipped.
+        """
         t = times * float(self.scale)
         if self.regime == "steady":
             if omega is not None:
@@ -187,7 +193,11 @@ class PortableFreeBody:
             quaternion[:] = (x / np.sqrt(2.0 * p0 * (re * re + im * im))[:, None]) @ self.attitude.T
 
     def _sums(self, t: Floats) -> tuple[Any, Any, Floats]:
-        """Return cn, sn, dn; N; the phase in half turns."""
+        """Return, at the times: cn, sn and dn times their amplitudes; the theta sum N of the attitude; the phase in
+        half turns.
+
+        N is complex and is returned as its real and imaginary part.
+        """
         if self.regime == "circular":
             sine, cosine = self.axial.circle(t)
             z = multiples(sine, cosine)
@@ -209,7 +219,7 @@ class PortableFreeBody:
         )
 
         def pair(weight: float, order: float) -> tuple[Floats, Floats]:
-            """Return nome**weight times cosh and sinh of order*v, without overflow of a factor."""
+            """Return nome**weight times cosh(order*v) and times sinh(order*v), where cosh alone might overflow."""
             log = self.log_nome * weight if weight else 0.0
             up, down = np.exp(log + order * v), np.exp(log - order * v)
             return 0.5 * (up + down), (np.sinh(order * v) if log == 0.0 else 0.5 * (up - down))
@@ -227,7 +237,7 @@ class PortableFreeBody:
 
 
 def _differences(inertia: list[float], omega: list[float], w: list[Any]) -> tuple[list[Any], Any]:
-    """Return I2 - I3, I3 - I1, I1 - I2 and |L|^2 - 2 T I_mid, without rounding before the last digit."""
+    """Return I2 - I3, I3 - I1, I1 - I2 and |L|^2 - 2 T I_mid with 120 digits, so that cancellation does no harm."""
     moments = [Fraction(high) + Fraction(low) for high, low in zip(inertia[::2], inertia[1::2], strict=True)]
     rates = [Fraction(high) + Fraction(low) for high, low in zip(omega[::2], omega[1::2], strict=True)]
     middle = sorted(moments)[1]
@@ -243,7 +253,7 @@ def _rounded(x: Fraction) -> Any:
 def _canonical(
     moments: list[Any], w: list[Any], differences: list[Any], defect: Any
 ) -> tuple[list[int], list[int], int]:
-    """Return the numbers of the axes e1, e2, e3, their directions along them, and the sign of I3 - I2."""
+    """Return how the principal axes are assigned to e1, e2, e3: their numbers, their signs, and the sign of I3 - I2."""
     above = [differences[2] >= 0, differences[0] >= 0, differences[1] >= 0]  # I_i >= I_(i+1)
     largest = 0 if above[0] and not above[2] else 1 if above[1] else 2
     a, b = (largest + 1) % 3, (largest + 2) % 3

@@ -1,17 +1,18 @@
-"""A gyrostat by mpmath and NumPy; the formulas are those of :file:`gyrostat.h`."""
+"""Motion of a gyrostat by mpmath and NumPy, without a C compiler; the formulas are those of :file:`gyrostat.h`."""
 
 import numpy as np
 from mpmath import mp, mpf
 
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import DIGITS, Phase, number, power_of_two, vector
-from symrot.closed_form.portable.quaternions import conjugate, mapping, matrix_quaternion, product, unit
+from symrot.closed_form.portable.quaternions import conjugate, mapping, matrix_quaternion, unit
+from symrot.kinematics.hamilton import hamilton
 
 __all__ = ["PortableGyrostat"]
 
 
 class PortableGyrostat:
-    """One motion; arguments as ``symrot_gyrostat_prepare`` takes them, in lists of hi, lo."""
+    """Motion of a gyrostat, made from the arguments of the C function ``symrot_gyrostat_prepare`` (lists of hi, lo)."""
 
     regime = "steady"
 
@@ -36,15 +37,17 @@ class PortableGyrostat:
             self.omega[name[1]] = second, -first, 0.0
             self.omega[name[2]] = 0.0, 0.0, third
             renaming = matrix_quaternion([[int(name[k] == j) for j in range(3)] for k in range(3)])
-            start = product(unit(vector(quaternion)), conjugate(renaming))
+            start = hamilton(unit(vector(quaternion)), conjugate(renaming))
             direction = [mpf(0), *(x / speed if speed else mpf(0) for x in (w[0], w[1], along))]
             about = [mpf(0), mpf(0), mpf(0), mpf(1)]
-            turned = product(start, direction)
-            columns = [start, product(start, about), turned, product(turned, about)]
-            self.attitude = mapping([product(column, renaming) for column in columns])
+            turned = hamilton(start, direction)
+            columns = [start, hamilton(start, about), turned, hamilton(turned, about)]
+            self.attitude = mapping([hamilton(column, renaming) for column in columns])
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times, where an array is given."""
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times into the arrays; an array that is None is
+        skipped.
+        """
         t = times * float(self.scale)
         s, c = self.spin.circle(t)
         if omega is not None:

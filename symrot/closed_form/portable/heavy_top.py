@@ -1,6 +1,7 @@
-"""A symmetric heavy top by mpmath and NumPy; the formulas are those of :file:`heavy_top.h`.
+"""Motion of a symmetric heavy top by mpmath and NumPy, without a C compiler; formulas as in :file:`heavy_top.h`.
 
-With 120 digits, differences may cancel, so that the constants follow directly from the roots of the cubic.
+With 120 digits the cancellation in differences does no harm, so that the constants follow directly from the roots of
+the cubic.
 """
 
 from typing import Any
@@ -10,19 +11,20 @@ from mpmath import mp, mpc, mpf
 
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import DIGITS, TERMS, Phase, multiples, number, power_of_two, vector
-from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, product, unit
+from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, unit
+from symrot.kinematics.hamilton import hamilton
 
 __all__ = ["PortableHeavyTop"]
 
-SWITCH = 0.7  # the modulus from which on the imaginary transforms are summed
-EQUAL = (
-    mpf(10) ** -45
-)  # roots closer than that are one: inputs have 31 digits, and differences go with their square root
-NOTHING = mpf(10) ** -31  # of alpha or beta
+SWITCH = 0.7  # above this modulus, theta functions are summed by their imaginary transforms
+EQUAL = mpf(10) ** -45  # closer roots count as equal: inputs have 31 digits, distances of roots half as many
+NOTHING = mpf(10) ** -31  # relative to alpha or beta
 
 
 class PortableHeavyTop:
-    """One motion; arguments as ``symrot_heavy_top_prepare`` takes them, in lists of hi, lo."""
+    """Motion of a heavy top, made from the arguments of the C function ``symrot_heavy_top_prepare`` (lists of hi,
+    lo).
+    """
 
     def __init__(
         self,
@@ -151,7 +153,12 @@ class PortableHeavyTop:
         return numerators, kappas, leads, speed, v, below
 
     def _functions(self, i: int, place: Any) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-        """Return the functions of the terms of a numerator and their derivatives: those of `re`, those of `im`."""
+        """Return the functions in the numerator of alpha or beta, and their derivatives, at a place of the elliptic
+        functions.
+
+        The four lists are: functions in the real part and their derivatives, functions in the imaginary part and
+        theirs.
+        """
         odd = (
             [2 * n + 1 for n in range(TERMS)] if self.regime == "circular" or i == 0 else [2 * n for n in range(TERMS)]
         )
@@ -184,7 +191,9 @@ class PortableHeavyTop:
         across: Any,
         spin: Any,
     ) -> None:
-        """Compute the factors of the series from the initial values or, where these are small, from their rates."""
+        """Compute the constant factors of the theta series from the initial attitude, or from its rates where it is
+        small.
+        """
         alpha, beta = start
         initial_rates = [
             mpc(0, spin / 2) * alpha - beta * mp.conj(across) / 2,
@@ -215,14 +224,16 @@ class PortableHeavyTop:
         zero, back = mpf(0), conjugate(self.frame.quaternion)
         columns = [[a.real, zero, zero, a.imag], [-a.imag, zero, zero, a.real],
                    [zero, b.real, b.imag, zero], [zero, -b.imag, b.real, zero]]  # fmt: skip
-        self.attitude = mapping([product(product(self.space, x), back) for x in columns])
+        self.attitude = mapping([hamilton(hamilton(self.space, x), back) for x in columns])
         turn, rows = b * mp.conj(a), self.frame.matrix
         self.omega = np.array([[float((r[0] * turn.real + r[1] * turn.imag) * self.scale),
                                 float((r[1] * turn.real - r[0] * turn.imag) * self.scale),
                                 float(r[2] * spin * self.scale)] for r in rows])  # fmt: skip
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times, where an array is given."""
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times into the arrays; an array that is None is
+        skipped.
+        """
         t = times * float(self.scale)
         (a, b), (da, db), whole = self._values(t)
         inverse = 1.0 / ((a * a.conj()).real + (b * b.conj()).real)
@@ -237,7 +248,10 @@ class PortableHeavyTop:
             quaternion[:] = np.stack([a.real, a.imag, b.real, b.imag], axis=1) @ self.attitude.T
 
     def _values(self, t: Floats) -> tuple[Any, Any, Floats]:
-        """Return alpha and beta without their phase factors and norm, their rates, and the phase in half turns."""
+        """Return the Cayley-Klein parameters alpha and beta at the times, their rates, and the phase in half turns.
+
+        Alpha and beta still lack their phase factors and are not normalised.
+        """
         none = np.zeros_like(t)
         if self.regime == "steady":
             a, b = (np.full(t.shape, x, dtype=complex) for x in self.steady)
@@ -253,7 +267,7 @@ class PortableHeavyTop:
         whole, flip, v = self.axial.argument_once(t) if separatrix else self.axial.argument(t, self.stretch)
 
         def term(weight: int, order: int) -> tuple[Any, ...]:
-            """Return nome**weight times cosh and sinh of order*v, without overflow of a factor."""
+            """Return nome**weight times cosh(order*v) and times sinh(order*v), where cosh alone might overflow."""
             log = self.log_nome * weight if weight else 0.0
             up, down = np.exp(log + order * v), np.exp(log - order * v)
             c, s = 0.5 * flip * (up + down), flip * (np.sinh(order * v) if log == 0.0 else 0.5 * (up - down))
@@ -276,7 +290,7 @@ class PortableHeavyTop:
 
 
 def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
-    """Return the roots S1 >= S2 >= S3 of 2 (E - M + M s) s (2 - s) - (D + l s)^2, equal ones exactly so."""
+    """Return the roots S1 >= S2 >= S3 of 2 (E - M + M s) s (2 - s) - (D + l s)^2; nearly equal roots are made equal."""
     # -2M s^3 + (4M - 2(E - M) - l^2) s^2 + (4 (E - M) - 2 D l) s - D^2
     cubic = [-2 * pull, 4 * pull - twice - spin**2, 2 * twice - 2 * d * spin, -(d**2)]
     roots = sorted((mp.re(x) for x in mp.polyroots(cubic, maxsteps=400, extraprec=800)), reverse=True)
@@ -291,6 +305,6 @@ def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
 
 
 def _zero(square: Any, m: Any) -> Any:
-    """Return y with sn^2(y) = square of the modulus 1 - m."""
+    """Return y with sn(y)^2 = ``square``, for the elliptic function sn of parameter 1 - m."""
     square = min(max(square, mpf(0)), mpf(1))
     return mp.sqrt(square) * mp.elliprf(1 - square, 1 - (1 - m) * square, 1)

@@ -1,4 +1,7 @@
-"""Phases in turns, and the functions of a phase, over arrays of times; as :file:`circular.h` and :file:`stages.h`."""
+"""Phases that grow linearly with time, in turns, and functions of them at arrays of times, without a C compiler.
+
+The formulas are those of :file:`circular.h` and :file:`stages.h`.
+"""
 
 from typing import Any, NamedTuple
 
@@ -10,18 +13,18 @@ from symrot.closed_form.build import Floats
 
 __all__ = ["DIGITS", "TERMS", "Phase", "multiples", "number", "power_of_two", "turned_by", "vector"]
 
-DIGITS = 120  # of the constants: what cancels leaves more than enough
-TERMS = 8  # of a series
-LARGEST = 80.0  # argument of a hyperbolic function: beyond it nothing changes any more
+DIGITS = 120  # digits of the constants: after any cancellation enough digits remain
+TERMS = 8  # terms of a series
+LARGEST = 80.0  # argument of a hyperbolic function: for larger arguments the results are constant to rounding
 
 
 def number(high: float, low: float) -> Any:
-    """Return hi + lo."""
+    """Return the number ``high + low`` to all digits of mpmath's present precision."""
     return mpf(high) + mpf(low)
 
 
 def vector(pairs: list[float]) -> list[Any]:
-    """Return the numbers of a list of pairs hi, lo."""
+    """Return the numbers of a list hi, lo, hi, lo, .. as mpmath numbers."""
     return [number(high, low) for high, low in zip(pairs[::2], pairs[1::2], strict=True)]
 
 
@@ -31,20 +34,25 @@ def power_of_two(value: Any) -> Any:
 
 
 class Phase(NamedTuple):
-    """A phase that grows linearly with time, in turns: rate and start, each as hi, lo."""
+    """A phase that grows linearly with time, in turns: its rate and its value at the start, each as hi, lo."""
 
     rate: tuple[float, float]
     start: tuple[float, float]
 
     @classmethod
     def of(cls, rate: Any, start: Any = 0, periodic: bool = True) -> "Phase":
-        """Return the phase with a rate and a start of any precision; a periodic one starts within half a turn."""
+        """Return the phase with a rate and a start of any precision; the start of a periodic phase is reduced to half a
+        turn.
+        """
         start = mpf(start) - mp.nint(start) if periodic else start
         high = [float(rate), float(start)]
         return cls((high[0], float(rate - high[0])), (high[1], float(start - high[1])))
 
     def rest(self, t: Floats, parts: int, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
-        """Return the phase without whole parts of a turn, and the number of these parts, up to whole turns."""
+        """Return the phase modulo 1/``parts`` of a turn, and the number of such parts that were removed.
+
+        The number is modulo ``parts``, since whole turns do not matter; ``more`` is added to the phase.
+        """
         product, error = two_product(t, self.rate[0])
         small = error + t * self.rate[1]
         small = (small - np.rint(small)) + self.start[1] + more
@@ -53,14 +61,14 @@ class Phase(NamedTuple):
         return (high - steps / parts) + (low + small), steps
 
     def whole(self, t: Floats) -> Floats:
-        """Return the phase itself, for functions that are not periodic."""
+        """Return the phase with all its turns, for functions that are not periodic."""
         product, error = two_product(t, self.rate[0])
         high, low = two_sum(product, self.start[0])
         phase: Floats = high + (low + (error + t * self.rate[1] + self.start[1]))
         return phase
 
     def circle(self, t: Floats, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
-        """Return sine and cosine of the phase."""
+        """Return sine and cosine of the phase plus ``more``, which is in turns."""
         rest, quarters = self.rest(t, 4, more)
         sine, cosine = np.sin(2.0 * np.pi * rest), np.cos(2.0 * np.pi * rest)
         quarter = quarters.astype(np.int64) & 3
@@ -69,24 +77,28 @@ class Phase(NamedTuple):
         return sign * np.where(odd, cosine, sine), sign * np.where(odd, -sine, cosine)
 
     def argument(self, t: Floats, stretch: float) -> tuple[Floats, Floats, Floats]:
-        """Return the phase in half turns from -1/2 to 1/2, the sign that changes with each, and the argument."""
+        """Return the argument of a theta series: the phase in half turns, reduced to -1/2 .. 1/2, with a sign and a
+        scaling.
+
+        The sign changes with each half turn that was removed; the third result is the reduced phase times ``stretch``.
+        """
         rest, halves = self.rest(t, 2)
         whole = 2.0 * rest
         flip: Floats = np.where(halves.astype(np.int64) & 1, -1.0, 1.0)
         return whole, flip, np.clip(stretch * whole, -LARGEST, LARGEST)
 
     def argument_once(self, t: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return the same as :meth:`argument` for a phase that is not periodic."""
+        """Return the results of :meth:`argument` for a phase that is not periodic: 0, 1 and the phase itself."""
         return np.zeros_like(t), np.ones_like(t), np.clip(self.whole(t), -LARGEST, LARGEST)
 
 
 def turned_by(real: Floats, imaginary: Floats, sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
-    """Return the product of two complex numbers, the second of unit size."""
+    """Return real and imaginary part of a complex number times ``cosine + i sine``."""
     return real * cosine - imaginary * sine, real * sine + imaginary * cosine
 
 
 def multiples(sine: Floats, cosine: Floats) -> list[tuple[Floats, Floats]]:
-    """Return sine and cosine of 0, 1, 2 .. times an angle, twice as many as a series has terms."""
+    """Return sine and cosine of 0, 1, 2 .. times an angle, for twice as many multiples as a series has terms."""
     pairs = [(np.zeros_like(sine), np.ones_like(sine))]
     for _ in range(2 * TERMS - 1):
         s, c = pairs[-1]

@@ -1,4 +1,4 @@
-"""Quaternions and changes of axes, of any precision and over arrays; as :file:`series.h`."""
+"""Quaternions and changes of axes with numbers of any precision and with arrays; formulas as in :file:`series.h`."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -9,23 +9,13 @@ from mpmath import mp, mpf
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import vector
 
-__all__ = ["UNIT", "Axes", "conjugate", "mapping", "matrix_quaternion", "product", "unit"]
+__all__ = ["UNIT", "Axes", "conjugate", "mapping", "matrix_quaternion", "unit"]
 
 UNIT = [mpf(1), mpf(0), mpf(0), mpf(0)]
 
 
-def product(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
-    """Return the product of two quaternions, scalar first."""
-    return [
-        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
-        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
-        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
-    ]
-
-
 def conjugate(a: Sequence[Any]) -> list[Any]:
-    """Return the conjugate."""
+    """Return the conjugate of a quaternion, scalar first: the inverse rotation."""
     return [a[0], -a[1], -a[2], -a[3]]
 
 
@@ -48,7 +38,10 @@ def matrix_quaternion(r: Sequence[Sequence[Any]]) -> list[Any]:
 
 
 class Axes:
-    """The rotation from the axes of a motion to the given axes, v_given = matrix*v, from 26 numbers or None."""
+    """The rotation from the internal axes of a motion to the given axes of the body: v_given = matrix*v.
+
+    It is made from 26 numbers: hi and lo of the 9 entries of the matrix and of its quaternion; None is the identity.
+    """
 
     def __init__(self, axes: list[float] | None) -> None:
         values = vector(axes) if axes else [mpf(int(i % 4 == 0)) for i in range(9)] + UNIT
@@ -56,5 +49,5 @@ class Axes:
 
 
 def mapping(images: Sequence[Sequence[Any]]) -> Floats:
-    """Return the matrix whose columns are given, rounded once."""
+    """Return the matrix whose columns are ``images``, rounded to doubles once."""
     return np.array([[float(x) for x in image] for image in images]).T

@@ -1,4 +1,4 @@
-"""A symmetric body driven about its axis by NumPy; the formulas are those of :file:`spin_up.h`."""
+"""Motion of a symmetric body driven about its axis, by NumPy without a C compiler; formulas as in :file:`spin_up.h`."""
 
 from collections.abc import Callable, Sequence
 from itertools import islice
@@ -16,51 +16,33 @@ from symrot.formula import exact_numbers as number
 __all__ = ["PortableSpinUp"]
 
 _QUARTER = pair(1 / (4 * number.PI))
-_TERMS = 10  # of atanh, for arguments to 1/60
+_TERMS = 10  # terms of the series of atanh, for arguments up to 1/60
 _SMALL = 2.0**-5
 
 
-def _less(a: dd.Pair, b: dd.Pair) -> dd.Pair:
-    return dd.add(a, (-b[0], -b[1]))
-
-
-def _over(a: dd.Pair, b: dd.Pair) -> dd.Pair:
-    first = a[0] / b[0]
-    rest = _less(a, dd.multiply((first, 0.0), b))
-    second = rest[0] / b[0]
-    rest = _less(rest, dd.multiply((second, 0.0), b))
-    return dd.add(dd.two_sum(first, second), (rest[0] / b[0], 0.0))
-
-
-def _root(a: dd.Pair) -> dd.Pair:
-    root = np.sqrt(a[0])
-    for _ in range(2):
-        pair = (root, 0.0) if isinstance(root, np.ndarray) else root
-        root = dd.add(pair, (_less(a, dd.multiply(pair, pair))[0] / (2.0 * pair[0]), 0.0))
-    refined: dd.Pair = root
-    return refined
-
-
 def _atanh_ratio(x: dd.Pair) -> dd.Pair:
-    """Return atanh(x)/x of small pairs."""
+    """Return atanh(x)/x of small double-double numbers, by its power series."""
     square, total = dd.multiply(x, x), (np.zeros_like(x[0]), 0.0)
     for k in range(_TERMS, -1, -1):
-        total = dd.add(dd.multiply(total, square), _over((1.0, 0.0), (2.0 * k + 1.0, 0.0)))
+        total = dd.add(dd.multiply(total, square), dd.divide((1.0, 0.0), (2.0 * k + 1.0, 0.0)))
     return total
 
 
 def _asinh_ratio(z: dd.Pair, root: dd.Pair) -> dd.Pair:
-    """Return asinh(z)/z; the argument is halved until the series converges."""
+    """Return asinh(z)/z of double-double numbers, where ``root`` is sqrt(1 + z^2).
+
+    The argument is halved until the power series converges fast.
+    """
     size = (np.abs(z[0]), np.where(z[0] < 0.0, -z[1], z[1]))
     small, above, times = size, dd.add(root, (1.0, 0.0)), np.ones_like(z[0])
     while (large := small[0] > _SMALL).any():
-        halved = _over(small, _root(dd.multiply((2.0, 0.0), above)))
+        halved = dd.divide(small, dd.square_root(dd.multiply((2.0, 0.0), above)))
         small = tuple(np.where(large, new, old) for new, old in zip(halved, small, strict=True))
         times = np.where(large, 2.0 * times, times)
-        above = dd.add(_root(dd.add((1.0, 0.0), dd.multiply(small, small))), (1.0, 0.0))
-    tau = _over(small, above)
-    whole = dd.multiply((2.0 * times, 0.0), _over(_atanh_ratio(tau), above))
-    shrunk = _over(small, (np.where(size[0] == 0.0, 1.0, size[0]), size[1]))
+        above = dd.add(dd.square_root(dd.add((1.0, 0.0), dd.multiply(small, small))), (1.0, 0.0))
+    tau = dd.divide(small, above)
+    whole = dd.multiply((2.0 * times, 0.0), dd.divide(_atanh_ratio(tau), above))
+    shrunk = dd.divide(small, (np.where(size[0] == 0.0, 1.0, size[0]), size[1]))
     ratio = dd.multiply(whole, shrunk)
     return np.where(times == 1.0, whole[0], ratio[0]), np.where(times == 1.0, whole[1], ratio[1])
 
@@ -71,7 +53,11 @@ def _circle(turns: dd.Pair) -> tuple[Floats, Floats]:
 
 
 class PortableSpinUp:
-    """One motion, from its constants, which are computed in integers, and the table near resonance if needed."""
+    """Motion of a body driven about its axis; the constants are computed in integers.
+
+    A table of Taylor polynomials is made only if samples lie near resonance (see
+    :mod:`symrot.closed_form.spin_up.motion`).
+    """
 
     def __init__(self, constants: Sequence[float], table: Floats | None) -> None:
         values = iter(constants)
@@ -92,7 +78,9 @@ class PortableSpinUp:
         self._near, self._table = np.array(take(16)).reshape(4, 4), table
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times, where an array is given."""
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times into the arrays; an array that is None is
+        skipped.
+        """
         t = (times * self._scale, np.zeros_like(times))
         sine, cosine = _circle(dd.multiply(t, dd.add(self._turn[0], dd.multiply(t, self._turn[1]))))
         if omega is not None:
@@ -115,21 +103,24 @@ class PortableSpinUp:
                 quaternion[chosen] = np.stack([a.real, b.real, b.imag, a.imag], axis=1) @ mapping.T
 
     def _far(self, side: Any, t: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
-        """Return q0 + i q3 and q1 + i q2 of the rotating axes, from the origin of a side of resonance."""
+        """Return q0 + i q3 and q1 + i q2 of the attitude in the rotating axes, for times far from resonance.
+
+        ``side`` holds the constants of the motion before or after resonance.
+        """
         time, start, delta, _ = side
         square = dd.multiply(self._across, self._across)
         here, there = (dd.add(dd.multiply(x, x), square) for x in (omega, start))
-        speed, product = _root(here), dd.multiply(omega, start)
-        speeds = dd.multiply(speed, _root(tuple(np.array([x]) for x in there)))  # type: ignore[arg-type]
+        speed, product = dd.square_root(here), dd.multiply(omega, start)
+        speeds = dd.multiply(speed, dd.square_root(tuple(np.array([x]) for x in there)))  # type: ignore[arg-type]
         opposed = dd.multiply(square, dd.add(here, dd.multiply(start, start)))
         other = product[0] < 0.0
-        apart = _less(speeds, (-np.abs(product[0]), np.where(other, product[1], -product[1])))
-        ratio = _over(opposed, apart)
+        apart = dd.subtract(speeds, (-np.abs(product[0]), np.where(other, product[1], -product[1])))
+        ratio = dd.divide(opposed, apart)
         together = np.where(other, ratio[0], apart[0]), np.where(other, ratio[1], apart[1])
-        middle = _root(dd.multiply((0.5, 0.0), dd.add(square, together)))
-        half = dd.multiply((0.5, 0.0), _over(_less(t, time), middle))
+        middle = dd.square_root(dd.multiply((0.5, 0.0), dd.add(square, together)))
+        half = dd.multiply((0.5, 0.0), dd.divide(dd.subtract(t, time), middle))
         z = dd.multiply(self._sweep[1], half)
-        root = _root(dd.add((1.0, 0.0), dd.multiply(z, z)))
+        root = dd.square_root(dd.add((1.0, 0.0), dd.multiply(z, z)))
         steady = dd.add(dd.multiply(root, together), dd.multiply(square, _asinh_ratio(z, root)))
         r = 1.0 / speed[0]
         across, along = self._across[0] * r, omega[0] * r
@@ -151,11 +142,14 @@ class PortableSpinUp:
         )
 
     def _close(self, _: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
-        """Return the same near resonance, from x = 0, by Taylor polynomials."""
+        """Return q0 + i q3 and q1 + i q2 of the attitude in the rotating axes, for times near resonance.
+
+        Taylor polynomials in x = Omega/sqrt(s) give the rotation from x = 0 on.
+        """
         assert self._table is not None
         sign = np.where(omega[0] < 0.0, -1.0, 1.0)
         high, low = dd.multiply((sign * omega[0], sign * omega[1]), self._inverse)
-        piece = np.minimum(np.floor(high * PIECES), len(self._table) - 1)  # the edge itself is in the last one
+        piece = np.minimum(np.floor(high * PIECES), len(self._table) - 1)  # the end belongs to the last one
         rest = (high - (piece + 0.5) / PIECES) + low
         terms = self._table[piece.astype(np.int64)]
         q = terms[:, -1]

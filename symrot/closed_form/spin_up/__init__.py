@@ -1,1 +1,1 @@
-"""A symmetric body under a constant torque about its axis."""
+"""Motion in closed form of a symmetric body under a constant torque about its axis."""

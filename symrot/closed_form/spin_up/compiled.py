@@ -1,4 +1,6 @@
-"""Constants and loops of :mod:`~symrot.closed_form.spin_up.motion` (:file:`spin_up.c`, :file:`spin_up_at.c`)."""
+"""Compiled constants and loops of :mod:`~symrot.closed_form.spin_up.motion` (:file:`spin_up.c`,
+:file:`spin_up_at.c`).
+"""
 
 import ctypes
 from typing import Any, NamedTuple
@@ -17,7 +19,7 @@ __all__ = ["TABLE", "Compiled", "available", "functions", "limits"]
 TABLE = int(spin_up_series.NEAR) * PIECES * (DEGREE + 1) * 4
 """Doubles of Taylor's polynomials."""
 
-_LACKING, _LOST = 1, 2  # what samples lack, see spin_up.h
+_LACKING, _LOST = 1, 2  # status of samples that could not be computed, see spin_up.h
 
 
 class _Functions(NamedTuple):
@@ -32,17 +34,17 @@ _bound: list[_Functions] = []
 
 
 def limits() -> tuple[float, float, float]:
-    """Return the numbers of the third argument of ``symrot_spin_up_prepare``."""
+    """Return the numerical limits that the C function ``symrot_spin_up_prepare`` takes as its third argument."""
     return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
 
 def available() -> bool:
-    """Return whether the loops are loaded, or there is a compiler."""
+    """Return whether the compiled loops can be used: they are loaded already, or there is a C compiler."""
     return bool(_bound) or not library.missing()
 
 
 def functions() -> _Functions:
-    """Return the compiled functions, with the types of their arguments.
+    """Return the compiled functions of a driven symmetric body, with the types of their arguments.
 
     Raises
     ------
@@ -62,9 +64,9 @@ def functions() -> _Functions:
 
 
 class Compiled:
-    """The constants of one motion, found by C, and its loops over samples.
+    """Constants of one motion, computed by C, and the compiled loops over its samples.
 
-    ``longest`` is the time, s, beyond which pairs of doubles may be too short for the number of turns.
+    Beyond the time ``longest``, s, double-double numbers may be too short for the number of turns.
 
     Parameters
     ----------
@@ -85,7 +87,10 @@ class Compiled:
         self.longest: float = constants[1] / constants[0]
 
     def _prepared(self, table: Floats | None) -> tuple[Any, int, Floats | None]:
-        """Return the record of constants, its address, and the table, which is filled if there is one."""
+        """Return the C record of constants, its address, and the table of Taylor polynomials.
+
+        C fills the table if an array is passed.
+        """
         bound = functions()
         constants = bound.record()
         place = ctypes.addressof(constants)
@@ -94,7 +99,11 @@ class Compiled:
         return constants, place, table
 
     def fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> bool:
-        """Write samples where an array is given; return whether some are beyond :attr:`longest` and so not valid."""
+        """Write samples into the arrays; return whether some lie beyond :attr:`longest`, where the samples are not
+        valid.
+
+        An array that is None is skipped.
+        """
         samples = len(times), address(times), address(omega), address(quaternion)
         _, place, table = self._known
         status: int = self._evaluate(place, address(table), *samples)

@@ -1,9 +1,9 @@
-"""A symmetric body under a constant torque about its axis, in integers: for any number of turns, without a compiler.
+"""A symmetric body under a constant torque about its axis, in integer arithmetic: for any number of turns.
 
 The rotation far from resonance (:mod:`~symrot.closed_form.spin_up.off_resonance`) and the rotation near it
-(:mod:`~symrot.closed_form.spin_up.resonance`) are joined at the edge. This module writes samples of too many turns for
-pairs of doubles one by one; without a C compiler, NumPy takes its constants from here. The formulas are in
-:file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
+(:mod:`~symrot.closed_form.spin_up.resonance`) are joined at the edge between the two. This module computes, one by one,
+the samples whose number of turns is too large for double-double numbers. Without a C compiler it also gives NumPy its
+constants. The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
 
 import math
@@ -33,27 +33,27 @@ from symrot.formula import exact_numbers as number
 
 __all__ = ["Integers"]
 
-_DOUBT = 1e-14  # of a place: nearer to the edge of a side than this, it could be on either
+_DOUBT = 1e-14  # relative: a time so near to the edge of resonance could lie on either side of it
 
 _LARGEST = Fraction(10) ** 300
 
 
 def _scale(*values: Fraction) -> Fraction:
-    """Return a power of two near the largest of some numbers, of which one is not zero."""
+    """Return a power of two near the largest of some numbers; not all of them are zero."""
     largest = max(map(abs, values))
     size = largest.numerator.bit_length() - largest.denominator.bit_length()
     return Fraction(2) ** max(-900, min(900, size))
 
 
 def _map(left: Quaternion, right: Quaternion) -> list[float]:
-    """Return the matrix of q -> left q right, row by row."""
+    """Return the matrix of the map q -> left q right of quaternions, row by row."""
     units = ((ONE[0] if i == k else 0 for i in range(4)) for k in range(4))
     columns = [product(left, (a, b, c, d), right) for a, b, c, d in units]
     return [column[i] / ONE[0] for i in range(4) for column in columns]
 
 
 class Integers:
-    """One motion. Times are counted from that of the initial state.
+    """Motion of a body driven about its axis, in integers. Times are counted from the initial state, s.
 
     Parameters
     ----------
@@ -98,7 +98,10 @@ class Integers:
 
     @staticmethod
     def _body_axes(axis: int, sign: int, first: Fraction, second: Fraction) -> Quaternion:
-        """Return the rotation from e1, e2, e3 to the body's axes: e3 along the torque, e1 along the transverse rate."""
+        """Return the rotation from the axes of the formulas, e1, e2, e3, to the body's axes.
+
+        e3 points along the torque, e1 along the transverse angular velocity at the start.
+        """
         columns = [[Fraction(0)] * 3 for _ in range(3)]
         columns[0][axis - 2], columns[0][axis - 1] = first, second
         columns[1][axis - 2], columns[1][axis - 1] = -sign * second, sign * first
@@ -110,7 +113,7 @@ class Integers:
         return Near(rounded(self._sweep.across * self._scale / self._root))
 
     def _side(self, omega: Fraction) -> int:
-        """Return on which side of resonance a place is: -1, 1, or 0 near it."""
+        """Return where a rate Omega about the axis lies: before resonance (-1), after it (1) or near it (0)."""
         if self._sweep.series.wide:
             return 1
         return 0 if abs(omega) < self._edge else 1 if omega > 0 else -1
@@ -120,7 +123,7 @@ class Integers:
 
     @cached_property
     def _resonance(self) -> Quaternion:
-        """Return the rotation of the body from the start to Omega = 0, seen from it."""
+        """Return the rotation of the body from the start to resonance (Omega = 0), seen from the body at resonance."""
         side, sweep = self._side(self._start), self._sweep
         if not side:
             return conjugate(self._near.quaternion(self._x(self._start)))
@@ -129,14 +132,16 @@ class Integers:
         return product(leaving, conjugate(self._near.quaternion(Fraction(side * int(NEAR)))))
 
     def _begin(self, side: int) -> tuple[Fraction, Fraction, Quaternion]:
-        """Return the origin of a side of resonance: its time, Omega, and the rotation of the body up to it."""
+        """Return where the formulas of one side of resonance begin: the time, Omega there, and the body's rotation
+        until then.
+        """
         if self._side(self._start) == side:
             return Fraction(0), self._start, ONE
         edge, crossed = side * self._edge, self._near.quaternion(Fraction(side * int(NEAR)))
         return rounded((edge - self._start) / self._sweep.s), edge, product(self._resonance, crossed)
 
     def _constants(self, near: bool) -> list[float]:
-        """Return the constants for NumPy, with or without those that only samples near or beyond resonance need."""
+        """Return the constants for NumPy; ``near`` adds those that only samples near or beyond resonance need."""
         sweep, back, wide = self._sweep, conjugate(self._axes), self._sweep.series.wide
         turns = [x / (4 * number.PI) for x in self._turn]
         inverse = self._scale / self._root if near else Fraction(0)
@@ -160,21 +165,26 @@ class Integers:
 
     @cached_property
     def longest(self) -> float:
-        """The time, s, beyond which pairs of doubles may be too short for the number of turns."""
+        """The time, s, beyond which double-double numbers may be too short for the number of turns."""
         values = self._start, self._sweep.across, self._turn[0], self._sweep.s, self._turn[1]
         start, across, turn, s, growth = (abs(float(x)) for x in values)
         even = start + across + turn
         return 2.0 * MOST / (even + math.sqrt(even * even + 4.0 * (s + growth) * MOST)) / float(self._scale)
 
     def _far(self, first: float, last: float) -> bool:
-        """Return whether all times between two are on one side of resonance for any rounding of doubles."""
+        """Return whether all times between ``first`` and ``last`` certainly lie on one side of resonance, far from
+        it.
+        """
         start, s, scale = float(self._start), float(self._sweep.s), float(self._scale)
         ends, edge = (start + s * first * scale, start + s * last * scale), float(self._edge)
         edge += _DOUBT * (edge + max(map(abs, (start, *ends))))
         return self._sweep.series.wide or ends[1] <= -edge or ends[0] >= edge
 
     def fill(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> bool:
-        """Write samples by NumPy; return whether some are beyond :attr:`longest` and so not valid."""
+        """Write samples by NumPy; return whether some lie beyond :attr:`longest`, where the samples are not valid.
+
+        An array that is None is skipped.
+        """
         first, last = min(0.0, float(times.min())), max(0.0, float(times.max()))
         near = attitudes is not None and not self._far(first, last)
         if near not in self._kinds:
@@ -187,7 +197,7 @@ class Integers:
         return abs(self._spin[0] + self._spin[1] * Fraction(time) * self._scale) < number.LARGEST
 
     def put(self, i: int, time: float, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Write sample i, where an array is given."""
+        """Write sample ``i`` into the arrays; an array that is None is skipped."""
         t = Fraction(time) * self._scale
         angle = self._turn[0] * t + self._turn[1] * t * t
         if rates is not None:

@@ -1,13 +1,15 @@
 """A symmetric body under a constant torque about its axis, at any time, in closed form: spin up, down, and through.
 
 The transverse angular velocity keeps its length W and rotates in the body by a phase quadratic in time. In axes that
-rotate with it the body rotates at ``(W, 0, Omega)``, with Omega linear in time: the equation of a two-level system
-swept through resonance (Zener, Proc. R. Soc. A 137 (1932) 696). Its solutions are parabolic cylinder functions of
-``x = Omega/sqrt(s)``, with the sweep rate s and the only parameter ``kappa = W/sqrt(s)``. Far from resonance, or for a
-large kappa, asymptotic series are exact to the last bit, in the form of a slowly rotating vector and the phase about
-it; near resonance Taylor series at 40 places are. Phases are represented in turns, as pairs of doubles: the error of
-the attitude stays at a few 1e-16 for any number of turns. A sample takes the same time at any t; samples beyond 1e13
-rad are computed in integers.
+rotate with it the body rotates at ``(W, 0, Omega)``, with Omega linear in time. This is the equation of a two-level
+system swept through resonance (Zener, Proc. R. Soc. A 137 (1932) 696), which takes place at Omega = 0. The solutions
+are parabolic cylinder functions of ``x = Omega/sqrt(s)``, with the sweep rate s and the only parameter ``kappa =
+W/sqrt(s)``.
+
+Far from resonance, or for a large kappa, asymptotic series give every digit of a double: they describe a slowly
+rotating vector and the rotation about it. Near resonance, Taylor series at 40 points do so. Phases are sums of two
+doubles, in turns, so that the error of the attitude stays at a few 1e-16 for any number of turns. A sample takes the
+same time at any t; samples beyond 1e13 rad are computed in integers.
 
 The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
@@ -36,7 +38,7 @@ __all__ = ["SpinUp", "SpunBody", "motion", "starts"]
 
 
 class SpinUp:
-    """One motion of a body. Times are counted from that of the initial state.
+    """Motion of a symmetric body driven about its axis. Times are counted from the initial state, s.
 
     Parameters
     ----------
@@ -60,7 +62,7 @@ class SpinUp:
 
     @cached_property
     def integers(self) -> "Integers":
-        """The same motion in integers."""
+        """The same motion in integer arithmetic, for samples of very many turns."""
         from symrot.closed_form.spin_up.integers import Integers
 
         body, rates, attitude = self._initial_state
@@ -71,7 +73,7 @@ class SpinUp:
     def evaluate(
         self, t: ArrayLike, omega: bool = True, quaternion: bool = True
     ) -> tuple[Floats | None, Floats | None]:
-        """Return angular velocity and attitude at any times; as :meth:`.ExactMotion.evaluate`.
+        """Return angular velocity (n, 3) and attitude (n, 4) at any times; see :meth:`.ExactMotion.evaluate`.
 
         Raises
         ------
@@ -86,7 +88,7 @@ class SpinUp:
         return rates, attitudes
 
     def _by_integers(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Write the samples of too many turns for pairs of doubles."""
+        """Write, in integer arithmetic, those samples whose number of turns is too large for double-double numbers."""
         for time in (float(times.min()), float(times.max())):
             if not self.integers.finite(time):
                 raise InputError(f"expected times at which the angular velocity is a finite number, got {time!r} s")
@@ -117,22 +119,22 @@ def motion(
     Raises
     ------
     InputError
-        If the body is not symmetric about the axis, turns about it alone, or a number is not of this domain.
+        If the body is not symmetric about the axis, rotates about it alone, or a number is not of this domain.
     """
     return SpunBody(inertia, axis, torque).motion(omega0, quaternion0)
 
 
 def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[Initial], SpinUp]:
-    """Return a function of the initial state that returns its motion; it reads shared constants once.
+    """Return a function from initial states to motions of one driven body; arguments as :func:`motion` takes them.
 
-    See :func:`motion`.
+    Constants that do not depend on the initial state are computed once.
     """
     body = SpunBody(inertia, axis, torque)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
 class SpunBody:
-    """A symmetric body and its torque, with the constants that all its motions share."""
+    """Symmetric body and its torque, with the constants that all its motions share."""
 
     def __init__(self, inertia: Sequence[Number], axis: int, torque: Number) -> None:
         self._inertia, (self.torque,) = numbers("inertia", inertia, 3, SMALLEST), numbers("torque", [torque], 1)
@@ -143,13 +145,13 @@ class SpunBody:
         self.shared = flatten_pairs([*self.moments, self.torque])
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> SpinUp:
-        """Return the motion from an initial state."""
+        """Return the motion from an initial angular velocity, rad/s, and attitude, body to space."""
         axis, rates, attitude = self.axis, numbers("omega", omega0, 3), numbers("quaternion", quaternion0, 4)
         if not any(attitude):
             raise InputError(f"expected a quaternion that is not zero, got {[float(x) for x in attitude]}")
         if not self._symmetric or not (rates[axis - 2] or rates[axis - 1]):
             raise InputError(
-                "expected a body that is symmetric about the driven axis and turns across it too, got moments "
+                "expected a body that is symmetric about the driven axis and rotates across it too, got moments "
                 f"{[float(x) for x in self._inertia]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
             )
         return SpinUp(self, rates, attitude)

@@ -1,11 +1,11 @@
-"""Far from resonance, to 90 digits: rotations of the body between two times, in Fractions.
+"""Rotation of a driven symmetric body between two times far from resonance, in fractions, to 90 digits.
 
-In axes that rotate with its transverse angular velocity the body rotates at ``(W, 0, Omega)``, with
-``Omega = Omega0 + s t``. The integral of ``S = sqrt(Omega^2 + W^2)`` over a time t, from ``Omega0`` on, is
+In axes that rotate with its transverse angular velocity the body rotates at ``(W, 0, Omega)``, with ``Omega = Omega0 +
+s t``. The angle of rotation is the integral of ``S = sqrt(Omega^2 + W^2)`` over a time t:
 
-    t/(2 D) (E sqrt(1 + z^2) + W^2 asinh(z)/z),  E = S0 S + Omega0 Omega,  D^2 = (W^2 + E)/2,  z = s t/(2 D):
+    t/(2 D) (E sqrt(1 + z^2) + W^2 asinh(z)/z),  E = S0 S + Omega0 Omega,  D^2 = (W^2 + E)/2,  z = s t/(2 D).
 
-a sum of positive terms, which keeps its digits for every s.
+The sum has positive terms only, so that no digits cancel for any s.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -16,17 +16,18 @@ from fractions import Fraction
 from symrot.closed_form.build import Floats
 from symrot.closed_form.spin_up.series import NEAR, Series
 from symrot.formula import exact_numbers as number
+from symrot.kinematics.hamilton import hamilton
 
 __all__ = ["FIXED", "ONE", "Quaternion", "Sweep", "about_third", "conjugate", "fixed", "product", "rounded"]
 
 FIXED = 144
-"""Number of bits behind the point of unit quaternions in fixed point, which is four times as fast as Fractions."""
+"""Bits after the binary point of unit quaternions in fixed-point arithmetic, four times as fast as Fractions."""
 
 Quaternion = tuple[int, int, int, int]
 
 ONE: Quaternion = (1 << FIXED, 0, 0, 0)
 
-_HALVINGS = 12  # of the argument of asinh, at least
+_HALVINGS = 12  # halvings of the argument of asinh, at least
 _SMALL = Fraction(1, 1 << _HALVINGS)
 
 
@@ -41,26 +42,21 @@ def rounded(value: Fraction) -> Fraction:
 
 
 def fixed(values: Sequence[Fraction]) -> Quaternion:
-    """Return a unit quaternion in integers."""
+    """Return a unit quaternion in fixed-point integers, from fractions."""
     q0, q1, q2, q3 = ((x.numerator << FIXED) // x.denominator for x in values)
     return q0, q1, q2, q3
 
 
 def product(a: Quaternion, *others: Quaternion) -> Quaternion:
-    """Return the product of unit quaternions."""
-    for b0, b1, b2, b3 in others:
-        a0, a1, a2, a3 = a
-        a = (
-            a0 * b0 - a1 * b1 - a2 * b2 - a3 * b3 >> FIXED,
-            a0 * b1 + a1 * b0 + a2 * b3 - a3 * b2 >> FIXED,
-            a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1 >> FIXED,
-            a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0 >> FIXED,
-        )
+    """Return the product of unit quaternions in fixed-point integers."""
+    for b in others:
+        q0, q1, q2, q3 = hamilton(a, b)
+        a = (q0 >> FIXED, q1 >> FIXED, q2 >> FIXED, q3 >> FIXED)
     return a
 
 
 def conjugate(q: Quaternion) -> Quaternion:
-    """Return the inverse of a unit quaternion."""
+    """Return the inverse of a unit quaternion: its vector part changes sign."""
     return (q[0], -q[1], -q[2], -q[3])
 
 
@@ -70,7 +66,10 @@ def about_third(angle: Fraction) -> Quaternion:
 
 
 def _asinh_ratio(z: Fraction) -> Fraction:
-    """Return asinh(z)/z: the argument is halved until the series of atanh(z/sqrt(1 + z^2)) is short."""
+    """Return asinh(z)/z with a relative error near 2^-320.
+
+    The argument is halved until the series of atanh(z/sqrt(1 + z^2)) is short.
+    """
     if not z:
         return Fraction(1)
     halvings, small = 0, abs(z)
@@ -93,7 +92,10 @@ def _polynomial(coefficients: Floats, y: float) -> float:
 
 
 class Sweep:
-    """The rotating axes of a motion: W, s and the series of its kappa^2 = W^2/s."""
+    """Constants of a sweep through resonance: W, the sweep rate s, and the asymptotic series for kappa^2 = W^2/s.
+
+    See :mod:`symrot.closed_form.spin_up.motion` for the quantities.
+    """
 
     def __init__(self, across: Fraction, s: Fraction, series: Series) -> None:
         self.across, self.s, self.series = across, s, series
@@ -101,21 +103,26 @@ class Sweep:
         self.unit = self._square + (0 if series.wide else Fraction(NEAR) ** 2 * s)
 
     def speed(self, omega: Fraction) -> Fraction:
-        """Return S, rad/s."""
+        """Return the size S = sqrt(Omega^2 + W^2) of the angular velocity in the rotating axes, rad/s."""
         return number.sqrt(rounded(omega * omega + self._square))
 
     def _places(self, omega: Fraction) -> tuple[float, float, float]:
-        """Return sine and cosine of theta, and y."""
+        """Return sine and cosine of the angle theta between angular velocity and third axis, and the variable y of the
+        series.
+        """
         speed = self.speed(omega)
         return float(self.across / speed), float(omega / speed), float(rounded(self.unit / (speed * speed)))
 
     def delta(self, omega: Fraction) -> float:
-        """Return delta, rad."""
+        """Return the correction delta, rad, by which the angle of rotation exceeds the integral of S."""
         _, cosine, y = self._places(omega)
         return cosine * _polynomial(self.series.e, y)
 
     def axes(self, omega: Fraction) -> Quaternion:
-        """Return the rotation of the third axis to the vector at rest in space that follows the axis of rotation."""
+        """Return the rotation that carries the third axis to the slowly rotating vector.
+
+        That vector is at rest in space and follows the axis of rotation.
+        """
         sine, cosine, y = self._places(omega)
         g, c = _polynomial(self.series.g, y), _polynomial(self.series.c, y)
         m1, m2 = Fraction(sine * cosine * y * y * g), Fraction(sine * y * c)
@@ -127,7 +134,9 @@ class Sweep:
         return product(turn, fixed(number.unit((m3, -m2, m1, Fraction(0)))))
 
     def angle(self, start: Fraction, time: Fraction) -> Fraction:
-        """Return the angle of the body's rotation about that vector within a time, from Omega = start."""
+        """Return the angle of the body's rotation about the slowly rotating vector within a time, from Omega =
+        ``start``.
+        """
         omega = start + self.s * time
         here, there, product = self.speed(omega), self.speed(start), rounded(omega * start)
         if product >= 0:

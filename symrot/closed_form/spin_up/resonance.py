@@ -1,12 +1,13 @@
-"""The attitude near resonance: Taylor series at evenly spaced places, in integers, rounded once.
+"""Attitude of a driven symmetric body near resonance: Taylor series at evenly spaced points, in integers, rounded once.
 
 A body that rotates at ``(kappa, 0, x)`` and is aligned with space at ``x = 0`` has the attitude ``(alpha, beta)``,
 ``alpha = q0 + i q3``, ``beta = q1 + i q2``, with
 
-    2 alpha' = i x alpha - kappa beta,  2 beta' = kappa alpha - i x beta,
+    2 alpha' = i x alpha - kappa beta,  2 beta' = kappa alpha - i x beta.
 
-parabolic cylinder functions of x. For ``-x`` q1 and q2 change their signs. At a place the equations give each
-coefficient from the two before; every series begins where the one before ends.
+The solutions are parabolic cylinder functions of x. For ``-x``, q1 and q2 change their signs. At each point the
+equations give each Taylor coefficient from the two before; each series begins with the value at which the previous one
+ends.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -27,13 +28,13 @@ PIECES = 4
 DEGREE = 19
 """Degree of the polynomials: (r/2)^20/20!/8^20 < 1e-20 for r < 13.5."""
 
-_TERMS = 34  # of a series in integers
+_TERMS = 34  # terms of a series in integers
 
-_Spinor = tuple[int, int, int, int]  # q0, q3, q1, q2
+_Spinor = tuple[int, int, int, int]  # a spinor: q0, q3, q1, q2
 
 
 class Near:
-    """The attitudes of one kappa for \\|x\\| <= NEAR."""
+    r"""Attitudes near resonance, \|x\| <= NEAR, for one kappa."""
 
     def __init__(self, kappa: Fraction) -> None:
         self._kappa = self._fixed(kappa)
@@ -49,7 +50,7 @@ class Near:
         return (value.numerator << FIXED) // value.denominator
 
     def _coefficients(self, spinor: _Spinor, place: Fraction) -> list[_Spinor]:
-        """Return the series about a place, whose denominator is a power of two."""
+        """Return the Taylor series of the attitude about a point x, whose denominator is a power of two."""
         top, shift, kappa = place.numerator, place.denominator.bit_length() - 1, self._kappa
         coefficients: list[_Spinor] = [spinor]
         before: _Spinor = (0, 0, 0, 0)
@@ -74,14 +75,17 @@ class Near:
         return total[0], total[1], total[2], total[3]
 
     def quaternion(self, x: Fraction) -> Quaternion:
-        """Return the attitude at one x, to 1e-30."""
+        """Return the attitude at one x, with an error of 1e-30."""
         piece = min(int(abs(x) * PIECES), len(self._series) - 1)
         q0, q3, q1, q2 = self._sum(self._series[piece], abs(x) - Fraction(2 * piece + 1, 2 * PIECES))
         sign = -1 if x < 0 else 1
         return q0, sign * q1, sign * q2, q3
 
     def table(self) -> Floats:
-        """Return the coefficients, by piece, power of the distance from its middle, and component of the quaternion."""
+        """Return the Taylor coefficients as an array, for the compiled loops and NumPy.
+
+        The indices are: interval of x, power of the distance from the interval's middle, component of the quaternion.
+        """
         one = 1 << FIXED
         return np.array(
             [[[q0 / one, q1 / one, q2 / one, q3 / one] for q0, q3, q1, q2 in s[: DEGREE + 1]] for s in self._series]

@@ -1,17 +1,17 @@
-"""A vector at rest in space, seen from a body far from resonance: asymptotic series in the inverse of its rate.
+"""Asymptotic series for a driven symmetric body far from resonance, in inverse powers of its angular velocity.
 
-In axes in which a body turns at ``(kappa, 0, x)``, ``x`` the time, a vector ``n`` at rest obeys ``n' = n x (kappa, 0,
-x)``. One such vector follows the axis of rotation. With ``r^2 = x^2 + kappa^2``, ``v = 1/r^2`` and
+In axes in which a body rotates at ``(kappa, 0, x)``, ``x`` the time, a vector ``n`` at rest in space obeys ``n' = n x
+(kappa, 0, x)``. One such vector follows the axis of rotation. With ``r^2 = x^2 + kappa^2``, ``v = 1/r^2`` and
 
     n1 = (kappa/r) a(v),  n2 = (kappa/r) v c(v),  n3 = (x/r) b(v),
 
-the equation becomes ``c = -(a + 2 v a')``, ``b - a = -v^2 (3 c + 2 v c')``, ``2 (1 - kappa^2 v) b' = kappa^2 (b + c)``:
-coefficients follow one from another. They are ordered by powers of ``v^2``; each order is a polynomial in
-``kappa^2 v``, at most 1. The series does not converge, yet beyond :data:`NEAR`, or for more than :data:`WIDE`, its
-terms fall below 1e-18 before they grow.
+the equation becomes ``c = -(a + 2 v a')``, ``b - a = -v^2 (3 c + 2 v c')``, ``2 (1 - kappa^2 v) b' = kappa^2 (b + c)``,
+so that each coefficient follows from the ones before. They are ordered by powers of ``v^2``; each order is a polynomial
+in ``kappa^2 v``, which is at most 1. The series does not converge, yet for x beyond :data:`NEAR`, or kappa beyond
+:data:`WIDE`, its terms fall below 1e-18 before they grow.
 
-What is left of ``n`` in axes whose third is the axis of rotation is ``m = (kappa/r) (x/r v^2 g, v c, ..)``. The angle
-about it exceeds the integral of ``r`` by ``delta = (x/r) e(v)``.
+In axes whose third is the axis of rotation, the components of ``n`` across it are ``m = (kappa/r) (x/r v^2 g, v c,
+..)``. The angle about it exceeds the integral of ``r`` by ``delta = (x/r) e(v)``.
 
 Source: DLMF 12.9 and 12.10 for the functions of which these are the modulus and the phase. Proof:
 ``derivations/driven_rotation.md``.
@@ -27,26 +27,27 @@ from symrot.closed_form.build import Floats
 __all__ = ["DEGREE", "MOST", "NEAR", "WIDE", "Series", "series"]
 
 NEAR = 10.0
-"""From this x on the series holds for every kappa."""
+"""Least x for which the series holds for every kappa."""
 
 WIDE = 9.0
-"""From this kappa on the series holds for every x."""
+"""Least kappa for which the series holds for every x."""
 
 MOST = 1e13
-"""Phase, rad, from which on pairs of doubles are too short."""
+"""Phase, rad, above which double-double numbers are too short."""
 
 DEGREE = 12
 """Degree of the polynomials that replace the series."""
 
-_ORDERS = 14  # powers of v^2
+_ORDERS = 14  # number of powers of v^2
 _SMALL = 0.2  # kappa^2/radius2: below it the angle is counted from infinity
-_TERMS = 32  # of it, powers of kappa^2 v <= _SMALL
+_TERMS = 32  # powers of kappa^2 v that are used where kappa^2 v <= _SMALL
 
 
 class Series(NamedTuple):
-    """The functions of a motion as polynomials in ``y = v radius2``, 0 <= y <= 1, lowest power first.
+    """Functions of the asymptotic series of one motion, as polynomials in ``y = v radius2``, lowest power first.
 
-    ``radius2`` is kappa^2 where the series holds for every x, ``wide``, and the least r^2 elsewhere.
+    The range is 0 <= y <= 1. Where the series holds for every x (``wide``), ``radius2`` is kappa^2; elsewhere it is the
+    least r^2 for which the series holds.
     """
 
     wide: bool
@@ -57,13 +58,13 @@ class Series(NamedTuple):
 
 @cache
 def _nodes() -> tuple[Floats, Floats]:
-    """Return Chebyshev's points between 0 and 1, and their powers, as many as a series has."""
+    """Return Chebyshev's points between 0 and 1, as many as a series has coefficients, and the powers of each."""
     y = 0.5 - 0.5 * np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
     return y, np.vander(y, 3 * _ORDERS + 1, increasing=True)
 
 
 def _first(share: float, v: float) -> Floats:
-    """Return the coefficients of a by the power of y; ``share`` is kappa^2/radius2, v = 1/radius2."""
+    """Return the coefficients of the function a by the power of y; ``share`` is kappa^2/radius2, v is 1/radius2."""
     order, total = {0: 1.0}, [0.0] * (3 * _ORDERS + 1)
     total[0] = 1.0
     for _ in range(_ORDERS):
@@ -80,7 +81,7 @@ def _first(share: float, v: float) -> Floats:
 
 
 def _angle(share: float, v: float, h: Floats) -> Floats:
-    """Return e at the nodes from the coefficients of h, where delta' = kappa^2 v^(5/2) h."""
+    """Return the function e at Chebyshev's points from the coefficients of h, where delta' = kappa^2 v^(5/2) h."""
     powers = _nodes()[1]
     if share >= _SMALL:  # from x = 0
         e = np.zeros(len(h) + 2)
@@ -95,7 +96,7 @@ def _angle(share: float, v: float, h: Floats) -> Floats:
 
 
 def series(kappa2: float, inverse: float) -> Series:
-    """Return the series of a motion from kappa^2 and its inverse, which may be zero and the other infinite."""
+    """Return the asymptotic series of a motion from kappa^2 and its inverse; one may be zero and the other infinite."""
     wide = kappa2 >= WIDE * WIDE
     radius2 = kappa2 if wide else NEAR * NEAR + kappa2
     share, v = (1.0, inverse) if wide else (kappa2 / radius2, 1.0 / radius2)

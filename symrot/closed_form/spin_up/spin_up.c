@@ -154,7 +154,7 @@ ALWAYS_INLINE void grow(
         for (int i = 0; i < 4*lanes; ++i) {
             const dd swept = linear(dd_pair(a.hi[i], a.lo[i]), dd_pair(b.hi[i], b.lo[i]), place);
             const dd turned = dd_mul(dd_pair(kappa->hi[i], kappa->lo[i]), dd_pair(c.hi[i], c.lo[i]));
-            const dd both = added(dd_scale(swept, signs[0].hi[i]), dd_scale(turned, signs[1].hi[i]));
+            const dd both = dd_add_fast(dd_scale(swept, signs[0].hi[i]), dd_scale(turned, signs[1].hi[i]));
             const dd next = dd_mul(inverse, both);
             q[n].hi[i] = next.hi;
             q[n].lo[i] = next.lo;
@@ -184,7 +184,7 @@ ALWAYS_INLINE void sum_at_power(int lanes, const quaternions q[TERMS], double x,
         sum.lo[i] = 0.0;
     for (int n = FINE - 1; n >= 0; --n)
         for (int i = 0; i < 4*lanes; ++i) {
-            const dd next = added(dd_pair(q[n].hi[i], q[n].lo[i]), dd_scale(dd_pair(sum.hi[i], sum.lo[i]), x));
+            const dd next = dd_add_fast(dd_pair(q[n].hi[i], q[n].lo[i]), dd_scale(dd_pair(sum.hi[i], sum.lo[i]), x));
             sum.hi[i] = next.hi;
             sum.lo[i] = next.lo;
         }
@@ -201,7 +201,7 @@ static void sum_at(int lanes, int lane, const quaternions q[TERMS], dd x, dd tot
             tail = tail*x.hi + q[n].hi[i];
         total[k] = dd_of(tail);
         for (int n = FINE - 1; n >= 0; --n)
-            total[k] = added(dd_pair(q[n].hi[i], q[n].lo[i]), dd_mul(total[k], x));
+            total[k] = dd_add_fast(dd_pair(q[n].hi[i], q[n].lo[i]), dd_mul(total[k], x));
     }
 }
 

@@ -74,7 +74,7 @@ STAGE speeds(const double across[2], ptrdiff_t n, block *restrict b)
 {
     const dd square = dd_square(dd_pair(across[0], across[1]));
     EACH (i, n) {
-        const dd speed = rooted(added(dd_square(dd_pair(b->omega[i], b->omega_low[i])), square));
+        const dd speed = rooted(dd_add_fast(dd_square(dd_pair(b->omega[i], b->omega_low[i])), square));
         b->speed[i] = speed.hi;
         b->speed_low[i] = speed.lo;
     }
@@ -127,15 +127,15 @@ STAGE weakly_swept(const spin_up_phase *restrict p, ptrdiff_t n, block *restrict
         tail = MUL_ADD(tail, h.hi, p->series[11][0]);
         tail = MUL_ADD(tail, h.hi, p->series[10][0]);
         tail = MUL_ADD(tail, h.hi, p->series[9][0]);
-        dd sum = added(dd_pair(p->series[8][0], p->series[8][1]), dd_pair(tail*h.hi, 0.0));
-        sum = added(dd_pair(p->series[7][0], p->series[7][1]), dd_mul(sum, h));
-        sum = added(dd_pair(p->series[6][0], p->series[6][1]), dd_mul(sum, h));
-        sum = added(dd_pair(p->series[5][0], p->series[5][1]), dd_mul(sum, h));
-        sum = added(dd_pair(p->series[4][0], p->series[4][1]), dd_mul(sum, h));
-        sum = added(dd_pair(p->series[3][0], p->series[3][1]), dd_mul(sum, h));
-        sum = added(dd_pair(p->series[2][0], p->series[2][1]), dd_mul(sum, h));
-        sum = added(dd_pair(p->series[1][0], p->series[1][1]), dd_mul(sum, h));
-        sum = added(dd_pair(p->series[0][0], p->series[0][1]), dd_mul(sum, h));
+        dd sum = dd_add_fast(dd_pair(p->series[8][0], p->series[8][1]), dd_pair(tail*h.hi, 0.0));
+        sum = dd_add_fast(dd_pair(p->series[7][0], p->series[7][1]), dd_mul(sum, h));
+        sum = dd_add_fast(dd_pair(p->series[6][0], p->series[6][1]), dd_mul(sum, h));
+        sum = dd_add_fast(dd_pair(p->series[5][0], p->series[5][1]), dd_mul(sum, h));
+        sum = dd_add_fast(dd_pair(p->series[4][0], p->series[4][1]), dd_mul(sum, h));
+        sum = dd_add_fast(dd_pair(p->series[3][0], p->series[3][1]), dd_mul(sum, h));
+        sum = dd_add_fast(dd_pair(p->series[2][0], p->series[2][1]), dd_mul(sum, h));
+        sum = dd_add_fast(dd_pair(p->series[1][0], p->series[1][1]), dd_mul(sum, h));
+        sum = dd_add_fast(dd_pair(p->series[0][0], p->series[0][1]), dd_mul(sum, h));
         const dd turns = dd_mul(dd_mul(sum, rate), dd_of(t));
         b->turns[i] = turns.hi;
         b->turns_low[i] = turns.lo;

@@ -35,14 +35,7 @@ static const dd THIRD = {0x1.5555555555555p-2, 0x1.5555555555555p-56},
 /* 1/(4 pi) */
 static const dd SPIN_UP_QUARTER = {0x1.45f306dc9c883p-4, -0x1.6b01ec5417056p-58};
 
-/* a + b, to 2^-104 of the larger of them: in half the operations of dd_add. */
-ALWAYS_INLINE dd added(dd a, dd b)
-{
-    const dd s = two_sum(a.hi, b.hi);
-    return quick_two_sum(s.hi, s.lo + (a.lo + b.lo));
-}
-
-/* The same for |a| >= |b|. */
+/* a + b as dd_add_fast, for |a| >= |b|. */
 ALWAYS_INLINE dd added_less(dd a, dd b)
 {
     const dd s = quick_two_sum(a.hi, b.hi);
@@ -53,7 +46,7 @@ ALWAYS_INLINE dd added_less(dd a, dd b)
 ALWAYS_INLINE dd linear(dd a, dd b, double t)
 {
     const double p = b.hi*t;
-    return added(a, dd_pair(p, MUL_ADD(b.lo, t, product_error(b.hi, t, p))));
+    return dd_add_fast(a, dd_pair(p, MUL_ADD(b.lo, t, product_error(b.hi, t, p))));
 }
 
 /* The square root of what is positive, to 2^-104. */
@@ -109,23 +102,23 @@ ALWAYS_INLINE dd logarithm(dd a, int fine)
     const double octaves = n*ln2.hi, lost = MUL_ADD(n, ln2.lo, product_error(n, ln2.hi, octaves));
     const dd known = two_sum(octaves, LOG_HIGH[i]);
     if (!fine)
-        return added(dd_pair(known.hi, known.lo + (lost + LOG_LOW[i])), atanh2);
-    return added(added(known, two_sum(lost, LOG_LOW[i])), atanh2);
+        return dd_add_fast(dd_pair(known.hi, known.lo + (lost + LOG_LOW[i])), atanh2);
+    return dd_add_fast(dd_add_fast(known, two_sum(lost, LOG_LOW[i])), atanh2);
 }
 
 /* log(|Omega| + S); finely where kappa is large. */
 ALWAYS_INLINE dd swept_logarithm(dd omega, dd speed, int fine)
 {
-    return logarithm(added(dd_scale(omega, omega.hi < 0.0 ? -1.0 : 1.0), speed), fine);
+    return logarithm(dd_add_fast(dd_scale(omega, omega.hi < 0.0 ? -1.0 : 1.0), speed), fine);
 }
 
 /* P/(4 pi) from Omega, S and that, but for a constant. */
 ALWAYS_INLINE dd swept_turns(const spin_up_phase *p, dd omega, dd speed, dd log)
 {
     const double sign = omega.hi < 0.0 ? -1.0 : 1.0;
-    const dd asinh = added(log, dd_pair(-p->logarithm[0], -p->logarithm[1]));
+    const dd asinh = dd_add_fast(log, dd_pair(-p->logarithm[0], -p->logarithm[1]));
     const dd even = dd_mul(dd_mul(omega, speed), dd_pair(p->product[0], p->product[1]));
-    return added(even, dd_mul(asinh, dd_pair(sign*p->share[0], sign*p->share[1])));
+    return dd_add_fast(even, dd_mul(asinh, dd_pair(sign*p->share[0], sign*p->share[1])));
 }
 
 /* c[0] + c[1] x + .. + c[12] x^12: even and odd powers apart, which a processor does side by side. */

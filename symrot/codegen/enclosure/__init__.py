@@ -1,1 +1,1 @@
-"""The enclosure of a right-hand side: which terms it needs, and its C."""
+"""Enclosures of right-hand sides: the terms that a step could miss, and C text that bounds them."""

@@ -1,7 +1,7 @@
-"""Print the enclosure of a right-hand side as C: how far its enclosed terms deviate from a constant on discs.
+"""C text of the enclosure of a right-hand side: bounds of how far its terms deviate from constants on discs.
 
-The text stands between :file:`propagation/enclosures/disc.h`, which has the rules, and a stepper. Standard library
-only.
+The discs are regions of complex times and states. The text stands between :file:`propagation/enclosures/disc.h`, which
+has the rules, and a stepper. Standard library only.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,9 +17,9 @@ __all__ = ["enclosure_definitions", "enclosure_source"]
 
 
 def enclosure_source(program: Program, order: int, edges: Sequence[int]) -> str:
-    """Return the C text of the enclosure of a right-hand side; arguments as :func:`enclosure_definitions`.
+    """Return the C text of the enclosure of a right-hand side; arguments as for :func:`enclosure_definitions`.
 
-    A right-hand side without Taylor series (abs) has none.
+    A right-hand side without Taylor series (one with abs) gets an empty enclosure.
     """
     try:
         return enclosure_definitions(enclosure(recurrences(program)), order, edges)
@@ -82,7 +82,7 @@ def _constant(node: Node, places: Mapping[str, str]) -> str:
 
 
 def _disc(system: Recurrences, number: int, places: Mapping[str, str]) -> str:
-    """Return the disc of one series as C."""
+    """Return the C expression for the disc of series ``number``; ``places`` names the values that it uses."""
     series = system.series[number]
     own = [f"d{operand}" for operand in value_operands(series)]
     if series.rule == "state":

@@ -1,12 +1,12 @@
-"""What a step of a right-hand side may miss: the parts of it whose size must be enclosed.
+"""Terms of a right-hand side that a step may miss, so that their size must be bounded (enclosed).
 
-A stepper sees a right-hand side where it evaluates it. A pulse, a switch or a pole between two such places leaves no
-trace there, but the formula tells: evaluated over complex discs (:file:`propagation/enclosures/disc.h`), it bounds all
-Taylor coefficients that a step leaves out.
+A stepper sees a right-hand side only where it evaluates it. A pulse, a switch or a pole between two such points leaves
+no trace there, but the formula shows it: evaluated over complex discs (:file:`propagation/enclosures/disc.h`), it
+bounds all Taylor coefficients that a step leaves out.
 
 Polynomials of low degree in the states, in time and in sine and cosine of ``a*t + b`` need no enclosure: they have no
-feature narrower than their coefficients show. So a rate is split as its terms stand, and only the others are enclosed;
-a right-hand side without such terms costs nothing.
+feature narrower than their coefficients show. Each rate is therefore split into its terms, and only the other terms are
+enclosed; a right-hand side without such terms costs nothing.
 
 Standard library only.
 """
@@ -18,7 +18,7 @@ from symrot.formula.tree import Node
 
 __all__ = ["LOW_ORDER", "REACHES", "Enclosure", "enclosure", "value_operands"]
 
-HIGHEST_DEGREE = 6  # of a polynomial that hides nothing: cos(t)**6 is as broad as a pulse of half a radian
+HIGHEST_DEGREE = 6  # degree of a polynomial that hides nothing: cos(t)**6 is as broad as a pulse of half a radian
 BEYOND = HIGHEST_DEGREE + 1
 REACHES = {  # radii of the discs, in steps, by whether the order is low: a disc must be wide where few orders are known
     False: (1.3, 1.8, 2.6, 3.6, 5.0, 7.0, 10.0, 16.0),
@@ -29,10 +29,10 @@ BOUNDED = ("sin", "cos")  # functions of a*t + b whose size their coefficients s
 
 
 class Enclosure(NamedTuple):
-    """The terms of the rates of a system that must be enclosed.
+    """The terms of the rates of a system that must be enclosed, as series of :mod:`symrot.codegen.taylor.recurrences`.
 
-    ``series`` lists the numbers of the series they are made of, each after those it needs; ``terms`` holds for each
-    rate (weight, series) of its enclosed terms; ``states`` the numbers of the states on which they depend.
+    ``series`` lists the numbers of all series needed, each after its operands; ``terms`` holds for each rate the pairs
+    (weight, series) of its enclosed terms; ``states`` holds the numbers of the states on which they depend.
     """
 
     system: Recurrences
@@ -42,7 +42,9 @@ class Enclosure(NamedTuple):
 
 
 def value_operands(series: Series) -> tuple[int, ...]:
-    """Return the operands that the value of a series depends on, without those that only drive its coefficients."""
+    """Return the operands that determine the value of a series, without those that only drive its later
+    coefficients.
+    """
     first = {"driven": 2, "primitive": 3}.get(series.rule, 0)
     return () if series.rule == "clock" else series.operands[first:]
 

@@ -1,1 +1,1 @@
-"""From formulas of SymPy to straight-line programs with few operations."""
+"""Lowering: SymPy formulas are turned into straight-line programs with few operations."""

@@ -1,4 +1,4 @@
-"""Constants of an expression, gathered and hoisted: whatever depends on no variable is one number, computed once."""
+"""Constant parts of expressions: a part that depends on no variable becomes one number that is computed only once."""
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
@@ -18,19 +18,20 @@ Tree = tuple[Any, ...]
 HOISTED = "$"
 """First letter of a constant that has no number yet."""
 
-LARGEST_POWER = 64  # of what is written as one product
+LARGEST_POWER = 64  # largest power that is written as one product
 ONE: Tree = ("num", Fraction(1))
 
 
 class Gather:
-    """Splits expressions into constant times core; constants are hoisted and computed when parameters are bound.
+    """Splits expressions into a constant times a variable core, so that constants are computed when parameters are
+    bound.
 
     Parameters
     ----------
     variables : iterable of Symbol
-        What changes with time or state.
+        Symbols that change with time or state.
     flat : bool
-        Whether the terms of sums inside a sum join its own.
+        Whether a sum inside a sum is merged into it.
     """
 
     def __init__(self, variables: Iterable[Symbol], flat: bool = False) -> None:
@@ -39,11 +40,11 @@ class Gather:
         self.memo: dict[Expr, tuple[Expr, Tree]] = {}
 
     def is_variable(self, expr: Expr) -> bool:
-        """Return whether an expression holds a variable."""
+        """Return whether an expression contains a variable."""
         return bool(expr.free_symbols & self.variables)
 
     def constant(self, value: Expr) -> tuple[int, Tree | None]:
-        """Return sign and atom of a constant; the atom of one is None."""
+        """Return a constant as its sign and a leaf of a formula tree; the leaf is None if the constant is 1 or -1."""
         sign, value = _oriented(value)
         if value == 1:
             return sign, None
@@ -53,7 +54,7 @@ class Gather:
         return sign, ("sym", name)
 
     def scaled(self, coefficient: Expr, core: Tree) -> tuple[int, Tree]:
-        """Return sign and tree of coefficient times core."""
+        """Return a constant coefficient times a variable core, as a sign and a formula tree."""
         sign, atom = self.constant(coefficient)
         if atom is None:
             return sign, core
@@ -83,7 +84,7 @@ class Gather:
         return S.One, ("call", name, tuple(self.whole(argument) for argument in expr.args))
 
     def whole(self, expr: Expr) -> Tree:
-        """Return the tree of an expression with its constant inside."""
+        """Return the formula tree of an expression, including its constant factor."""
         sign, tree = self.scaled(*self.split(expr))
         return tree if sign > 0 else ("add", ((-1, tree),))
 
@@ -172,7 +173,7 @@ class Gather:
 
 
 def _repeated(tree: Tree, count: int) -> Tree:
-    """Return a large power of a tree as squares of squares: a product of all its factors would be too deep."""
+    """Return a large power of a tree as repeated squares; a product of all its factors would be nested too deeply."""
     if count <= LARGEST_POWER:
         return ("mul", (tree,) * count, ())
     half = _repeated(tree, count // 2)
@@ -180,7 +181,9 @@ def _repeated(tree: Tree, count: int) -> Tree:
 
 
 def _oriented(value: Expr) -> tuple[int, Expr]:
-    """Return sign and size of a constant: the same size for a and for -a, for (A - C)/A and for (C - A)/A."""
+    """Return a constant as its sign and a size that is the same for a and -a, for example for (A - C)/A and (C -
+    A)/A.
+    """
     sign, factors = 1, []
     for factor in Mul.make_args(value):
         base, power = factor.as_base_exp()
@@ -191,7 +194,7 @@ def _oriented(value: Expr) -> tuple[int, Expr]:
 
 
 def _signed_sum(terms: Sequence[tuple[int, Tree]]) -> tuple[int, Tree]:
-    """Return the sign and the sum without it, so that the first term of the sum is positive."""
+    """Return a sum as its sign and a remaining sum whose first term is positive."""
     if len(terms) == 1:
         return terms[0]
     sign = 1 if any(s > 0 for s, _ in terms) else -1

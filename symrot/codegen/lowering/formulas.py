@@ -1,4 +1,4 @@
-"""Translate SymPy expressions into formula trees, term by term, without any rewriting."""
+"""Translation of SymPy expressions into formula trees, term by term, without any rewriting."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -18,7 +18,7 @@ def to_node(expr: Expr) -> Node:
     Raises
     ------
     InputError
-        For a float, a function or a power that kernels do not hold.
+        For a float, a function or a power that kernels cannot contain.
     """
     if expr.is_Rational:
         return ("number", Fraction(int(expr.p), int(expr.q)))
@@ -52,7 +52,7 @@ def to_node(expr: Expr) -> Node:
 
 
 def chain(mark: str, nodes: Sequence[Node]) -> Node:
-    """Return nodes, at least one, with an operator between, from left to right."""
+    """Return several nodes joined by one operator, from left to right."""
     result = nodes[0]
     for node in nodes[1:]:
         result = (mark, result, node)
@@ -60,7 +60,9 @@ def chain(mark: str, nodes: Sequence[Node]) -> Node:
 
 
 def function_name(expr: Expr) -> str:
-    """Return the name of a function that kernels hold; raises InputError for any other."""
+    """Return the name of the function that an expression calls; raise InputError if kernels do not have this
+    function.
+    """
     name = "abs" if isinstance(expr, Abs) else "exp" if expr.func.__name__ == "exp" else str(expr.func)
     if not isinstance(expr, Function) or (FUNCTIONS | OWN_FUNCTIONS).get(name) != len(expr.args):
         raise InputError(f"expected a formula of + - * /, whole and half powers and {', '.join(FUNCTIONS)}; got {expr}")

@@ -1,10 +1,9 @@
-"""SymPy expressions to a straight-line program with few operations.
+"""Lowering of SymPy expressions to a straight-line program with few operations.
 
-Three steps, each exact: constants are gathered and hoisted (whatever does not depend on time or state is computed
-once, when parameters are bound: :mod:`symrot.codegen.lowering.constants`), common factors and sums are shared
-(:mod:`symrot.codegen.lowering.common_factors`), and temporaries are named
-(:mod:`symrot.codegen.lowering.temporary_names`). The result depends on the expressions alone, never
-on the order of a hash table.
+There are three exact steps. Parts that do not depend on time or state become constants, computed once when parameters
+are bound (:mod:`symrot.codegen.lowering.constants`). Common factors and sums are shared
+(:mod:`symrot.codegen.lowering.common_factors`). Temporaries are named (:mod:`symrot.codegen.lowering.temporary_names`).
+The result depends on the expressions alone, never on the order of a hash table.
 """
 
 from collections import Counter
@@ -31,14 +30,18 @@ ANONYMOUS = "#"
 
 @dataclass(frozen=True)
 class Lowered:
-    """A program and the constants it takes: ``parameters[k]`` is (name, formula over the physical constants)."""
+    """A program together with the formulas of its constants: ``parameters[k]`` is (name, formula of physical
+    constants).
+    """
 
     program: Program
     parameters: tuple[tuple[str, Node], ...]
 
 
 class _Writer:
-    """Writes formulas in the order in which they are needed, each shared node as a temporary."""
+    """Writes formulas in the order in which they are needed; each node that is used more than once becomes a
+    temporary.
+    """
 
     def __init__(self, share: Share, roots: Sequence[int], named: dict[int, str]) -> None:
         self.nodes, self.named = share.nodes, dict(named)
@@ -66,7 +69,7 @@ class _Writer:
                 self._count(operand, seen)
 
     def node(self, index: int) -> Node:
-        """Return the formula of a node, as a symbol when it has a name."""
+        """Return the formula of a node, or the symbol of its temporary if it has one."""
         kind = self.nodes[index][0]
         if kind == "num":
             return ("number", self.nodes[index][1])
@@ -88,7 +91,9 @@ class _Writer:
         return bool(kind == "num" or (kind == "sym" and first.startswith(HOISTED)))
 
     def _is_sum(self, index: int) -> bool:
-        """Whether a node is written as a sum in brackets: such a factor comes first, as in (A - B) x y."""
+        """Return whether a node is written as a sum in brackets: such a factor comes first in a product, as in (A - B)
+        x y.
+        """
         return bool(self.nodes[index][0] == "add" and self.uses[index] < 2 and index not in self.named)
 
     def _formula(self, index: int) -> Node:
@@ -145,7 +150,10 @@ def _lowered(
     signature: Signature, outputs: Sequence[tuple[str, Expr]], definitions: Sequence[tuple[Symbol, Expr]],
     parameter_argument: str, flat: bool,
 ) -> tuple[Lowered, list[str]]:  # fmt: skip
-    """Return the program and its temporaries without a name; ``flat`` merges nested sums before parts are shared."""
+    """Return the lowered program, and its temporaries that have no name yet.
+
+    ``flat`` says that nested sums are merged before common parts are shared.
+    """
     inputs = [name for a in signature.arguments if a.role == "in" for name, *_ in a.components]
     held = {symbol for _, expr in [*outputs, *definitions] for symbol in expr.free_symbols}
     defined = [symbol for symbol, _ in definitions]
@@ -169,7 +177,7 @@ def _lowered(
 
 
 def _numbers(parameters: Iterable[tuple[str, Node]]) -> dict[str, Node]:
-    """Return the parameters that are numbers printed in their place: pi and its multiples, roots of integers."""
+    """Return those parameters that are printed as numbers: multiples of pi, and roots of integers."""
     return {name: formula for name, formula in parameters if names(formula) <= {"pi"}}
 
 
@@ -181,7 +189,7 @@ def _numbered(
     formulas: Sequence[Node],
     parameter_argument: str,
 ) -> Lowered:
-    """Number the constants in the order of their use, and append them to the signature."""
+    """Return the program with its constants numbered in the order of their use and appended to the signature."""
     order: dict[str, str] = {}
     for node in [node for _, node in temporaries] + list(formulas):
         for name in _leaves(node):
@@ -202,7 +210,7 @@ def _numbered(
 
 
 def _leaves(node: Node) -> Iterable[str]:
-    """Yield the symbols of a formula from left to right."""
+    """Yield the names of the symbols in a formula from left to right."""
     if node[0] == "symbol":
         yield node[1]
     for child in children(node):
@@ -210,14 +218,14 @@ def _leaves(node: Node) -> Iterable[str]:
 
 
 def _exact(expr: Expr) -> Expr:
-    """Return the expression with floats refused: the symbolic layer is exact."""
+    """Return the expression unchanged; raise InputError if it contains a float, since the symbolic layer is exact."""
     if expr.has(Number) and any(not number.is_Rational for number in expr.atoms(Number)):
         raise InputError(f"expected exact numbers in a kernel, got a float in {expr}")
     return expr
 
 
 def _substitute(tree: Tree, alias: dict[str, Tree]) -> Tree:
-    """Put the trees of defined symbols in their place."""
+    """Return a tree with each defined symbol replaced by the tree of its definition."""
     kind = tree[0]
     if kind == "sym":
         return alias.get(tree[1], tree)

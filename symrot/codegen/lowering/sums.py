@@ -1,4 +1,7 @@
-"""Sums of formulas with few signs: a minus goes where it costs nothing, into a difference, a number or a product."""
+"""Sums of formulas with few minus signs: a sign is moved to a place where it costs no operation.
+
+Such a place is a difference, a number, or a product that contains one of these.
+"""
 
 from collections.abc import Sequence
 
@@ -8,7 +11,9 @@ __all__ = ["negative", "summed"]
 
 
 def negative(node: Node) -> Node:
-    """Return minus a formula, the sign inside a number, a sum with a difference or a product where one is at hand."""
+    """Return minus a formula; the sign is moved into a number, a sum or a product inside it if that costs no
+    operation.
+    """
     if node[0] == "number":
         return ("number", -node[1])
     if node[0] == "neg":
@@ -28,13 +33,13 @@ def negative(node: Node) -> Node:
 
 
 def _turned(sign: int, node: Node) -> tuple[int, Node]:
-    """Return a term and its sign; a minus moves into a factor that is a difference: -(a - b)*c is (b - a)*c."""
+    """Return a term and its sign, where a minus sign is moved into a difference: -(a - b)*c becomes (b - a)*c."""
     turned = _with_difference_turned(node) if sign < 0 else None
     return (sign, node) if turned is None else (1, turned)
 
 
 def _with_difference_turned(node: Node) -> Node | None:
-    """Return minus a product by negating a factor that is a difference, or None if no factor is."""
+    """Return minus a product by reversing a factor that is a difference, or None if no factor is a difference."""
     if node[0] == "-":
         return negative(node)
     if node[0] != "*":
@@ -46,14 +51,14 @@ def _with_difference_turned(node: Node) -> Node | None:
 
 
 def _terms(node: Node) -> list[tuple[int, Node]]:
-    """Return the terms of a chain of sums and differences, each with its sign."""
+    """Return the terms of nested sums and differences, each with its sign."""
     if node[0] not in "+-":
         return [(1, node)]
     return [*_terms(node[1]), (1 if node[0] == "+" else -1, node[2])]
 
 
 def summed(first: Node, terms: Sequence[tuple[int, Node]]) -> Node:
-    """Return the sum of ``first`` and the terms; positive terms come before negative ones."""
+    """Return the sum of ``first`` and the signed terms; positive terms come before negative ones."""
     for sign, term in sorted((_turned(*each) for each in terms), key=lambda item: item[0] < 0):
         first = ("+" if sign > 0 else "-", first, term)
     return first

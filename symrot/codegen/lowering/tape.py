@@ -1,8 +1,8 @@
-"""A straight-line program as a tape: one operation after the other, equal ones once. Standard library only.
+"""Tapes: a straight-line program as a list of single operations, with equal operations only once.
 
-What is printed operation by operation starts here: values in pairs of doubles and their gradients
-(:mod:`symrot.codegen.taylor.invariant_source`), values with what rounding may do to them
-(:mod:`symrot.codegen.printing.event_source`).
+Text that is printed operation by operation starts from a tape: values as sums of two doubles and their gradients
+(:mod:`symrot.codegen.taylor.invariant_source`), and values with bounds of their rounding errors
+(:mod:`symrot.codegen.printing.event_source`). Standard library only.
 """
 
 from collections.abc import Sequence
@@ -16,15 +16,17 @@ __all__ = ["Operation", "Tape", "tape_of"]
 
 
 class Operation(NamedTuple):
-    """One operation: ``+ - * / neg``, a function of :data:`symrot.formula.tree.FUNCTIONS`, ``number`` or ``symbol``."""
+    """One operation of a tape: ``+ - * / neg``, a function of :data:`symrot.formula.tree.FUNCTIONS`, a number or a
+    symbol.
+    """
 
     kind: str
     operands: tuple[int, ...] = ()
-    value: Any = None  # of a number, the Fraction; of a symbol, its name
+    value: Any = None  # the Fraction of a number, the name of a symbol
 
 
 class Tape(NamedTuple):
-    """Operations in an order of computation, and the index of the operation of each output."""
+    """Operations in an order of computation, and the index of the operation that gives each output."""
 
     operations: tuple[Operation, ...]
     outputs: tuple[int, ...]
@@ -70,7 +72,7 @@ class _Writer:
 
 
 def tape_of(program: Program, outputs: Sequence[str], more: Sequence[Node] = ()) -> Tape:
-    """Return the tape of some outputs of a program, then of more formulas over its inputs and its outputs."""
+    """Return the tape of some outputs of a program, and of ``more`` formulas of its inputs and outputs."""
     writer = _Writer()
     formulas = dict(program.outputs)
     for name, node in program.temporaries:

@@ -1,4 +1,4 @@
-"""Name the temporaries of a program by what they are: sin_theta, q1_q2, omega_1_sq, two_q3_sq, A_minus_B, inv_det.
+"""Names of temporaries that say what they are: sin_theta, q1_q2, omega_1_sq, two_q3_sq, A_minus_B, inv_det.
 
 A product of inputs is named by its factors, a small sum by its terms, a call by the function and its argument. A
 temporary whose name would be long is named after the output that needs it first: ``domega_1_term_2`` is the second such
@@ -15,14 +15,14 @@ from symrot.formula.tree import Node, names, rename
 __all__ = ["with_names"]
 
 LONGEST = 32  # letters of a name made of its parts
-MOST_TERMS = 3  # of a sum that is named by its terms
+MOST_TERMS = 3  # terms of a sum that is named by its terms
 WORDS = {
     Fraction(1): "", Fraction(2): "two", Fraction(3): "three", Fraction(4): "four", Fraction(5): "five",
     Fraction(6): "six", Fraction(8): "eight", Fraction(1, 2): "half", Fraction(1, 3): "third",
     Fraction(1, 4): "quarter", Fraction(2, 3): "two_thirds", Fraction(3, 2): "three_halves",
 }  # fmt: skip
 POWERS = {1: "", 2: "_sq", 3: "_cubed"}
-NOUNS = {"atan2": "angle", "sqrt": "root", "select_ge": "choice"}  # of calls without a short name
+NOUNS = {"atan2": "angle", "sqrt": "root", "select_ge": "choice"}  # last words of names of calls without a short name
 RESERVED = frozenset({"size_t", "ptrdiff_t", "wchar_t", "time_t", "and_eq", "or_eq", "not_eq", "xor_eq"})
 
 
@@ -34,7 +34,7 @@ class _Product:
     powers: tuple[tuple[str, int], ...]
 
     def times(self, other: "_Product", sign: int = 1) -> "_Product":
-        """Return the product with another one; with ``sign`` -1 the quotient."""
+        """Return the product with another product, or, with ``sign`` -1, the quotient."""
         powers = dict(self.powers)
         for symbol, power in other.powers:
             powers[symbol] = powers.get(symbol, 0) + sign * power
@@ -42,7 +42,7 @@ class _Product:
         return _Product(coefficient, tuple((symbol, power) for symbol, power in powers.items() if power))
 
     def name(self) -> str | None:
-        """Return ``two_q1_q2``, ``inv_sin_theta``, ``A_over_C``, ``m_over_80``; None for a fraction without a word."""
+        """Return a name such as ``two_q1_q2``, ``inv_sin_theta`` or ``A_over_C``; None if a coefficient has no word."""
         size = abs(self.coefficient)
         divisor = [str(size.denominator)] if size.numerator == 1 and size not in WORDS else []
         word = "" if divisor else WORDS.get(size)
@@ -58,7 +58,7 @@ class _Product:
 
 
 def with_names(program: Program, anonymous: Collection[str], numbers: Mapping[str, Node]) -> Program:
-    """Return the program with each anonymous temporary named.
+    """Return the program with a descriptive name for each temporary that has no name yet.
 
     Parameters
     ----------
@@ -105,12 +105,12 @@ def _numbered(stem: str) -> Iterable[str]:
 
 
 def _noun(node: Node) -> str:
-    """Return the noun of a temporary without a short name: that of the function that it calls, else ``term``."""
+    """Return the last word of a long temporary's name: the function that it calls, or ``term``."""
     return NOUNS.get(node[1], str(node[1])) if node[0] == "call" else "term"
 
 
 def _first_outputs(program: Program) -> dict[str, str]:
-    """Return for each temporary the first output that needs it, directly or by other temporaries."""
+    """Return, for each temporary, the first output that needs it, directly or through other temporaries."""
     first: dict[str, str] = {}
     formulas = dict(program.temporaries)
     for output, node in program.outputs:
@@ -124,7 +124,10 @@ def _first_outputs(program: Program) -> dict[str, str]:
 
 
 def _product_of(node: Node, products: Mapping[str, _Product]) -> _Product | None:
-    """Return a formula as a product of symbols, temporaries that are products multiplied out; None for any other."""
+    """Return a formula as a product of powers of symbols, or None if it is no such product.
+
+    Temporaries that are products themselves are multiplied out.
+    """
     kind = node[0]
     if kind == "number":
         return _Product(node[1], ())
@@ -142,7 +145,7 @@ def _product_of(node: Node, products: Mapping[str, _Product]) -> _Product | None
 
 
 def _structural_name(node: Node, product: _Product | None, products: Mapping[str, _Product]) -> str | None:
-    """Return the name of a formula made of the names in it, or None if there is no short one."""
+    """Return a name for a formula made of the names inside it, or None if there is no short one."""
     if product is not None:
         return product.name()
     if node[0] in ("+", "-"):
@@ -157,7 +160,7 @@ def _structural_name(node: Node, product: _Product | None, products: Mapping[str
 
 
 def _name_of_term(node: Node, products: Mapping[str, _Product]) -> str | None:
-    """Return the name of a term: of a number, a symbol, a product."""
+    """Return the name of one term, which is a number, a symbol or a product; None if it has no short name."""
     if node[0] == "number":
         word = "one" if node[1] == 1 else WORDS.get(node[1])
         return word or None
@@ -168,7 +171,7 @@ def _name_of_term(node: Node, products: Mapping[str, _Product]) -> str | None:
 
 
 def _name_of_sum(node: Node, products: Mapping[str, _Product]) -> str | None:
-    """Return ``A_minus_B``: the terms of a small sum and their signs."""
+    """Return a name such as ``A_minus_B`` for a small sum, from its terms and their signs; None for a larger sum."""
     terms: list[tuple[str, Node]] = []
     while node[0] in ("+", "-"):
         terms.insert(0, ("plus" if node[0] == "+" else "minus", node[2]))

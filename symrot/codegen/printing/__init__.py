@@ -1,1 +1,1 @@
-"""Print programs as C and NumPy."""
+"""Printing of programs as C and NumPy text."""

@@ -1,4 +1,4 @@
-"""Print the head of every emitted file: title, arguments, domain, certificate, cost, derivation, release."""
+"""The head of every emitted file: title, arguments, domain, certificate, cost, derivation, release."""
 
 import re
 from collections.abc import Iterable
@@ -26,7 +26,7 @@ CONTRACT = (  # lines of the head of a C file about its certificate: its place, 
 
 @dataclass(frozen=True)
 class Description:
-    """The text in the head of an emitted file that the program itself does not contain."""
+    """Texts in the head of an emitted file that do not follow from the program."""
 
     title: str
     domain: str
@@ -37,10 +37,11 @@ class Description:
 
 
 def _harmless(text: str) -> str:
-    """Return a text that cannot end its comment or docstring, nor mean anything to a compiler.
+    """Return a text that cannot end the comment or docstring it is printed in, nor mean anything to a compiler.
 
-    Titles and names of scenes are anybody's text. What is not printable ASCII is spelt as ``<U+00E9>``: readers of
-    certified C take nothing else, and compilers warn of letters that reverse a line.
+    Titles and names of scenes may contain any characters. Those that are not printable ASCII are written as
+    ``<U+00E9>``: readers of certified C accept ASCII only, and compilers warn about letters that reverse the direction
+    of a line.
     """
     text = text.replace("\\", "/").replace('"""', "'''")
     text = re.sub(r"(?<=\*)(?=/)|(?<=/)(?=[*/])|(?<=\?)(?=\?)", " ", text)  # no end of a comment, no trigraph
@@ -55,9 +56,10 @@ def cost(program: Program) -> str:
 
 
 def _rows(argument: Argument) -> list[tuple[str, str, str, str]]:
-    """Return the argument, its components, their unit and their meaning: a row for components that share the last two.
+    """Return the rows of an argument in the table of a head: components, unit and meaning.
 
-    Constants of a scene have a row each: the meaning of each is its formula and its value.
+    Components with the same unit and meaning share a row. A constant of a scene has its own row, whose meaning is its
+    formula and value.
     """
     size = "" if argument.is_scalar else f"[{argument.size}]"
     heads = chain([f"{argument.role:<4} {argument.name}{size}"], repeat(""))
@@ -69,7 +71,7 @@ def _rows(argument: Argument) -> list[tuple[str, str, str, str]]:
 
 
 def _arguments(arguments: Iterable[Argument]) -> list[str]:
-    """Return the table of the arguments, its columns aligned."""
+    """Return the lines of the table of arguments, with aligned columns."""
     rows = [row for argument in arguments for row in _rows(argument)]
     widths = [min(max(len(row[column]) for row in rows), WIDEST) for column in range(3)]
     lines = []

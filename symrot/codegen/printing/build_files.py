@@ -1,6 +1,6 @@
-"""How a C or C++ project takes in the library of kernels: a CMake target, a pkg-config file.
+"""Build files with which a C or C++ project includes the library of kernels: a CMake target and a pkg-config file.
 
-Every kernel is one file that stands alone: without either, ``cc -c KERNEL.c`` is all it takes.
+Every kernel is also one self-contained file that can be compiled alone: ``cc -c KERNEL.c``.
 """
 
 __all__ = ["FLAGS", "build_files"]

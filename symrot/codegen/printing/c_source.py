@@ -1,4 +1,7 @@
-"""Print a program as C99 that is also valid C++: one sample, and a batch over structure-of-arrays."""
+"""C99 text of programs, which is also valid C++: a function for one sample, and one for a batch of samples.
+
+The arrays of a batch are structures of arrays: component i of all n samples lies in one row.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -28,17 +31,17 @@ __all__ = [
 ]
 
 MATH_HEADER = "symrot_math.h"
-INDEPENDENT = "SYMROT_INDEPENDENT"  # in front of a loop over samples: none of them reads what another one writes
+INDEPENDENT = "SYMROT_INDEPENDENT"  # precedes a loop over independent samples: no sample reads what another one writes
 RELATIONS = {"==": "eq", "<": "lt"}
 STREAMS = 16  # arrays that a loop walks along before processors fetch ahead for it no more
-REGISTERS = 16  # of vectors, from SSE2 to AVX2
+REGISTERS = 16  # vector registers, from SSE2 to AVX2
 WAYS = 12  # arrays of which the first cache of processors holds a line each, where n is a multiple of 512 (8 to 12)
 SPAN = "SYMROT_SPAN"  # samples that loops of a batch take in turn: what one has read is in cache for the next
 
 
 @dataclass(frozen=True)
 class Real:
-    """A C type of numbers: its name, the letter that its functions and literals carry, its precision."""
+    """A floating-point type of C: its name, the suffix of its functions and literals, and its precision."""
 
     type: str
     suffix: str
@@ -51,21 +54,21 @@ class Real:
 
     @cached_property
     def functions(self) -> dict[str, str]:
-        """Return the names in C of the functions that kernels call."""
+        """Return the C names of the functions that kernels call, for this type."""
         own = {name: f"symrot_{name}" for name in OWN_FUNCTIONS}
         in_c = {name: name for name in FUNCTIONS} | own | {"abs": "fabs", "copysign": "copysign"}
         return {name: f"{called}{self.suffix}" for name, called in in_c.items()}
 
     @cached_property
     def near_functions(self) -> dict[str, str]:
-        """Return their names in a batch, where angles are in the range of ``symrot_math.h``."""
+        """Return the C names of functions in a batch, where angles are in the range of ``symrot_math.h``."""
         own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
         shared = {"sin": "sin", "cos": "cos", "atan2": "atan2", "select_ge": "choose_ge"}
         return self.functions | own | {name: f"symrot_{other}{self.suffix}" for name, other in shared.items()}
 
     @property
     def bits(self) -> str:
-        """Return the unsigned type of the same size."""
+        """Return the unsigned integer type of C with the same size."""
         return "uint32_t" if self.suffix else "uint64_t"
 
 
@@ -86,7 +89,10 @@ def _as_float(value: float) -> float:
 
 
 def c_expression(node: Node, real: Real = DOUBLE, near: bool = False) -> str:
-    """Return a formula as C, with the brackets that keep its order of evaluation; ``near`` as in a batch."""
+    """Return a formula as a C expression with the brackets that keep its order of evaluation.
+
+    ``near`` selects the functions that batches call, for angles in the range of ``symrot_math.h``.
+    """
     return text(rename(node, functions=real.near_functions if near else real.functions), 0, real.literal)
 
 
@@ -96,7 +102,7 @@ def c_arguments(program: Program, real: Real = DOUBLE) -> str:
 
 
 def _head(name: str, arguments: str, qualifier: str = "", returns: str = "void") -> str:
-    """Return a function's head, its arguments on lines of their own where one line is too long."""
+    """Return the head of a C function; arguments are put on separate lines where one line is too long."""
     head = f"{qualifier}{returns} {name}({arguments})"
     if len(head) <= WIDTH:
         return head
@@ -116,7 +122,7 @@ def _used(program: Program) -> set[str]:
 
 
 def _statement(head: str, formula: str, indent: str, mark: str = "=") -> list[str]:
-    """Return ``head = formula;``, broken after operators where one line is too long."""
+    """Return the lines of ``head = formula;``, broken after operators where one line is too long."""
     line = f"{indent}{head} {mark} {formula};"
     if len(line) <= WIDTH + 10:
         return [line]
@@ -124,22 +130,23 @@ def _statement(head: str, formula: str, indent: str, mark: str = "=") -> list[st
 
 
 def _index_of_one(index: int) -> str:
-    """Return the index of a component in the array of one sample."""
+    """Return the C index of a component in the array of one sample."""
     return str(index)
 
 
 def _index_in_batch(index: int) -> str:
-    """Return the index of a component of sample k in the array of a batch of n samples."""
+    """Return the C index of a component of sample k in the array of a batch of n samples."""
     return ("k", "n + k")[index] if index < 2 else f"{index}*n + k"
 
 
 def _body(
     program: Program, index_of: Callable[[int], str], indent: str, real: Real, near: bool = False, late: bool = False
 ) -> list[str]:  # fmt: skip
-    """Return the statements, each value before the first output argument that needs it, so that few values are live.
+    """Return the statements of a function; each value is computed just before the first output that needs it.
 
-    ``index_of`` prints the index of a component in its array. With ``late``, all values are computed before the first
-    store: results have names until then, and are computed in an order of their own.
+    So few values are live at a time. ``index_of`` returns the index of a component in its array. With ``late``, all
+    values are computed before the first store: results have names until then, and the outputs are computed in another
+    order.
     """
     results = dict(program.outputs)
     lines: list[str] = []
@@ -174,7 +181,7 @@ def _body(
 
 
 def _computed_in_turn(program: Program) -> list[Argument]:
-    """Return the output arguments as a loop that stores last computes them: the one of the fewest inputs first.
+    """Return the output arguments in the order in which a loop that stores last computes them: fewest inputs first.
 
     They stay in their order where all inputs and results fit into registers. With gcc 12 on Zen 3 this takes, in the
     geometric mean over n = 512, 1000, 1024, 4096, 10^6, 0.88 of the time of the order of the arguments for
@@ -188,7 +195,7 @@ def _computed_in_turn(program: Program) -> list[Argument]:
 
 
 def _reserved(program: Program, real: Real) -> set[str]:
-    """Return the names that a result in a batch must not have."""
+    """Return the names that a temporary for a result in a batch must not have."""
     arguments = program.signature.arguments
     inputs = {name for a in arguments if a.role == "in" for name, *_ in a.components}
     functions = {*real.functions.values(), *real.near_functions.values()}
@@ -197,7 +204,7 @@ def _reserved(program: Program, real: Real) -> set[str]:
 
 
 def _due(needed: set[str], waiting: dict[str, tuple[set[str], list[str]]]) -> list[str]:
-    """Remove the statements that some names need from the waiting list and return them in order."""
+    """Remove from ``waiting`` the statements that the ``needed`` names depend on, and return them in order."""
     for name, (of, _) in reversed(waiting.items()):
         if name in needed:
             needed = needed | of
@@ -205,7 +212,7 @@ def _due(needed: set[str], waiting: dict[str, tuple[set[str], list[str]]]) -> li
 
 
 def _silenced(program: Program, indent: str) -> list[str]:
-    """Return a statement for each argument that the formulas do not use, so that no compiler warns."""
+    """Return a statement ``(void)name;`` for each argument that the formulas do not use, to avoid compiler warnings."""
     used = _used(program)
     idle = [
         argument.name
@@ -221,7 +228,7 @@ def c_name(kernel: str, real: Real = DOUBLE) -> str:
 
 
 def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> str:
-    """Return the one-sample function alone.
+    """Return the C text of the one-sample function alone.
 
     Parameters
     ----------
@@ -238,7 +245,7 @@ def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> st
 
 
 def _own_function(name: str, real: Real) -> list[str]:
-    """Return the definition of a function that kernels call and <math.h> does not have."""
+    """Return the C definition of a function that kernels call and <math.h> does not have."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
     lines = [_head(real.functions[name], arguments, "static inline ", real.type), "{"]
@@ -249,7 +256,7 @@ def _own_function(name: str, real: Real) -> list[str]:
 
 
 def _near_function(name: str, real: Real) -> list[str]:
-    """Return the form of an own function that batches call: both sides of its choice computed, no branch."""
+    """Return the C definition, for batches, of a function that <math.h> does not have: without a branch."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
     lines = [_head(real.near_functions[name], arguments, "static inline ", real.type), "{"]
@@ -271,7 +278,10 @@ def _batch_arguments(program: Program, real: Real) -> str:
 
 
 def _batch(program: Program, real: Real, near: bool) -> list[str]:
-    """Return the function that computes n samples; a block with an angle out of range is computed again by <math.h>."""
+    """Return the C function that computes n samples.
+
+    With ``near``, a block that contains an angle out of range is computed again with the functions of <math.h>.
+    """
     head = [
         _head(f"{c_name(program.signature.name, real)}_batch", _batch_arguments(program, real)),
         "{",
@@ -308,7 +318,7 @@ def _batch(program: Program, real: Real, near: bool) -> list[str]:
 
 
 def _blocks(size: str) -> list[str]:
-    """Return the head of a loop over blocks of samples."""
+    """Return the first lines of a loop over blocks of samples."""
     return [
         f"    for (size_t start = 0; start < n; start += {size}) {{",
         f"        const size_t end = n - start < {size} ? n : start + {size};",
@@ -316,10 +326,11 @@ def _blocks(size: str) -> list[str]:
 
 
 def _split(program: Program) -> list[Program]:
-    """Return a program in parts, one for each output argument, where loops of their own are the faster; else whole.
+    """Return a program as one part for each output argument if separate loops are faster, else as a whole.
 
-    They are where the whole walks along more arrays than can be fetched ahead and each part does not, as long as no
-    operation is done twice and what is read twice is at most a fifth more. Sines take longer than the memory.
+    They are faster where the whole program walks along more arrays than processors fetch ahead and each part does not,
+    if no operation is done twice and at most a fifth more is read. Programs with sines stay whole, since sines take
+    longer than memory.
     """
     whole = _streams(program)
     scalars = any(a.is_scalar for a in program.signature.arguments if a.role == "in")
@@ -353,12 +364,13 @@ def _streams(program: Program) -> int:
 
 
 def _stores_last(program: Program) -> bool:
-    """Tell whether the loops of a batch store behind all that they compute.
+    """Return whether the loops of a batch store all results only after computing them.
 
-    They do where they, or a part of them, walk along more arrays than share a set of the first cache: what compilers
-    read again after a store is no longer there. With gcc 12 on Zen 3, the kernels of the library that do so take 0.9 of
-    the time of stores in between at n = 512 m (heavy_top 0.7, but heavy_top_symmetric 1.1) and the same at others;
-    quaternion_product, of 12 arrays, would take 1.15 at n = 1000, where gcc tunes for Zen 3: 26 loads a turn, not 22.
+    They do where the loops, or a part of them, walk along more arrays than share a set of the first cache: compilers
+    read values again after a store, and these are no longer in the cache. With gcc 12 on Zen 3, the kernels of the
+    library that store last take 0.9 of the time of stores in between at n = 512 m (heavy_top 0.7, but
+    heavy_top_symmetric 1.1) and the same at others; quaternion_product, of 12 arrays, would take 1.15 at n = 1000,
+    where gcc tunes for Zen 3: 26 loads per iteration, not 22.
     """
     return _streams(program) > WAYS
 
@@ -379,7 +391,7 @@ def _loop(
 
 
 def _with_names(program: Program, names: dict[str, str]) -> Program:
-    """Return the program with some inputs renamed."""
+    """Return the program with some of its inputs renamed."""
     signature = program.signature
     arguments = tuple(
         replace(a, components=tuple((names.get(c[0], c[0]), *c[1:]) for c in a.components)) for a in signature.arguments
@@ -408,7 +420,7 @@ _SPAN = (f"#ifndef {SPAN} /* samples that the loops of a batch take in turn */",
 
 
 def c_header(program: Program, description: Description, reals: Sequence[Real] = (DOUBLE,)) -> str:
-    """Return the header text: contract, include guard, prototypes, usable from C and C++."""
+    """Return the text of the header file of a kernel, for C and C++: contract, include guard, prototypes."""
     guard = f"SYMROT_{program.signature.name.upper()}_H"
     ones, batches = zip(*(_prototypes(program, real) for real in reals), strict=True)
     shapes = ["/* one sample */", *ones, "", "/* n samples; component i of sample k is at [i*n + k] */", *batches]
@@ -428,7 +440,7 @@ def c_header(program: Program, description: Description, reals: Sequence[Real] =
 
 
 def c_source(program: Program, description: Description, reals: Sequence[Real] = (DOUBLE,), near: bool = False) -> str:
-    """Return the C99 text of a kernel. Same program, same bytes: no clock, no path, no environment.
+    """Return the C99 text of a kernel. The same program gives the same bytes: no clock, no path, no environment.
 
     Parameters
     ----------

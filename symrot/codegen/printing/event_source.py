@@ -1,10 +1,10 @@
-"""Print formulas whose zeros are sought as C: the value with a bound of its rounding errors, and enclosures.
+"""C text of formulas whose zeros are searched for: values with bounds of their rounding errors, and enclosures.
 
-The bound is carried along the tape with the value, operation by operation, to first order: it tells a curve that
-touches zero from one that comes near it, and says below which size a sign means nothing.
+The bound is computed along the tape with the value, operation by operation, to first order. It distinguishes a curve
+that touches zero from one that only comes near it, and it is the size below which a sign means nothing.
 
-The enclosures, by real intervals and by complex discs, hold all values over an interval of time, from those of the
-states: they show where there is no zero, and bound what samples of the formula cannot see.
+Enclosures, by real intervals and by complex discs, contain all values of the formula over an interval of time. They
+show where there is no zero, and bound features that samples of the formula cannot show.
 
 The text stands between :file:`event_enclosures.h` and :file:`events.c`.
 """
@@ -34,7 +34,7 @@ OPERATIONS = {"+": "add", "-": "sub", "*": "mul", "/": "div", "neg": "neg"}
 def event_definitions(
     program: Program, formulas: Sequence[Node], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
 ) -> str:
-    """Return the C function ``symrot_event`` of some formulas.
+    """Return the C function ``symrot_event``, which evaluates some formulas along a motion.
 
     Parameters
     ----------
@@ -108,7 +108,9 @@ def _switch(
 
 
 def _span(tape: Tape, states: Sequence[str], edges: Sequence[int]) -> tuple[int, int]:
-    """Return the range (first, last + 1) of the states that a formula depends on, widened to whole blocks."""
+    """Return the range (first, last + 1) of the states that a formula depends on, extended to whole blocks of
+    states.
+    """
     used = {op.value for op in tape.operations if op.kind == "symbol"}
     places = [i for i, name in enumerate(states) if name in used]
     if not places:
@@ -125,7 +127,7 @@ def _largest(terms: Sequence[str]) -> str:
 
 
 def _statements(index: int, op: Operation, places: dict[str, str], known: dict[str, str]) -> tuple[str, str]:
-    """Return the definitions of an operation's value and of the bound of its error."""
+    """Return the C definitions of an operation's value and of the bound of its rounding error."""
     v, e = f"v{index}", f"e{index}"
     values, errors = [f"v{i}" for i in op.operands], [f"e{i}" for i in op.operands]
     own = f"SYMROT_ROUNDING*fabs({v})"
@@ -153,7 +155,7 @@ def _statements(index: int, op: Operation, places: dict[str, str], known: dict[s
 
 
 def _enclosed(kind: str, around: str, op: Operation, places: dict[str, str], known: dict[str, str]) -> str:
-    """Return the enclosure of an operation: a call of a function of :file:`event_enclosures.h`."""
+    """Return the C expression for the enclosure of an operation: a call of a function of :file:`event_enclosures.h`."""
     if op.kind == "number":
         return f"symrot_{kind}_point({c_expression(('number', op.value))})"
     if op.kind == "symbol":

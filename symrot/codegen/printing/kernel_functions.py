@@ -1,4 +1,4 @@
-"""Functions that kernels call and <math.h> does not have, as formulas (:mod:`symrot.kernels.removable`)."""
+"""Formulas of functions that kernels call and <math.h> does not have (:mod:`symrot.kernels.removable`)."""
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
@@ -25,7 +25,7 @@ _CHOICES: dict[str, tuple[tuple[str, ...], Choice]] = {
 
 
 def _calls(program: Program) -> Iterator[tuple[str, tuple[Node, ...]]]:
-    """Yield function and arguments of every call in a program, inner ones first."""
+    """Yield function name and arguments of every call in a program, inner calls first."""
 
     def visit(node: Node) -> Iterator[tuple[str, tuple[Node, ...]]]:
         for child in children(node):
@@ -43,18 +43,18 @@ def turning_arguments(program: Program) -> list[Node]:
 
 
 def without_branches(program: Program) -> bool:
-    """Tell whether a program calls a function for which ``symrot_math.h`` has a form without branches."""
+    """Return whether a program calls a function for which ``symrot_math.h`` has a form without branches."""
     return any(name in ("sin", "cos", "atan2", "select_ge", *NEAR) for name, _ in _calls(program))
 
 
 def called(program: Program) -> list[str]:
-    """Return the functions a program calls that C does not have, in the order of the table."""
+    """Return the functions that a program calls and C does not have, in the order of the table."""
     used = {name for name, _ in _calls(program)}
     return [name for name in FUNCTIONS if name in used and (name in _CHOICES or name in REMOVABLE)]
 
 
 def series(coefficients: Iterable[Fraction], variable: str) -> Node:
-    """Return a polynomial by Horner's rule."""
+    """Return the formula of a polynomial, lowest coefficient first, by Horner's rule."""
     first, *rest = reversed(tuple(coefficients))
     node: Node = ("number", first)
     for coefficient in rest:
@@ -63,7 +63,10 @@ def series(coefficients: Iterable[Fraction], variable: str) -> Node:
 
 
 def own_function(name: str, precision: str) -> tuple[tuple[str, ...], list[Statement], Choice]:
-    """Return parameters, temporaries and the choice (relation, left, right, then, else) that a function returns."""
+    """Return the parameters, temporaries and result of a function that C does not have.
+
+    The result is a choice (relation, left, right, then, else).
+    """
     if name in _CHOICES:
         parameters, choice = _CHOICES[name]
         return parameters, [], choice

@@ -1,14 +1,14 @@
-"""Sine, cosine, arc tangent for batches, ``symrot_math.h``: branch-free C that compilers vectorise, double and float.
+"""The file ``symrot_math.h``: sine, cosine and arc tangent without branches, in double and float, for batches.
 
-The angle is reduced by the multiple of pi/2 that is nearest to it, which is subtracted in parts so short that each
-product is exact, with and without fused operations (Cody and Waite, Software Manual for the Elementary Functions,
-1980); sine and cosine of the rest are polynomials, the other one and its sign are chosen by bits. The arc tangent is
-that of a quotient z of at most 1/2, that of the smaller over the larger coordinate or of their difference over their
-sum, with what the quotient lost to rounding, found from halves whose products are exact. The coefficients are computed
-here: interpolation of the exact series at Chebyshev points, in fractions.
+Compilers can vectorise such functions. An angle is reduced by the nearest multiple of pi/2, which is subtracted in
+parts so short that each product is exact, with and without fused operations (Cody and Waite, Software Manual for the
+Elementary Functions, 1980). Sine and cosine of the remainder are polynomials; the function to return and its sign are
+chosen by bits. The arc tangent is computed of a quotient z of at most 1/2: the smaller over the larger coordinate, or
+their difference over their sum. The rounding error of the quotient is computed from halves whose products are exact,
+and corrected. The coefficients are computed here: interpolation of the exact series at Chebyshev points, in fractions.
 
-Stated error: at most 1 unit in the last place, of sine and cosine for ``|x|`` up to ``FAR``. Measured by
-``python -m symrot.bench.ulps``, and with every float and all multiples of pi/2 by tests/kernels/test_in_c.py
+Stated error: at most 1 unit in the last place, of sine and cosine for ``|x|`` up to ``FAR``. Measured by ``python -m
+symrot.bench.ulps``, and with every float and all multiples of pi/2 by tests/kernels/test_in_c.py
 (tests/reference/sine_harness.c).
 """
 
@@ -26,10 +26,10 @@ _DIGITS = {"binary64": 53, "binary32": 24}
 _PARTS = {"binary64": (36, 36), "binary32": (12, 12, 12)}  # bits: a part times the number of quarter turns is exact
 _COUNT = {"binary64": (6, 6), "binary32": (4, 4)}  # coefficients of sine and cosine
 _SQUARE = Fraction(617, 1000)  # largest square of the rest, that of pi/4 and a little more
-_TERMS = 20  # of the exact series
+_TERMS = 20  # terms of the exact series
 _ARC_COUNT = {"binary64": 13, "binary32": 6}  # coefficients of the arc tangent
 _ARC_SQUARE = Fraction(1, 4)  # largest square of the quotient
-_ARC_TERMS = 60  # of the exact series
+_ARC_TERMS = 60  # terms of the exact series
 _HALF = {"binary64": 27, "binary32": 12}  # bits of the lower half of a fraction
 _RAISED = {"binary64": (900, 200), "binary32": (90, 40)}  # a quotient below 2^-first is found times 2^second
 
@@ -52,7 +52,10 @@ def _arc_coefficients(count: int) -> tuple[Fraction, ...]:
 
 
 def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fraction, ...]:
-    """Return the polynomial of ``count`` coefficients nearest to a series in t from 0 to the largest, times t."""
+    """Return the polynomial p(t) with ``count`` coefficients for which t p(t) is nearest to t times a series.
+
+    The range is 0 <= t <= ``largest``.
+    """
     # zeros of a Chebyshev polynomial whose last one is put at t = 0, since the tail counts times t
     zeros = [Fraction(round(cos(pi * (2 * k + 1) / (2 * count + 2)) * 2**20), 2**20) for k in range(count + 1)]
     points = [largest * (zero - zeros[-1]) / (1 - zeros[-1]) for zero in zeros[:-1]]
@@ -69,7 +72,7 @@ def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fra
 
 
 def quarter_turn_parts(precision: str) -> list[Fraction]:
-    """Return pi/2 as parts of few bits and a last one of full precision."""
+    """Return pi/2 as a sum of several parts with few bits and a last part with full precision."""
     rest, parts = PI / 2, []
     for bits in _PARTS[precision]:
         parts.append(_leading(rest, bits))
@@ -78,7 +81,7 @@ def quarter_turn_parts(precision: str) -> list[Fraction]:
 
 
 def _leading(value: Fraction, bits: int) -> Fraction:
-    """Return the leading bits of a positive number."""
+    """Return a positive number truncated to its leading bits."""
     shift = bits
     while value * Fraction(2) ** shift >= 2**bits:
         shift -= 1
@@ -96,7 +99,7 @@ def _horner(coefficients: tuple[Fraction, ...], real: Real) -> str:
 
 
 def _wrapped(head: str, formula: str) -> list[str]:
-    """Return ``head = formula;`` on lines that are not too long, broken before brackets."""
+    """Return the lines of ``head = formula;``, broken before brackets where one line is too long."""
     pieces = formula.split(" + ")
     lines, line = [], f"    const {head} = {pieces[0]}"
     for piece in pieces[1:]:
@@ -109,7 +112,9 @@ def _wrapped(head: str, formula: str) -> list[str]:
 
 
 def _reduction(real: Real) -> list[str]:
-    """Return the statements that reduce x: remainder ``high + low``, its square t, number of quarter rotations."""
+    """Return the C statements that reduce x: the remainder ``high + low``, its square t, the number of quarter
+    rotations.
+    """
     parts = [real.literal(part) for part in quarter_turn_parts(real.precision)]
     digits = _DIGITS[real.precision]
     lines = [
@@ -206,7 +211,7 @@ def _functions(real: Real) -> list[str]:
 
 
 def _arc(real: Real) -> list[str]:
-    """Return the arc tangent of y/x in all four quadrants."""
+    """Return the C text of the arc tangent of y/x in all four quadrants (atan2)."""
     kind, s = real.type, real.suffix
     bits, sign, fraction, bias = ("uint64_t", 63, 52, 1023) if kind == "double" else ("uint32_t", 31, 23, 127)
     tiny, up = _RAISED[real.precision]
@@ -266,7 +271,7 @@ def _arc(real: Real) -> list[str]:
 
 
 def math_header() -> str:
-    """Return the text of ``symrot_math.h``, the same bytes anywhere."""
+    """Return the text of ``symrot_math.h``, which is the same on every machine."""
     far = ", ".join(f"{FAR[real.precision]} rad in {real.type}" for real in (DOUBLE, FLOAT))
     return "\n".join([
         "/*",

@@ -1,1 +1,3 @@
-"""Recurrences of Taylor coefficients, and their C: for one motion and for lanes of motions."""
+"""Recurrences of Taylor coefficients and C text that computes them, for one motion and for many motions in SIMD
+lanes.
+"""

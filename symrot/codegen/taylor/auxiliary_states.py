@@ -1,13 +1,15 @@
-"""Let quantities made of the attitude alone follow equations of their own: companions of the states.
+"""Auxiliary states (companions): quantities of the attitude alone that follow equations of their own in a Taylor
+series.
 
-The components of a fixed direction in the body, ``gamma = R(q)^T e``, are sums of products of q0..q3, which then stand
-in further products: at each order of a series one convolution waits for another. But ``gamma' = gamma x omega``, so
-that gamma is known one order ahead like a state. Nothing of this is written down here: a quantity that holds nothing
-but the attitude and functions of time is differentiated along the motion, what stands beside each rate becomes a
-companion too if it is not one yet, and so on until nothing new comes; if that does not end soon, all stays as it is.
+The components of a direction fixed in space, seen from the body, ``gamma = R(q)^T e``, are sums of products of q0..q3,
+which occur in further products: at each order of a series one convolution waits for another. But ``gamma' = gamma x
+omega``, so that gamma is known one order ahead, like a state. These equations are found automatically: a quantity that
+contains only the attitude and functions of time is differentiated along the motion, each factor beside a rate in the
+result becomes a companion too, and so on until no new companion appears. If that does not end soon, the system stays
+unchanged.
 
-A companion starts from the attitude anew at every step, so that it cannot drift. Identities hold for a unit quaternion,
-whose norm must be found constant along the motion.
+A companion is computed from the attitude at the start of every step, so that it cannot drift. The identities hold for a
+unit quaternion; its norm must be found constant along the motion.
 """
 
 from collections.abc import Iterable
@@ -15,24 +17,22 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from symrot.codegen.taylor.recurrences import Recurrences, Series
+from symrot.formula.polynomial import Monomial, Polynomial, constant, generator, products_of_monomials
 from symrot.formula.tree import Node, children
 
 __all__ = ["with_companions"]
 
 QUATERNION = ("q0", "q1", "q2", "q3")
-MOST_COMPANIONS, MOST_TERMS = 9, 200  # three directions; beyond that nothing is gained
+MOST_COMPANIONS, MOST_TERMS = 9, 200  # companions of three directions; more bring no gain
 ONE: Node = ("number", Fraction(1))
-
-Monomial = tuple[tuple[int, int], ...]  # variables with their powers, sorted
-Polynomial = dict[Monomial, Fraction]
 
 
 class _Open(Exception):
-    """The equations do not close, or not soon."""
+    """Signal that the equations of auxiliary states do not close, or not soon enough."""
 
 
 class _Term(NamedTuple):
-    """A companion, or one (None), times a number, a constant formula and perhaps a state, by its number."""
+    """One term of a sum: a number times a constant formula, and perhaps times an auxiliary state and a state."""
 
     companion: int | None
     number: Fraction
@@ -41,10 +41,11 @@ class _Term(NamedTuple):
 
 
 def with_companions(system: Recurrences) -> Recurrences:
-    """Return a system in which expressions of the attitude alone are replaced by auxiliary states, if there are any.
+    """Return a system in which quantities of the attitude alone are replaced by auxiliary states.
 
-    Companions are states beyond those of the program: ``seeds`` of the result has a formula for coefficient 0 of each,
-    in the states and t, and ``rates`` their rates.
+    Auxiliary states are states beyond those of the program: ``rates`` of the result contains their rates, and ``seeds``
+    a formula of states and t for coefficient 0 of each. The system is returned unchanged if there are no such
+    quantities.
     """
     if not set(QUATERNION) <= set(system.states):
         return system
@@ -55,24 +56,10 @@ def with_companions(system: Recurrences) -> Recurrences:
 
 
 def _times(a: Polynomial, b: Polynomial) -> Polynomial:
-    product: Polynomial = {}
-    for left, x in a.items():
-        for right, y in b.items():
-            powers = dict(left)
-            for variable, power in right:
-                powers[variable] = powers.get(variable, 0) + power
-            monomial = tuple(sorted(powers.items()))
-            product[monomial] = product.get(monomial, Fraction(0)) + x * y
-    if len(product) > MOST_TERMS:
+    """Return the product; raise _Open if it has more monomials than are worth it, before any of them cancel."""
+    if len(a.terms) * len(b.terms) > MOST_TERMS and len(products_of_monomials(a, b)) > MOST_TERMS:
         raise _Open
-    return {monomial: x for monomial, x in product.items() if x}
-
-
-def _plus(a: Polynomial, b: Polynomial) -> Polynomial:
-    total = dict(a)
-    for monomial, x in b.items():
-        total[monomial] = total.get(monomial, Fraction(0)) + x
-    return {monomial: x for monomial, x in total.items() if x}
+    return a * b
 
 
 class _Closure:
@@ -82,7 +69,7 @@ class _Closure:
         self.polynomials: dict[int, Polynomial | None] = {}
         numbers = [system.states.index(name) for name in QUATERNION]
         self.attitude = {self.variable("state", number) for number in numbers}
-        self.norm: Polynomial = {((q, 2),): Fraction(1) for q in self.attitude}
+        self.norm = Polynomial({((q, 2),): Fraction(1) for q in self.attitude})
         if self.derivative(self.norm):
             raise _Open
         self.companions: list[Polynomial] = []
@@ -98,23 +85,23 @@ class _Closure:
         return self.variables.index((kind, what))
 
     def single(self, kind: str, what: Any) -> Polynomial:
-        return {((self.variable(kind, what), 1),): Fraction(1)}
+        return generator(self.variable(kind, what))
 
     def constant(self, node: Node) -> Polynomial:
-        """Return a constant formula as a polynomial; a subformula that is not a polynomial becomes a new variable."""
+        """Return a constant formula as a polynomial; each part that is not a polynomial becomes a new variable."""
         if node[0] == "number":
-            return {(): node[1]} if node[1] else {}
+            return constant(node[1])
         if node[0] not in ("neg", "*", "+", "-"):
             return self.single("constant", node)
         parts = [self.constant(child) for child in children(node)]
         if node[0] == "neg":
-            return _times(parts[0], {(): Fraction(-1)})
+            return _times(parts[0], constant(-1))
         if node[0] == "*":
             return _times(*parts)
-        return _plus(parts[0], parts[1] if node[0] == "+" else _times(parts[1], {(): Fraction(-1)}))
+        return parts[0] + (parts[1] if node[0] == "+" else _times(parts[1], constant(-1)))
 
     def polynomial(self, i: int) -> Polynomial | None:
-        """Return a series as a polynomial of states, clocks and constants, or None."""
+        """Return a series as a polynomial of states, functions of time and constants, or None if it is none."""
         if i not in self.polynomials:
             s = self.series[i]
             result: Polynomial | None = None
@@ -131,58 +118,62 @@ class _Closure:
         return self.polynomials[i]
 
     def sum(self, s: Series, only: Iterable[int] | None = None) -> Polynomial | None:
-        """Return a sum, or that of some of its operands alone, as a polynomial."""
+        """Return a sum of series, or of only some of its operands, as a polynomial; None if it is none."""
         *weights, constant = s.weights
-        total = self.constant(constant) if constant is not None and only is None else {}
+        total = self.constant(constant) if constant is not None and only is None else Polynomial({})
         for operand, weight in zip(s.operands, weights, strict=True):
             if only is None or operand in only:
                 part = self.polynomial(operand)
                 if part is None or weight is None:
                     return None
-                total = _plus(total, _times(part, self.constant(weight)))
+                total = total + _times(part, self.constant(weight))
         return total
 
     def rate(self, variable: int) -> Polynomial:
-        """Return the rate of a variable along the motion."""
+        """Return the time derivative of a variable along the motion, as a polynomial."""
         kind, what = self.variables[variable]
         if kind == "constant":
-            return {}
+            return Polynomial({})
         if kind == "clock":
             s = self.series[what]
             assert s.weights[0] is not None
             partner = _times(self.single("clock", s.operands[0]), self.constant(s.weights[0]))
-            return _times(partner, {(): Fraction(s.sign)})
+            return _times(partner, constant(s.sign))
         polynomial = self.sum(self.system.rates[what])
         if polynomial is None:
             raise _Open
         return polynomial
 
     def derivative(self, form: Polynomial) -> Polynomial:
-        total: Polynomial = {}
-        for monomial, x in form.items():
+        total = Polynomial({})
+        for monomial, x in form.terms.items():
             for variable, power in monomial:
                 rest = tuple((v, p - (v == variable)) for v, p in monomial if (v, p) != (variable, 1))
-                total = _plus(total, _times({rest: x * power}, self.rate(variable)))
+                total = total + _times(Polynomial({rest: x * power}), self.rate(variable))
         return total
 
     def is_inner(self, variable: int) -> bool:
         return variable in self.attitude or self.variables[variable][0] == "clock"
 
     def of_attitude(self, form: Polynomial | None) -> bool:
-        """Return whether a form is made of the attitude, functions of time and constants, and is no mere state."""
+        """Return whether a polynomial contains only the attitude, functions of time and constants, and is not a single
+        state.
+        """
         if form is None:
             return False
-        free = [v for monomial in form for v, _ in monomial if self.variables[v][0] != "constant"]
-        return all(map(self.is_inner, free)) and max(map(self.degree, form), default=0) > 1
+        free = [v for monomial in form.terms for v, _ in monomial if self.variables[v][0] != "constant"]
+        return all(map(self.is_inner, free)) and max(map(self.degree, form.terms), default=0) > 1
 
     def degree(self, monomial: Monomial) -> int:
-        """Return the degree in the attitude."""
+        """Return the degree of a monomial in the components of the attitude."""
         return sum(power for variable, power in monomial if variable in self.attitude)
 
     def split(self, form: Polynomial) -> list[tuple[Node, int | None, Polynomial]]:
-        """Return a form as constants times states times what holds the attitude and functions of time."""
-        groups: dict[Monomial, Polynomial] = {}
-        for monomial, x in form.items():
+        """Return a polynomial as a sum of products: a constant, a state or None, and a polynomial of attitude and
+        time.
+        """
+        groups: dict[Monomial, dict[Monomial, Fraction]] = {}
+        for monomial, x in form.terms.items():
             outer = tuple((v, p) for v, p in monomial if not self.is_inner(v))
             groups.setdefault(outer, {})[tuple((v, p) for v, p in monomial if self.is_inner(v))] = x
         parts = []
@@ -196,35 +187,37 @@ class _Closure:
                     state = what
                 for _ in range(power if kind == "constant" else 0):
                     constant = what if constant == ONE else ("*", constant, what)
-            parts.append((constant, state, inner))
+            parts.append((constant, state, Polynomial(inner)))
         return parts
 
     # -------------------------------------------------------------------------------------------- closing
 
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
-        """Return the companion that a form is, how many times, and a number besides.
+        """Return an auxiliary state, a factor and a number such that a polynomial of the attitude is factor*state +
+        number.
 
-        For a unit quaternion all terms of a form can be given one degree; of degree two, they have a trace to spare.
+        The auxiliary state is added if it is new. For a unit quaternion all terms of the polynomial can be given the
+        same degree; of degree two, they are fixed only up to a multiple of the squared norm.
         """
-        degrees = {self.degree(monomial) for monomial in inner}
+        degrees = {self.degree(monomial) for monomial in inner.terms}
         top = max(degrees)
         if any((top - degree) % 2 for degree in degrees):
             raise _Open
-        whole: Polynomial = {}
-        for monomial, x in inner.items():
-            part: Polynomial = {monomial: x}
+        whole = Polynomial({})
+        for monomial, x in inner.terms.items():
+            part = Polynomial({monomial: x})
             for _ in range((top - self.degree(monomial)) // 2):
                 part = _times(part, self.norm)
-            whole = _plus(whole, part)
+            whole = whole + part
         spare = Fraction(0)
-        if top == 2 and all(variable in self.attitude for monomial in inner for variable, _ in monomial):
-            spare = sum((whole.get(square, Fraction(0)) for square in self.norm), start=Fraction(0)) / 4
-            whole = _plus(whole, _times(self.norm, {(): -spare}))
-            inner = _plus(inner, {(): -spare})
+        if top == 2 and all(variable in self.attitude for monomial in inner.terms for variable, _ in monomial):
+            spare = sum((whole.terms.get(square, Fraction(0)) for square in self.norm.terms), start=Fraction(0)) / 4
+            whole = whole + _times(self.norm, constant(-spare))
+            inner = inner + constant(-spare)
         if not whole:
             return None, Fraction(0), spare
-        lead = whole[min(whole)]
-        key = frozenset((monomial, x / lead) for monomial, x in whole.items())
+        lead = whole.terms[min(whole.terms)]
+        key = frozenset((monomial, x / lead) for monomial, x in whole.terms.items())
         if key not in self.known:
             if len(self.companions) == MOST_COMPANIONS:
                 raise _Open
@@ -235,18 +228,20 @@ class _Closure:
 
     def terms(self, form: Polynomial) -> list[_Term]:
         result = []
-        for constant, state, inner in self.split(form):
+        for weight, state, inner in self.split(form):
             index, number, spare = self.adjoin(inner)
-            result += [_Term(one, x, constant, state) for one, x in ((index, number), (None, spare)) if x]
+            result += [_Term(one, x, weight, state) for one, x in ((index, number), (None, spare)) if x]
         return result
 
     def seek(self, i: int) -> None:
-        """Replace expressions of the attitude alone in a series and in its operands."""
+        """Search a series and its operands for polynomials of the attitude alone, and replace them by auxiliary
+        states.
+        """
         s = self.series[i]
         if i in self.replaced or s.rule not in ("sum", "product"):
             return
         if self.of_attitude(self.polynomial(i)):
-            self.replaced[i] = self.terms(self.polynomial(i) or {})
+            self.replaced[i] = self.terms(self.polynomial(i) or Polynomial({}))
         elif s.rule == "sum":
             self.seek_in(s)
         else:
@@ -254,17 +249,19 @@ class _Closure:
                 self.seek(operand)
 
     def seek_in(self, s: Series) -> None:
-        """Replace the products of the attitude in a sum, all together, and what stands in its other operands."""
+        """Replace the products of the attitude in a sum by auxiliary states, all together, then search its other
+        operands.
+        """
         alone = {
             i for i in s.operands if self.series[i].rule == "product" and self.of_attitude(self.polynomial(i))
             and not any(self.of_attitude(self.polynomial(factor)) for factor in self.series[i].operands)
         }  # fmt: skip
         if alone and s not in self.parts:
-            self.parts[s] = alone, self.terms(self.sum(s, alone) or {})
+            self.parts[s] = alone, self.terms(self.sum(s, alone) or Polynomial({}))
         for operand in s.operands:
             if operand in alone:
                 continue
-            if self.series[operand].rule == "product":  # of directions: each of them is replaced
+            if self.series[operand].rule == "product":  # products of companions: each companion is replaced separately
                 for factor in self.series[operand].operands:
                     self.seek(factor)
             else:
@@ -281,9 +278,9 @@ class _Closure:
         return _rebuilt(self, rates)
 
     def seed(self, form: Polynomial) -> Node:
-        """Return a form as a formula of states and time: terms of one factor of time together."""
+        """Return a polynomial as a formula of states and time; terms with the same function of time are grouped."""
         groups: dict[Monomial, dict[Fraction, list[Node]]] = {}
-        for monomial, x in sorted(form.items()):
+        for monomial, x in sorted(form.terms.items()):
             clocks = tuple((v, p) for v, p in monomial if v not in self.attitude)
             product = _product(self.symbol(v) for v, p in monomial if v in self.attitude for _ in range(p))
             size = abs(x)
@@ -322,7 +319,7 @@ def _total(terms: list[Node]) -> Node:
 
 
 def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
-    """Return the system with companions as further states; series that nothing needs any more are left out."""
+    """Return the system with auxiliary states as additional states, without the series that are no longer needed."""
     system, old = closure.system, closure.series
     count = len(system.states)
     alias = {
@@ -331,7 +328,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     }  # fmt: skip
 
     def left(s: Series) -> list[int]:
-        """Return the operands of a sum, or of another series, that stay."""
+        """Return those operands of a series that remain after the replacement by auxiliary states."""
         return [i for i in s.operands if i not in closure.parts.get(s, (set(),))[0]]
 
     needed: set[int] = set()
@@ -354,7 +351,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     def summed(
         terms: list[_Term], pairs: Iterable[tuple[int, Node | None]] = (), constant: Node | None = None
     ) -> Series:
-        """Return a sum of series with weights, companions and a constant."""
+        """Return the series for a sum of weighted series, auxiliary states and a constant."""
         for term in terms:
             if term.companion is None:
                 constant = weight(term) if constant is None else ("+", constant, weight(term))
@@ -377,7 +374,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
         operands = []
         for term in terms:
             if term.companion is None and term.state is None:
-                raise _Open  # a rate that nothing moves has no place here
+                raise _Open  # a companion with rate zero would be a constant
             both = (term.state, None if term.companion is None else count + term.companion)
             pair = [own for own in both if own is not None]
             if len(pair) == 2 and tuple(pair) not in products:

@@ -1,6 +1,6 @@
-"""The Taylor coefficients of a system, from its recurrences, over any kind of number.
+"""Taylor coefficients of a system, computed from its recurrences with any kind of number.
 
-With Fractions they are exact, which is how the rules are proven; with numbers of 40 digits they are a reference.
+With Fractions they are exact, which tests use to prove the rules; with numbers of 40 digits they are a reference.
 Standard library only.
 """
 
@@ -15,7 +15,7 @@ __all__ = ["coefficients"]
 
 
 class _Run(NamedTuple):
-    """What the rules need while coefficients are computed: constants as numbers, functions, all series so far."""
+    """Data for the rules while coefficients are computed: constants as numbers, functions, and all series so far."""
 
     constant: Callable[[Node], Any]
     functions: Mapping[str, Callable[..., Any]]
@@ -30,7 +30,7 @@ def coefficients(
     functions: Mapping[str, Callable[..., Any]] | None = None,
     number: Callable[[Fraction], Any] = lambda value: value,
 ) -> list[list[Any]]:
-    """Return the Taylor coefficients 0 to ``order`` of every state, over any kind of number.
+    """Return the Taylor coefficients 0 to ``order`` of every state, computed with any kind of number.
 
     Parameters
     ----------

@@ -1,9 +1,10 @@
-"""Print the recurrences of a system as C with one trajectory in each lane: the jet of an ensemble.
+"""C text of the recurrences of a system with one trajectory in each SIMD lane, for ensembles of motions.
 
-Nothing is moved between lanes: a series is an array of vectors, and each operation is done for all trajectories at
-once. Convolutions that enter all sums with one weight share an accumulator. Two orders are taken together: loops over
-the coefficients that are known already serve both and read each number once, then come order n and order n + 1 with the
-terms that hold the newest coefficients. Nothing is unrolled over the order.
+It computes the jet, which is the list of all Taylor coefficients at one time. No value moves between lanes: a series is
+an array of vectors, and each operation is done for all trajectories at once. Convolutions that enter all sums with the
+same weight share an accumulator. Two orders are computed together: loops over known coefficients serve both orders and
+read each number once; then order n and order n + 1 are completed by the terms with the newest coefficients. No loop
+over the order is unrolled.
 
 The text stands between :file:`lanes.h` and :file:`lanes.c` of :mod:`symrot.ensemble`.
 """
@@ -26,7 +27,10 @@ LOAD_OF_LOOP = 24  # accumulators and factors of a loop: half more than the 16 r
 
 
 class Convolution(NamedTuple):
-    """``sum(a[k] b[n-k])`` and which of its two ends belong to it: both, that with the newest of a (last), or none."""
+    """A convolution ``sum(a[k] b[n-k])``, and which of its two end terms belong to it.
+
+    ``ends`` says: both end terms, only the one with the newest coefficient of a (last), or none.
+    """
 
     a: int
     b: int
@@ -38,7 +42,7 @@ class Convolution(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """Convolutions that are added up, each with its sign, in one accumulator."""
+    """An accumulator: the sum of several convolutions, each with a sign."""
 
     terms: tuple[tuple[int, Convolution], ...]
 
@@ -57,9 +61,9 @@ CONVOLUTIONS = {  # rule -> operands a and b of its convolution (-1: the series 
 
 
 def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> str:
-    """Return the C text of a system for :file:`lanes.c`: sizes, blocks, constants and the jet.
+    """Return the C text of a system for :file:`lanes.c`: sizes, blocks, constants and the function for the jet.
 
-    Arguments as :func:`symrot.codegen.taylor.source.taylor_definitions` takes them.
+    Arguments are those of :func:`symrot.codegen.taylor.source.taylor_definitions`.
 
     Raises
     ------
@@ -85,14 +89,17 @@ def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[fl
 
 
 def multiplications(program: Program, order: int) -> int:
-    """Return the products that the loops of one jet take for each trajectory."""
+    """Return the number of multiplications in the loops of one jet, for each trajectory."""
     jet = _Jet(recurrences(program))
     shares = [(0.5 if slot.square else 1.0) * len(slot.terms) for slot in jet.slots]
     return int(sum(shares) * order * (order + 1) / 2)
 
 
 class _Jet:
-    """Writes one system. ``v{i}`` is the newest coefficient of series i, ``u{i}`` (or ``x[i]``) holds all of them."""
+    """Writer of the jet of one system.
+
+    In C ``v{i}`` is the newest coefficient of series i, ``u{i}`` (or ``x[i]``) all of them.
+    """
 
     def __init__(self, system: Recurrences) -> None:
         self.system, self.series = system, system.series
@@ -100,7 +107,7 @@ class _Jet:
         self.constants: dict[Node, int] = {}
         self.slots: list[Slot] = []
         self.slot_of: dict[int, tuple[int, int]] = {}  # series -> its sign in its slot, the number of the slot
-        self.shared: set[int] = set()  # products that have no value of their own
+        self.shared: set[int] = set()  # products that are only parts of sums and get no value of their own
         self._make_slots()
         self.stored = {
             operand for slot in self.slots for _, c in slot.terms for operand in (c.a, c.b) if operand not in self.state
@@ -146,18 +153,21 @@ class _Jet:
         return f"x[{self.state[series]}][{n}]" if series in self.state else f"u{series}[{n}]"
 
     def weight(self, node: Node) -> str:
-        """Return a positive constant as C: a literal, or for a formula of parameters an element of a table."""
+        """Return a positive constant as C: a literal, or an element of a table if it is a formula of parameters."""
         if not names(node) and node[0] == "number":
             return f"V_ALL({c_expression(node)})"
         return f"c[{self.constants.setdefault(node, len(self.constants))}]"
 
     def signed(self, node: Node | None) -> str:
-        """Return a constant of either sign; None is zero."""
+        """Return a constant of either sign as C; None is zero."""
         sign, size = split_sign(node or ("number", 0))
         return self.weight(size) if sign > 0 else f"V_SUB(V_ALL(0.0), {self.weight(size)})"
 
     def slot(self, number: int, phase: str, sums: str) -> str:
-        """Return coefficient n of a slot; of two chains of sums, so that neither waits for all the newest."""
+        """Return the C expression for coefficient n of an accumulator.
+
+        It is the sum of two chains, so that neither waits for all of the newest coefficients.
+        """
         older = f"{sums}{number}" if phase == "later" else ""
         newer = ""
         for sign, (a, b, ends) in self.slots[number].terms:
@@ -172,7 +182,9 @@ class _Jet:
         return f"V_ADD({older}, {newer})" if older and newer else older or newer
 
     def sum(self, s: Series, first: bool, factor: str = "") -> str:
-        """Return a sum, times a factor. The terms that come last to hand are added last."""
+        """Return the C expression of a weighted sum of series times a factor; terms that are computed last are added
+        last.
+        """
         value = ""
         *weights, constant = s.weights
         if first and constant is not None and constant != ("number", 0):
@@ -206,7 +218,7 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- series
 
     def coefficient(self, i: int, n: str, phase: str, sums: str) -> list[str]:
-        """Return the statements that set ``v{i}`` to coefficient n of a series."""
+        """Return the C statements that set ``v{i}`` to coefficient n of series i."""
         s, name = self.series[i], f"v{i}"
         if s.rule == "sum":
             return [f"{name} = {self.sum(s, phase == 'first')};"]
@@ -247,7 +259,10 @@ class _Jet:
         return [f"{name} = V_DIV({upper}, V_MUL(d{i}, V_ALL((double)({n}))));"]
 
     def _clock(self, s: Series, name: str, n: str) -> list[str]:
-        """Return coefficient n of a function of ``a t + b`` from coefficient n - 1 of its partner."""
+        """Return the C statement for coefficient n of a function of ``a t + b``, from coefficient n - 1 of its partner.
+
+        The partner of sine is cosine, for example.
+        """
         rate, _ = s.weights
         assert rate is not None
         sign, size = split_sign(rate)
@@ -257,7 +272,10 @@ class _Jet:
         return [f"{name} = V_MUL(p{s.operands[0]}, {step});"]
 
     def _clock_start(self, i: int, s: Series) -> list[str]:
-        """Return coefficient 0 of functions of ``a t + b`` that drive each other, with the first one of them."""
+        """Return the C statements for coefficient 0 of functions of ``a t + b`` that appear in each other's derivative.
+
+        The statements of both functions are returned with the first one.
+        """
         both = sorted({i, s.operands[0]})
         if i != both[0]:
             return []
@@ -267,7 +285,7 @@ class _Jet:
             return [*lines, f"symrot_circle(high{i}, low{i}, &v{i}, &v{both[1]});"]
         for one in both:
             lines.append(f"const symrot_v k{one} = V_CALL({self.series[one].function}, high{i});")
-        for one in both:  # what rounding took from the phase is put right by the slope
+        for one in both:  # the rounding error of the phase is corrected by the slope
             slope = "FMA" if self.series[one].sign > 0 else "FNMA"
             lines.append(f"v{one} = V_{slope}(low{i}, k{self.series[one].operands[0]}, k{one});")
         return lines
@@ -275,7 +293,9 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, phase: str, sums: str) -> list[str]:
-        """Return the statements of one order: series as they come to hand, then the next of the states."""
+        """Return the C statements of one order: all series in the order of computation, then the next coefficient of
+        states.
+        """
         lines: list[str] = []
         made: set[int] = set()
 
@@ -305,15 +325,18 @@ class _Jet:
         return lines
 
     def _partners(self) -> list[int]:
-        """Return the series whose coefficient of one order before is needed."""
+        """Return the series whose coefficient of the previous order is needed."""
         return sorted({s.operands[0] for s in self.series if s.rule == "clock"})
 
     def loops(self) -> list[str]:
-        """Return the sums over what is known for orders n (even) and m = n + 1: a over k + j = n, b over k + j = m."""
+        """Return the C loops over known coefficients for the orders n (even) and m = n + 1.
+
+        Sums a run over k + j = n, sums b over k + j = m.
+        """
         return [line for group in self._groups() for line in self._loop(group)]
 
     def _groups(self) -> list[list[int]]:
-        """Return the slots of each loop; slots with common factors share a loop while registers suffice."""
+        """Return the accumulators of each loop; those with common factors share a loop while registers suffice."""
         left = list(range(len(self.slots)))
         groups: list[list[int]] = []
         while left:
@@ -330,7 +353,7 @@ class _Jet:
         return groups
 
     def _load(self, group: Sequence[int]) -> int:
-        """Return how many registers a loop would like: two accumulators for each slot, its factors at two orders."""
+        """Return how many registers a loop would use: two accumulators for each slot, and its factors at two orders."""
         terms = [c for i in group for _, c in self.slots[i].terms]
         return 2 * len(group) + 2 * len({c.a for c in terms}) + len({c.b for c in terms})
 
@@ -355,7 +378,9 @@ class _Jet:
     def _products(
         self, terms: Sequence[tuple[int, int, Convolution]], left: Sequence[int], right: Sequence[int]
     ) -> list[str]:
-        """Return a loop of products: two numbers k at a time, one factor of the right after the other."""
+        """Return a C loop over products that computes two values of k per pass, one right-hand factor after the
+        other.
+        """
         lines = ["{", *(f"    symrot_v f{i} = {self.at(i, '1')};" for i in left)]
         lines.append("    for (int64_t k = 1; k < n - 1; k += 2) {")
         for new, old, ahead, behind in (("g", "f", "k + 1", "n - k"), ("f", "g", "k + 2", "n - k - 1")):
@@ -373,7 +398,7 @@ class _Jet:
         return [*lines, "}"]
 
     def between(self) -> list[str]:
-        """Return the terms of order m that hold coefficient n, which has just been computed."""
+        """Return the C terms of order n + 1 that contain coefficient n, which has just been computed."""
         lines: list[str] = []
         for i, slot in enumerate(self.slots):
             for sign, (a, b, _) in slot.terms:
@@ -423,19 +448,19 @@ class _Jet:
 
 
 def _plus(value: str, sign: int, factors: str) -> str:
-    """Return a value plus or minus a product; an empty value is zero."""
+    """Return the C expression of a value plus or minus a product; an empty value is zero."""
     if value:
         return f"V_{'FMA' if sign > 0 else 'FNMA'}({factors}, {value})"
     return f"V_MUL({factors})" if sign > 0 else f"V_SUB(V_ALL(0.0), V_MUL({factors}))"
 
 
 def _add(name: str, sign: int, factors: str) -> str:
-    """Return the statement that adds a product to a sum, or takes it away."""
+    """Return the C statement that adds a product to a sum or subtracts it."""
     return f"{name} = V_{'FMA' if sign > 0 else 'FNMA'}({factors}, {name});"
 
 
 def _called(s: Series, first: int) -> str:
-    """Return coefficient 0 of a function of series."""
+    """Return the C call for coefficient 0 of a function of series."""
     arguments = [f"v{operand}" for operand in s.operands[first:]]
     return f"V_CALL{'' if len(arguments) == 1 else len(arguments)}({s.function}, {', '.join(arguments)})"
 

@@ -1,7 +1,8 @@
-"""Print the invariants of a motion as C: values in pairs of doubles (about 32 digits), gradients in doubles.
+"""C text of the conserved quantities of a motion: values in double-double arithmetic, gradients in doubles.
 
-The values say how far a motion has left its invariants long before a double could; the gradients say which small change
-of the states takes it back. Gradients are accumulated backwards along the tape, one pass for each invariant.
+A value is a sum of two doubles with about 32 digits, so that it shows how far a motion has left its invariants long
+before a double could. The gradients show which small change of the states takes the motion back; they are accumulated
+backwards along the tape, one pass for each invariant.
 
 The text stands between :file:`taylor.h` and :file:`taylor.c`; :file:`projection.c` uses it.
 """
@@ -17,25 +18,30 @@ __all__ = ["invariant_definitions", "projectable"]
 
 QUATERNION = tuple(f"q{i}" for i in range(4))
 NORM = "q0*q0 + q1*q1 + q2*q2 + q3*q3"
-IN_PAIRS = {"+", "-", "*", "/", "neg", "sqrt", "number", "symbol"}  # operations that exist for pairs of doubles
+_OPERATIONS = {  # on pairs of doubles, in C
+    "+": "dd_add_fast", "-": "symrot_pair_subtract", "*": "symrot_pair_multiply", "/": "symrot_pair_divide",
+    "neg": "dd_negative", "sqrt": "symrot_pair_root",
+}  # fmt: skip
+IN_PAIRS = {*_OPERATIONS, "number", "symbol"}
+"""Operations and operands that exist for pairs of doubles."""
 
 
 def projectable(program: Program, outputs: Sequence[str]) -> list[str]:
-    """Return the outputs that can be computed in pairs of doubles: outputs without sin, exp and similar functions."""
+    """Return the outputs that double-double arithmetic can compute: those without sin, exp and similar functions."""
     return [name for name in outputs if {op.kind for op in tape_of(program, [name]).operations} <= IN_PAIRS]
 
 
 def invariant_definitions(
     program: Program, outputs: Sequence[str], states: Sequence[str], parameters: Sequence[str]
 ) -> str:
-    """Return the C text of the invariants.
+    """Return the C text of the conserved quantities of a motion.
 
     Parameters
     ----------
     program : Program
         Quantities of t, states and parameters.
     outputs : sequence of str
-        Those that the motion keeps; what is not :func:`projectable` is left out. The norm of the quaternion is added.
+        The conserved quantities. One that is not :func:`projectable` is left out. The norm of the quaternion is added.
     states : sequence of str
         Names of the states, in order.
     parameters : sequence of str
@@ -44,8 +50,8 @@ def invariant_definitions(
     norm = set(QUATERNION) <= set(states)
     tape = tape_of(program, projectable(program, outputs), [parse(NORM)] if norm else [])
     places = {"t": "t", **{name: f"y[{i}]" for i, name in enumerate(states)}}
-    places |= {name: f"symrot_pair_of(p[{2 * i}], p[{2 * i + 1}])" for i, name in enumerate(parameters)}
-    pairs = [f"const symrot_pair v{i} = {_in_pairs(op, places)};" for i, op in enumerate(tape.operations)]
+    places |= {name: f"dd_pair(p[{2 * i}], p[{2 * i + 1}])" for i, name in enumerate(parameters)}
+    pairs = [f"const dd v{i} = {_in_pairs(op, places)};" for i, op in enumerate(tape.operations)]
     lines = [
         f"#define SYMROT_INVARIANTS {len(tape.outputs)}",
         f"#define SYMROT_INVARIANT_PARAMETERS {2 * len(parameters)}",
@@ -54,8 +60,8 @@ def invariant_definitions(
     ]
     if tape.outputs:
         lines += [
-            "static SYMROT_APART void symrot_invariants(symrot_pair t, const symrot_pair *y, const double *p,",
-            "    symrot_pair *value, double (*gradient)[SYMROT_STATES])",
+            "static SYMROT_APART void symrot_invariants(dd t, const dd *y, const double *p,",
+            "    dd *value, double (*gradient)[SYMROT_STATES])",
             "{",
             "    (void)t;",
             "    (void)p;",
@@ -71,15 +77,14 @@ def invariant_definitions(
 def _in_pairs(op: Operation, places: dict[str, str]) -> str:
     if op.kind == "number":
         high = float(op.value)
-        return f"symrot_pair_of({high!r}, {float(op.value - Fraction(high))!r})"
+        return f"dd_pair({high!r}, {float(op.value - Fraction(high))!r})"
     if op.kind == "symbol":
         return places[op.value]
-    name = {"+": "add", "-": "subtract", "*": "multiply", "/": "divide", "neg": "negate", "sqrt": "root"}[op.kind]
-    return f"symrot_pair_{name}({', '.join(f'v{i}' for i in op.operands)})"
+    return f"{_OPERATIONS[op.kind]}({', '.join(f'v{i}' for i in op.operands)})"
 
 
 def _gradient(tape: Tape, output: int, states: Sequence[str]) -> list[str]:
-    """Return the statements that fill the gradient of one output: adjoints from the last operation to the first."""
+    """Return the C statements that fill the gradient of one output, by reverse differentiation along the tape."""
     needed = tape.of(output)
     varying = _varying(tape, needed, set(states))
     terms: dict[int, list[str]] = {tape.outputs[output]: ["1.0"]}
@@ -107,8 +112,10 @@ def _varying(tape: Tape, needed: Sequence[int], states: set[str]) -> set[int]:
 
 
 def _shares(op: Operation, index: int, own: str) -> list[str]:
-    """Return the adjoint that an operation adds to each of its operands, as C."""
-    values = [f"v{i}.high" for i in op.operands]
+    """Return, for each operand of an operation, the C expression that the operation adds to the operand's
+    derivative.
+    """
+    values = [f"v{i}.hi" for i in op.operands]
     if op.kind == "+":
         return [own, own]
     if op.kind == "-":
@@ -118,5 +125,5 @@ def _shares(op: Operation, index: int, own: str) -> list[str]:
     if op.kind == "*":
         return [f"{own}*{values[1]}", f"{own}*{values[0]}"]
     if op.kind == "/":
-        return [f"{own}/{values[1]}", f"-{own}*v{index}.high/{values[1]}"]
-    return [f"0.5*{own}/v{index}.high"]  # sqrt
+        return [f"{own}/{values[1]}", f"-{own}*v{index}.hi/{values[1]}"]
+    return [f"0.5*{own}/v{index}.hi"]  # sqrt

@@ -1,7 +1,7 @@
-"""Functions for the jets of ensembles, each lane for itself: phases ``a t + b`` in two parts, sine and cosine at once.
+"""C functions for the jets of ensembles, lane by lane: phases ``a t + b`` as sums of two doubles, sine and cosine.
 
-The same reduction and polynomials as :mod:`symrot.codegen.printing.math_header` prints for batches. A lane beyond its
-range asks the C library, so that its bits depend on nothing but its own angle.
+The argument reduction and polynomials are those that :mod:`symrot.codegen.printing.math_header` prints for batches. A
+lane with a larger angle calls the C library, so that its bits depend on its own angle only.
 """
 
 from fractions import Fraction
@@ -67,7 +67,9 @@ static inline void symrot_circle(symrot_v high, symrot_v low, symrot_v *sine, sy
 
 
 def _horner(name: str, coefficients: tuple[Fraction, ...]) -> str:
-    """Return the statements from the last coefficient, which ``name`` holds, to the value of a polynomial in square."""
+    """Return the C statements that evaluate a polynomial in ``square`` by Horner's rule; ``name`` holds the last
+    coefficient.
+    """
     return "\n".join(
         f"    {name} = V_FMA(square, {name}, V_ALL({DOUBLE.literal(each)}));" for each in coefficients[-2::-1]
     )
@@ -75,7 +77,7 @@ def _horner(name: str, coefficients: tuple[Fraction, ...]) -> str:
 
 @cache
 def lane_functions() -> str:
-    """Return the C text of ``symrot_turn`` and ``symrot_circle``, for operations of :file:`lanes.h`."""
+    """Return the C text of ``symrot_turn`` (a phase) and ``symrot_circle`` (sine and cosine), for :file:`lanes.h`."""
     sine, cosine = tail_coefficients(3, 6), tail_coefficients(4, 6)
     first, second, third = map(DOUBLE.literal, quarter_turn_parts(DOUBLE.precision))
     numbers = {

@@ -1,9 +1,10 @@
-"""Place the series of a system in rows of four lanes, and its convolutions in groups that share their shape.
+"""Placement of the Taylor series of one motion in SIMD vectors (rows) of four lanes.
 
-A row holds up to four series of one rule that can be computed together; the states keep rows of their own. A slot of a
-row is a sum of columns, a column the lane by lane convolution of two packs of four series: each lane of a row of sums
-takes its products with one constant from one slot. A pack whose lanes are one series is broadcast and costs no
-storage, which is how ``dq/dt = 1/2 q*(0, omega)`` becomes three broadcasts times a permuted quaternion.
+A row holds up to four series of one rule that can be computed together; the states have rows of their own. Convolutions
+are grouped into columns of the same shape: a slot of a row is a sum of columns, and a column is the lane-by-lane
+convolution of two packs of four series. Each lane of a row of sums takes its products with one constant from one slot.
+A pack whose lanes are all the same series is broadcast and costs no storage, which is how ``dq/dt = 1/2 q*(0, omega)``
+becomes three broadcasts times a permuted quaternion.
 """
 
 from collections.abc import Iterable, Sequence
@@ -17,13 +18,13 @@ from symrot.formula.tree import Node
 __all__ = ["LANES", "Address", "Column", "Layout", "Pack", "Row", "Slot", "Term", "cost", "lay_out"]
 
 LANES = 4
-MOST_USES = (1, 2)  # sums in which a product may stand without a row of its own
+MOST_USES = (1, 2)  # a product in at most so many sums needs no row of its own
 ZERO: Node = ("number", Fraction(0))
 ONE: Node = ("number", Fraction(1))
 
 
 class Address(NamedTuple):
-    """One lane of one row, with a sign; with sign 0 a lane that holds zero."""
+    """The place of a value: one lane of one row, with a sign; sign 0 means a lane that holds zero."""
 
     sign: int
     row: int
@@ -35,9 +36,10 @@ _Pair = tuple[tuple[int, int], tuple[int, int]]  # two factors, each a sign and 
 
 
 class Column(NamedTuple):
-    """A convolution ``sum(a[k] b[n-k])``, lane by lane; ``ends`` says which of k = 0 and k = n are in the sum.
+    """A convolution ``sum(a[k] b[n-k])``, lane by lane; ``ends`` says which of the terms k = 0 and k = n are in the
+    sum.
 
-    ``both``: 0 to n; ``last``: 1 to n, where b[n] is what is being computed; ``none``: 1 to n - 1.
+    ``both``: 0 to n; ``last``: 1 to n, where b[n] is the coefficient that is being computed; ``none``: 1 to n - 1.
     """
 
     a: Pack
@@ -46,25 +48,25 @@ class Column(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """A weighted sum of columns: numbers of columns, and one constant per lane."""
+    """A weighted sum of columns: the numbers of the columns, and one constant per lane."""
 
     columns: tuple[int, ...]
     weights: tuple[Node, ...]
 
 
 class Term(NamedTuple):
-    """A weighted row: the lanes of some row, and one constant per lane."""
+    """A weighted row: addresses of four lanes, and one constant per lane."""
 
     pack: Pack
     weights: tuple[Node, ...]
 
 
 class Row(NamedTuple):
-    """Four lanes computed by one rule.
+    """Four lanes that are computed by one rule.
 
-    ``lanes`` are numbers of series, or None in a lane of no use, which holds zero; ``slots`` the convolutions;
-    ``terms`` what is added to them, for the rule ``sum``, else the operands of the rule in its order; ``constant`` what
-    is added to coefficient 0.
+    ``lanes`` holds the numbers of the series, or None in an unused lane, which holds zero; ``slots`` the convolutions;
+    ``terms`` the addends of the rule ``sum``, else the operands of the rule in their order; ``constant`` the number
+    that is added to coefficient 0.
     """
 
     rule: str
@@ -75,9 +77,10 @@ class Row(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """Rows in the order of their computation: first the states, then their companions, then the rest.
+    """All rows in the order of their computation: first the states, then their auxiliary states, then the other series.
 
-    ``rates`` has one row per row of states and of companions; ``seeds`` the formulas of coefficient 0 of companions.
+    For auxiliary states see :mod:`symrot.codegen.taylor.auxiliary_states`. ``rates`` has one row per row of states and
+    of auxiliary states; ``seeds`` has the formulas of coefficient 0 of auxiliary states.
     """
 
     series: tuple[Series, ...]
@@ -85,26 +88,29 @@ class Layout(NamedTuple):
     rates: tuple[Row, ...]
     columns: tuple[Column, ...]
     states: tuple[tuple[int, ...], ...]  # the numbers of the states in each row of states
-    names: tuple[str, ...]  # of the states
+    names: tuple[str, ...]  # names of the states
     seeds: tuple[tuple[Node, ...], ...] = ()  # one per row of companions
 
 
 def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
-    """Return the layout of a system; ``edges`` are those of the blocks of states, which never share a row.
+    """Return the layout of a system in rows of four lanes.
 
-    A product in two sums is computed once, or once in each: what is quicker is tried.
+    ``edges`` are the edges of the blocks of states, which never share a row. A product that occurs in two sums is
+    computed once or in each of them, whichever layout costs less.
     """
     bundled = _with_bundles(system)
     return min((_Placer(bundled, edges, uses).layout() for uses in MOST_USES), key=cost)
 
 
 def cost(layout: Layout) -> int:
-    """Return a measure of the time an order takes: convolutions, and rows that wait for one another."""
+    """Return an estimate of the time for one order: the number of convolutions, and of rows that wait for one
+    another.
+    """
     return len(layout.columns) + len(layout.rows)
 
 
 def _with_bundles(system: Recurrences) -> Recurrences:
-    """Collect products that occur together in several sums into one sum, which is computed once."""
+    """Return the system with products that occur together in several sums collected into one sum, computed once."""
     series = list(system.series)
     sums = [(i, s) for i, s in enumerate(series) if s.rule == "sum"]
     sums += [(-1 - i, rate) for i, rate in enumerate(system.rates)]
@@ -169,7 +175,9 @@ class _Placer:
         self.rows.append(row._replace(lanes=lanes))
 
     def _inlined(self, most_uses: int) -> set[int]:
-        """Return the products that occur only in a few sums: they are expanded there, without stored coefficients."""
+        """Return the products that occur in at most ``most_uses`` sums: they are expanded there, without stored
+        coefficients.
+        """
         count: dict[int, int] = {}
         for s in (*self.series, *self.system.rates):
             for operand in s.operands:
@@ -178,7 +186,7 @@ class _Placer:
         return {operand for operand, uses in count.items() if uses <= most_uses}
 
     def level(self, i: int) -> int:
-        """Return the round of an order in which a series can be computed; states are known before the first."""
+        """Return in which round of an order a series can be computed; states are known before the first round."""
         if i not in self.levels:
             s = self.series[i]
             older = {"driven": (1,), "primitive": (1,), "clock": (0,)}.get(s.rule, ())  # used below coefficient n alone
@@ -212,7 +220,7 @@ class _Placer:
         return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds)
 
     def _shape(self, i: int) -> tuple[int, ...]:
-        """Return the sorting key of a series within a level: pairs first, then sums with many products."""
+        """Return the sorting key of a series within a round: pairs first, then sums with many products."""
         s = self.series[i]
         products = sum(operand in self.inlined for operand in s.operands)
         return (s.function == "exp", -products)
@@ -220,7 +228,7 @@ class _Placer:
     # -------------------------------------------------------------------------------------------- packs
 
     def pack(self, items: Sequence[tuple[int, int] | None]) -> Pack:
-        """Return the addresses of signed series; a lane of no use takes what costs nothing."""
+        """Return the addresses of signed series; an unused lane gets the address that costs least."""
         addresses = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
         first = next(address for address in addresses if address is not None)
         if (
@@ -231,12 +239,15 @@ class _Placer:
         return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(addresses))
 
     def address(self, sign: int, series: int, lane: int) -> Address:
-        """Return the address of a series, in the preferred lane if a copy is there."""
+        """Return the address of a signed series, in the preferred lane if a copy of the series is there."""
         first = self.place[series]
         return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
 
     def column(self, pairs: Sequence[_Pair | None], ends: str, needed: Sequence[bool] = ()) -> int:
-        """Make a column; a lane without a pair adds nothing where it is needed, else whatever costs nothing."""
+        """Make a column from pairs of series and return its number.
+
+        A lane without a pair adds zero where its value is needed, else it holds whatever costs least.
+        """
         a = self.pack([None if pair is None else pair[0] for pair in pairs])
         b = self.pack([None if pair is None else pair[1] for pair in pairs])
         empty = [pair is None and need for pair, need in zip(pairs, needed, strict=False)]
@@ -312,7 +323,9 @@ class _Placer:
         return Row("sum", lanes, tuple(made), tuple(terms), None if set(constants) == {ZERO} else constants)
 
     def _columns(self, lanes: list[list[tuple[int, int]]]) -> Iterable[int]:
-        """Yield columns that hold all products of the lanes: broadcasts while they last, then one per lane each."""
+        """Yield columns that contain all products of the lanes: broadcasts as long as possible, then one product per
+        lane.
+        """
         rest = [[(sign, self.series[p].operands[0], self.series[p].operands[1]) for sign, p in lane] for lane in lanes]
         needed = [bool(lane) for lane in lanes]
         while any(rest):
@@ -339,7 +352,7 @@ class _Placer:
         return min(common, default=None)
 
     def _mixed(self, terms: list[tuple[int, int, int] | None], needed: Sequence[bool]) -> int:
-        """Make a column of one product per lane, with the factors on the sides that repeat the most packs."""
+        """Make a column of one product per lane; the factors are placed left or right so that packs repeat."""
         known = {pack for column in self.columns for pack in (column.a, column.b)}
         whole = {tuple(Address(1, row, lane) for lane in range(LANES)) for row in range(len(self.rows))}
         best: tuple[int, list[_Pair | None]] | None = None
@@ -362,6 +375,6 @@ class _Placer:
 
 
 def _first_positive(item: tuple[Node, list[tuple[int, int]]]) -> tuple[Node, list[tuple[int, int]]]:
-    """Move the sign of the first product into the constant."""
+    """Return a weighted sum of products in which the sign of the first product is moved into the constant."""
     weight, terms = item
     return item if terms[0][0] > 0 else (("neg", weight), [(-sign, operand) for sign, operand in terms])

@@ -1,9 +1,9 @@
-"""From a right-hand side to the recurrences of its Taylor coefficients, by one rule for each operation.
+"""Recurrences of Taylor coefficients, made from a right-hand side by one rule for each operation.
 
-A series stands for the coefficients ``u[0], u[1], ...`` of one quantity along the motion. Every operation of a program
-becomes a rule that gives coefficient n of its result from coefficients up to n of its operands; the states close the
-circle, ``x[n+1] = rate[n]/(n+1)``. What is linear stays linear (a sum with constant weights), equal operations are one
-series, and a product is the only rule with a sum over n terms besides those solved from one:
+A series is the list of coefficients ``u[0], u[1], ...`` of one quantity along the motion. Every operation of a program
+becomes a rule that gives coefficient n of its result from coefficients up to n of its operands; the states follow by
+``x[n+1] = rate[n]/(n+1)``. Linear operations are sums with constant weights, and equal operations share one series.
+Sums over n terms occur only in products and in the rules that are solved from a product:
 
 =====================  ====================================================================================
 product ``w = u v``    ``w[n] = sum(u[k] v[n-k], k = 0..n)``; a square adds each pair once and doubles it
@@ -14,8 +14,8 @@ primitive              ``n w[n] = (g[n] - sum(e[k] v[n-k], k = 1..n-1))/v[0]``: 
 clock                  ``n w[n] = s a v[n-1]``: exp, sin, cos, sinh, cosh of ``a t + b``
 =====================  ====================================================================================
 
-Here t is the time from the middle of the expansion, so that ``t u'`` has the coefficients ``n u[n]``.
-Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., sections 10.2 and 13.2.
+Here t is the time from the centre of the expansion, so that ``t u'`` has the coefficients ``n u[n]``. Source: A.
+Griewank, A. Walther, Evaluating Derivatives, 2nd ed., sections 10.2 and 13.2.
 
 Standard library only: the recurrences of a cached kernel are made without SymPy.
 """
@@ -40,11 +40,11 @@ TANGENTS = {"tan": 1, "tanh": -1}  # function -> sign in t w' = (1 + sign w^2) t
 
 
 class Series(NamedTuple):
-    """One series: its rule, its operands, and the constants of the rule.
+    """One series of Taylor coefficients: its rule, its operands, and the constants of the rule.
 
     ``weights`` holds the constants of a sum, one per operand, and then the constant that is added to coefficient 0 (or
-    None); for a clock, a and b. ``function`` gives coefficient 0 where the rule does not, from coefficient 0 of
-    the last operands; ``sign`` is s of the rule. A state has its number in ``number``.
+    None); for a clock, a and b. ``function`` gives coefficient 0, from coefficient 0 of the last operands, where the
+    rule does not. ``sign`` is the s of the rule. ``number`` is the number of a state.
     """
 
     rule: str  # state time sum product quotient root theta driven primitive clock
@@ -56,10 +56,11 @@ class Series(NamedTuple):
 
 
 class Recurrences(NamedTuple):
-    """The recurrences of a program: all series in an order in which each coefficient can be computed.
+    """The recurrences of a program: all series, in an order in which each coefficient can be computed.
 
-    ``rates`` holds one sum per state: its series is the rate of the state. States beyond those of the program, if any,
-    have their start from ``seeds``: formulas of the states and t, see :mod:`symrot.codegen.taylor.auxiliary_states`.
+    ``rates`` holds for each state the series of its rate. Auxiliary states, if there are any, come after those of the
+    program; their coefficient 0 is given by ``seeds``, formulas of the states and t, see
+    :mod:`symrot.codegen.taylor.auxiliary_states`.
     """
 
     states: tuple[str, ...]
@@ -73,7 +74,7 @@ POLYNOMIAL = {"state", "time", "sum", "product"}  # rules of series that never s
 
 
 class _Linear(NamedTuple):
-    """A constant plus series with constant weights."""
+    """A linear form: a constant plus a sum of series with constant weights."""
 
     constant: Node | None
     terms: dict[int, Node]
@@ -123,7 +124,7 @@ class _Builder:
         return self.known[series]
 
     def read(self, node: Node) -> _Linear:
-        """Return a formula as a linear form in series."""
+        """Return a formula as a linear form (a constant plus weighted series); series are added as needed."""
         kind = node[0]
         if kind == "number":
             return _Linear(node, {})
@@ -135,7 +136,7 @@ class _Builder:
         return _READERS[kind](self, node, parts)
 
     def series_of(self, form: _Linear) -> int:
-        """Return the series of a linear form."""
+        """Return the number of a series that equals a linear form; the series is added if it is new."""
         if form.constant is None and list(form.terms.values()) == [ONE]:
             return next(iter(form.terms))
         return self.add(self.sum_of(form))
@@ -146,7 +147,7 @@ class _Builder:
         return Series("sum", tuple(i for i, _ in terms), (*(weight for _, weight in terms), form.constant))
 
     def factored(self, form: _Linear) -> tuple[Node, int]:
-        """Return a constant and a series whose product is the form; forms in one ratio share their series."""
+        """Return a constant and a series whose product is a linear form; proportional forms share their series."""
         if form.constant is None and len(form.terms) == 1:
             ((series, weight),) = form.terms.items()
             return weight, series
@@ -169,7 +170,10 @@ class _Builder:
         return _folded(("*", ("number", lead), rest)), whole
 
     def sum(self, left: _Linear, right: _Linear, sign: int) -> _Linear:
-        """Return a sum; brackets that may vanish are not written out: see :meth:`bracket`."""
+        """Return the sum or difference of two linear forms.
+
+        A bracket that may vanish during the motion is not multiplied out: see :meth:`bracket`.
+        """
         if left.terms and right.terms:
             left, right = self.bracket(left), self.bracket(right)
         return _sum(left, right, sign)
@@ -177,7 +181,7 @@ class _Builder:
     def bracket(self, form: _Linear) -> _Linear:
         """Return a multiple of a sum with functions, such as ``m*(1 + tanh(u))``, as a multiple of one series.
 
-        Written out, ``m + m*tanh(u)`` beside other terms would leave the rounding of m where the bracket is zero.
+        If it were multiplied out, ``m + m*tanh(u)`` would leave the rounding error of m where the bracket is zero.
         """
         parts = [*form.terms.values(), *([] if form.constant is None else [form.constant])]
         factors = [_number_and_rest(part) for part in parts]
@@ -211,7 +215,7 @@ class _Builder:
         return _Linear(None, {self.add(Series("quotient", (v,))): _folded(("/", _value(left), b))})
 
     def reciprocal(self, number: int) -> _Linear | None:
-        """Return 1/v as series of its own where v is a product of hyperbolic cosines, which overflow; else None."""
+        """Return 1/v as a separate series if v is a product of hyperbolic cosines, which overflow; else None."""
         series = self.series[number]
         if series.rule == "product":
             left, right = map(self.reciprocal, series.operands)
@@ -221,7 +225,7 @@ class _Builder:
         return self.secant(self.cosh_arguments[number])
 
     def secant(self, argument: _Linear) -> _Linear:
-        """Return sech: t w' = -tanh(u) w t u'."""
+        """Return the hyperbolic secant w = sech(u) as a linear form, by t w' = -tanh(u) w t u'."""
         u = self.series_of(argument)
         if ("sech", u) not in self.known:
             ((tangent, _),) = self.tangent("tanh", argument).terms.items()
@@ -256,12 +260,16 @@ class _Builder:
         return self.add(Series("theta", (series,)))
 
     def clock(self, form: _Linear) -> tuple[Node, Node | None] | None:
-        """Return (a, b) where the form is a t + b, else None."""
+        """Return (a, b) if a linear form equals a t + b, else None."""
         ((series, weight),) = form.terms.items() if len(form.terms) == 1 else ((-1, ONE),)
         return (weight, form.constant) if series >= 0 and self.series[series].rule == "time" else None
 
     def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: _Linear) -> int:
-        """Return the first of some new series that drive each other: function, sign and partner of each."""
+        """Add several functions of one argument whose derivatives contain each other; return the number of the first
+        one.
+
+        Each is given by its name and sign, and by its partner in the derivative, as cosine is the partner of sine.
+        """
         clock = self.clock(argument)
         seed = () if clock else (self.series_of(argument),)
         drive = () if clock else (self.theta(*seed),)
@@ -274,7 +282,9 @@ class _Builder:
         return self.known[key]
 
     def half_turn(self, name: str, argument: _Linear) -> _Linear:
-        """Add both of a pair that drive each other: sin and cos, sinh and cosh."""
+        """Return sin, cos, sinh or cosh of a linear form; the other function of the pair, its derivative, is added
+        too.
+        """
         sine, cosine, *signs = HALF_TURNS[name]
         first = self.driven(((sine, signs[0]), (cosine, signs[1])), (1, 0), argument)
         if cosine == "cosh":
@@ -305,7 +315,7 @@ class _Builder:
         return _alone(own)
 
     def one_and_square(self, series: int, sign: int) -> _Linear:
-        """Return 1 + sign u^2."""
+        """Return 1 + u^2 or 1 - u^2, depending on ``sign``, as a linear form."""
         return _sum(_Linear(ONE, {}), _scaled(self.product(_alone(series), _alone(series)), sign), 1)
 
     def root(self, name: str, argument: _Linear) -> _Linear:
@@ -328,7 +338,7 @@ class _Builder:
         return self.primitive(name, self.theta(u), self.series_of(self.one_and_square(u, 1)), (u,))
 
     def angle(self, name: str, y: _Linear, x: _Linear) -> _Linear:
-        """Return atan2: (x^2 + y^2) t w' = x t y' - y t x'."""
+        """Return w = atan2(y, x) as a linear form, by (x^2 + y^2) t w' = x t y' - y t x'."""
         turning = _sum(self.product(x, self.theta_form(y)), self.product(y, self.theta_form(x)), -1)
         square = _sum(self.product(x, x), self.product(y, y), 1)
         return self.primitive(
@@ -340,7 +350,7 @@ class _Builder:
 
 
 def _without_unused(system: Recurrences) -> Recurrences:
-    """Return a system without the series that neither a rate nor another series needs; states stay."""
+    """Return the system without the series that neither a rate nor another series needs; states stay."""
     needed = {i for i, series in enumerate(system.series) if series.rule == "state"}
     waiting = [operand for rate in system.rates for operand in rate.operands]
     while waiting:
@@ -369,7 +379,9 @@ def _value(form: _Linear) -> Node:
 
 
 def _folded(node: Node) -> Node:
-    """Return a constant formula with its numbers put together, its sign in front and no factors of one."""
+    """Return a constant formula simplified: its numbers are combined, its sign is in front, factors of one are
+    removed.
+    """
     kind, parts = node[0], children(node)
     if kind == "neg":
         sign, inner = split_sign(parts[0])
@@ -391,7 +403,7 @@ def _signed(sign: int, node: Node) -> Node:
 
 
 def split_sign(node: Node) -> tuple[int, Node]:
-    """Return the sign in front of a constant, and the constant without it."""
+    """Return the sign of a constant formula, and the formula without it."""
     if node[0] == "neg":
         sign, inner = split_sign(node[1])
         return -sign, inner
@@ -401,7 +413,7 @@ def split_sign(node: Node) -> tuple[int, Node]:
 
 
 def _number_and_rest(weight: Node) -> tuple[Fraction, Node]:
-    """Return a constant formula as a number times the remaining factors."""
+    """Return a constant formula as a number times its other factors."""
     sign, size = split_sign(weight)
     if size[0] == "number":
         return (sign * size[1], ONE) if size[1] else (Fraction(1), size)

@@ -1,8 +1,8 @@
-"""Print the recurrences of a system as C: one function that fills the Taylor coefficients of all states, the jet.
+"""C text of the recurrences of a system: one function computes all Taylor coefficients of all states, the jet.
 
-Two orders are taken together: first the sums over coefficients that are known already, in loops that read each number
-once for both orders and do not wait for one another, then order n and order n + 1 with the terms that hold the newest
-coefficients. Nothing is unrolled over the order, so the code stays small whatever the order is.
+Two orders are computed together. First come the sums over known coefficients, in loops that read each number once for
+both orders; then order n and order n + 1 are completed by the terms with the newest coefficients. No loop over the
+order is unrolled, so that the code stays small whatever the order is.
 
 The text stands between :file:`taylor.h`, which has the operations on four lanes, and :file:`taylor.c`, which steps.
 """
@@ -24,7 +24,7 @@ COLUMNS_PER_LOOP = 4  # two sums each, so that sums and factors stay in 16 regis
 
 
 def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[float], order: int = ORDER) -> str:
-    """Return the C text of a system for :file:`taylor.c`: sizes, tables, constants and the jet.
+    """Return the C text of a system for :file:`taylor.c`: sizes, tables, constants and the function for the jet.
 
     Parameters
     ----------
@@ -64,7 +64,9 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
 
 
 def checked_system(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> Recurrences:
-    """Return the recurrences of a program; arguments and errors as :func:`taylor_definitions`."""
+    """Return the recurrences of a program, after checking the arguments as :func:`taylor_definitions` describes
+    them.
+    """
     if order < 4 or order % 2:
         raise InputError(f"order of the Taylor method: expected an even number from 4 on, got {order}")
     system = recurrences(program)
@@ -82,18 +84,18 @@ def _table(items: Iterable[str]) -> str:
 
 
 def jet_source(layout: Layout, parameters: Sequence[str]) -> str:
-    """Return the C functions ``symrot_constants`` and ``symrot_jet`` of a layout."""
+    """Return the C functions ``symrot_constants`` and ``symrot_jet`` for a layout of series in lanes."""
     return _Jet(layout, parameters).text()
 
 
 class _Jet:
-    """Writes one layout; each pack and each vector of constants has one name."""
+    """Writer of the jet for one layout; each pack of lanes and each vector of constants has one name in C."""
 
     def __init__(self, layout: Layout, parameters: Sequence[str]) -> None:
         self.layout, self.rows, self.parameters = layout, layout.rows, parameters
         self.state_rows, self.own_rows = len(layout.rates), len(layout.states)
         self.constants: dict[tuple[Node, ...], int] = {}
-        self.packs: dict[Pack, int] = {}  # those with coefficients of their own
+        self.packs: dict[Pack, int] = {}  # packs whose coefficients are stored
         self.stored: set[int] = set()  # rows that are not states and whose coefficients are kept
         for column in layout.columns:
             for pack in (column.a, column.b):
@@ -108,7 +110,7 @@ class _Jet:
         return f"c[{self.constants.setdefault(weights, len(self.constants))}]"
 
     def at(self, pack: Pack, n: str) -> str:
-        """Return a pack's coefficient n from memory."""
+        """Return the C expression for coefficient n of a pack of lanes, read from memory."""
         if pack in self.packs:
             return f"k{self.packs[pack]}[{n}]"
         row = f"{self._array(pack[0].row)}[{n}]"
@@ -118,11 +120,11 @@ class _Jet:
         return f"x[{row}]" if row < self.own_rows else f"u{row}"
 
     def newest(self, pack: Pack) -> str:
-        """Return a pack's coefficient of the order in work, from registers."""
+        """Return the C expression for the coefficient of a pack that is being computed, from registers."""
         return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
 
     def picked(self, pack: Pack) -> str:
-        """Return the newest coefficients of some lanes."""
+        """Return the C expression that collects the newest coefficients of several lanes in one vector."""
         rows = sorted({address.row for address in pack})
         if _is_row(pack):
             return f"r{rows[0]}"
@@ -137,7 +139,10 @@ class _Jet:
         return f"V_FLIP({value}, {', '.join('-1' if sign < 0 else '1' for sign in signs)})" if -1 in signs else value
 
     def column(self, index: int, phase: str, sums: str) -> str:
-        """Return coefficient n of a column: the sum over known coefficients and the ends; empty where it is zero."""
+        """Return the C expression for coefficient n of a column, a lane-by-lane convolution; empty if it is zero.
+
+        It is the sum over known coefficients plus the end terms.
+        """
         a, b, ends = self.layout.columns[index]
         known = f"{sums}{index}" if phase == "later" else ""
         if ends == "none":
@@ -158,7 +163,7 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- rows
 
     def sum(self, row: Row, phase: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
-        """Return a row of sums, times a factor. The terms that come last to hand are added last."""
+        """Return the C expression of a row of sums times a factor; terms that are computed last are added last."""
         value = ""
         parts = [(self.picked(term.pack), term.weights) for term in row.terms]
         parts += [(self.slot(slot.columns, phase, sums), slot.weights) for slot in reversed(row.slots)]
@@ -174,7 +179,9 @@ class _Jet:
         return value or "V_ALL(0.0)"
 
     def _rest_of_time(self, row: Row) -> str:
-        """Return the weights of ``t_low``, the low part of the time, in a row of sums, or nothing without time."""
+        """Return the C weights of ``t_low``, the low part of the time, in a row of sums; empty if the time is not in
+        it.
+        """
         weights: list[Node] = []
         for number in row.lanes:
             series = None if number is None else self.layout.series[number]
@@ -184,7 +191,7 @@ class _Jet:
         return self.constant(tuple(weights)) if any(weight != ("number", 0) for weight in weights) else ""
 
     def _weighted(self, weights: tuple[Node, ...], factor: str) -> str:
-        """Return a vector of constants times the factor; empty when both are one."""
+        """Return the C expression of a vector of constants times a factor; empty if both are one."""
         ones = all(weight == ("number", 1) for weight in weights)
         if ones:
             return factor
@@ -192,7 +199,7 @@ class _Jet:
         return f"V_MUL({constant}, {factor})" if factor else constant
 
     def row(self, number: int, n: str, phase: str, sums: str) -> list[str]:
-        """Return the statements that set ``r{number}`` to coefficient n of a row."""
+        """Return the C statements that set ``r{number}`` to coefficient n of a row of four lanes."""
         row, name = self.rows[number], f"r{number}"
         terms = [self.picked(term.pack) for term in row.terms]
         total = self.slot(row.slots[0].columns, phase, sums) if row.slots else ""
@@ -232,7 +239,7 @@ class _Jet:
         return [f"{name} = V_DIV({upper}, {lower});"]
 
     def _quotient(self, row: Row, name: str, phase: str, terms: list[str], total: str) -> list[str]:
-        """Return the statements of ``(u - sum)/v``, where a numerator of one counts in coefficient 0 alone."""
+        """Return the C statements of ``(u - sum)/v``; a numerator of one contributes to coefficient 0 only."""
         divisor, upper = f"d{name[1:]}", "V_ALL(0.0)"
         if len(terms) > 1:
             weights = self._weighted(row.terms[1].weights, "")
@@ -244,7 +251,7 @@ class _Jet:
         return [f"{divisor} = {terms[0]};", f"{name} = V_DIV({upper}, {divisor});"]
 
     def _seed(self, row: Row) -> str:
-        """Return coefficient 0 of a row of functions."""
+        """Return the C expression for coefficient 0 of a row of functions."""
         first = {"driven": 2, "primitive": 3, "root": 0}[row.rule]
         lanes = []
         for series in row.lanes:
@@ -257,7 +264,10 @@ class _Jet:
         return f"V_SET({', '.join(lanes)})"
 
     def _clock_seed(self, row: Row, name: str) -> list[str]:
-        """Return coefficient 0 of functions of ``a t + b``, what rounding of that takes from it put right by slopes."""
+        """Return the C statements for coefficient 0 of functions of ``a t + b``.
+
+        The rounding error of ``a t + b`` is corrected by the slope of the function.
+        """
         series = [self.layout.series[i] for i in row.lanes if i is not None]
         rates = self.constant(tuple(s.weights[0] for s in series))  # type: ignore[misc]
         offsets = self.constant(row.constant) if row.constant and set(row.constant) != {("number", 0)} else ""
@@ -266,15 +276,15 @@ class _Jet:
             if s.weights not in turns:
                 turn = turns[s.weights] = f"turn_{name}_{lane}"
                 a, b = f"V_LANE({rates}, {lane})", f"V_LANE({offsets}, {lane})" if offsets else "0.0"
-                lines.append(f"const symrot_pair {turn} = symrot_pair_turn({a}, {b}, t, t_low);")
+                lines.append(f"const dd {turn} = symrot_pair_turn({a}, {b}, t, t_low);")
             for function in (s.function, self.layout.series[s.operands[0]].function):
-                value = f"const double {_of(function, turns[s.weights])} = {function}({turns[s.weights]}.high);"
+                value = f"const double {_of(function, turns[s.weights])} = {function}({turns[s.weights]}.hi);"
                 lines += [value] if value not in lines else []
         lanes = []
         for s in series:
             turn, partner = turns[s.weights], self.layout.series[s.operands[0]].function
             sign = "-" if s.sign < 0 else "+"
-            lanes.append(f"{_of(s.function, turn)} {sign} {turn}.low*{_of(partner, turn)}")
+            lanes.append(f"{_of(s.function, turn)} {sign} {turn}.lo*{_of(partner, turn)}")
         return [*lines, f"{name} = V_SET({', '.join(lanes)});"]
 
     def _lane_of(self, series: int) -> str:
@@ -282,7 +292,7 @@ class _Jet:
         return f"V_LANE(r{row}, {lane})"
 
     def seeds(self) -> list[str]:
-        """Return the statements that set coefficient 0 of the companions of the states."""
+        """Return the C statements that set coefficient 0 of the auxiliary states."""
         lines: list[str] = []
         formulas = [formula for row in self.layout.seeds for formula in row]
         places = {name: f"V_LANE({self.constant((('symbol', name),) * LANES)}, 0)"
@@ -308,7 +318,9 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, phase: str, sums: str) -> list[str]:
-        """Return the statements of one order: packs and rows as they come to hand, then the next of the states."""
+        """Return the C statements of one order: packs and rows in the order of computation, then the next of the
+        states.
+        """
         lines: list[str] = []
         done, packed = set(range(self.state_rows)), set[Pack]()
 
@@ -337,18 +349,21 @@ class _Jet:
         return lines
 
     def loops(self) -> list[str]:
-        """Return the sums over what is known, for orders n and m = n + 1: a over k + j = n, b over k + j = m."""
+        """Return the C loops over known coefficients for the orders n and m = n + 1.
+
+        Sums a run over k + j = n, sums b over k + j = m.
+        """
         lines: list[str] = []
         columns = self.layout.columns
         loops = -(-len(columns) // COLUMNS_PER_LOOP)
-        for loop in range(loops):  # all of about one length: a column alone would wait for its own sums
+        for loop in range(loops):  # groups of similar size, since a single column would wait for its own sums
             group = range(loop * len(columns) // loops, (loop + 1) * len(columns) // loops)
             for i in group:
                 a, b, _ = columns[i]
                 lines.append(f"symrot_v4 h{i} = {self.at(b, 'n - 1')};")
                 lines.append(f"symrot_v4 a{i} = V_MUL({self.at(a, '1')}, h{i}), b{i} = V_ALL(0.0);")
             lines.append("for (int64_t k = 2; k < n; k += 2) {")
-            for i in group:  # one column after the other: three numbers in work beside the sums
+            for i in group:  # one column after the other needs only three registers besides the sums
                 a, b, _ = columns[i]
                 lines += [
                     f"    const symrot_v4 f{i} = {self.at(a, 'k')}, j{i} = {self.at(b, 'n - k')};",
@@ -363,7 +378,7 @@ class _Jet:
         return lines
 
     def between(self) -> list[str]:
-        """Return the terms of order m that hold coefficient n, which has just been computed."""
+        """Return the C terms of order n + 1 that contain coefficient n, which has just been computed."""
         lines: list[str] = []
         for i, (a, b, _) in enumerate(self.layout.columns):
             one, two = (self.at(a, "1"), self.at(b, "n")), (self.at(a, "n"), self.at(b, "1"))
@@ -418,19 +433,19 @@ class _Jet:
 
 
 def _of(function: str, turn: str) -> str:
-    """Return the name of a function's value."""
+    """Return the C name for the value of a function at a phase."""
     return f"{function}_{turn}"
 
 
 def _calls(node: Node) -> list[Node]:
-    """Return the calls of functions in a formula."""
+    """Return all function calls inside a formula."""
     if node[0] == "call":
         return [node]
     return [call for child in children(node) for call in _calls(child)]
 
 
 def _with_calls(node: Node, calls: Mapping[Node, str]) -> Node:
-    """Return a formula with names in the place of calls."""
+    """Return a formula with its function calls replaced by names."""
     if node in calls:
         return ("symbol", calls[node])
     if node[0] in ("number", "symbol"):

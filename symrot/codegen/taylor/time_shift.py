@@ -1,10 +1,10 @@
-"""Move the clock of a right-hand side, so that a motion can start at 0 on it however far from t = 0 that is.
+"""Right-hand sides with a moved clock, for motions that start far from t = 0.
 
-A double keeps 53 bits of ``a*t + b``: at t = 1e9 s a phase is off by 1e-7 rad, whatever steps. With ``t = epoch + tau``
-every polynomial of t, inside sine, cosine, exp or anywhere, is a polynomial of tau whose coefficients are found once,
-exactly, and rounded once; of what only sine, cosine and tangent see, whole turns are taken away before. Elsewhere
-products stay products of such polynomials of degree one: written out, ``((t - c)/w)**2`` would be a difference of large
-numbers beside a narrow pulse.
+A double holds 53 bits of ``a*t + b``: at t = 1e9 s a phase is off by 1e-7 rad, however short the steps are. With ``t =
+epoch + tau`` every polynomial of t, inside sine, cosine, exp or elsewhere, becomes a polynomial of tau whose
+coefficients are computed exactly once and rounded once. In the arguments of sine, cosine and tangent, whole turns are
+subtracted before. A product of factors of degree one stays a product: multiplied out, ``((t - c)/w)**2`` would be a
+difference of large numbers around a narrow pulse.
 
 Standard library only.
 """
@@ -30,9 +30,9 @@ HIGHEST = 12  # degree of a polynomial that is moved as one
 
 
 def from_epoch(kernel: SceneKernel) -> SceneKernel:
-    """Return the kernel of a scene with rates in which t counts from the epoch, a constant like those of the scene.
+    """Return the kernel of a scene with rates in which t counts from an epoch, a new constant of the scene.
 
-    What the motion keeps is left out where the time stands in it: that would be another time than in the rates.
+    Conserved quantities that depend on the time are left out: their time is not that of the rates.
     """
     rates, parameters = moved(kernel.rates, kernel.rate_parameters)
     timeless = [
@@ -77,11 +77,11 @@ def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tupl
 
 
 class _Form(NamedTuple):
-    """A formula, rewritten; and its terms where it is a polynomial of t with constant coefficients."""
+    """A rewritten formula, with its coefficients if it is a polynomial of t with constant coefficients."""
 
     node: Node | None  # None: of degree one, made from the terms where it is used
     terms: tuple[Node, ...] | None = None
-    centred: bool = False  # whether it is a product of factors such as t - c, which are small near a time of their own
+    centred: bool = False  # whether it is a product of factors such as t - c, each small near its own time
 
 
 class _Mover:
@@ -134,9 +134,10 @@ class _Mover:
         return _Form((kind, *written, *node[2:]) if kind == "**" else (kind, *written), terms, centred)
 
     def gathered(self, node: Node) -> _Form | None:
-        """Return a sum with all of its terms a t + b as one: far from t = 0 their constants may nearly cancel.
+        """Return a sum with all its terms of the form a t + b combined: far from t = 0 their constants may nearly
+        cancel.
 
-        None for a sum of such terms alone, with fewer than two of them, or without the time in them.
+        The result is None if there is nothing to combine: the sum has only such terms, or fewer than two, or no time.
         """
         lines: list[tuple[Node, ...]] = []
         others: list[tuple[bool, _Form]] = []
@@ -164,9 +165,9 @@ class _Mover:
             yield negative, self.read(node)
 
     def written(self, form: _Form, turns: bool = False) -> Node:
-        """Return a form as a formula; a polynomial of t by Horner's rule, its coefficients parameters.
+        """Return a rewritten formula as a formula tree; a polynomial of t is written by Horner's rule.
 
-        ``turns`` says that whole turns of it do not matter.
+        Its coefficients become parameters. ``turns`` says that the value matters only modulo 2 pi.
         """
         whole = turns and form.terms is not None and len(form.terms) > 1 and not form.centred
         if form.node is not None and not whole:
@@ -192,7 +193,7 @@ class _Mover:
         return value
 
     def parameter(self, formula: Node) -> Node:
-        """Return a parameter of that formula."""
+        """Return the symbol of a parameter with the given formula; the parameter is added if it is new."""
         for name, known in (*self.formulas.items(), *self.added):
             if known == formula:
                 return ("symbol", name)
@@ -200,7 +201,7 @@ class _Mover:
         return ("symbol", self.added[-1][0])
 
     def resolved(self, node: Node) -> Node:
-        """Return a formula of parameters as one of the constants that they are made of."""
+        """Return a formula of parameters as a formula of the constants from which the parameters are computed."""
         if node[0] == "symbol":
             return self.formulas[node[1]]
         if node[0] == "number":
@@ -211,12 +212,14 @@ class _Mover:
 
 
 def _is_shifted(form: _Form) -> bool:
-    """Return whether a form is a t + b with b other than zero."""
+    """Return whether a rewritten formula equals a t + b with b other than zero."""
     return form.terms is not None and len(form.terms) == 2 and form.terms[0] != ZERO
 
 
 def _terms(node: Node, parts: list[tuple[Node, ...] | None]) -> tuple[Node, ...] | None:
-    """Return the coefficients of a polynomial in t from those of its operands; None if it is no polynomial."""
+    """Return the coefficients of a polynomial in t, given the coefficients of its operands; None if it is no
+    polynomial.
+    """
     if any(part is None for part in parts):
         return None
     kind, polynomials = node[0], [part for part in parts if part is not None]

@@ -131,7 +131,7 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
         rational, roots = square_root_of_number(content)
     if above == -1 and below == 1 and index == 2:
         roots.append(_imaginary_unit())
-    elif above.is_Rational and above < 0 and index != 2:
+    elif above.is_Rational and index != 2 and above * sign_of(below) < 0:
         raise InputError(f"a root of a negative number is no real number: {node}")
     elif above != 1 or below != 1:
         terms, times = len(Add.make_args(below)), index - 1

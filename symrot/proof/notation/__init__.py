@@ -1,1 +1,1 @@
-"""Translate the formulas of a page: SymPy to LaTeX, LaTeX to MathML, and LaTeX back to SymPy."""
+"""Translations of the formulas on a page: SymPy to LaTeX, LaTeX to MathML, and LaTeX back to SymPy."""

@@ -1,6 +1,6 @@
-"""Read the LaTeX of a page back as mathematics, so that a displayed formula can be proven equal to the derived one.
+r"""Reader of the LaTeX on a page, so that a displayed formula can be proven equal to the derived one.
 
-A page may write a side of an equation as a person would, ``R\\,[\\omega_b]_\\times``, where the derivation has nine
+A page may write a side of an equation as a person would, ``R\,[\omega_b]_\times``, where the derivation has nine
 entries. With the declared meanings of the names on the page, the text is read by the usual rules of notation and proven
 equal to the derived expression. Text that contains a name without a declared meaning raises :class:`Unread`: it is only
 a label.
@@ -34,16 +34,16 @@ UNMARKED = str.maketrans("", "", "{} \t\n\r\f\v")
 
 
 class Unread(InputError):
-    """Raised for text that contains a name without a meaning, or an unsupported notation."""
+    """Signal that LaTeX text contains a name without a meaning, or an unsupported notation."""
 
 
 def key(latex: str) -> str:
-    """Return the key under which a name is looked up: the name without braces and spaces."""
+    """Return the key under which a LaTeX name is looked up: the name without braces and spaces."""
     return latex.translate(UNMARKED)
 
 
 def parts(latex: str) -> list[list[str]]:
-    """Split a text at ``, \\quad`` into equations, and return each as the list of its sides."""
+    r"""Return the equations in a LaTeX text, which are separated by ``, \quad``; each is the list of its sides."""
     equations: list[list[str]] = [[""]]
     depth = 0
     for token, following in pairwise(tokens(latex)):
@@ -189,7 +189,7 @@ class _Interpreter(Cursor):
         return isinstance(item, Script) and item.text == "_" and alone(item.inside).text == "\\times"
 
     def evaluated(self, dot: Node) -> Any:
-        """Read ``\\left. X \\right|_{a = b, ...}``."""
+        r"""Return the value of ``\left. X \right|_{a = b, ...}``, which is X with a replaced by b."""
         value = self.barred(self.sum, "|")
         script = self.script("_")
         if script is None:
@@ -229,7 +229,9 @@ class _Interpreter(Cursor):
         return sqrt(self.value(root.inside))
 
     def font(self, font: Font) -> Any:
-        """Read a name in a font: a function of a matrix, ``\\mathbf{1}``, or a name with a declared meaning."""
+        r"""Return the value of a name in a font: a function of a matrix, ``\mathbf{1}``, or a name with a declared
+        meaning.
+        """
         word, place = _text(font.inside), self.index
         if word == "1":
             return Integer(1)
@@ -334,7 +336,7 @@ def _as_matrix(value: Any) -> Matrix:
 
 
 def _added(left: Any, right: Any) -> Any:
-    """Return a sum; a number added to a matrix means that multiple of the unit matrix."""
+    """Return the sum of two values; a number added to a matrix means that multiple of the unit matrix."""
     if isinstance(left, MatrixBase) != isinstance(right, MatrixBase):
         matrix, scalar = (left, right) if isinstance(left, MatrixBase) else (right, left)
         if scalar == 0:
@@ -344,7 +346,7 @@ def _added(left: Any, right: Any) -> Any:
 
 
 def _multiplied(left: Any, right: Any) -> Any:
-    """Return a product: the matrix product, or the quaternion product for two columns of four."""
+    """Return the product of two values: the matrix product, or the quaternion product for two columns of four."""
     if isinstance(left, MatrixBase) and isinstance(right, MatrixBase) and left.shape == right.shape == (4, 1):
         a, u, b, v = left[0], Matrix(left[1:]), right[0], Matrix(right[1:])
         return Matrix([a * b - u.dot(v), *(a * v + b * u + u.cross(v))])
@@ -359,7 +361,7 @@ def _dotted(left: Any, right: Any) -> Any:
 
 def _crossed(left: Any, right: Any) -> Any:
     if not all(isinstance(side, MatrixBase) and side.shape == (3, 1) for side in (left, right)):
-        raise Unread("a cross product of other than two vectors")
+        raise Unread("a cross product of values that are not vectors of three")
     return Matrix(left).cross(Matrix(right))
 
 
@@ -374,8 +376,8 @@ def _inverted(value: Any) -> Any:
 def _gradient(value: Any, variable: Any) -> Any:
     if isinstance(variable, MatrixBase):
         if isinstance(value, MatrixBase) or not all(entry.is_Symbol for entry in variable):
-            raise Unread("a derivative by a vector")
+            raise Unread("a derivative with respect to a vector")
         return Matrix([diff(value, entry) for entry in variable])
     if not getattr(variable, "is_Symbol", False):
-        raise Unread("a derivative by a formula")
+        raise Unread("a derivative with respect to a formula instead of a symbol")
     return diff(value, variable)

@@ -1,4 +1,4 @@
-"""Translate LaTeX formulas into native MathML: only the part of LaTeX that the pages use.
+"""Translation of LaTeX formulas into native MathML, for the part of LaTeX that the pages use.
 
 The same translation serves HTML and line breaking: a formula becomes a row of items, each with its LaTeX, its MathML,
 an estimate of its width, and whether a line may be broken before it. Unknown LaTeX raises InputError.
@@ -238,7 +238,7 @@ def read(latex: str) -> list[Item]:
 
 
 def rows(latex: str, width: float) -> list[list[Item]]:
-    """Break a formula into lines of a given width where possible: before relations, then before signs."""
+    """Return a formula broken into lines of a given width where possible: before relations, then before signs."""
     return _broken(read(latex), width)
 
 
@@ -257,7 +257,7 @@ def _broken(items: list[Item], width: float) -> list[list[Item]]:
 
 
 def _stacked(items: list[Item]) -> Item:
-    """Return a row as one item; a long sum becomes several lines."""
+    """Return a row of items as one item; a long sum becomes several lines."""
     lines = _broken(items, WIDEST)
     if len(lines) == 1:
         return _joined(items)
@@ -266,7 +266,7 @@ def _stacked(items: list[Item]) -> Item:
 
 
 def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:
-    """Split the items before each item of a kind, and yield the pieces."""
+    """Yield the parts of a row, which is split before each item of a kind."""
     piece: list[Item] = []
     for item in items:
         if item.kind == kind and piece:
@@ -277,7 +277,7 @@ def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:
 
 
 def mathml(latex: str, *, display: bool = False, width: float = WIDEST) -> str:
-    """Return a formula as a ``math`` element; a display that is too wide is broken into lines."""
+    """Return a LaTeX formula as a MathML ``math`` element; a display that is too wide is broken into lines."""
     start = '<math xmlns="http://www.w3.org/1998/Math/MathML"' + (' display="block"' if display else "") + ">"
     lines = rows(latex, width) if display else [read(latex)]
     if len(lines) == 1:

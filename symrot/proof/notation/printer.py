@@ -1,4 +1,4 @@
-"""Print formulas as LaTeX, in the way a person writes them."""
+"""Printer of formulas as LaTeX, in the way a person writes them."""
 
 from typing import Any
 
@@ -42,7 +42,9 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
     _print_tanh = _print_sech = _print_of_angle
 
     def _print_MatrixBase(self, matrix: MatrixBase) -> str:
-        """Print zero as 0, the unit matrix as 1, and a common denominator of all entries in front."""
+        """Return the LaTeX of a matrix: 0 for zero, 1 for the unit matrix, a common denominator of all entries in
+        front.
+        """
         if matrix.is_zero_matrix:
             return "0"
         if matrix.is_square and matrix.is_Identity:
@@ -54,7 +56,7 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
         return rf"{self._print(scale)} {super()._print_MatrixBase(scaled)}"
 
     def _print_Add(self, expr: Expr, order: str | None = None) -> str:
-        """Print a sum with its positive terms first, so that few sums begin with a minus sign."""
+        """Return the LaTeX of a sum with its positive terms first, so that few sums begin with a minus sign."""
         terms = self._as_ordered_terms(expr, order=order)
         terms = sorted(terms, key=lambda term: term.could_extract_minus_sign())  # stable
         text = ""
@@ -70,7 +72,7 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
 
 
 def _common_scale(matrix: MatrixBase) -> Any:
-    """Return 1/D if D is the denominator of every nonzero entry and leaves no fraction inside; otherwise 1."""
+    """Return 1/D if all nonzero entries of a matrix have the denominator D and no fraction inside; otherwise 1."""
     denominators = {entry.as_numer_denom()[1] for entry in matrix if entry != 0}
     if len(denominators) != 1 or len(matrix) < 2:
         return 1

@@ -1,4 +1,4 @@
-"""Extract one step of a derivation as a page, optionally with all rewritings from its left side to its right side."""
+"""One step of a derivation as a page, optionally with all rewritings from its left side to its right side."""
 
 from sympy import MatrixBase, factor
 
@@ -30,7 +30,7 @@ def excerpt(whole: Page, number: int, detail: bool = False) -> Page:
     """
     count = len(whole.steps)
     if not 1 <= number <= count:
-        raise InputError(f"{whole.name} has steps 1 to {count}, got {number}")
+        raise InputError(f"{whole.name}: expected the number of a step from 1 to {count}, got {number}")
     step = whole.steps[number - 1]
     page = Page(whole.name, f"{whole.title}: step {number}", whole.source, first=number, file=whole.file)
     place = next(n for n, item in enumerate(whole.items) if item is step)

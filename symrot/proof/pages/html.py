@@ -1,4 +1,4 @@
-"""Print derivations as HTML: one file, native MathML, no script, no network. Same derivation, same bytes."""
+"""Printer of derivations as HTML: one file, native MathML, no script, no network. Same derivation, same bytes."""
 
 import re
 from collections.abc import Iterator
@@ -77,7 +77,7 @@ def _display(latex: str) -> str:
 
 
 def _raised(prose: str) -> str:
-    """Return units as HTML with their powers as superscripts."""
+    """Return units as HTML with their exponents as superscripts."""
     return re.sub(r"\^(\d)", r"<sup>\1</sup>", prose)
 
 

@@ -1,4 +1,4 @@
-"""Print derivations as complete LaTeX documents. Same derivation, same bytes."""
+"""Printer of derivations as complete LaTeX documents. Same derivation, same bytes."""
 
 import re
 
@@ -53,7 +53,7 @@ def latex_document(page: Page) -> str:
 
 
 def _display(latex: str) -> str:
-    """Return a display formula, broken into lines if it is long."""
+    """Return a displayed formula in LaTeX, broken into lines if it is long."""
     lines = ["".join(item.latex for item in line) for line in rows(latex, WIDTH)]
     if len(lines) == 1:
         return f"\\fitted{{{latex}}}"

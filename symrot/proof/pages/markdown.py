@@ -1,4 +1,4 @@
-"""Print derivations as Markdown for a code-hosting site. Same derivation, same bytes."""
+"""Printer of derivations as Markdown for a code-hosting site. Same derivation, same bytes."""
 
 import re
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Print the parts common to all page formats: equations, the remarks below them, units, and the footer."""
+"""Parts common to all page formats: equations, the remarks below them, units, and the footer."""
 
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -30,7 +30,7 @@ def remarks(step: Step) -> Iterator[str]:
 
 
 def _hypothesis(zero: Expr) -> str:
-    """Return ``P - Q = 0`` as ``P = Q``, with the negative terms moved to the right."""
+    """Return a hypothesis ``P - Q = 0`` as ``P = Q``, with the negative terms moved to the right."""
     terms = zero.expand().as_ordered_terms()
     right = [-term for term in terms if term.could_extract_minus_sign()]
     left = [term for term in terms if not term.could_extract_minus_sign()]

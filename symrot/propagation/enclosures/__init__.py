@@ -1,1 +1,1 @@
-"""How far a step may go: the discs on which a torque's formula is enclosed."""
+"""Proven limits of steps: enclosures of the formulas of torques on discs of the complex plane."""

@@ -1,7 +1,8 @@
-"""How far a step may go, in Python, for SciPy's steppers and for references.
+"""Proven limits of steps, in Python, for SciPy's steppers and as a reference for tests.
 
-The counterpart of :file:`disc.h` and :file:`enclosure.h` for the steppers in C. See
-:mod:`symrot.codegen.enclosure.terms` for the terms that are enclosed, and why.
+A step is limited so that it cannot pass over a feature of a torque's formula. The steppers in C use :file:`disc.h` and
+:file:`enclosure.h` for the same purpose. See :mod:`symrot.codegen.enclosure.terms` for the terms that are enclosed, and
+why.
 """
 
 import math
@@ -16,17 +17,17 @@ from symrot.formula.tree import evaluate
 
 __all__ = ["Deviations", "Disc", "deviations_of", "longest_followed"]
 
-LARGEST_EXPONENT = 700.0  # of e, well within doubles
-LEAST_EXPONENT = -745.0  # what is smaller underflows, and need not be zero
-WEIGHTED = ("clock", "sum")  # rules of series with constants of their own
-SLOWER = 10  # times: how long bounds take disc by disc
-SHRINK = 0.3  # least that a step is shortened to at once
+LARGEST_EXPONENT = 700.0  # exponent of e, well within the range of doubles
+LEAST_EXPONENT = -745.0  # smaller numbers underflow to zero without being zero
+WEIGHTED = ("clock", "sum")  # rules of series that have constants of their own
+SLOWER = 10  # how many times longer bounds take disc by disc
+SHRINK = 0.3  # least factor by which a step is shortened at once
 
 
 class Disc(NamedTuple):
-    """All complex numbers within ``radius`` of a real ``centre``.
+    """Disc of all complex numbers within ``radius`` of a real ``centre``.
 
-    Where numbers over- or underflow, the logarithm of their size, which is at most ``log_size``, says more.
+    Where the numbers themselves over- or underflow, ``log_size`` still bounds the logarithm of their absolute values.
     """
 
     centre: float
@@ -44,7 +45,7 @@ def _product(a: Disc, b: Disc) -> Disc:
 
 
 def _or_infinite(bound: float) -> float:
-    """Return a bound, or infinity in place of not-a-number, which zero times an infinite bound gives."""
+    """Return a bound, or infinity if the bound is not a number (0 times an infinite bound)."""
     return math.inf if math.isnan(bound) else bound
 
 
@@ -73,7 +74,7 @@ def _sqrt(a: Disc) -> Disc:
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
         return Disc(root, a.radius / (root + math.sqrt(a.centre - a.radius)))
-    return Disc(root, root + math.sqrt(abs(a.centre) + a.radius))  # a corner, which the control of errors sees
+    return Disc(root, root + math.sqrt(abs(a.centre) + a.radius))  # a corner, which the error control notices
 
 
 def _exp(a: Disc) -> Disc:
@@ -154,10 +155,10 @@ FUNCTIONS: dict[str, Callable[..., Disc]] = {
 
 
 def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
-    """Return the bounds of an enclosure as one Python function of (t, reach, y, radii, weights, their sizes).
+    """Return the bounds of an enclosure as one Python function of (t, reach, y, radii, weights, sizes of weights).
 
-    It leaves out the logarithms of sizes, which matter only where a bound is infinite or not a number: there its result
-    is useless, elsewhere it equals the result of the discs and takes much less time.
+    The function omits the logarithms of sizes, which only matter where a bound is infinite or not a number. There the
+    caller uses the slow bounds instead; elsewhere the results are equal and take much less time.
     """
     lines, place = ["def bounds(t, reach, y, radii, w, a):"], 0
     for number in enclosure.series:
@@ -199,13 +200,13 @@ def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
 
 
 class Deviations:
-    """How far the enclosed terms of each rate deviate from a constant on discs.
+    """Bounds of the deviation of each rate from a constant, when time and states vary within discs.
 
     Parameters
     ----------
     enclosure : Enclosure
     parameters : mapping of str to number
-        Of the right-hand side, by name.
+        Parameters of the right-hand side, by name.
     bounds : function, optional
         The enclosure as one function, where it is known.
     """
@@ -214,8 +215,8 @@ class Deviations:
         self, enclosure: Enclosure, parameters: Mapping[str, float], bounds: Callable[..., list[float]] | None = None
     ) -> None:
         self.enclosure, self._bounds = enclosure, bounds or _one_function(enclosure)
-        self.likely = 0  # number of the reach that proved the last step
-        self.spent = 0  # evaluations, by time
+        self.likely = 0  # index of the reach (radius in time) that proved the last step
+        self.spent = 0  # evaluations so far, slow ones counted by the time they take
 
         def number(node: Any) -> float:
             return float(evaluate(node, parameters, FLOAT_FUNCTIONS, float))
@@ -229,7 +230,9 @@ class Deviations:
         self._sizes = [abs(weight) for weight in self._listed]
 
     def __call__(self, t: float, reach: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return the bounds for times within ``reach`` of t and states within ``radii`` of y: infinite at poles."""
+        """Return the bounds of the rates for times within ``reach`` of t and states within ``radii`` of y; infinite at
+        poles.
+        """
         self.spent += 1
         try:
             bounds = self._bounds(t, reach, y, radii, self._listed, self._sizes)
@@ -240,7 +243,9 @@ class Deviations:
         return self.slowly(t, reach, y, radii)
 
     def slowly(self, t: float, reach: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return the bounds disc by disc, with the logarithms of sizes that over- and underflow."""
+        """Return the same bounds as a call, disc by disc, where numbers over- or underflow and logarithms are
+        needed.
+        """
         self.spent += SLOWER
         discs: dict[int, Disc] = {}
         try:
@@ -276,7 +281,7 @@ class Deviations:
 
 
 def deviations_of(enclosure: Enclosure) -> Callable[[Mapping[str, float]], Deviations]:
-    """Return a function from parameters to deviations; the function of the enclosure is compiled once."""
+    """Return a function from parameters to :class:`Deviations`; the enclosure is compiled to Python code once."""
     bounds = _one_function(enclosure)
     return lambda parameters: Deviations(enclosure, parameters, bounds)
 
@@ -291,7 +296,8 @@ def longest_followed(
     edges: Sequence[int],
     order: int,
 ) -> float:
-    """Return the longest step of at most h that is proven to miss no more than is allowed; see :file:`enclosure.h`.
+    """Return the longest step of at most h that provably misses no more than the allowed error; see
+    :file:`enclosure.h`.
 
     Parameters
     ----------
@@ -304,10 +310,10 @@ def longest_followed(
     edges : sequence of int
         Edges of the blocks.
     order : int
-        To which the states are followed.
+        Order of the polynomials.
     """
     length, reaches = h, REACHES[order < LOW_ORDER]
-    likely = getattr(deviations, "likely", 0)  # the reach that proved the last step, which most often proves the next
+    likely = getattr(deviations, "likely", 0)  # the reach that proved the last step most often proves the next one
     in_turn = [likely, *(k for k in range(len(reaches)) if k != likely)]
     while abs(length) > 1e-300:
         least = math.inf

@@ -1,1 +1,1 @@
-"""Events: the times at which a formula of the motion is zero."""
+"""Events: the times at which a formula of time and states becomes zero along a motion."""

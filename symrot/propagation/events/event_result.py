@@ -1,4 +1,4 @@
-"""Motions with events: the times of the events, the states there, and the samples up to a terminal event."""
+"""Results of a motion with events: times of the events, states at these times, and samples up to a terminal event."""
 
 from collections.abc import Callable, Generator, Sequence
 from time import perf_counter
@@ -29,23 +29,23 @@ __all__ = ["EventResult", "integrate_with_events"]
 
 Floats = NDArray[np.float64]
 
-TURN_PER_PIECE = 2.0  # rad: how far a motion without steps rotates in the first pieces that are fitted
-SAMPLES_OF_RATE = 257  # by which the largest rate of such a motion is judged
+TURN_PER_PIECE = 2.0  # rad: rotation in each of the first pieces into which a motion without steps is cut
+SAMPLES_OF_RATE = 257  # samples from which the largest rate of such a motion is estimated
 
 
 class EventResult(NamedTuple):
-    """A motion with events.
+    """Samples of a motion together with its events.
 
     Attributes
     ----------
     t, states : arrays, shapes (n,) and (n, N)
-        Samples at the requested times; a single sample at a terminal event replaces all samples beyond it.
+        Samples at the requested times; one sample at a terminal event replaces all samples beyond it.
     t_events, y_events : lists of arrays, shapes (k,) and (k, N)
-        Per event, in rising order of time: when it happened, and the states there.
+        Per event, in rising order of time: its times, and the states at these times.
     kinds : list of lists of str
-        Per event: ``"rising"``, ``"falling"`` or ``"touching"``, as the motion goes away from its start.
+        Per event: ``"rising"``, ``"falling"`` or ``"touching"``, seen along the motion away from its start.
     ended : bool
-        Whether a terminal event ended the motion, on either side.
+        Whether a terminal event ended the motion, on either side of the start.
     """
 
     t: Floats
@@ -58,7 +58,7 @@ class EventResult(NamedTuple):
 
 
 class _Side(NamedTuple):
-    """A motion to one side of its start: its pieces as polynomials, and its states at times on that side."""
+    """The motion on one side of its start (later or earlier times): its polynomials, and its states at given times."""
 
     pieces: Generator[Piece, None, None]
     states: Callable[[Floats], Floats]
@@ -68,7 +68,7 @@ class _Side(NamedTuple):
 
 
 def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]) -> EventResult:
-    """Return a motion at its sample times with the events on the way from the start to the first and last of them.
+    """Return the samples of a motion at the times, with all events between the start and the first and last of them.
 
     Raises
     ------
@@ -82,8 +82,8 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
     began, plan = perf_counter(), motion.plan
     if uses_attitude(events) and not plan.structure.attitude:
         raise InputError(
-            "events: the attitude is not computed, since neither a torque nor the output of the scene asks for it: "
-            'expected "quaternion" among output.quantities'
+            "events: the attitude is not computed, since neither a torque nor the output of the scene needs it: "
+            'add "quaternion" to output.quantities'
         )
     if not plan.states:
         raise InputError(f"events: expected a motion with states that change, got the scene {plan.scene.name!r}")
@@ -115,7 +115,7 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
         states[inside] = side.states(times[inside])
         rows = side.states(np.array([each.t for each in listed]))
         if stop is not None and times[inside[-1:]].tolist() != [stop]:
-            last = part[len(inside)]  # the first sample beyond becomes the one at the event
+            last = part[len(inside)]  # the first sample beyond the event is moved to the event
             known[last], sample_times[last], states[last] = True, stop + zero, rows[-1]
         zeros = _joined(zeros, list(zip(listed, rows, strict=True)), motion.start)
         side.pieces.close()
@@ -138,7 +138,10 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
 def _joined(
     before: list[tuple[EventZero, Floats]], after: list[tuple[EventZero, Floats]], t0: float
 ) -> list[tuple[EventZero, Floats]]:
-    """Join the zeros of both sides of a motion; a zero at the start counts once, as a touch if both sides agree."""
+    """Return the zeros of a motion before and after its start as one list.
+
+    A zero at the start itself counts once; it is a touch if the formula has the same sign before and after.
+    """
     at_start = {each.event: each for each, _ in before if each.t == t0}
     joined = [
         pair for pair in before if pair[0].t != t0 or pair[0].event not in {e.event for e, _ in after if e.t == t0}
@@ -150,7 +153,7 @@ def _joined(
 
 
 def _side(motion: Motion, end: float) -> _Side:
-    """Return the motion from its start to an end."""
+    """Return the motion from its start to the time ``end``, as polynomials and as states."""
     plan = motion.plan
     start, y0 = motion.start, np.array(plan.initial_state, dtype=np.float64)
     broken: list[PropagationError] = []

@@ -1,10 +1,10 @@
-"""Events: the times at which a formula of the motion is zero, all of them, located to the last bits.
+"""Events: all times at which a formula of the motion is zero, located to the last bits.
 
-An event is a formula in t, omega_1..3, q0..q3, or an equation between two. It is read by the safe reader, printed as C
-together with a bound of its rounding errors and with enclosures of its values, and searched along the polynomials of a
-motion (:file:`events.c`). The search distinguishes sign changes from touches and locates both, however close together
-and even several in one step; it does not sample, so that it misses no zero. Poles, jumps past zero and zeros at the
-edge of the domain of a formula are no events.
+An event is a formula in t, omega_1..3, q0..q3, or an equation between two formulas. It is read by the safe reader and
+printed as C together with a bound of its rounding errors and with enclosures of its values. The search runs along the
+polynomials of a motion (:file:`events.c`). It distinguishes sign changes from touches and locates both, however close
+together and even several in one step; it does not sample, so that it misses no zero. Poles, jumps past zero and zeros
+at the edge of the domain of a formula are no events.
 """
 
 import ctypes
@@ -40,12 +40,12 @@ __all__ = [
 Floats = NDArray[np.float64]
 ATTITUDE = frozenset(f"q{i}" for i in range(4))
 KNOWN = {"t", "omega_1", "omega_2", "omega_3", *ATTITUDE}
-NEAR = 64 * float(np.finfo(float).eps)  # of the time: entries so close are one
-FIELDS = 5  # of an entry in events.c
+NEAR = 64 * float(np.finfo(float).eps)  # relative distance in time below which two entries are joined
+FIELDS = 5  # numbers in one entry of events.c
 ROOM = 1024  # entries per call
-LONG = 1e-3  # of the motion: a formula that stays zero for longer, up to an end, has no event there
-OPERATIONS_PER_CALL = 5e6  # some 20 ms, after which Python can see an interrupt
-MOST_OPERATIONS, OPERATIONS_PER_ROW = 4e9, 2e5  # of a search; each row of a motion earns more
+LONG = 1e-3  # part of the motion: a formula that stays zero for longer, up to an end, has no event there
+OPERATIONS_PER_CALL = 5e6  # operations in some 20 ms, after which Python can react to an interrupt
+MOST_OPERATIONS, OPERATIONS_PER_ROW = 4e9, 2e5  # operations allowed for a search; each row of a motion adds to them
 MOST_ENTRIES = 500_000
 
 
@@ -77,14 +77,17 @@ class Event(NamedTuple):
 
     @property
     def node(self) -> Node:
-        """The formula as a tree."""
+        """The formula as a tree of operations."""
         left, equals, right = self.formula.partition("==")
         node = parse(left, "event")
         return ("-", node, parse(right, "event")) if equals else node
 
 
 class EventZero(NamedTuple):
-    """One zero: which event, when, and ``"rising"``, ``"falling"`` or ``"touching"``."""
+    """One zero of an event's formula: the number of the event, the time, s, and the kind of zero.
+
+    The kind is ``"rising"``, ``"falling"`` or ``"touching"``.
+    """
 
     event: int
     t: float
@@ -92,12 +95,12 @@ class EventZero(NamedTuple):
 
 
 def read_events(events: Any) -> tuple[Event, ...]:
-    """Return events from formulas as text, from :class:`Event`, or from mappings with its fields.
+    """Return events from formulas as text, from :class:`Event`, or from mappings with the fields of an Event.
 
     Raises
     ------
     InputError
-        For anything else, and for names that a motion does not have.
+        If an entry has another form, or a formula contains a name that a motion does not have.
     """
     if isinstance(events, str | Event) or hasattr(events, "keys"):
         events = [events]
@@ -142,12 +145,12 @@ def _checked(event: Event, where: str) -> Event:
 
 
 def uses_attitude(events: Iterable[Event]) -> bool:
-    """Return whether some event needs the attitude."""
+    """Return whether the formula of some event contains the attitude."""
     return any(names(event.node) & ATTITUDE for event in events)
 
 
 def timed(quantities: Program, events: Iterable[Event]) -> bool:
-    """Return whether an event depends on the time, directly or through the quantities in it."""
+    """Return whether some event depends on the time, directly or through the quantities in its formula."""
     used = set().union(*(names(event.node) for event in events))
     return "t" in used or quantities.uses("t", tuple(f"{name} of t" for name in used))
 
@@ -155,14 +158,20 @@ def timed(quantities: Program, events: Iterable[Event]) -> bool:
 def event_library_source(
     quantities: Program, events: Sequence[Event], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
 ) -> str:
-    """Return the C source of a library that finds events; it takes the parameters of the quantities."""
+    """Return the C source of a library that finds the events of a motion.
+
+    Its functions take the parameters of the kernel ``quantities``, which computes the quantities in the formulas.
+    """
     return guard_library_source(quantities, [_with_pi(event.node) for event in events], states, edges, scales)
 
 
 def guard_library_source(
     quantities: Program, formulas: Sequence[Node], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
 ) -> str:
-    """Return the C source of a library that finds zeros of formulas in t, omega, q and parameters of the quantities."""
+    """Return the C source of a library that finds the zeros of formulas (guards of switches) along a motion.
+
+    The formulas contain t, omega, q and parameters of ``quantities``.
+    """
     from symrot.codegen.printing.event_source import event_definitions
 
     columns = {name: f"{name} of t" for name in KNOWN if name != "t"}
@@ -174,7 +183,7 @@ def guard_library_source(
 
 
 def _with_pi(node: Node) -> Node:
-    """Return a formula with pi as a number, of 33 digits."""
+    """Return a formula with the name pi replaced by its value, to 33 digits."""
     if node[0] == "symbol":
         return ("number", number.PI) if node[1] == "pi" else node
     if node[0] == "call":
@@ -183,7 +192,7 @@ def _with_pi(node: Node) -> Node:
 
 
 class _Library:
-    """A loaded library of :func:`event_library_source`."""
+    """A loaded library that finds events, built from :func:`event_library_source`."""
 
     def __init__(self, path: str) -> None:
         library: Any = ctypes.CDLL(path)
@@ -206,17 +215,17 @@ _library = cache(_Library)
 
 
 class _Search:
-    """A search along one motion: its state in C, and the number of operations so far."""
+    """State of a search for events along one motion: its state in C, and the number of operations so far."""
 
     def __init__(self, path: Path | str, p: Sequence[float], formulas: Sequence[str]) -> None:
         self.library, self.formulas = _library(str(path)), formulas
         self.p = (ctypes.c_double * len(p))(*p)
         self.state = ctypes.create_string_buffer(self.library.bytes)
-        self.arrived: set[tuple[int, float]] = set()  # events that reach zero at an edge between pieces, and the time
+        self.arrived: set[tuple[int, float]] = set()  # events that are zero at an edge, and its time
         self.again, self.spent, self.allowed = False, 0.0, MOST_OPERATIONS
 
     def entries(self, piece: Piece) -> list[list[float]]:
-        """Return the entries of a piece, see :file:`events.c`.
+        """Return the candidates for zeros in a piece of the motion, as the rows that :file:`events.c` describes.
 
         Raises
         ------
@@ -244,18 +253,20 @@ class _Search:
                 t = float(edges[min(answer[2], count)])
                 formulas = ", ".join(map(repr, self.formulas))
                 raise PropagationError(
-                    f"events: expected formulas whose zeros can be told apart, but beyond t = {t!r} s the zeros of "
+                    f"events: expected formulas whose zeros can be separated, but beyond t = {t!r} s the zeros of "
                     f"{formulas} are not settled after {self.spent:.1g} operations and {len(listed)} entries"
                 )
         return listed
 
     def terms(self, rows: Floats) -> int:
-        """Return the number of terms of the polynomials in rows."""
+        """Return the number of coefficients of each polynomial in the rows of a motion."""
         count: int = (rows.shape[1] - HEAD) // self.library.states
         return count
 
     def sign(self, event: int, t: float, piece: Piece) -> int:
-        """Return the sign of an event at a time of a piece, 0 within its rounding errors."""
+        """Return the sign of an event's formula at a time inside a piece; 0 if the value is smaller than its rounding
+        error.
+        """
         edges, side = piece.edges, 1.0 if piece.edges[-1] >= piece.edges[0] else -1.0
         place = int(np.searchsorted(side * edges, side * t, "left")) - 1
         row = np.ascontiguousarray(piece.rows[min(max(place, 0), len(piece.rows) - 1)])
@@ -266,9 +277,10 @@ class _Search:
 def search(
     path: Path | str, events: Sequence[Event], p: Sequence[float], pieces: Iterable[Piece], t0: float
 ) -> tuple[list[EventZero], float | None]:
-    """Return the zeros along a motion in its order, and the time of the terminal event or None.
+    """Return the zeros of events along a motion, in its order, and the time of the terminal event or None.
 
-    A zero at t0 itself is listed, with the sign it takes on after it, but ends no motion.
+    A zero at the start ``t0`` is listed too, with the sign that the formula takes after it, but does not end the
+    motion.
 
     Parameters
     ----------
@@ -313,7 +325,10 @@ def search(
 def signs_at_ends(
     path: Path | str, formulas: Sequence[str], p: Sequence[float], piece: Piece
 ) -> tuple[list[int], list[int]]:
-    """Return the signs that formulas have from the start of a piece on, and at its end; 0 within rounding of zero."""
+    """Return the signs of formulas just after the start of a piece, and at its end.
+
+    A sign is 0 if the value is smaller than its rounding error.
+    """
     searcher, numbers = _Search(path, p, formulas), range(len(formulas))
     last = float(piece.edges[-1])
     return [_first_sign(searcher, number, piece) for number in numbers], [
@@ -322,7 +337,10 @@ def signs_at_ends(
 
 
 def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
-    """Return the sign of a formula after the start of a piece: the first beyond rounding that repeats twice as far."""
+    """Return the sign of a formula just after the start of a piece.
+
+    It is the first sign that exceeds rounding and is found again at twice the distance from the start.
+    """
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(first), abs(last - first)), 1.0 if last >= first else -1.0
     before = 0
@@ -336,7 +354,10 @@ def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
 
 
 def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]], list[list[float]]]:
-    """Return entries after joining adjacent ones, and separately the entries that reach the last edge."""
+    """Return entries with adjacent ones joined, and separately the entries that reach the last edge of a piece.
+
+    An entry is a candidate for a zero: an interval of time.
+    """
     whole: list[list[float]] = []
     open_ones: dict[float, list[float]] = {}
     side = 1.0 if not entries or last >= min(entry[1] for entry in entries) else -1.0
@@ -358,7 +379,7 @@ def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]],
 
 
 def _sign_before_end(searcher: _Search, event: int, piece: Piece) -> int:
-    """Return the last sign of an event before the end of a piece that exceeds rounding."""
+    """Return the last sign of an event's formula, before the end of a piece, that exceeds its rounding error."""
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(last), abs(last - first)), 1.0 if last >= first else -1.0
     while width < abs(last - first):
@@ -373,12 +394,14 @@ def _settled(
     searcher: _Search, piece: Piece, events: Sequence[Event], entries: list[list[float]], t0: float, left: list[int],
     zeros: list[EventZero],
 ) -> float | None:  # fmt: skip
-    """Add the zeros of entries, in the order of the motion; return the time of a terminal event, or None."""
+    """Add the zeros proven by entries to ``zeros``, in the order of the motion; return the time of a terminal event, or
+    None.
+    """
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     side = 1.0 if last >= first else -1.0
 
     def sign(event: int, t: float, end: float, step: float) -> int:
-        """Return the first sign away from a zero that exceeds rounding."""
+        """Return the first sign of the formula, in steps away from a zero, that exceeds its rounding error."""
         width = 4 * NEAR * max(abs(t), abs(last - first))
         while width < abs(end - t):
             value = searcher.sign(event, t + step * width, piece)
@@ -392,12 +415,12 @@ def _settled(
         before = before or (0 if at_start else sign(event, start, first, -side))
         after = after or sign(event, end, last, side)
         if not before and not after:
-            continue  # zero throughout: no event
+            continue  # the formula is zero throughout: no event
         rests = abs(end - start) > LONG * abs(last - t0)
-        arrived = bool(before) and (event, start) in searcher.arrived  # and stays, as a wheel that friction stops
+        arrived = bool(before) and (event, start) in searcher.arrived  # the formula stays zero
         near = 4 * NEAR * max(abs(start), abs(last - t0))
         if arrived and any(each.event == event and abs(each.t - start) <= near for each in zeros):
-            continue  # it was seen to cross within rounding of the edge
+            continue  # the crossing was already listed, within rounding of the edge
         if not (before and after) and rests and not arrived:
             continue  # zero up to the end of the known motion: no crossing
         if rests and arrived:
@@ -417,9 +440,9 @@ def _settled(
 def stepped(
     integration: Integration, end: float, broken: list[PropagationError], records: list[Floats]
 ) -> Generator[Piece, None, None]:
-    """Yield the steps of an integration from its start to an end, as they are made.
+    """Yield the polynomials of an integration from its start to ``end``, step by step, while the steps are made.
 
-    The recorded steps are added to ``records``; an error that ends the motion early, to ``broken``.
+    The recorded steps are appended to ``records``. An error that ends the motion early is appended to ``broken``.
     """
     room = integration.stepper.rows_per_call
     with closing(integration.runs(end)) as runs:

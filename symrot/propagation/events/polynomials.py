@@ -1,9 +1,10 @@
-"""Motions as polynomials in time, piece by piece: the input of searches along a motion, whatever computed it.
+"""Motions as polynomials in time, piece by piece, for searches along a motion, whatever method computed it.
 
 A row holds the states over one piece, in the layout of the steps of :file:`taylor.c`: t, h, the low part of t, a unit
-of time, then coefficient 0 of all N states, coefficient 1, and so on; powers of ``(time - t)/unit``. Taylor's steps are
-such rows; steps of Dormand and Prince's dense output are converted to rows exactly, up to rounding; any other function
-of time is interpolated at Chebyshev points, on pieces that are halved until the polynomial has converged to rounding.
+of time, then coefficient 0 of all N states, coefficient 1, and so on, of powers of ``(time - t)/unit``. Steps of the
+Taylor stepper are such rows. Steps of Dormand and Prince's dense output are converted to rows, exact up to rounding.
+Any other function of time is interpolated at Chebyshev points, on pieces that are halved until the polynomial has
+converged to rounding.
 """
 
 import math
@@ -22,24 +23,27 @@ __all__ = ["HEAD", "Piece", "fitted", "fitted_pieces", "rows_of"]
 Floats = NDArray[np.float64]
 
 HEAD = 4  # numbers before the coefficients of a row
-POINTS = 21  # of a fit, whose degree is one less
+POINTS = 21  # coefficients of a fit, whose degree is one less
 EPS = float(np.finfo(float).eps)
-NOISE = 16.0  # units in the last place: assumed error of the samples of a motion
+NOISE = 16.0  # units in the last place: assumed error of a motion's samples
 ROUGH = 1e-9  # relative: a fit that is off by more does not follow the motion
-SURE, HALVINGS = 6, 40  # of a piece: after the first number, ROUGH is enough; the second is the most
-MOST_PIECES = 20_000  # that one call may cut the motion into, beyond the edges it was given
+SURE, HALVINGS = 6, 40  # halvings of a piece: after the first number, accuracy ROUGH is enough; the second is the limit
+MOST_PIECES = 20_000  # pieces that one call may add by cutting the motion
 FEWEST, MOST = 16, 1024  # pieces fitted at a time
 
 
 class Piece(NamedTuple):
-    """Consecutive rows: row i holds from edge i to edge i + 1, s, in the order of the motion."""
+    """Part of a motion as consecutive polynomials, in the order of the motion.
+
+    Row i of the coefficients holds from the time of edge i to that of edge i + 1, s.
+    """
 
     edges: Floats
     rows: Floats
 
 
 def rows_of(stepper: Any, record: Floats) -> Floats:
-    """Return the recorded steps of a stepper, of Taylor or DOP853, as rows."""
+    """Return the recorded steps of a stepper (Taylor or DOP853) as rows of polynomial coefficients."""
     if stepper.name == "taylor":
         return record
     count = len(record)
@@ -53,7 +57,10 @@ def rows_of(stepper: Any, record: Floats) -> Floats:
 
 @cache
 def _nested(terms: int) -> Floats:
-    """Return the matrix from coefficients of s, s r, s^2 r, s^2 r^2, ... with r = 1 - s to those of 1, s, s^2, ..."""
+    """Return the matrix that converts dense-output coefficients to powers of s.
+
+    Dense output uses s, s r, s^2 r, s^2 r^2, ... with r = 1 - s.
+    """
     matrix = np.zeros((terms, terms))
     power = np.zeros(terms)
     power[0] = 1.0
@@ -67,7 +74,9 @@ def _nested(terms: int) -> Floats:
 
 @cache
 def _chebyshev() -> tuple[Floats, Floats, Floats]:
-    """Return points on [-1, 1], the matrix from values there to Chebyshev coefficients, and from these to powers."""
+    """Return Chebyshev points on [-1, 1], and two matrices: from values there to Chebyshev coefficients, from these to
+    powers.
+    """
     from numpy.polynomial import chebyshev
 
     angles = (np.arange(POINTS) + 0.5) * (math.pi / POINTS)
@@ -79,14 +88,16 @@ def _chebyshev() -> tuple[Floats, Floats, Floats]:
     return np.cos(angles), to_series, to_powers
 
 
-CHECKS = np.array([-1.0, -0.9037, -0.1618, 0.6543, 1.0])  # on [-1, 1]: where a fit is compared with the motion
+CHECKS = np.array([-1.0, -0.9037, -0.1618, 0.6543, 1.0])  # points on [-1, 1] at which a fit is compared with the motion
 
 
 def fitted(
     states: Callable[[Floats], Floats], edges: Floats, blocks: Sequence[int], scales: Sequence[float], depth: int = 0,
     left: list[int] | None = None, accuracy: float | Floats = 0.0,
 ) -> Piece:  # fmt: skip
-    """Return polynomials that follow a motion to rounding between edges; edges are added where one polynomial cannot.
+    """Return polynomials that follow a motion, to rounding, between given edges.
+
+    Where one polynomial cannot follow the motion, the piece is halved and an edge is added.
 
     Parameters
     ----------
@@ -111,7 +122,7 @@ def fitted(
     left[0] -= len(edges) - 1
     if left[0] < 0:
         raise PropagationError(
-            f"expected a motion that polynomials can follow, but {MOST_PIECES} were not enough near "
+            f"expected a motion that polynomials can follow, but {MOST_PIECES} pieces were not enough near "
             f"t = {float(edges[0])!r} s"
         )
     points, to_series, to_powers = _chebyshev()
@@ -129,8 +140,8 @@ def fitted(
     if depth == 0:
         accuracy = accuracy * size.max(axis=0)
     rate = np.abs(values[:, :, : blocks[1]]).max(axis=(1, 2)) if scales[0] == 0.0 else np.zeros(len(half))
-    doubt = EPS * (NOISE + rate * np.abs(times).max(axis=1))[:, None] * size  # a phase is as good as the time
-    series[np.abs(series) < 0.25 * EPS * size[:, None, :]] = 0.0  # a remainder of rounding would grow outside
+    doubt = EPS * (NOISE + rate * np.abs(times).max(axis=1))[:, None] * size  # a phase is as inaccurate as the time
+    series[np.abs(series) < 0.25 * EPS * size[:, None, :]] = 0.0  # rounding errors would grow outside
     powers = np.einsum("mk,nki->nmi", to_powers, series)
     slope = np.abs(powers[:, 1]) / np.abs(half)[:, None]
     doubt = doubt + EPS * np.abs(times).max(axis=1)[:, None] * slope  # the time itself is rounded
@@ -174,7 +185,7 @@ def fitted_pieces(
     blocks: Sequence[int],
     scales: Sequence[float],
 ) -> Generator[Piece, None, None]:
-    """Yield a motion that has no steps as polynomials, in pieces as long as possible, see :func:`fitted`.
+    """Yield polynomials that follow a motion without steps, in pieces as long as possible; see :func:`fitted`.
 
     ``longest``, s, is a first guess of the length of a piece.
     """

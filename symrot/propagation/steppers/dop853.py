@@ -3,7 +3,7 @@
 A library holds one kernel and the stepper compiled together (:func:`translation_unit`). An :func:`integration` follows
 a motion through sample times, or records every step so that the states are known at any time later.
 
-Tolerance: the promise is about the trajectory, not about one step, see :func:`step_tolerance`.
+Tolerance: it limits the error of the whole trajectory, not of one step, see :func:`step_tolerance`.
 
 Time: a double holds 53 bits of ``a*t``, so that phases of a torque lose digits as the time grows. That costs accuracy,
 and also steps, since the step control sees rounding errors as a rough torque. A kernel whose clock can be moved (a
@@ -37,16 +37,16 @@ from symrot.propagation.steppers.stepping import (
 
 __all__ = ["DENSE_ORDER", "MAX_STEPS", "NO_ENCLOSURE", "Clock", "integration", "step_tolerance", "translation_unit"]
 
-STEP_SHARE, NATURAL_TIMES = 0.14, 0.16  # of the tolerance; of the span, see step_tolerance
-TERMS = 8  # of the dense output
-DENSE_ORDER = 7  # of the error of the dense output
+STEP_SHARE, NATURAL_TIMES = 0.14, 0.16  # fractions of the tolerance and of the span, see step_tolerance
+TERMS = 8  # coefficients of the dense output
+DENSE_ORDER = 7  # order of the error of the dense output
 NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n#define SYMROT_DEPENDS 0\n"
-ENCLOSURE = "/* ENCLOSURE */\n"  # where dop853.c takes enclosure.h
-ROUGH = "#define SYMROT_ROUGH\n"  # corners, such as a root at zero, are left to the error control: see disc.h
-MIDDLE_REACH = 3  # of the discs of symrot.codegen.enclosure.terms.REACHES: the one to begin with
+ENCLOSURE = "/* ENCLOSURE */\n"  # line of dop853.c that is replaced by enclosure.h
+ROUGH = "#define SYMROT_ROUGH\n"  # the error control handles corners, such as a root at zero: see disc.h
+MIDDLE_REACH = 3  # index of the first disc to try in symrot.codegen.enclosure.terms.REACHES
 
 Clock = Callable[[float], tuple[PathLike, Sequence[float]]]
-"""A function from an epoch, s, to the library of a kernel that counts time from the epoch, and its parameters."""
+"""Function from an epoch, s, to the library of a kernel that counts time from the epoch, and its parameters."""
 
 WINDOW = 2048
 FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
@@ -55,11 +55,12 @@ per cent of the time. Phase errors are alike in all windows and add up: with 819
 
 
 def step_tolerance(tolerance: float) -> tuple[float, float]:
-    """Return the error allowed in one step, and the fraction of the span that earns a step all of it.
+    """Return the error allowed in one step, and the fraction of the span from which on a step may use all of it.
 
     A shorter step is allowed a share in proportion. Steps are about ``tolerance^(1/8)`` times as long as the motion's
-    natural time, so that by the second number the allowance depends on the natural times in the span, not on the number
-    of steps: the error at the end then hardly depends on tolerance or span, except where the motion amplifies errors.
+    natural time. With the fraction chosen here, the allowed error depends on the number of natural times in the span,
+    not on the number of steps: the error at the end then hardly depends on tolerance or span, except where the motion
+    amplifies errors.
 
     Both constants are calibrated on free asymmetric bodies, through flips about the intermediate axis too, and on heavy
     tops, against 40-digit references (``tests/propagation/test_dop853.py``): errors stay below 5 times the tolerance.
@@ -131,7 +132,7 @@ def integration(
     breaks: Sequence[float] = (),
     clock: Clock | None = None,
 ) -> Integration:
-    """Return the integration of a motion, to be sampled or recorded; its input is checked.
+    """Return the integration of one motion, ready to be sampled or recorded; the arguments are checked.
 
     Parameters
     ----------
@@ -148,7 +149,7 @@ def integration(
     max_steps : int
         Most steps to try before giving up.
     breaks : sequence of float
-        Times at which the kernel jumps; the motion is stepped exactly to each and restarted behind it.
+        Times at which the rates jump; the motion is stepped exactly to each and restarted behind it.
     clock : function, optional
         The clock of the kernel, if it can be moved.
 
@@ -163,14 +164,14 @@ def integration(
 
 
 class _Clocked(Integration):
-    """An integration whose kernel counts time from an epoch that moves along with the motion."""
+    """Integration with a kernel that counts time from an epoch; the epoch moves along with the motion."""
 
     def __init__(self, clock: Clock, *arguments: Any) -> None:
         super().__init__(*arguments)
         self._clock = clock
 
     def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
-        """Return the function that continues a run, after moving the clock if it has run too far."""
+        """Return the function that continues a run, after moving the epoch if the run is far from it."""
         tried = self.stepper.tried(run)
         window = run.window
         if window is None:
@@ -186,7 +187,7 @@ class _Clocked(Integration):
 
 
 class _Stepper(Stepper):
-    """A library of :func:`translation_unit`."""
+    """A loaded library of :func:`translation_unit`: kernel and DOP853 stepper."""
 
     name = "dop853"
     reals = ("t", "h", "growth", "stop", "first", "last", "tolerance", "pace", "max_step", "proven", "epoch", "far")

@@ -1,9 +1,9 @@
-"""The SciPy fallback: any method of ``scipy.integrate.solve_ivp``.
+"""SciPy as a fallback: motions stepped by any method of ``scipy.integrate.solve_ivp``.
 
-It steps motions where there is no C compiler, and for users who want LSODA. The tolerance means the same as far as
-SciPy allows: the error of every block of states is relative to the largest size of the block along the motion, which a
-first coarse pass determines, and is shared out over the length of the motion. SciPy is imported when a motion is first
-followed.
+It steps motions where there is no C compiler, and for users who want LSODA. The tolerance means the same as for the
+steppers in C, as far as SciPy allows: the error of every block of states is relative to the largest size of the block
+along the motion, which a first coarse pass determines, and is shared out over the length of the motion. SciPy is
+imported when a motion is first followed.
 
 Time: where steps are short compared with the time, a double holds too few digits of it. If the clock of the right-hand
 side can be moved (a :data:`Clock`), SciPy then restarts on a clock that shows 0 nearby.
@@ -40,12 +40,12 @@ __all__ = ["METHODS", "FallbackRecording", "Options", "WholeMotion", "integrate"
 
 Rhs = Callable[[float, Floats, Floats], ArrayLike]
 Clock = Callable[[float], tuple[Rhs, Sequence[float]]]
-"""A function from an epoch, s, to a right-hand side that counts time from the epoch, and its parameters."""
-Piece = tuple[float, float, Any]  # from, to, SciPy's solution between
+"""Function from an epoch, s, to a right-hand side that counts time from the epoch, and its parameters."""
+Piece = tuple[float, float, Any]  # first time, last time, SciPy's solution between them
 
 
 class WholeMotion(NamedTuple):
-    """The whole motion when SciPy follows a part of it: both ends, s, and the evaluations spent before the part."""
+    """The whole motion of which SciPy follows a part: its two ends, s, and the evaluations spent before the part."""
 
     start: float
     end: float
@@ -56,27 +56,27 @@ METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "
 """SciPy's methods, each with the share of the tolerance that one step may use; calibrated as in dop853.py."""
 
 DEFAULT = "DOP853"
-FIT_ORDER = 7  # of the polynomial that tells how the states move in a step
-SLACK = 1e4  # as in dop853.c
-HELD, REGAIN = 0.5, 1.5  # a step of that part of the longest allowed was held back; the next may be so much longer
+FIT_ORDER = 7  # degree of the polynomial that the states follow in a step
+SLACK = 1e4  # the same number as in dop853.c
+HELD, REGAIN = 0.5, 1.5  # a step longer than this part of the limit was held back; the next one may grow by this factor
 FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
 STUCK = "the step shrank to nothing, as it does before a singularity"
 PILOT_TURN = 1e-3  # rad over the whole span
-PILOT_TOLERANCE = 1e-3  # of the coarse pass
-EFFORT_CUT_OFF = 4  # a motion that cannot be followed to its end may take this part of the evaluations
-BEFORE_POLE = 0.5  # of the way to the end of a coarse pass that stops early: beyond, states may grow without bound
-PILOT_STEPS = 10  # a motion of so many coarse steps may spend the whole share in every step
+PILOT_TOLERANCE = 1e-3  # tolerance of the coarse pass
+EFFORT_CUT_OFF = 4  # share of the evaluations for a motion that cannot be followed to its end
+BEFORE_POLE = 0.5  # part of the way of a coarse pass that stops early: beyond it states may grow without bound
+PILOT_STEPS = 10  # coarse steps: a shorter motion may use the whole share of the tolerance in every step
 MAX_EVALUATIONS = 1_000_000  # default limit: half a minute
 PATIENCE = 50_000  # evaluations after each of which the pace is judged
 MAX_IDLE = 100  # consecutive steps too short for the clock of the scene, as after a restart of LSODA
 MAX_BROKEN = 1000  # derivatives that are not finite, before the motion stops
-_NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, FIT_ORDER + 1) / FIT_ORDER)  # Chebyshev's, without the start
-_FIT = np.linalg.inv(_NODES[:, None] ** np.arange(1, FIT_ORDER + 1))  # from rises there to coefficients
-SMALLEST_RTOL = 100 * float(np.finfo(float).eps)  # SciPy takes no smaller one
+_NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, FIT_ORDER + 1) / FIT_ORDER)  # Chebyshev points of a step
+_FIT = np.linalg.inv(_NODES[:, None] ** np.arange(1, FIT_ORDER + 1))  # from changes there to coefficients
+SMALLEST_RTOL = 100 * float(np.finfo(float).eps)  # the smallest relative tolerance that SciPy accepts
 
 
 def method_name(text: str) -> str:
-    """Return SciPy's name of a method given as ``"scipy"``, ``"scipy:LSODA"`` or ``"LSODA"``.
+    """Return SciPy's name of a method that is given as ``"scipy"``, ``"scipy:LSODA"`` or ``"LSODA"``.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def method_name(text: str) -> str:
 
 @dataclass(frozen=True)
 class Options:
-    """How SciPy follows a motion.
+    """Method and limits with which SciPy follows a motion.
 
     Attributes
     ----------
@@ -125,7 +125,7 @@ class Options:
 def integrate(
     rhs: Rhs, p: ArrayLike, y0: ArrayLike, t0: float, times: ArrayLike, tolerance: float, options: Options = Options()
 ) -> tuple[Floats, Stats]:
-    """Return the states at the sample times, shape (n, N), and their cost.
+    """Return the states at the sample times, shape (n, N), and the cost of the motion.
 
     Parameters
     ----------
@@ -165,9 +165,9 @@ def record(
     tolerance: float,
     options: Options = Options(),
 ) -> "FallbackRecording":
-    """Return the motion over ``span`` as a function of time; arguments as :func:`integrate` takes them.
+    """Return the motion over ``span`` as a function of time; the arguments are those of :func:`integrate`.
 
-    A motion that stops early or is interrupted has the part computed before in the ``recording`` of the exception, if
+    If the motion stops early or is interrupted, the attribute ``recording`` of the exception holds the part before, if
     there is one.
     """
     motion = _Integration(rhs, p, y0, t0, tolerance, options)
@@ -186,14 +186,16 @@ def record(
 
 
 class FallbackRecording(Recording):
-    """The steps of a motion by SciPy; see :class:`symrot.propagation.steppers.stepping.Recording`."""
+    """A motion followed by SciPy as a function of time; see :class:`symrot.propagation.steppers.stepping.Recording`."""
 
     def __init__(self, motion: "_Integration", pieces: list[Piece], low: float, high: float) -> None:
         self._pieces = pieces
         super().__init__(motion.t0, motion.y0, (low, high), motion.stats())
 
     def edges(self, start: float, end: float) -> list[Floats]:
-        """Return the ends of SciPy's steps from a start to an end, one array for each segment, in that order."""
+        """Return the ends of SciPy's steps between two times, in that order: one array for each segment between
+        switching times.
+        """
         side = 1.0 if end >= start else -1.0
         chosen = [
             np.sort(np.asarray(solution.ts, dtype=np.float64) * side) * side
@@ -207,7 +209,7 @@ class FallbackRecording(Recording):
 
 
 def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
-    """Write the states at the times that lie in the pieces."""
+    """Write the states at those times that lie inside the pieces, from SciPy's solution of each piece."""
     for low, high, solution in pieces:
         chosen = (times >= low) & (times <= high)
         if chosen.any():
@@ -215,7 +217,7 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
 
 
 class _ShiftedSolution:
-    """SciPy's solution over a step on a moved clock, as a function of time on the clock before the move."""
+    """SciPy's solution for one step on a moved clock, as a function of time on the clock before the move."""
 
     def __init__(self, solution: Any, epoch: float) -> None:
         self._solution, self._epoch = solution, epoch
@@ -226,7 +228,7 @@ class _ShiftedSolution:
 
 
 class _Integration:
-    """The integration of one motion by SciPy: its checked input, and its cost so far."""
+    """Integration of one motion by SciPy: its checked arguments, and its cost so far."""
 
     def __init__(self, rhs: Rhs, p: ArrayLike, y0: ArrayLike, t0: float, tolerance: float, options: Options) -> None:
         self.began = perf_counter()
@@ -246,8 +248,8 @@ class _Integration:
             if low < len(self.y0)
         ]
         self.steps = self.evaluations = self.broken = 0
-        self.pieces: list[Piece] = []  # of the pass that runs
-        self.final = False  # whether that is the pass that counts
+        self.pieces: list[Piece] = []  # pieces of the pass that is running
+        self.final = False  # whether this is the final pass, not the coarse one
         self.mark = (0, self.t0)  # work and time when the pace was judged last
         self.whole, self.before = options.whole, self.deviations.spent if self.deviations else 0
         with np.errstate(all="ignore"):  # the sentence says it
@@ -257,22 +259,22 @@ class _Integration:
 
     @property
     def work(self) -> int:
-        """Evaluations of the rates and of their bounds, which take as long; their sum is limited."""
+        """Evaluations so far of the rates and of their bounds, which take as long as rates; the sum is limited."""
         return self.evaluations + (self.deviations.spent - self.before if self.deviations else 0)
 
     def stats(self) -> Stats:
         return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
 
     def follow(self, times: Floats) -> Floats:
-        """Return the states at times sorted away from t0, all on one side of it."""
+        """Return the states at times on one side of t0, sorted away from t0."""
         states = np.empty((len(times), len(self.y0)))
         _evaluate(self.solutions(float(times[-1])), times, states)
         states[times == self.t0] = self.y0
         return states
 
     def partial(self, times: Floats) -> tuple[NDArray[np.intp], Floats]:
-        """Return numbers and states of the times, sorted away from t0, that lie before the motion stopped early."""
-        pieces = self.pieces if self.final else []  # the coarse pass is no result
+        """Return indices and states of the sample times that lie before the time at which the motion stopped early."""
+        pieces = self.pieces if self.final else []  # results of the coarse pass are not returned
         way = max((max(abs(low - self.t0), abs(high - self.t0)) for low, high, _ in pieces), default=0.0)
         inside = np.flatnonzero(np.abs(times - self.t0) <= way)
         states = np.empty((len(inside), len(self.y0)))
@@ -281,9 +283,9 @@ class _Integration:
         return inside, states
 
     def solutions(self, end: float) -> list[Piece]:
-        """Return (low, high, solution) for each segment between switching times, from t0 to the end.
+        """Return the motion from t0 to ``end`` as pieces (low, high, solution), one for each segment between switches.
 
-        If the coarse pass stops early, the motion is followed as far as the pass, so that no sample is lost.
+        If the coarse pass stops early, the final pass follows the motion as far, so that no sample is lost.
         """
         self.final, self.pieces = False, []
         if end == self.t0:
@@ -310,7 +312,7 @@ class _Integration:
         for block, scale in self.blocks:
             size = scale if scale > 0.0 else float(np.sqrt((path[block] ** 2).sum(axis=0).max()))
             bars.append(SLACK * share * max(size, slowest))
-            # SciPy takes the mean over all states, we the sum over a block
+            # SciPy averages squared errors over all states; here they are summed over a block
             allowed[block] = share * max(size, slowest) / math.sqrt(len(self.y0))
         self.final = True
         try:
@@ -331,7 +333,10 @@ class _Integration:
         return self.pieces
 
     def _follow_segment(self, segment: Segment, y: Floats, rtol: float, atol: Floats, bars: list[float]) -> None:
-        """Add SciPy's solution over a segment to the pieces, as far as it gets; no step is longer than proven safe."""
+        """Add SciPy's solution over a segment to the pieces, as far as SciPy can follow it.
+
+        No step is longer than the bounds of torques allow.
+        """
         import scipy.integrate
 
         earliest, latest = min(segment.first, segment.last), max(segment.first, segment.last)
@@ -363,7 +368,7 @@ class _Integration:
         solver = begin(segment.start - self.epoch, y, longest)
         while solver.status == "running":
             start, end = (self.whole.start, self.whole.end) if self.whole else (self.t0, segment.stop)
-            now, y = float(solver.t), solver.y.copy()  # what the present clock shows
+            now, y = float(solver.t), solver.y.copy()  # time on the present clock
             before = self.epoch + now
             progress.report(before if self.final else self.t0, start, end if self.whole else self.goal)
             self._judge_pace(before, end if self.final else segment.stop)  # a coarse pass is no part of the whole
@@ -416,7 +421,7 @@ class _Integration:
                     solver.max_step = longest
 
     def _move_clock(self, clock: Clock, now: float) -> float:
-        """Move the clock so that it shows about 0 at present, and return the exact time that it shows."""
+        """Move the clock so that it shows about 0 at the time ``now``; return the exact time that it then shows."""
         self.epoch, rest = two_sum(self.epoch, now)
         self.rhs, p = clock(self.epoch)
         self.p = np.array(p, dtype=np.float64)
@@ -439,7 +444,10 @@ class _Integration:
         return self.work + (self.whole.spent if self.whole else 0)
 
     def _proven(self, t: float, y: Floats, dense: Any, now: float, step: float, bars: list[float]) -> float:
-        """Return the longest part of a step, from ``now`` on the present clock, that provably misses no feature."""
+        """Return the longest part of a step, s, that provably passes over no feature of a torque.
+
+        The time ``now`` is on the present clock.
+        """
         assert self.deviations is not None
         path = np.abs(_FIT @ (dense(now + _NODES * step).T - y)).T.tolist()
         edges = [0, *(block.stop for block, _ in self.blocks)]

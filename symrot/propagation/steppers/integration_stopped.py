@@ -1,4 +1,4 @@
-"""Motions that stop early: the error, the reasons, and the samples computed before."""
+"""Motions that stop early: the exception, its reason as a sentence, and the samples computed before."""
 
 import math
 from collections.abc import Iterable
@@ -11,14 +11,14 @@ from symrot.errors import PropagationError
 
 __all__ = ["IntegrationStopped", "Samples", "add_samples", "why_hopeless", "why_stuck"]
 
-HOPELESS = 3.0  # times the limit of steps: a motion that needs more at its pace is stopped
-MANY_TICKS = 2**20  # doubles between both ends: with fewer, the resolution of the clock ends short steps
+HOPELESS = 3.0  # times the limit of steps: a motion that would need more steps at its present pace is stopped
+MANY_TICKS = 2**20  # doubles between both ends of a step: with fewer, the clock is too coarse for the step
 
 Floats = NDArray[np.float64]
 
 
 class IntegrationStopped(PropagationError):
-    """The error of a motion that stops at t, s, on the way to ``stop``."""
+    """Error of a motion that stops at the time t, s, before it reaches the time ``stop``."""
 
     def __init__(self, t: float, reason: str, stop: float | None = None) -> None:
         way = "" if stop is None else f" on the way to {stop!r} s"
@@ -28,19 +28,21 @@ class IntegrationStopped(PropagationError):
         self.recording: Any = None  # the motion before t, if it was being recorded
 
     def later(self, epoch: float) -> "IntegrationStopped":
-        """Return the error for a clock that shows ``epoch`` where this one shows 0."""
+        """Return the same error with its times on another clock, which shows ``epoch`` where the present one shows
+        0.
+        """
         later = IntegrationStopped(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
         later.samples = self.samples
         return later
 
 
 class Samples(NamedTuple):
-    """The samples computed before a motion stopped early.
+    """Samples computed before a motion stopped early.
 
     Attributes
     ----------
     numbers : array, shape (k,)
-        Places of the samples among all requested samples.
+        Indices of the samples among all requested samples.
     states : array, shape (k, N)
     cost : (int, int, int)
         Steps accepted and rejected, and evaluations, that were spent until then.
@@ -54,9 +56,9 @@ class Samples(NamedTuple):
 def add_samples(
     error: BaseException, numbers: NDArray[np.intp], states: Floats, cost: Iterable[int] | None = None
 ) -> None:
-    """Attach the samples computed before an error or an interrupt, and their cost, to its attribute ``samples``."""
+    """Attach the samples computed before an error or interrupt, and their cost, to the exception as ``samples``."""
     before: Samples | None = getattr(error, "samples", None)
-    if before is not None:  # the other side of the start was finished first
+    if before is not None:  # samples on the other side of the start were finished before
         numbers, states = np.concatenate([numbers, before.numbers]), np.concatenate([states, before.states])
         cost = before.cost if cost is None else cost
     accepted, rejected, evaluations = map(int, (0, 0, 0) if cost is None else cost)
@@ -64,7 +66,9 @@ def add_samples(
 
 
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
-    """Return why steps shrank to zero at t: for ``reason``, or since the clock is too coarse for the whole span."""
+    """Return the reason why steps shrank to zero at t: ``reason``, or that the clock is too coarse for the whole
+    span.
+    """
     apart = math.ulp(t)
     if abs(stop - t0) > MANY_TICKS * apart:
         return reason
@@ -73,7 +77,10 @@ def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
 
 
 def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
-    """Return why a motion is hopeless, or an empty text; ``steps`` covered the last ``way``, s, and ``left`` remain."""
+    """Return the reason why a motion would take far too many steps, or an empty text if it would not.
+
+    The last ``steps`` steps covered ``way``, s, and ``left``, s, remain.
+    """
     if steps * left <= HOPELESS * limit * way:
         return ""
     more = f"{steps * left / way:.0e} of them, far" if way > 0.0 else "endlessly many,"

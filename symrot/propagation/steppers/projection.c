@@ -88,12 +88,12 @@ static void symrot_solve(double (*j)[SYMROT_STATES], double *r)
 }
 
 /* Return the residuals in units of the gradients, which become rows of unit length, and the sum of their squares. */
-static double symrot_residuals(const symrot_run *run, const double *p, symrot_pair t, const double *y,
+static double symrot_residuals(const symrot_run *run, const double *p, dd t, const double *y,
     const double *carry, const double *size, double (*j)[SYMROT_STATES], double *r)
 {
-    symrot_pair state[SYMROT_STATES], value[SYMROT_INVARIANTS];
+    dd state[SYMROT_STATES], value[SYMROT_INVARIANTS];
     double total = 0.0;
-    for (int i = 0; i < SYMROT_STATES; ++i) state[i] = symrot_pair_sum(y[i], carry[i]);
+    for (int i = 0; i < SYMROT_STATES; ++i) state[i] = two_sum(y[i], carry[i]);
     symrot_invariants(t, state, p, value, j);
     for (int m = 0; m < SYMROT_INVARIANTS; ++m) {
         double length = 0.0;
@@ -104,8 +104,8 @@ static double symrot_residuals(const symrot_run *run, const double *p, symrot_pa
         length = sqrt(length);
         const double inverse = length > 0.0 ? 1.0/length : 0.0;
         for (int i = 0; i < SYMROT_STATES; ++i) j[m][i] *= inverse;
-        const symrot_pair kept = symrot_pair_of(run->kept[2*m], run->kept[2*m + 1]);
-        r[m] = symrot_pair_subtract(kept, value[m]).high*inverse;
+        const dd kept = dd_pair(run->kept[2*m], run->kept[2*m + 1]);
+        r[m] = symrot_pair_subtract(kept, value[m]).hi*inverse;
         total += r[m]*r[m];
     }
     return total;
@@ -117,27 +117,27 @@ static double symrot_residuals(const symrot_run *run, const double *p, symrot_pa
  */
 static SYMROT_APART void symrot_remember(symrot_run *run, const double *p)
 {
-    symrot_pair state[SYMROT_STATES], value[SYMROT_INVARIANTS];
+    dd state[SYMROT_STATES], value[SYMROT_INVARIANTS];
     double gradient[SYMROT_INVARIANTS][SYMROT_STATES];
     if (SYMROT_INVARIANTS == 1 && SYMROT_QUATERNION >= 0 && run->tail > SYMROT_LOOSE) run->every = 0;
     for (int pass = 0; pass < 2; ++pass) {
-        for (int i = 0; i < SYMROT_STATES; ++i) state[i] = symrot_pair_sum(run->y[i], run->carry[i]);
-        symrot_invariants(symrot_pair_of(run->t, run->t_low), state, p, value, gradient);
+        for (int i = 0; i < SYMROT_STATES; ++i) state[i] = two_sum(run->y[i], run->carry[i]);
+        symrot_invariants(dd_pair(run->t, run->t_low), state, p, value, gradient);
         if (SYMROT_QUATERNION >= 0 && pass == 0) {
-            const double excess = symrot_pair_subtract(value[SYMROT_INVARIANTS - 1], symrot_pair_of(1.0, 0.0)).high;
+            const double excess = symrot_pair_subtract(value[SYMROT_INVARIANTS - 1], dd_pair(1.0, 0.0)).hi;
             if (fabs(excess) < SYMROT_UNIT_NORM)
                 for (int i = SYMROT_QUATERNION; i < SYMROT_QUATERNION + 4; ++i)
                     run->carry[i] -= 0.5*excess*(run->y[i] + run->carry[i]);
         }
     }
     for (int m = 0; m < SYMROT_INVARIANTS; ++m) {
-        run->kept[2*m] = value[m].high;
-        run->kept[2*m + 1] = value[m].low;
+        run->kept[2*m] = value[m].hi;
+        run->kept[2*m + 1] = value[m].lo;
     }
 }
 
 /* Give back to the carry what the invariants have lost; return whether it was done. */
-static SYMROT_APART int symrot_project(const symrot_run *run, const double *p, symrot_pair t, const double *y,
+static SYMROT_APART int symrot_project(const symrot_run *run, const double *p, dd t, const double *y,
     double *carry, const double *size, const double *weight)
 {
     double j[SYMROT_INVARIANTS][SYMROT_STATES], r[SYMROT_INVARIANTS], better[SYMROT_STATES];
@@ -165,12 +165,12 @@ static SYMROT_APART void symrot_keep(symrot_run *run, const double *p, double t,
         memcpy(low + symrot_starts[r], &carry[r], (size_t)symrot_sizes[r]*sizeof(double));
     }
     run->since = 0;
-    if (symrot_project(run, p, symrot_pair_of(t, t_low), y, low, size, weight)) ++run->projected;
+    if (symrot_project(run, p, dd_pair(t, t_low), y, low, size, weight)) ++run->projected;
     else run->every *= 2;
     for (int i = 0; i < SYMROT_STATES; ++i) {  /* the series sees y alone: leave no more in the carry than it must */
-        const symrot_pair sum = symrot_pair_sum(y[i], low[i]);
-        y[i] = sum.high;
-        low[i] = sum.low;
+        const dd sum = two_sum(y[i], low[i]);
+        y[i] = sum.hi;
+        low[i] = sum.lo;
     }
     EACH_ROW(r) {
         memcpy(&x[r][0], y + symrot_starts[r], (size_t)symrot_sizes[r]*sizeof(double));

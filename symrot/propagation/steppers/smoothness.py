@@ -1,8 +1,8 @@
-"""Decide from the structure of a plan whether its torques are smooth enough for Taylor series. No SymPy.
+"""Smoothness of the torques of a plan, which decides whether Taylor series can be used. Does not use SymPy.
 
-A series needs derivatives of every order where it is expanded. Quotients, powers, sin, cos, exp and log have them
-wherever they are defined. The absolute value and the square root have none where their argument is zero, and a motion
-may reach such a point, for example at rest. Dormand and Prince's method steps such torques instead.
+A series needs derivatives of every order at its centre. Quotients, powers, sin, cos, exp and log have them wherever
+they are defined. The absolute value and the square root have none where their argument is zero, and a motion may reach
+such a point, for example at rest. Dormand and Prince's method steps such torques instead.
 """
 
 from symrot.dynamics.structure import FormulaTorque, Pattern, TorqueStructure
@@ -36,5 +36,5 @@ def _of_torque(torque: TorqueStructure) -> str:
 
 
 def non_smooth_torque(plan: Plan) -> str:
-    """Return an empty text, or the sentence that says which torque of a plan is not smooth."""
+    """Return a sentence that names the torque of a plan that is not smooth, or an empty text if all torques are."""
     return next(filter(None, map(_of_torque, plan.structure.torques)), "")

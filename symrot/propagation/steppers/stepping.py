@@ -1,4 +1,4 @@
-"""The common part of the steppers: a loaded library, the integration of a motion, recordings, and error sentences.
+"""The common part of the steppers: loaded libraries, integrations of motions, recordings, and error sentences.
 
 :mod:`symrot.propagation.steppers.dop853` and :mod:`symrot.propagation.steppers.taylor` define their own parts in
 subclasses of :class:`Stepper`. :mod:`symrot.propagation.steppers.fallback` uses the order of times, the segments
@@ -51,20 +51,20 @@ __all__ = [
 ]
 
 MAX_STEPS = 100_000_000  # default limit of a motion: a minute or two
-MOST_RECORDED = 2 << 30  # bytes, of the steps of a dense output
+MOST_RECORDED = 2 << 30  # bytes of recorded steps
 PATIENCE = 200_000  # steps after each of which the pace is judged
 FEW = 40  # sample times that are compared one by one
-SLIVER = 2.0**-100  # of a segment: a time so near its end that no formula differs there
+SLIVER = 2.0**-100  # part of a segment: a time so near its end that no formula has another value there
 
 Floats = NDArray[np.float64]
 PathLike = str | os.PathLike[str]
 
-DONE, PAUSED, FULL, NOT_FINITE, UNDERFLOW = range(5)  # what a stepper in C returns
+DONE, PAUSED, FULL, NOT_FINITE, UNDERFLOW = range(5)  # return values of a stepper in C
 NOT_FINITE_SENTENCE = "its rate of change is not finite there"
 
 
 class Switching(NamedTuple):
-    """A switching of a function, such as ``sign(omega_3)`` in a torque, at a time, s.
+    """One switching of a function in a torque, such as ``sign(omega_3)``, at a time, s.
 
     ``how`` is ``"passed"`` if the motion continues beyond the switch, ``"held"`` if it slides along the switch, as a
     wheel that friction holds at rest, and ``"released"`` if it leaves the switch along which it slid.
@@ -110,7 +110,7 @@ class Stats(NamedTuple):
 
 
 def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching]) -> Stats:
-    """Return the statistics of a motion from its steps accepted and rejected, its evaluations and its switchings."""
+    """Return the statistics of a motion from its cost (steps accepted and rejected, evaluations) and its switchings."""
     accepted, rejected, evaluations = map(int, cost)
     listed = tuple(sorted(switchings))
     times = tuple(sorted({change.t for change in listed}))  # coinciding switches count once
@@ -123,13 +123,13 @@ def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching]) -> Stat
 def check_tolerance(tolerance: float) -> None:
     """Raise InputError for a tolerance that is not between 0 and 1."""
     if not 0.0 < tolerance < 1.0:
-        raise InputError(f"the tolerance lies between 0 and 1, got {tolerance}")
+        raise InputError(f"tolerance: expected a number between 0 and 1, got {tolerance}")
 
 
 def check_longest_step(max_step: float) -> None:
     """Raise InputError for a longest step, s, that is not positive; infinity means no limit."""
     if not max_step > 0.0:
-        raise InputError(f"the longest step is a positive number of seconds, got {max_step}")
+        raise InputError(f"max_step: expected a positive number of seconds, got {max_step}")
 
 
 def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
@@ -146,9 +146,10 @@ def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
 
 
 class Segment(NamedTuple):
-    """A part of a span without switching times inside, from start to stop, s.
+    """Part of a span, from ``start`` to ``stop``, s, without switching times inside.
 
-    ``first`` and ``last`` are the times given to the kernel at the two ends: just inside where it switches there.
+    ``first`` and ``last`` are the times passed to the kernel at the two ends: just inside the segment if it ends at a
+    switching time.
     """
 
     start: float
@@ -158,7 +159,7 @@ class Segment(NamedTuple):
 
 
 def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
-    """Return the segments between sorted switching times, from t0 to an end on either side of it."""
+    """Return the segments into which switching times divide the span from t0 to ``end``; ``end`` may lie before t0."""
     if not breaks:
         return [Segment(t0, end, t0, end)]
     low, high = min(t0, end), max(t0, end)
@@ -176,13 +177,18 @@ def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
 
 
 def _inside(edge: float, other: float) -> float:
-    """Return a time just inside an end of a segment, so near that the first step, chosen there, is not affected."""
+    """Return a time just inside one end of a segment, so near to it that the choice of the first step is not
+    affected.
+    """
     time = edge + SLIVER * (other - edge)
     return time if time != edge else math.nextafter(edge, other)
 
 
 def split_at(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
-    """Yield the indices of the times from t0 on, then of the times before it, sorted away from t0, if there are any."""
+    """Yield the indices of the times from t0 on, then those of the times before t0; each group is sorted away from t0.
+
+    An empty group is left out.
+    """
     order = np.argsort(times, kind="stable")
     first_after = int(np.searchsorted(times[order], t0))
     for part in (order[first_after:], order[:first_after][::-1]):
@@ -194,7 +200,7 @@ def split_at(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
 
 
 class Recording(ABC):
-    """A motion that can be evaluated at any time of its span: ``recording(t)``.
+    """A motion that can be evaluated at any time of its span.
 
     ``recording(t)`` returns the states at a time or an array of times, shape (N,) or (n, N); a time outside ``span`` is
     an InputError. ``stats`` is the cost of the recording; ``epoch`` is the time of the scene at which its clock shows
@@ -216,7 +222,7 @@ class Recording(ABC):
         outside = ~((flat >= self.span[0]) & (flat <= self.span[1]))
         if outside.any():
             low, high, asked = (time + self.epoch for time in (*self.span, float(flat[outside][0])))
-            raise InputError(f"the motion is known from {low} to {high} s, asked for {asked} s")
+            raise InputError(f"the motion is known from {low} to {high} s, got the time {asked} s")
         states = np.empty((len(flat), len(self._y0)))
         self._fill(flat, states)
         states[flat == self._t0] = self._y0
@@ -224,7 +230,7 @@ class Recording(ABC):
 
 
 class SteppedRecording(Recording):
-    """A recording made of the steps of a stepper in C."""
+    """A recorded motion made of the steps of a stepper in C."""
 
     def __init__(self, task: "Integration", span: tuple[float, float], backward: Floats, forward: Floats) -> None:
         super().__init__(task.t0, task.y0, span, task.stats())
@@ -240,7 +246,9 @@ class SteppedRecording(Recording):
 
 
 class Window(NamedTuple):
-    """The function and parameters that continue a run for a number of steps, until its clock is moved again."""
+    """Function and parameters that continue a run for a number of steps, until the clock of the kernel is moved
+    again.
+    """
 
     step: Callable[..., Any]
     parameters: Any
@@ -248,12 +256,12 @@ class Window(NamedTuple):
 
 
 class Run(ctypes.Structure):
-    """The state of a motion in C, ``symrot_run`` in :file:`dop853.c` and :file:`taylor.c`.
+    """State of a motion in C: the struct ``symrot_run`` in :file:`dop853.c` and :file:`taylor.c`.
 
     A stepper makes a subclass with the fields of its method; the fields that Python reads and writes are listed here.
     """
 
-    t: float  # reached so far, s
+    t: float  # time reached so far, s
     h: float  # next step
     stop: float
     first: float
@@ -274,11 +282,11 @@ class Run(ctypes.Structure):
     recorded: int
     reach: int
     y: Any
-    window: Window | None = None  # of this object alone, C does not see it
+    window: Window | None = None  # an attribute in Python only, not a field in C
 
 
 class Stepper(ABC):
-    """The functions of one loaded library; a subclass defines the part of its method.
+    """Functions of one loaded library; each subclass defines the parts that depend on its method.
 
     The library exports ``symrot_NAME``, ``symrot_NAME_dense`` and ``symrot_NAME_sizes``.
     """
@@ -289,7 +297,7 @@ class Stepper(ABC):
     integers: ClassVar[tuple[str, ...]]
     vectors: ClassVar[tuple[str, ...]]
     tail: ClassVar[tuple[str, ...]] = ()  # a vector at the end, of a length that the library says
-    steps_per_call: ClassVar[int]  # some 20 ms in C, after which Python can see an interrupt
+    steps_per_call: ClassVar[int]  # steps in some 20 ms of C, after which Python can react to an interrupt
     rows_per_call: ClassVar[int]  # steps recorded per call
     reasons: ClassVar[dict[int, str]]  # why a motion stops, per status; PAUSED: the limit of steps
 
@@ -317,7 +325,7 @@ class Stepper(ABC):
         self.new_parameters: Any = ctypes.c_double * self.parameters
 
     def _function(self, ending: str, result: Any, *arguments: Any) -> Callable[..., Any]:
-        """Return a function of the library whose name has this ending."""
+        """Return the function ``symrot_NAME`` followed by an ending, such as ``_dense``, with its types declared."""
         try:
             function = getattr(self._library, f"symrot_{self.name}{ending}")
         except AttributeError as error:
@@ -328,35 +336,29 @@ class Stepper(ABC):
 
     @abstractmethod
     def row_length(self) -> int:
-        """Return how many numbers record one step."""
+        """Return how many doubles record one step."""
 
     @staticmethod
     @abstractmethod
     def allowance(tolerance: float) -> tuple[float, float]:
-        """Return the error allowed in one step, and the fraction of the span that earns a step all of it."""
+        """Return the error allowed in one step, and the fraction of the span from which on a step may use all of it."""
 
     @abstractmethod
     def enter(self, run: Run, segment: Segment, allowed: float) -> None:
-        """Set the fields of a run that only this method has, for the next segment."""
+        """Set those fields of a run that only this method has, before it steps the next segment."""
 
     @staticmethod
     @abstractmethod
     def tried(run: Run) -> int:
-        """Return the steps of a run that count against the most allowed."""
+        """Return how many steps of a run count against the limit of steps."""
 
     @staticmethod
     @abstractmethod
     def cost(run: Run) -> tuple[int, int, int]:
-        """Return steps accepted, steps rejected and evaluations of a run."""
-
-    @property
-    def dense_address(self) -> Any:
-        """The dense output as a function in C, for other libraries to call."""
-        function: Any = self._dense
-        return ctypes.cast(function, ctypes.c_void_p)
+        """Return the numbers of accepted steps, rejected steps and evaluations of a run."""
 
     def dense(self, rows: Floats, times: Floats) -> Floats:
-        """Return the states at times inside recorded steps, all on one side of t0."""
+        """Return the states at times inside recorded steps; all times lie on one side of t0."""
         states = np.empty((len(times), self.states))
         self._dense(rows.ctypes.data, len(rows), times.ctypes.data, len(times), states.ctypes.data)
         return states
@@ -367,7 +369,10 @@ def _no_stepper(path: str, error: Exception) -> CompilerError:
 
 
 def is_sorted(times: Floats) -> bool:
-    """Return whether times never fall; a not-a-number counts as a fall. A few times are compared faster one by one."""
+    """Return whether times never fall; a not-a-number counts as a fall.
+
+    A few times are compared faster one by one than by NumPy.
+    """
     if len(times) > FEW:
         return b"\0" not in (times[1:] >= times[:-1]).tobytes()
     listed = times.tolist()
@@ -375,9 +380,9 @@ def is_sorted(times: Floats) -> bool:
 
 
 class Integration:
-    """The integration of one motion: its checked input, and the cost of all calls made for it.
+    """The integration of one motion: its checked arguments, and the cost of all calls made so far.
 
-    ``load`` returns the stepper of a library's path. :func:`symrot.propagation.steppers.dop853.integration` explains
+    ``load`` returns the stepper for a library's path. :func:`symrot.propagation.steppers.dop853.integration` explains
     the other parameters.
     """
 
@@ -407,10 +412,10 @@ class Integration:
         self.mark = (0, self.t0)  # steps and time when the pace was judged last
         self.goal = t0  # end of the motion, beyond all switching times
         self.way = 0.0  # length of the whole motion of which this is a part, s; 0: this is the whole
-        self.fields: dict[str, int] = {}  # further fields of the run in C that a method sets
+        self.fields: dict[str, int] = {}  # more fields of the run in C, which a method sets
 
     def restarted(self) -> "Integration":
-        """Return a copy with its counts at zero; the input is not checked again."""
+        """Return a copy of the integration with all counts at zero; its arguments are not checked again."""
         other: Integration = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
         other.began = perf_counter()
@@ -419,7 +424,7 @@ class Integration:
         return other
 
     def from_start(self, p: list[float], y0: Sequence[float]) -> "Integration":
-        """Return a copy with other parameters and another initial state; only these are checked."""
+        """Return a copy of the integration with other parameters and another initial state; only these are checked."""
         if not math.isfinite(sum(p) + sum(y0)):  # a sum may overflow though each number is finite
             _numbers("parameters", p, len(p))
             _numbers("states", y0, len(y0))
@@ -430,14 +435,14 @@ class Integration:
         return other
 
     def stats(self) -> Stats:
-        """Return the total cost so far."""
+        """Return the total cost of all calls so far."""
         return Stats(self.accepted, self.rejected, self.evaluations, perf_counter() - self.began)
 
     def sample(self, times: ArrayLike) -> tuple[Floats, Stats]:
-        """Return the states at sample times, shape (n, N), and their cost.
+        """Return the states at sample times, shape (n, N), and the cost of the motion.
 
-        The times, s, may be in any order, before or after ``t0``, repeated or not. The steps depend on the first and
-        last of them only.
+        The times, s, may be in any order, before or after ``t0``, and may repeat. The steps depend only on the first
+        and the last time.
 
         Raises
         ------
@@ -500,26 +505,26 @@ class Integration:
 
     @cached_property
     def _ready(self) -> Run:
-        """A run at its start, to be copied."""
+        """A run at the start of the motion, which each new run copies."""
         run = self.stepper.new_run(t=self.t0, max_step=self.max_step, **self.fields)
         run.y[:] = self.y0
         return run
 
     def record(self, span: tuple[float, float]) -> SteppedRecording:
-        """Return the motion over a span, and over all between it and t0, as a function of time.
+        """Return the motion as a function of time over a span and over all times between the span and t0.
 
         The steps are those of :meth:`sample` to the ends of the span, so that the two agree. A step takes 8 N + 2
         numbers of memory by DOP853, and 21 N + 4 by Taylor series of order 20.
         """
         low, high = min(span), max(span)
         if not (math.isfinite(low) and math.isfinite(high)):
-            raise InputError(f"a span runs between two finite times, got {span}")
+            raise InputError(f"span: expected two finite times in s, got {span}")
         span = min(low, self.t0), max(high, self.t0)
         backward, forward = (np.concatenate(self.record_steps(end)) for end in span)
         return SteppedRecording(self, span, backward, forward)
 
     def follow(self, times: Floats, states: Floats) -> None:
-        """Write the states at times sorted away from t0, all on one side of it."""
+        """Write the states at times on one side of t0, sorted away from t0, into an array."""
         count, done, first, out = len(times), 0, address(times), address(states)
         row = 8 * self.stepper.states
         for run in self.runs(float(times[-1])):
@@ -533,12 +538,12 @@ class Integration:
             done += run.next
 
     def _cost(self, run: Run) -> tuple[int, int, int]:
-        """Return the cost of a run and all runs before it."""
+        """Return the cost of a run and of all runs before it: steps accepted, steps rejected, evaluations."""
         accepted, rejected, evaluations = self.stepper.cost(run)
         return self.accepted + accepted, self.rejected + rejected, self.evaluations + evaluations
 
     def record_steps(self, end: float) -> list[Floats]:
-        """Return the recorded steps from t0 to an end, in arrays of rows."""
+        """Return all recorded steps from t0 to ``end``, as a list of arrays with one row per step."""
         room = self.stepper.rows_per_call
         pieces = [np.empty((0, self.stepper.row))]
         for run in self.runs(end):
@@ -547,12 +552,12 @@ class Integration:
                 self.advance(run, None, 0, None, rows.ctypes.data, room)
                 pieces.append(rows[: run.recorded])
                 if len(pieces) * rows.nbytes > MOST_RECORDED:
-                    reason = f"recording its steps takes more than {MOST_RECORDED >> 30} GiB; ask for samples instead"
+                    reason = f"recording its steps takes more than {MOST_RECORDED >> 30} GiB; use sample times instead"
                     raise IntegrationStopped(run.t, reason, run.stop)
         return pieces
 
     def runs(self, end: float) -> Generator[Run, None, None]:
-        """Yield the run in C, set up for each segment between switching times, and add its cost to the counts."""
+        """Yield the run in C, prepared for each segment between switching times, and add its cost to the counts."""
         stepper, self.goal = self.stepper, end
         pace = (self.way or abs(end - self.t0)) * self.pace
         run = stepper.new_run(t=self.t0, pace=pace, max_step=self.max_step, **self.fields)
@@ -562,18 +567,20 @@ class Integration:
                 run.stop, run.next = segment.stop, 0
                 stepper.enter(run, segment, self.allowed)
                 yield run
-        finally:  # a caller may stop early
+        finally:  # the caller may end the iteration early
             accepted, rejected, evaluations = stepper.cost(run)
             self.accepted += accepted
             self.rejected += rejected
             self.evaluations += evaluations
 
     def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
-        """Return the function in C that continues a run, its kernel's parameters, and the most steps in one call."""
+        """Return the C function that continues a run, the parameters of its kernel, and the limit of steps in one
+        call.
+        """
         return self.stepper.run, self.p, self.stepper.steps_per_call
 
     def advance(self, run: Run, times: int | None, count: int, states: int | None, rows: int | None, room: int) -> int:
-        """Call the stepper once; raise IntegrationStopped if it cannot continue."""
+        """Call the stepper in C once; raise IntegrationStopped if it cannot continue."""
         stepper, (function, p, most) = self.stepper, self.step_function(run)
         attempts = min(most, self.max_steps - stepper.tried(run))
         status: int = function(ctypes.addressof(run), ctypes.addressof(p), times, count, states, rows, room, attempts)

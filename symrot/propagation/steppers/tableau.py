@@ -238,10 +238,10 @@ def _sum(row: Mapping[int, str]) -> str:
 
 
 def c_header() -> str:
-    """Return the text of ``dop853_tableau.h``: every sum of stages as a macro over ``k(stage)``.
+    """Return the text of ``dop853_tableau.h``, which defines every sum of stages as a macro over ``k(stage)``.
 
-    A stage's sum is split in two: ``DOP853_OLD_s`` over all earlier stages but the last, and ``DOP853_NEW_s`` the
-    coefficient of that last one (stage s - 1), which dop853.c adds by itself.
+    A stage's sum is split in two: ``DOP853_OLD_s`` is the sum over all earlier stages but the last, ``DOP853_NEW_s``
+    the coefficient of that last one (stage s - 1), which dop853.c adds by itself.
     """
     lines = [
         "/*",

@@ -1,11 +1,11 @@
 """Taylor series of order 20 around an emitted jet: the C of :file:`taylor.c` driven from Python, one call per span.
 
-The counterpart of :mod:`symrot.propagation.steppers.dop853` for right-hand sides that are smooth formulas: a few long
-steps, each accurate to round-off if the tolerance is small, and states at any time inside a step from the same
-coefficients. A library holds
-one system and the stepper compiled together (:func:`translation_unit`).
+A jet is the list of all Taylor coefficients of a right-hand side at one time. Smooth right-hand sides are stepped in a
+few long steps. Each step is accurate to rounding if the tolerance is small, and the same coefficients give the states
+at any time inside it. A library holds one system and the stepper compiled together (:func:`translation_unit`).
+:mod:`symrot.propagation.steppers.dop853` has the same interface.
 
-Tolerance: the promise is about the trajectory, not about one step, see :func:`step_tail`.
+Tolerance: it limits the error of the whole trajectory, not of one step, see :func:`step_tail`.
 """
 
 import ctypes
@@ -39,32 +39,33 @@ from symrot.propagation.steppers.stepping import (
 __all__ = ["FLAGS", "integration", "order_for", "refusal", "step_tail", "translation_unit"]
 
 FLAGS = (*compiled.FLAGS, *compiled.SCHEDULED)
-STEPS_OF_ALL = 4.0  # a span of so many steps allows each of them the whole tolerance, see step_tail
+STEPS_OF_ALL = 4.0  # in a span of so many steps each step may use the whole tolerance, see step_tail
 FILES = {
+    "error_free.h": "closed_form/arithmetic/error_free.h",
     **{
         name: f"propagation/steppers/{name}" for name in ("taylor.h", "series.h", "pairs.h", "projection.c", "taylor.c")
     },
     **{name: f"propagation/enclosures/{name}" for name in ("disc.h", "enclosure.h")},
 }
-PROJECTION = "/* PROJECTION */\n"  # where taylor.c takes projection.c
-ENCLOSURE = "/* ENCLOSURE */\n"  # and enclosure.h
+PROJECTION = "/* PROJECTION */\n"  # line of taylor.c that is replaced by projection.c
+ENCLOSURE = "/* ENCLOSURE */\n"  # line that is replaced by enclosure.h
 NO_INVARIANT = "#define SYMROT_INVARIANTS 0\n"
 NO_INVARIANTS = NO_INVARIANT + "#define SYMROT_INVARIANT_PARAMETERS 0\n"
 NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n"
-MIDDLE_REACH = 3  # of the discs of symrot.codegen.enclosure.terms.REACHES: the one to begin with
+MIDDLE_REACH = 3  # index of the first disc to try in symrot.codegen.enclosure.terms.REACHES
 PROJECTED_EVERY = 16  # steps: by measurement, seldom enough to cost a few percent and often enough to lose nothing
-MANY_PRODUCTS = 40  # of a right-hand side: above it the sums of a step, which grow as order squared, dominate its cost
-ORDERS = {  # by whether there are many products: least tolerance, and the fastest order from there on
+MANY_PRODUCTS = 40  # products from which on the sums of a step, which grow as order squared, dominate its cost
+ORDERS = {  # for few and for many products: least tolerance, and the fastest order from there on
     False: ((1e-3, 14), (1e-6, 16), (0.0, 20)),
     True: ((3e-2, 8), (1e-3, 10), (1e-5, 12), (1e-7, 16), (0.0, 20)),
 }
 
 
 def step_tail(tolerance: float) -> tuple[float, float]:
-    """Return the size allowed to the last terms of a step's series, and the fraction of the span that earns all of it.
+    """Return the size allowed to the last terms of a step's series, and the fraction of the span that allows all of it.
 
-    A step shorter than that is allowed its share of the span to the power 7/4, as errors grow with the number of steps
-    when only the rotation amplifies them: the error at the end then hardly depends on the span.
+    A step shorter than this fraction is allowed its share of the span to the power 7/4: if only the rotation amplifies
+    errors, they grow with the number of steps. The error at the end then hardly depends on the span.
 
     The constant is calibrated on free asymmetric bodies, through flips about the intermediate axis too, and on heavy
     tops, against references of 50 digits (``tests/propagation/test_taylor.py``): errors stay below 5 times the
@@ -75,9 +76,10 @@ def step_tail(tolerance: float) -> tuple[float, float]:
 
 
 def order_for(tolerance: float, program: Program | None = None) -> int:
-    """Return the fastest order for a tolerance and the products of a right-hand side; every order is accurate enough.
+    """Return the fastest order of the series for a tolerance; every order is accurate enough.
 
-    Measured by ``python -m symrot.bench.taylor --orders``: below 1e-6 orders 16 to 24 lie within a tenth of each other.
+    It depends on the number of products in the right-hand side. Measured by ``python -m symrot.bench.taylor --orders``:
+    below 1e-6 orders 16 to 24 lie within a tenth of each other.
     """
     formulas = (*program.temporaries, *program.outputs) if program else ()
     products = sum(operations(formula)["mul"] for _, formula in formulas)
@@ -85,7 +87,7 @@ def order_for(tolerance: float, program: Program | None = None) -> int:
 
 
 def refusal(program: Program) -> str:
-    """Return an empty text, or the sentence that says why a right-hand side has no Taylor series."""
+    """Return a sentence that says why a right-hand side has no Taylor series, or an empty text if it has one."""
     from symrot.codegen.taylor.recurrences import recurrences
 
     try:
@@ -131,12 +133,13 @@ def translation_unit(
     own = {name: c_text(path) for name, path in FILES.items()}
     definitions = taylor_definitions(program, blocks, scales, order)
     invariants = invariants or NO_INVARIANTS
-    # without invariants projection.c calls a function that is not there: an error in C, which only optimizers overlook
+    # without invariants projection.c would call a missing function: an error in C that only optimizers overlook
     projection = "" if NO_INVARIANT in invariants else own["projection.c"]
     stepper = own["taylor.c"].replace(PROJECTION, projection)
     bounds = enclosure_source(program, order, blocks) if enclosed else NO_ENCLOSURE
     stepper = stepper.replace(ENCLOSURE, own["enclosure.h"])
-    parts = (own["taylor.h"], own["pairs.h"], definitions, own["series.h"], invariants, own["disc.h"], bounds, stepper)
+    arithmetic = (own["taylor.h"], own["error_free.h"], own["pairs.h"])
+    parts = (*arithmetic, definitions, own["series.h"], invariants, own["disc.h"], bounds, stepper)
     return "\n".join(parts)
 
 
@@ -150,7 +153,8 @@ def integration(
     max_steps: int = MAX_STEPS,
     project: bool = True,
 ) -> Integration:
-    """Return the integration of a motion, as :func:`symrot.propagation.steppers.dop853.integration` does.
+    """Return the integration of a motion by Taylor series, as :func:`symrot.propagation.steppers.dop853.integration`
+    does.
 
     Its ``stats`` count jets as evaluations: a jet is all coefficients of one step.
 
@@ -171,7 +175,7 @@ def integration(
 
 
 class _Stepper(Stepper):
-    """A library of :func:`translation_unit`."""
+    """A loaded library of :func:`translation_unit`: jet and Taylor stepper."""
 
     name = "taylor"
     reals = ("t", "t_low", "unit", "stop", "tail", "pace", "max_step", "proven")
@@ -191,7 +195,9 @@ class _Stepper(Stepper):
         pointer, integer, real = ctypes.c_void_p, ctypes.c_int64, ctypes.c_double
         self._jet = self._function("_jet", None, real, pointer, pointer, real, integer, pointer)
         if self._function("_carry", real, real, real)(1.0, 2.0**-60) != 2.0**-60:
-            raise CompilerError(f"the compiled kernel {path} loses the carry of its sums: compile without -ffast-math")
+            raise CompilerError(
+                f"the compiled kernel {path} ignores rounding errors that its sums add; compile without -ffast-math"
+            )
 
     def row_length(self) -> int:
         return 4 + (self.order + 1) * self.states

@@ -1,1 +1,1 @@
-"""Motions under torques that jump or bend."""
+"""Motions under torques that jump or bend, such as dry friction: smooth parts between switches located exactly."""

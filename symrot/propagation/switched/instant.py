@@ -1,6 +1,6 @@
-"""Times to twice the digits of a double, and clocks that start at one.
+"""Times as sums of two doubles, and clocks that show 0 at such a time.
 
-At t = 1e6 s doubles lie 1e-10 s apart: a switch that is located to the last bit of such a number is off by a part of
+At t = 1e6 s doubles lie 1e-10 s apart: a switch that is located to the last bit of one double changes the motion by
 1e-10 of the effect that the torque has within a second. As a sum of two doubles a time has 32 digits.
 """
 
@@ -10,13 +10,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from symrot.closed_form.arithmetic.double_double import normalized, two_sum
+
 __all__ = ["Instant"]
 
 Floats = NDArray[np.float64]
 
 
 class Instant(NamedTuple):
-    """A time, s: ``high`` is the double next to it, ``low`` the rest."""
+    """A time, s, as the sum of two doubles: ``high`` is the nearest double, ``low`` the remainder."""
 
     high: float
     low: float = 0.0
@@ -26,26 +28,23 @@ class Instant(NamedTuple):
         return Fraction(self.high) + Fraction(self.low)
 
     def after(self, *seconds: float) -> "Instant":
-        """Return a later instant; several numbers of seconds are added."""
+        """Return a later instant: this one plus one or more numbers of seconds."""
         high, low = self
         for second in seconds:
-            total = high + second
-            part = total - high
-            low += (high - (total - part)) + (second - part)  # the rounding error of the sum
-            high = total
-        total = high + low
-        return Instant(total, low - (total - high))
+            high, error = two_sum(high, second)
+            low += error
+        return Instant(*normalized(high, low))
 
     def __sub__(self, other: "Instant") -> float:
-        """Return the seconds from another instant to this one."""
+        """Return the seconds from the instant ``other`` to this one."""
         return (self.high - other.high) + (self.low - other.low)
 
     def since(self, times: Any) -> Any:
-        """Return times, s, on a clock that shows 0 at this instant."""
+        """Return times, s, counted from this instant."""
         return (times - self.high) - self.low
 
     def reached(self, times: Floats, side: float) -> int:
-        """Return how many times, which rise (``side`` 1) or fall (-1), do not lie beyond this instant."""
+        """Return how many of the times do not lie beyond this instant; the times rise (``side`` 1) or fall (-1)."""
         count = int(np.searchsorted(side * times, side * self.high, "right"))
         while side * self.low < 0.0 and count and times[count - 1] == self.high:
             count -= 1

@@ -1,10 +1,11 @@
-"""Motions under torques that jump or bend: from one switch to the next, each located to the last bits.
+"""Motions under torques that jump or bend: followed from one switch to the next, each located to the last bits.
 
-Between switches the modes of :mod:`symrot.formula.switches` are constants and the motion is smooth: any stepper follows
-it, while the guards are searched like events. Where a guard would leave the side of its mode, the motion is stepped
-exactly to that time and goes on with the mode of the other side. If both sides send it back (dry friction at rest,
-relay control) the guard stays at zero: the motion slides, and the mode takes the value that holds it there, until that
-value leaves the range of the switch.
+A switch is a function such as sign or abs in a torque; its guard is the formula inside, and its mode is the present
+value of the function. Between switches the modes are constants and the motion is smooth, so that any stepper can follow
+it, while the guards are searched for zeros like events (:mod:`symrot.formula.switches`). Where a guard changes its
+sign, the motion is stepped exactly to that time and continues with the mode of the other side. If both sides send it
+back (dry friction at rest, relay control) the guard stays at zero: the motion slides, and the mode takes the value that
+holds it there, until that value leaves the range of the switch.
 
 Source: A. F. Filippov, Differential Equations with Discontinuous Righthand Sides, Kluwer 1988, sections 4 and 8.
 """
@@ -33,7 +34,7 @@ STATES = frozenset({*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range
 
 
 class SwitchedPropagator(Propagator):
-    """Propagates a scene under torques with switches; made by :func:`symrot.propagator`."""
+    """Propagator of a scene under torques with switches (sign, abs, ..); made by :func:`symrot.propagator`."""
 
     def _planned(self, initial: Initial | None = None) -> Plan:
         return make_plan(self.scene, initial, switched=True)
@@ -44,7 +45,7 @@ class SwitchedPropagator(Propagator):
 
 @final
 class SwitchedMotion(MotionInParts):
-    """A motion under torques with switches; each regime between them has a clock of its own."""
+    """Motion under torques with switches; each smooth part between two switches has its own clock."""
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
         start = float(plan.scene.span.start)
@@ -53,7 +54,7 @@ class SwitchedMotion(MotionInParts):
         self.system.regime(frozenset(), self.system.initial_modes())
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times, shape (n, N), and their cost."""
+        """Return the states at the times, shape (n, N), and the cost of the motion."""
         began, states = perf_counter(), np.empty((len(times), len(self.plan.states)))
         cost, done = np.zeros(3, dtype=np.int64), np.empty(0, dtype=np.intp)
         changes: dict[tuple[float, str], str] = {}
@@ -84,7 +85,10 @@ class SwitchedMotion(MotionInParts):
         return states, stats_of(cost, perf_counter() - began, _switchings(changes))
 
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to an end as polynomials and at any time, an early end in ``broken``."""
+        """Return the motion from its start to ``end`` as polynomials, and as a function of time.
+
+        An error that ends the motion early is appended to ``broken``.
+        """
         chunks: list[Chunk] = []
         run = SwitchedRun(self, self.system, end)
         try:
@@ -96,7 +100,7 @@ class SwitchedMotion(MotionInParts):
         return [chunk.piece() for chunk in chunks], states
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return the states as a function of time."""
+        """Return the states as a function of time over a span, s."""
         chunks: list[Chunk] = []
         cost, began, changes = np.zeros(3, dtype=np.int64), perf_counter(), dict[tuple[float, str], str]()
         for end in {min(*span, self.start), max(*span, self.start)} - {self.start}:
@@ -113,7 +117,7 @@ def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:
 
 
 class SwitchedRecording(Recording):
-    """A motion under torques with switches at any time, from the parts between them."""
+    """A motion under torques with switches as a function of time, made of the parts between the switches."""
 
     def __init__(
         self, t0: float, y0: tuple[float, ...], span: tuple[float, float], stats: Stats, chunks: list[Chunk]
@@ -133,7 +137,7 @@ class SwitchedRecording(Recording):
             places[beyond] += 1
         for place in np.unique(places):
             if place == len(self._chunks):
-                states[places == place] = np.nan  # after the motion stopped early
+                states[places == place] = np.nan  # times after the motion stopped early
             else:
                 chosen = places == place
                 states[chosen] = self._chunks[place].states(times[chosen])

@@ -1,4 +1,8 @@
-"""The smooth motions between switches, and the guards that end them; see :mod:`symrot.propagation.switched.motion`."""
+"""Regimes: the smooth motions between switches of a torque, and the guards whose zeros end them.
+
+A guard is the formula inside a function such as sign or abs; a mode is the value of the function. See
+:mod:`symrot.propagation.switched.motion`.
+"""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -25,18 +29,22 @@ Modes = dict[str, int]
 
 
 class Guard(NamedTuple):
-    """A formula that is positive as long as its switch has its mode, and the change of the mode where it is not."""
+    """A formula inside a switching function (sign, abs, ..): it is positive while the function keeps its mode (value).
+
+    The guard also says how the mode changes where the formula becomes negative.
+    """
 
     mode: str
     formula: str
-    change: int  # 0: to the opposite sign; 1 or -1: to that side, or by that number
+    change: int  # 0: the mode changes to the opposite sign; 1 or -1: it changes to that sign, or by that number
     where: Conditions
 
 
 class RegimeParameters(NamedTuple):
-    """The parameters of a regime under some modes, for one clock after another.
+    """Parameters of a regime for fixed modes (values of its switching functions), as functions of the epoch of its
+    clock.
 
-    ``invariants`` are pairs of doubles that no clock changes; only Taylor steps take them.
+    ``invariants`` are pairs of doubles that do not depend on the clock; only Taylor steps use them.
     """
 
     rates: ShiftedParameters
@@ -46,9 +54,11 @@ class RegimeParameters(NamedTuple):
 
 
 class Regime:
-    """The smooth motion while some guards stay at zero, and the guards that end it.
+    """A smooth motion between two switches: its rates, and the guards (formulas inside sign, abs, ..) whose zeros end
+    it.
 
-    Its clock shows 0 at the instant at which the motion enters it; rates and guards have parameters for that instant.
+    Some guards may stay at zero during the regime. Its clock shows 0 at the instant at which the motion enters it;
+    rates and guards have parameters for that instant.
     """
 
     def __init__(
@@ -74,7 +84,7 @@ class Regime:
         known = {name for name, _ in self.parameters} | set(modes)
         self.more = sorted(known & set().union(*map(names, nodes)))
         self.events = [Event(guard.formula, terminal=True, direction=-1) for guard in self.guards]
-        columns = {name: f"{name} of the scene" for name in self.more}  # a kernel names its constants differently
+        columns = {name: f"{name} of the scene" for name in self.more}  # kernels use other names for constants
         columns |= {f"{mode}_of_t": f"{mode} of t" for mode in held}
         quantities, self.quantity_parameters = motion.kernel.quantities, motion.kernel.quantity_parameters
         if quantities.uses("t"):  # for example the value of a mode that holds its guard at zero
@@ -101,7 +111,7 @@ class Regime:
             yield Guard(mode, f"1 - ({guard})", 1, where)
 
     def _parameters_under(self, modes: Modes) -> RegimeParameters:
-        """Return the parameters under some modes; parameters of invariants have no value under all modes."""
+        """Return the parameters of the regime for given modes, which are the values of its switching functions."""
         key = tuple(modes.values())
         if key not in self._parameters:
             values = {name: Fraction(value) for name, value in modes.items()}
@@ -115,14 +125,20 @@ class Regime:
         return self._parameters[key]
 
     def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
-        """Return the values of the names in :attr:`formulas` on a clock that shows 0 at an instant."""
+        """Return the values of the named :attr:`formulas` for given modes (values of the switching functions).
+
+        They are for a clock that shows 0 at the instant ``zero``.
+        """
         numbers = self._parameters_under(modes).guards.parameters(zero.exact)
         return {name: number for (name, _), number in zip(self.parameters, numbers, strict=True)} | {
             name: float(mode) for name, mode in modes.items()
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
-        """Return the parameters of the stepper and of the guards, on a clock that shows 0 at an instant."""
+        """Return the parameters of the stepper and those of the guards, which are the formulas that end the regime.
+
+        They are for a clock that shows 0 at the instant ``zero``.
+        """
         rates, guards, quantities, invariants = self._parameters_under(modes)
         fixed = rates.fixed and guards.fixed and quantities.fixed
         place = tuple(modes.values()), None if fixed else zero
@@ -134,13 +150,19 @@ class Regime:
         return self._bound[place]
 
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
-        """Return the parameters of the rates as a function of an epoch, s, on a clock that shows 0 at an instant."""
+        """Return a function from an epoch, s, to the parameters of rates that count time from the epoch.
+
+        Epochs are counted from the instant ``zero``. The result is None if the rates do not depend on the time.
+        """
         rates = self._parameters_under(modes).rates
         return None if rates.fixed else lambda since: rates.parameters(zero.exact + Fraction(since))
 
     @cached_property
     def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:
-        """The parameters of rates, guards and quantities as formulas of the modes and the epoch alone."""
+        """Return the parameters of rates, guards and quantities as formulas of the epoch and of modes alone.
+
+        Modes are the values of switching functions such as sign.
+        """
         modes = {switch.mode for switch in self.switches}
         known = {name: value for name, value in self.constants.items() if name not in modes}
         kernel = self.motion.kernel
@@ -151,7 +173,9 @@ class Regime:
         return rates, guards, quantities
 
     def active(self, modes: Modes) -> list[bool]:
-        """Return which guards are active under some modes."""
+        """Return, for each guard, whether its zero can end the regime for the given modes (values of switching
+        functions).
+        """
         key = tuple(modes.values())
         if key not in self._active:
             self._active[key] = [hold(guard.where, modes, self.held) for guard in self.guards]
@@ -159,15 +183,16 @@ class Regime:
 
 
 def _distance(switch: Switch) -> Node:
-    """Return a formula that is zero where a switch switches: its guard, less the whole number below it for a floor.
+    """Return a formula that is zero where a switch changes its mode.
 
-    The number is subtracted before rounding: far from t = 0 it cancels most digits of the guard.
+    It is the guard of the switch; for a floor, the guard minus the whole number below it. The number is subtracted
+    before rounding: far from t = 0 it cancels most digits of the guard.
     """
     return switch.guard if switch.kind == "sign" else ("-", switch.guard, ("symbol", switch.mode))
 
 
 def _with_parameters(program: Program, more: list[str]) -> Program:
-    """Return a program with more parameters, which its outputs do not use."""
+    """Return a program with additional parameters, which its outputs do not use."""
     arguments = list(program.signature.arguments)
     place = next((k for k, argument in enumerate(arguments) if argument.name == "p"), None)
     extra = tuple((name, "", "") for name in more)

@@ -1,4 +1,4 @@
-"""A motion under torques with switches from the start to one end: where it switches, slides or stops."""
+"""A motion under torques with switches, followed from its start to one end: where it switches, slides or stops."""
 
 import math
 from collections.abc import Callable, Generator
@@ -29,15 +29,15 @@ __all__ = ["Chunk", "SwitchedRun"]
 
 MOST_SWITCHES, MOST_AT_ONCE = 1_000_000, 1000
 HOP_BITS = 10  # a hop over a switch is at most 2 to this power units in the last place of the clock long
-LEAST_TURN = 1e-3  # rad over the whole span: errors of slower rates are relative to this one
-AWAY = range(50, 400, 10)  # a hop away from a switch is the span, halved so many times
-NEARBY, MOST_ULPS = 1e-6, 64.0  # of the way since the last switch; units in the last place of a located time
-CHATTERING = 1e-9  # of the span: CHATTER switches within it count as endlessly many
+LEAST_TURN = 1e-3  # rad over the whole span: errors of slower rotations are relative to this rate
+AWAY = range(50, 400, 10)  # a hop away from a switch is the span divided by 2 to this power
+NEARBY, MOST_ULPS = 1e-6, 64.0  # part of the way since the last switch; units in the last place of a located time
+CHATTERING = 1e-9  # part of the span: CHATTER switches within it count as endlessly many
 Consumer = Callable[["Chunk"], None]
 
 
 class Chunk(NamedTuple):
-    """A part of a motion from ``start`` to ``stop``, and its polynomials on a clock that shows 0 at ``zero``."""
+    """Part of a motion from ``start`` to ``stop``, with its polynomials on a clock that shows 0 at ``zero``."""
 
     start: Instant
     stop: Instant
@@ -46,11 +46,11 @@ class Chunk(NamedTuple):
     own_piece: Piece
 
     def states(self, times: Floats) -> Floats:
-        """Return the states at times, s, on the clock of the scene."""
+        """Return the states at times, s, which are given on the clock of the scene."""
         return self.own_states(self.zero.since(times))
 
     def piece(self) -> Piece:
-        """Return the part as polynomials on the clock of the scene."""
+        """Return the polynomials with their times on the clock of the scene."""
         rows, edges = self.own_piece.rows.copy(), self.own_piece.edges + self.zero.low + self.zero.high
         edges[0], edges[-1] = self.start.high, self.stop.high  # the same numbers as in the parts before and after
         time, low = two_sum(self.zero.high, rows[:, 0])
@@ -59,7 +59,7 @@ class Chunk(NamedTuple):
 
 
 class SwitchedRun(RunState):
-    """A motion on its way from the start to one end.
+    """A motion under torques with switches while it is followed from its start to one end.
 
     Its clock shows 0 at the last switch, which is known to twice the digits of a double. ``t`` and ``end`` are times on
     that clock, s.
@@ -72,15 +72,15 @@ class SwitchedRun(RunState):
         self.held = frozenset[str]()
         self.cost = np.zeros(3, dtype=np.int64)  # steps accepted and rejected, evaluations
         self.switches = 0
-        self.changes: dict[tuple[float, str], str] = {}  # how each function switched, by time and function
-        self.flipped: dict[str, int] = {}  # modes changed at this time, and how often
+        self.changes: dict[tuple[float, str], str] = {}  # how each function switched, with time and function as key
+        self.flipped: dict[str, int] = {}  # the modes that changed at the present time, and how often
         self.released: set[str] = set()  # modes whose guards were held until this time: they leave zero slowly
-        self.order: list[str] = []  # the same in the order of the changes
-        self.left: set[tuple[str, int]] = set()  # modes with the values that they had before changes at this time
+        self.order: list[str] = []  # the modes that changed at the present time, in the order of the changes
+        self.left: set[tuple[str, int]] = set()  # the values of all modes before the changes at the present time
         self.settled, self.hopped = 0, False
 
     def follow(self, consume: Consumer) -> None:
-        """Follow the motion to its end, passing each part to ``consume`` as soon as it is known."""
+        """Follow the motion to its end; pass each part to the function ``consume`` as soon as it is known."""
         with progress.within(self.motion.start, self._end.high, lambda: self.zero.high):
             try:
                 self._check_start()
@@ -99,20 +99,23 @@ class SwitchedRun(RunState):
 
     @property
     def now(self) -> float:
-        """The time on the clock of the scene, s."""
+        """The present time on the clock of the scene, s."""
         return self.zero.after(self.t).high
 
     def _at(self, t: float) -> Instant:
         return self._end if t == self.end else self.zero.after(t)
 
     def _move_clock(self, zero: Instant) -> None:
-        """Have the clock show 0 at an instant, where the motion is now."""
+        """Move the clock so that it shows 0 at the instant ``zero``, which is the present time of the motion."""
         self.zero, self.t, self.end = zero, 0.0, float(zero.since(self._end.high))
         if self.side * self.end < 0.0:  # within rounding of the end
             self.end = 0.0
 
     def _check_start(self) -> None:
-        """Raise IntegrationStopped for a start on a switch from which both sides lead away: there are two motions."""
+        """Raise IntegrationStopped if the motion starts on a switch from which both sides lead away.
+
+        Then there are two motions from the same start.
+        """
         for switch in self.system.switches:
             mode = switch.mode
             if mode not in self.system.undecided or not hold(switch.where, self.modes) or self.t == self.end:
@@ -132,7 +135,7 @@ class SwitchedRun(RunState):
                 )
 
     def _segment(self, regime: Regime, consume: Consumer) -> Guard | None:
-        """Follow one smooth part; return the guard that ended it, or None at the end of the motion."""
+        """Follow one smooth part of the motion; return the guard that ended it, or None at the end of the motion."""
         if self.t != 0.0:
             self._move_clock(self._at(self.t))
         rates, values = regime.bound(self.modes, self.zero)
@@ -153,7 +156,7 @@ class SwitchedRun(RunState):
                     return
                 current[:] = [(piece, states)]
                 yield piece
-                if last:  # without a crossing: within rounding the guard was negative from the start of the piece
+                if last:  # no crossing: up to rounding the guard was negative from the start of the piece
                     violated.extend(last)
                     if passed[-1] != start:
                         self.t, self.y = passed[-1], states(np.array(passed[-1:]))[0]
@@ -203,7 +206,9 @@ class SwitchedRun(RunState):
         return guard
 
     def _arrive(self, instant: Instant) -> None:
-        """Restart at a switch, where the motion is now; the clock shows 0 there, unless it is the end."""
+        """Continue at a switch: the present time becomes ``instant``, and the clock shows 0 there, unless it is the
+        end.
+        """
         if self.t != self.end:
             self._move_clock(instant)
         self.flipped, self.order, self.left, self.released, self.hopped = {}, [], set(), set(), False
@@ -211,11 +216,13 @@ class SwitchedRun(RunState):
     def _hop(
         self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: IntegrationStopped
     ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
-        """Return a straight piece that continues from where a stepper is stuck, and the guard that it crosses; or None.
+        """Return a straight piece of motion over a place where a stepper is stuck, and the switch that it reaches; or
+        None.
 
-        Examples are sqrt(1 - t) before a switch at 1 s, and sqrt(t - 1) after it: steps shrink to zero where a torque
-        has no derivative, though its impulse is finite. While the impulse is less than the tolerance the motion may
-        continue straight: to the guard if the guard is that near, or away from the last switch.
+        Steps shrink to zero where a torque has no derivative, though its impulse is finite. Examples are sqrt(1 - t)
+        before a switch at 1 s, and sqrt(t - 1) after it. While the impulse is less than the tolerance the motion may
+        continue straight: to the switch if it is that near, or away from the last switch. The result also has the
+        states along the piece.
         """
         kernel, motion = regime.motion.kernel, regime.motion
         p = np.array(rates[: len(kernel.rate_parameters)])
@@ -256,7 +263,7 @@ class SwitchedRun(RunState):
         return None
 
     def _crosses(self, regime: Regime, guard: Guard, *places: tuple[float, Floats]) -> bool:
-        """Return whether a guard leaves the positive side between two places, a time and a state each."""
+        """Return whether the formula of a guard becomes negative between two places, each a time with states."""
         try:
             before, after = (
                 float(evaluate(parse(guard.formula), self._values(regime, place), FLOAT_FUNCTIONS, float))
@@ -270,10 +277,10 @@ class SwitchedRun(RunState):
         return Chunk(self._at(start), self._at(stop), self.zero, states, piece)
 
     def _located(self, regime: Regime, guard: Guard, t: float) -> Instant:
-        """Return the instant at which a guard is zero, next to t.
+        """Return the instant at which the formula of a guard is zero, which lies next to the time t.
 
-        On a clock that shows 0 there a guard of time alone is known to all digits; one step of Newton's rule finds its
-        zero to twice the digits of t.
+        On a clock that shows 0 at t, a formula of time alone is known to all digits; one step of Newton's method finds
+        its zero to twice the digits of t.
         """
         instant = self.zero.after(t)
         if guard.mode in self.held or guard.mode not in regime.of_time:
@@ -295,7 +302,9 @@ class SwitchedRun(RunState):
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
     ) -> tuple[list[Guard], list[Guard]]:
-        """Return the guards that are negative from the start of a piece on, and those negative at its end."""
+        """Return two lists of guards: those whose formulas are negative from the start of a piece on, and those at its
+        end.
+        """
         formulas = [guard.formula for guard in regime.guards]
         first, last = (
             [guard for guard, on, sign in zip(regime.guards, active, signs, strict=True) if on and sign < 0]
@@ -304,9 +313,9 @@ class SwitchedRun(RunState):
         return first, last
 
     def _settle(self, regime: Regime, active: list[bool], piece: Piece, states: Callable[[Floats], Floats]) -> bool:
-        """Give each mode whose guard is and stays zero its value at zero; return whether a mode changed.
+        """Give each switching function whose argument stays at zero its value at zero; return whether a value changed.
 
-        A mode that is 0 takes the sign of its guard as soon as the guard is not zero.
+        A value (mode) of 0 changes to the sign of its argument (guard) as soon as the argument is not zero.
         """
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
 
@@ -342,9 +351,10 @@ class SwitchedRun(RunState):
         return changed
 
     def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
-        """Return the distance of a mode's guard from its zero, at a time and a state or at the present ones.
+        """Return how far the argument of a switching function is from the switch, now or at another time with states.
 
-        For a floor: the distance of the guard from the whole number that is its mode.
+        The function is named by its mode. For a floor it is the distance of the argument from the whole number that is
+        its value.
         """
         regime = self.system.regime(self.held, self.modes)
         return float(
@@ -352,7 +362,7 @@ class SwitchedRun(RunState):
         )
 
     def _values(self, regime: Regime, place: tuple[float, Floats]) -> dict[str, float]:
-        """Return the values of the names in guards at a time and a state."""
+        """Return the values of all names in the arguments of switching functions, at one time with its states."""
         t, y = place
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure.attitude else []
@@ -361,11 +371,14 @@ class SwitchedRun(RunState):
         return {**values, **regime.values(self.modes, self.zero), "t": t}
 
     def _switch(self, regime: Regime, guard: Guard) -> None:
-        """Change the mode of a guard; hold the guard at zero where both sides send the motion back."""
+        """Change the value (mode) of a function whose argument (guard) crosses zero.
+
+        Where the rates on both sides send the motion back, the argument is held at zero: the motion slides.
+        """
         mode, kind = guard.mode, self.by_name[guard.mode].kind
         self.left.add((mode, self.modes[mode]))
         again = self.flipped.get(mode, 0)
-        if again and self._jumped(mode):  # a mode inside its guard changed too, so that this is no return
+        if again and self._jumped(mode):  # a mode inside its guard changed too, so that the motion does not return
             again = 0
         self.order.append(mode)
         if len(self.order) > MOST_AT_ONCE:
@@ -397,17 +410,21 @@ class SwitchedRun(RunState):
             self._wake(other)
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether a mode inside a mode's guard has changed at this time since that mode did."""
+        """Return whether, since a function last switched at the present time, a function inside its argument has
+        switched too.
+        """
         inside = names(self.by_name[mode].guard)
         last = len(self.order) - self.order[::-1].index(mode)
         return any(other in inside for other in self.order[last:])
 
     def _asleep(self) -> set[str]:
-        """Return the modes whose guards are not active."""
+        """Return the modes of those switching functions that do not matter in the present regime."""
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
-        """Set a mode whose guard becomes active by the value of the guard, if the guard has one."""
+        """Set the value (mode) of a switching function that begins to matter, by the sign of its argument if it is not
+        zero.
+        """
         try:
             guard = self._guard_value(mode)
         except (ArithmeticError, ValueError, IntegrationStopped):

@@ -1,4 +1,4 @@
-"""The present state of a motion under torques with switches: its clock, its states and its cost so far."""
+"""Present state of a motion under torques with switches: its clock, its states and its cost so far."""
 
 from collections import deque
 from collections.abc import Callable
@@ -12,11 +12,11 @@ from symrot.propagation.switched.regimes import Modes, Regime
 
 __all__ = ["CHATTER", "RunState"]
 
-CHATTER = 50  # switches that are remembered
+CHATTER = 50  # number of last switches that are remembered
 
 
 class RunState:
-    """The present state of a motion between its start and one end, on a clock that shows 0 at the last switch.
+    """Present state of a motion between its start and one end, on a clock that shows 0 at the last switch.
 
     Attributes
     ----------
@@ -51,6 +51,10 @@ class RunState:
         return Instant(self.motion.start) - self.zero
 
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
-        """Return the clock of a regime from now on, with the function to step; None if its rates have no time."""
+        """Return a function from an epoch, s, to the rates ``stepped`` and their parameters on a clock moved by the
+        epoch.
+
+        The result is None if the rates of the regime do not depend on the time.
+        """
         parameters = regime.rates_since(self.modes, self.zero)
         return (lambda since: (stepped, parameters(since))) if parameters else None

@@ -1,4 +1,4 @@
-"""The pieces of a smooth motion up to the next switch, by each stepper: polynomials, and states at any time."""
+"""Pieces of a smooth motion up to the next switch, by each stepper: polynomials, and states as a function of time."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -21,16 +21,16 @@ from symrot.propagation.switched.run_state import RunState
 __all__ = ["SciPyPieces", "SteppedPieces", "smooth_pieces"]
 
 ROOM = 4  # steps in the first piece after a switch; each further piece has twice as many
-WINDOWS, FEWEST = 64, 8  # pieces of the span that SciPy follows at a time, at first and later
-JOIN = 0.01  # of the tolerance: how far the ends of LSODA's steps may be apart
+WINDOWS, FEWEST = 64, 8  # parts of the span that SciPy follows at a time, at first and later
+JOIN = 0.01  # part of the tolerance: largest gap between the ends of two LSODA steps
 RECENT = 4  # number of smooth parts whose lengths predict the length of the next one
 FIRST_ANGLE = 30.0  # rad
-SHORTEST = 1e-6  # of the span
+SHORTEST = 1e-6  # part of the span
 OVERHEAD = 200  # evaluations that take as long as the rest of a window
 
 
 class SteppedPieces:
-    """Pieces of a motion by a stepper in C."""
+    """Pieces of a smooth motion by a stepper in C, up to the next switch."""
 
     def __init__(self, run: RunState, regime: Regime, motion: SteppedMotion, rates: list[float]) -> None:
         if not np.isfinite(run.y).all():
@@ -43,7 +43,9 @@ class SteppedPieces:
         self.integration.way, self.end = run.span, run.end
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
-        """Yield the pieces in the order of the motion, with their states as a function of time."""
+        """Yield the polynomials of the pieces in the order of the motion, each with its states as a function of
+        time.
+        """
         integration, room = self.integration, ROOM
         for run in integration.runs(self.end):
             while run.t != run.stop:
@@ -72,14 +74,16 @@ class SteppedPieces:
 
 
 class SciPyPieces:
-    """Pieces of a motion by SciPy, one window of time after another."""
+    """Pieces of a smooth motion by SciPy, which follows one window of time after another up to the next switch."""
 
     def __init__(self, run: RunState, regime: Regime, motion: SciPyMotion, rates: list[float]) -> None:
         self.run, self.motion, self.rates, self.counts = run, motion, rates, np.zeros(3, dtype=np.int64)
         self.clock = run.clock(regime, motion.rates)
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
-        """Yield the pieces in the order of the motion, with their states as a function of time."""
+        """Yield the polynomials of the pieces in the order of the motion, each with its states as a function of
+        time.
+        """
         from symrot.propagation.steppers import fallback
 
         run, t, y = self.run, self.run.t, self.run.y
@@ -103,7 +107,7 @@ class SciPyPieces:
                     raise
                 recording, ended = before, error
                 stop = recording.span[side > 0.0]
-                if isinstance(error, KeyboardInterrupt):  # must survive a switch before it
+                if isinstance(error, KeyboardInterrupt):  # the interrupt must not be lost if a switch comes before it
                     run.interrupt = error
             self.counts += recording.stats[:3]
             run.spent += recording.stats.evaluations + OVERHEAD
@@ -115,9 +119,9 @@ class SciPyPieces:
             y, t, length = recording(stop), stop, min(2.0 * length, run.span / FEWEST)
 
     def _first_length(self) -> float:
-        """Return the length of the first window, s: at most twice the longest recent smooth part, and few rotations.
+        """Return the length of the first window, s: at most twice the longest recent smooth part, and a few rotations.
 
-        Work beyond the next switch is wasted.
+        A longer window would waste work beyond the next switch.
         """
         run = self.run
         (_, rates, *_), _ = error_blocks(self.motion.plan)
@@ -148,7 +152,10 @@ class SciPyPieces:
 
 
 def smooth_pieces(run: RunState, regime: Regime, rates: list[float]) -> SteppedPieces | SciPyPieces:
-    """Return the pieces of a motion from where a run is now, with the parameters of the rates of its regime."""
+    """Return the pieces of a smooth motion from the present state of a run on, stepped in its regime.
+
+    ``rates`` are the parameters of the rates.
+    """
     motion = regime.motion
     if isinstance(motion, SteppedMotion):
         return SteppedPieces(run, regime, motion, rates)

@@ -1,4 +1,4 @@
-"""The system of a motion under torques with switches: its switches, and the smooth motions between them."""
+"""All switches of the torques of a motion, and the smooth motions (regimes) between them."""
 
 import math
 from collections.abc import Mapping
@@ -24,7 +24,11 @@ STATES = frozenset({*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range
 
 
 class SwitchedSystem:
-    """The switches of all torques of a plan, and one regime for each combination of held guards."""
+    """All switching functions (sign, abs, ..) in the torques of a plan, and the smooth motions (regimes) between
+    switches.
+
+    There is one regime for each combination of arguments (guards) that stay at zero.
+    """
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
         self.plan, self.choice, self.tolerance = plan, choice, tolerance
@@ -32,7 +36,7 @@ class SwitchedSystem:
 
     @cached_property
     def switches(self) -> list[Switch]:
-        """The switches of all torques, their modes named as the constants of the plan."""
+        """The switching functions of all torques; their values (modes) have the names of constants of the plan."""
         return [switch for switches in self._switches_by_torque for switch in switches]
 
     @cached_property
@@ -41,9 +45,10 @@ class SwitchedSystem:
 
     @cached_property
     def twins(self) -> dict[str, list[str]]:
-        """The modes of one torque that have the same guard as a mode, itself included: those that jump come first.
+        """For each mode, the modes of the same torque whose functions have the same argument, itself included.
 
-        An example is sign(omega_3) and abs(omega_3) in the friction of a bearing, which is greater at rest.
+        A mode is the value of a switching function. Functions that jump come first. An example is sign(omega_3) and
+        abs(omega_3) in the friction of a bearing, which is greater at rest.
         """
         twins: dict[str, list[str]] = {}
         for switches in self._switches_by_torque:
@@ -56,7 +61,9 @@ class SwitchedSystem:
 
     @cached_property
     def settled(self) -> set[str]:
-        """The modes whose guards never change: without the time, a state or a mode that changes in them."""
+        """The modes of switching functions whose arguments are constant: they contain no time, no state and no changing
+        mode.
+        """
         settled = set[str]()
         for switch in self.switches:
             if names(switch.guard) <= self.constants.keys() - ({each.mode for each in self.switches} - settled):
@@ -68,12 +75,15 @@ class SwitchedSystem:
         return {"pi": PI, **self.plan.constants}
 
     def initial_modes(self) -> Modes:
-        """Return the modes at the start; a guard that is zero there counts as positive until the motion decides."""
+        """Return the modes (values of the switching functions) at the start.
+
+        An argument that is zero at the start counts as positive until the motion decides its sign.
+        """
         return dict(self._initial_modes[0])
 
     @property
     def undecided(self) -> set[str]:
-        """The modes whose guards are zero at the start, not only because of the time."""
+        """The modes of switching functions whose arguments are zero at the start and depend on more than the time."""
         return self._initial_modes[1]
 
     @cached_property
@@ -81,7 +91,10 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the modes at the start on one side of a guard that is zero there; modes that depend on it follow."""
+        """Return the modes (values of the switching functions) just beside the start, where one argument is zero.
+
+        ``sign`` is the side of that argument; modes that depend on it follow.
+        """
         return self._modes_at_start({mode: sign})[0]
 
     def _modes_at_start(self, chosen_modes: Modes) -> tuple[Modes, set[str]]:
@@ -108,9 +121,10 @@ class SwitchedSystem:
         return modes, undecided
 
     def regime(self, held: frozenset[str], modes: Modes) -> Regime:
-        """Return the smooth motion while the guards of some modes stay at zero; derived on first use.
+        """Return the smooth motion while the arguments of the functions ``held`` stay at zero; it is derived on first
+        use.
 
-        The other modes matter if they choose between the parts of a ``where``.
+        The values of the other functions (modes) matter if they choose between the parts of a ``where``.
         """
         key = held, tuple(modes.values()) if self._chooses else ()
         if key not in self._regimes:
@@ -133,7 +147,7 @@ class SwitchedSystem:
 
     @cached_property
     def _chooses(self) -> bool:
-        """Whether a ``where`` has a part that must not be evaluated where it does not hold."""
+        """Whether a ``where`` in a torque has a part that must not be evaluated outside its condition."""
         return any(torque.has_choices for torque in self.plan.structure.formula_torques)
 
     @cached_property
@@ -146,7 +160,7 @@ class SwitchedSystem:
 
 
 def _switches(torque: FormulaTorque) -> list[Switch]:
-    """Return the switches of a torque, their modes named as the constants of the plan."""
+    """Return the switching functions of a torque; their values (modes) have the names of constants of the plan."""
     own = {name: f"{torque.prefix}{name}" for name in torque.parameters}
     return [
         Switch(
@@ -162,15 +176,19 @@ def _switches(torque: FormulaTorque) -> list[Switch]:
 
 
 def _bends(switch: Switch | TorqueSwitch) -> bool:
-    """Return whether a formula bends at a switch without a jump: at zero of the guard either mode is right."""
+    """Return whether a formula bends but does not jump where a switching function switches.
+
+    Then either value of the function is right at the switch.
+    """
     return switch.at_zero == 1
 
 
 def _chosen(torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: Mapping[str, str]) -> TorqueStructure:
-    """Return a torque with the parts of its formulas that apply under some modes, and with its held modes.
+    """Return a torque reduced to the parts of its formulas that apply for given values (modes) of its switching
+    functions.
 
-    Inactive guards are left out. A mode with the same guard as a held mode is ``tied`` to it: if the formula jumps
-    there, it takes the value of the held mode.
+    Functions that do not matter are left out. A function with the same argument as a held one is ``tied`` to it: if the
+    formula jumps there, it takes the value of the held function.
     """
     if not isinstance(torque, FormulaTorque):
         return torque

@@ -28,6 +28,7 @@ __all__ = [
     "drawn_point",
     "generic_point",
     "has_values",
+    "lacks_a_value",
     "real_value",
 ]
 
@@ -83,7 +84,8 @@ def _of_unknown(node: Node, parts: Sequence[Any]) -> Unknown:
     """Return what a piece with parts beyond what is computed is, if it has a value."""
     signs = [part.sign if isinstance(part, Unknown) else (part > 0) - (part < 0) for part in parts]
     if node.kind == "sum":
-        return Unknown(signs[0] if len({*signs}) == 1 else 0)
+        nonzero = {sign for sign, part in zip(signs, parts, strict=True) if isinstance(part, Unknown) or part}
+        return Unknown(nonzero.pop() if len(nonzero) == 1 else 0)
     if node.kind in ("product", "neg"):
         return Unknown(prod(signs) if node.kind == "product" else -signs[0])
     if node.kind == "call" and node.value in _EVERYWHERE:
@@ -174,7 +176,7 @@ class _Judge:
             base = self.nonzero(base)
         if base == 0:
             return self.mp.mpf(0 if exponent else 1)
-        if abs(self.mp.log(abs(base)) * exponent.numerator / exponent.denominator) > _MOST:
+        if self.mp.log(abs(base)) * exponent.numerator / exponent.denominator > _MOST:
             raise Large(Unknown(1 if base > 0 or exponent.numerator % 2 == 0 else -1))
         if exponent.denominator == 1:
             return base**exponent.numerator
@@ -301,6 +303,20 @@ def has_values(sides: Sequence[Node], count: int) -> bool:
             if not any(node.kind == "name" and node.value != "pi" for _, node in walk(failed)):
                 return False
             pieces = [failed, *sides]
+    return False
+
+
+def lacks_a_value(sides: Sequence[Node], point: Point) -> bool:
+    """Return whether some piece of the sides is certainly no real number at a point, whatever is unclear elsewhere."""
+    judge = _Judge(point, MORE_DIGITS)
+    for side in sides:
+        for _, piece in walk(side):
+            try:
+                judge.value(piece)
+            except NoValue:
+                return True
+            except (Unclear, AttributeError, KeyError, TypeError, OverflowError, MemoryError):
+                continue
     return False
 
 

@@ -15,13 +15,12 @@ from symrot.checker.interface import check
 from symrot.checker.verdict import Verdict
 from tests.campaigns.checker.oracle_real import (
     NAMES,
-    Edge,
-    Large,
     NoValue,
     Unclear,
     compare,
     drawn_point,
     has_values,
+    lacks_a_value,
     real_value,
 )
 from tests.campaigns.checker.run import Judged, answer_of
@@ -216,7 +215,7 @@ def fault(claim: str, verdict: Verdict | str, source: Random) -> str:
 
 
 def _fault_of_true(left: Node, right: Node, source: Random, conditions: Sequence[tuple[str, Node, Node]]) -> str:
-    defined, edges = 0, 0
+    defined, unclear = 0, 0
     for number in range(MOST_POINTS):
         point = drawn_point(source)
         try:
@@ -224,13 +223,15 @@ def _fault_of_true(left: Node, right: Node, source: Random, conditions: Sequence
                 continue
             if not compare(left, right, point):
                 return "true, but not at " + ", ".join(f"{name} = {value}" for name, value in point.items())
-        except (NoValue, Unclear) as reason:
-            edges += isinstance(reason, Edge | Large)
+        except NoValue:
+            continue
+        except Unclear:
+            unclear += not lacks_a_value((left, right), point)
             continue
         defined += 1
         if defined >= POINTS // 4 and number >= POINTS:
             break
-    return "" if defined or edges else "true of nothing: no point has a value on both sides"
+    return "" if defined or unclear else "true of nothing: no point has a value on both sides"
 
 
 def _conditions(requirement: str) -> list[tuple[str, Node, Node]]:

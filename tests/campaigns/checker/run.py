@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from itertools import islice
 from pathlib import Path
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 from symrot.checker.verdict import Verdict
@@ -22,6 +22,7 @@ __all__ = ["LONGEST_SECONDS", "Answer", "Judged", "Tally", "answer_of", "judged_
 LONGEST_SECONDS = 60.0
 """In which every claim has its answer."""
 
+NO_ANSWER = "no answer"
 GIVEN_UP_SECONDS = 300.0
 """After which a campaign stops waiting for an answer, and goes on with the next claim."""
 
@@ -31,7 +32,7 @@ CHUNK = 8
 
 @dataclass(frozen=True)
 class Judged:
-    """A claim, the verdict on it, the seconds it took, what is wrong with it, and why a true claim was refused."""
+    """A claim, the verdict on it, the processor time that it took in seconds, what is wrong with it, and why a true claim was refused."""
 
     number: int
     claim: str
@@ -79,23 +80,23 @@ class Answer:
     @property
     def name(self) -> str:
         if self.failure:
-            return "traceback" if self.seconds < GIVEN_UP_SECONDS else "no answer"
+            return "no answer" if self.failure.startswith(NO_ANSWER) else "traceback"
         return "refused" if isinstance(self.verdict, str) else self.verdict.verdict
 
 
 def answer_of(ask: Callable[[], Verdict]) -> Answer:
-    """Return what a user would get, and after how many seconds."""
-    before = perf_counter()
+    """Return what a user would get, and after how many seconds of processor time."""
+    before = process_time()
     try:
         with _given_up_after(GIVEN_UP_SECONDS):
             verdict: Verdict | str = ask()
     except InputError as refusal:
         verdict = str(refusal)
     except _NoAnswer:
-        return Answer("", perf_counter() - before, f"no answer in {GIVEN_UP_SECONDS:.0f} s")
+        return Answer("", process_time() - before, f"{NO_ANSWER} in {GIVEN_UP_SECONDS:.0f} s")
     except Exception as failure:  # whatever it is, a user would see a traceback
-        return Answer("", perf_counter() - before, f"{type(failure).__name__}: {failure}"[:200])
-    return Answer(verdict, perf_counter() - before)
+        return Answer("", process_time() - before, f"{type(failure).__name__}: {failure}"[:200])
+    return Answer(verdict, process_time() - before)
 
 
 # -- many claims ------------------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""The exact ring under the integrals, against SymPy; and what it must refuse."""
+"""Exact polynomials against SymPy, and what they must refuse."""
 
 from fractions import Fraction as F
 
@@ -6,18 +6,17 @@ import pytest
 import sympy
 from sympy import cos, sin
 
-from symrot.inertia.integration import _circular, domain, integrate
-from symrot.inertia.polynomial import (
+from symrot.formula.polynomial import (
     Polynomial,
     constant,
     cosine,
     exact_quotient,
     generator,
+    products_of_monomials,
     reduce_circular,
     sine,
     square_root,
 )
-from symrot.inertia.shapes import SHAPES, Coordinate
 
 x, y, z = map(generator, "xyz")
 
@@ -62,38 +61,6 @@ def test_derivatives_of_angles():
     assert sympy.trigsimp(total - sympy.diff(s * cos(theta) ** 2 * sin(theta), theta)) == 0
 
 
-@pytest.mark.thinned(5)
-@pytest.mark.parametrize("powers", [(a, b) for a in range(6) for b in range(6)])
-@pytest.mark.parametrize("quarters", [(0, 1), (0, 2), (0, 4), (1, 3), (-1, 1), (2, 3)])
-def test_integrals_of_cosines_and_sines(powers, quarters):
-    """Against 50-digit quadrature, each sign and each quadrant."""
-    import mpmath
-
-    with mpmath.workdps(50):
-        low, high = (q * mpmath.pi / 2 for q in quarters)
-        middle = [low + (high - low) * k / 4 for k in range(5)]
-        expected = mpmath.quad(lambda t: mpmath.cos(t) ** powers[0] * mpmath.sin(t) ** powers[1], middle)
-        found = _circular(*powers, *quarters)
-        value = sum(
-            mpmath.mpf(c.numerator) / c.denominator * (mpmath.pi ** dict(monomial).get("pi", 0))
-            for monomial, c in found.terms.items()
-        )
-        assert abs(value - expected) < mpmath.mpf(10) ** -40
-
-
-def test_angles_end_at_quarter_turns():
-    """A limit in between is refused by name, not rounded."""
-    angle = Coordinate("phi", "0", "pi/3")
-    with pytest.raises(ValueError, match="quarter turn"):
-        integrate(cosine("phi"), ((angle, constant(0), generator("pi") / 3),))
-
-
-def test_a_map_with_numbers_gives_the_measure_of_the_numbers():
-    """Ellipsoid 4/3 pi a b c."""
-    region = domain(SHAPES["ellipsoid"], {"a": F(1, 2), "b": F(3), "c": F(5)})
-    assert integrate(region.jacobian, region.limits) == generator("pi") * 10
-
-
 def test_polynomials_compare_and_show_themselves():
     """Equality is of terms; zero has none."""
     assert x - x == constant(0) and not (x - x)
@@ -102,3 +69,15 @@ def test_polynomials_compare_and_show_themselves():
     assert isinstance(1 - x, Polynomial)  # a number on the left is lifted
     with pytest.raises(ValueError, match="one generator"):
         (2 * x).symbol()
+
+
+def test_generators_are_names_or_numbers():
+    """Numbers sort as numbers: 2 before 10."""
+    a, b = generator(10), generator(2)
+    assert (a * b * 3).terms == {((2, 1), (10, 1)): F(3)}
+    assert (a + b) ** 2 == a * a + 2 * a * b + b * b
+
+
+def test_products_are_counted_before_terms_cancel():
+    assert len(products_of_monomials(x + y, x - y)) == 3 > len(((x + y) * (x - y)).terms)
+    assert products_of_monomials(x + 1, constant(0)) == set()

@@ -1,19 +1,21 @@
-"""Sparse polynomials with exact coefficients in named generators. Standard library only.
+"""Sparse polynomials with exact coefficients. Standard library only.
 
-The integrands of the mapped solids live here: polynomials in the coordinates, in the cosine and sine of the angles, in
-the dimensions and in ``pi``. The same code runs with the dimensions as generators (closed forms) or numbers (scenes).
+Generators are names or numbers, of one kind in each polynomial. The integrands of mapped solids are polynomials in the
+coordinates, in the cosine and sine of the angles, in the dimensions and in ``pi``, with the dimensions as generators
+(closed forms) or as numbers (scenes). Auxiliary states are polynomials in numbered variables.
 """
 
 from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
 from math import isqrt
-from typing import Union
+from typing import Any, Union
 
 __all__ = [
-    "Polynomial", "constant", "cosine", "exact_quotient", "generator", "reduce_circular", "sine", "square_root",
+    "Monomial", "Polynomial", "constant", "cosine", "exact_quotient", "generator", "products_of_monomials",
+    "reduce_circular", "sine", "square_root",
 ]  # fmt: skip
 
-Monomial = tuple[tuple[str, int], ...]  # (generator, power > 0), ordered by generator
+Monomial = tuple[tuple[Any, int], ...]  # (generator, power > 0), ordered by generator
 Term = tuple[Monomial, Fraction]
 Operand = Union["Polynomial", Fraction, int]
 
@@ -115,6 +117,7 @@ class Polynomial:
     def symbol(self) -> str:
         """Return the name of a polynomial that is one generator; ``ValueError`` otherwise."""
         ((monomial, coefficient),) = self.terms.items()
+        name: str
         ((name, power),) = monomial
         if power != 1 or coefficient != 1:
             raise ValueError(f"expected one generator, got {self}")
@@ -130,6 +133,11 @@ def _join(left: Monomial, right: Monomial) -> Monomial:
     return tuple(sorted(powers.items()))
 
 
+def products_of_monomials(left: Polynomial, right: Polynomial) -> set[Monomial]:
+    """Return the monomials of the product of two polynomials, with monomials whose coefficients cancel."""
+    return {_join(monomial, factor) for monomial in left.terms for factor in right.terms}
+
+
 def _lift(value: Operand) -> Polynomial:
     return value if isinstance(value, Polynomial) else constant(value)
 
@@ -139,7 +147,7 @@ def constant(value: Fraction | int) -> Polynomial:
     return Polynomial({(): Fraction(value)})
 
 
-def generator(name: str) -> Polynomial:
+def generator(name: str | int) -> Polynomial:
     """Return a generator as a polynomial."""
     return Polynomial({((name, 1),): Fraction(1)})
 

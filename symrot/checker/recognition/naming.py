@@ -1,0 +1,185 @@
+"""Verdicts on claims that name a quantity, ``I_zz == m/12*(a**2 + b**2)``: is the right side the formula for that?
+
+Nothing in such a claim says what the left side is, so that nothing can be proven about it, but most formulas of books
+and papers look like this. The right side is compared with the formulas that symrot derives, each under a renaming of
+its symbols that fits the names in use. The verdict is "recognised" if it is equal to one of them, "doubtful" if only a
+single edit of it is, and "definition" otherwise.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import islice, pairwise
+
+from sympy import Function, Symbol
+
+from symrot.checker.claim.claims import Claim, NamedFormula
+from symrot.checker.claim.interpreter import time
+from symrot.checker.claim.scope import is_matrix
+from symrot.checker.claim.tree import Node, text, walk
+from symrot.checker.recognition.identification import identified
+from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, Edit, single_edits
+from symrot.checker.repair.filter import NumericFilter
+from symrot.checker.units.units import conventional_unit
+from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
+from symrot.conventions import SEQUENCES
+from symrot.errors import InputError
+
+__all__ = ["verdict_on_name"]
+
+MOST_EDITS = 400
+MOST_NODES = 400
+"""The most edits of a formula that are looked up, and the most symbols and operations of a formula that is edited."""
+
+LEAST_SYMBOLS = 2
+LEAST_SYMBOLS_EDITED = 3
+"""The fewest symbols of a scalar formula that is looked up as it is written, and of one that is edited."""
+
+MOST_READINGS = 4
+"""The most formulas that one verdict names."""
+
+QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
+    (r"[IJ]_?(p|t|s|a|c|g|cm|0|[xyz1-3]|([xyz1-3])\2)?", ("moment of inertia", "inertia tensor", "parallel-axis")),
+    (r"(omega|w|Omega)(_?[xyz1-3])?|[pqr]", ("angular velocity", "angle rates")),
+    (r"d(phi|theta|psi|alpha|beta|gamma)", ("angle rates",)),
+    (r"d(omega|w)(_?[xyz1-3])?|d[pqr]", ("Euler's equations",)),
+    (r"T(_?rot)?|K|K_?E|E(_?(k|kin|rot))?|KE", ("kinetic energy", "torque", "rotation matrix")),
+    (r"V|U|E_?p|PE", ("potential",)),
+    (r"[HLh](_?[xyzO1-3])?", ("angular momentum",)),
+    (r"(M|N|tau|Gamma|Q)(_?[xyzO1-3])?", ("torque",)),
+    (r"dq_?[0-3]?|d(e|eta|epsilon)_?[0-3]?", ("quaternion",)),
+)  # fmt: skip
+"""Pattern of a name, ``d`` in front of it for its rate -> the words of which one is in the name of its formulas.
+
+Names without a pattern may name any formula.
+"""
+
+PLUS_PRODUCTS = "for products of inertia without the minus sign, I_xy = integral of x*y dm"
+
+COMPONENTS = {"first": "x1", "second": "y2", "third": "z3", "scalar": "0", "x": "x1", "y": "y2", "z": "z3"}
+"""A component or an axis of a known formula -> the last letters of names for it."""
+
+AXES = ("x1Ap", "y2Bq", "z3Cr")
+"""The last letters of symbols that belong to one axis; p, q and r are the rates of an aircraft."""
+
+USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
+"""The sequences of Euler angles that books use most, in this order."""
+
+
+def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
+    """Return "recognised", "doubtful" or "definition" for a claim that names a formula.
+
+    Raises
+    ------
+    InputError
+        For a side that cannot be read.
+    """
+    _ = claim.equation  # refuses a side that cannot be read
+    readings = _readings(claim, named, named.formula, LEAST_SYMBOLS) or _with_other_products(claim, named)
+    if readings:
+        return Verdict("recognised", recognised_as=readings)
+    edited = _nearest(claim, named) if repair else None
+    if edited is not None:
+        return edited
+    reason = (
+        f"nothing here says what {named.name} is, and symrot derives no formula like the other side: "
+        "it may be a definition"
+    )
+    return Verdict("definition", reason=reason)
+
+
+def _with_other_products(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
+    """Return the readings of a formula whose products of inertia are integrals without the minus sign."""
+    for edit in _edits(claim, named.formula):
+        if edit.code == "inertia_product_sign":
+            readings = _readings(claim, named, edit.tree, LEAST_SYMBOLS_EDITED)
+            return tuple(replace(known, how=PLUS_PRODUCTS) for known in readings)
+    return ()
+
+
+def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
+    """Return the verdict "doubtful" if an edit of the formula is a known one, else None."""
+    nearest: tuple[tuple[int, int, int], Verdict] | None = None
+    for edit in _edits(claim, named.formula):
+        readings = _readings(claim, named, edit.tree, LEAST_SYMBOLS_EDITED)
+        if not readings:
+            continue
+        strangeness = _strangeness(named, readings[0])
+        if nearest is None or strangeness < nearest[0]:
+            repair = Repair(f"{text(named.side)} == {text(edit.tree)}", edit.code, edit.cost)
+            diagnosis = Diagnosis(edit.code, FAULT_DESCRIPTIONS[edit.code])
+            nearest = strangeness, Verdict("doubtful", diagnosis=diagnosis, repairs=(repair,), recognised_as=readings)
+        if not any(strangeness):
+            break
+    return nearest and nearest[1]
+
+
+def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
+    """Yield the single edits of a formula, the smallest first."""
+    if sum(1 for _ in walk(formula)) > MOST_NODES:
+        return
+    numeric = NumericFilter(claim)
+    edits = single_edits(formula, numeric.names, numeric.functions, numeric.is_matrix, numeric.moving)
+    yield from islice(sorted(edits, key=lambda edit: edit.cost), MOST_EDITS)
+
+
+def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int) -> tuple[Identification, ...]:
+    """Return the known formulas to which a formula is equal and which fit the names in use, the likeliest first."""
+    try:
+        value = claim.interpreter().read(tree)
+    except InputError:
+        return ()
+    if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < least_symbols:
+        return ()
+    fitting = [known for known in identified(value, steps=False) if _fits(named, known, is_matrix(value))]
+    fitting.sort(key=lambda known: (*_strangeness(named, known), _rarity(known)))
+    likeliest = [known for known in fitting if _strangeness(named, known)[:2] == _strangeness(named, fitting[0])[:2]]
+    return tuple(likeliest[:MOST_READINGS])
+
+
+# -- how well a known formula fits the names --------------------------------------------------------------------------
+
+
+def _fits(named: NamedFormula, known: Identification, matrix: bool) -> bool:
+    """Return whether a claim may mean a known formula: by the name of the quantity, and by the units of its symbols."""
+    if known.how and (not matrix or "sign" in known.how or "times" in known.how):
+        return False
+    words = next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, _plain(named))), None)
+    if words is not None and not any(word in known.name for word in words):
+        return False
+    units = [(_unit(own), _unit(other)) for own, other in known.mapping.items()]
+    return all(own is None or other is None or own == other for own, other in units)
+
+
+def _plain(named: NamedFormula) -> str:
+    """Return the name of a quantity, with ``d`` in front of it for its time derivative."""
+    return f"d{named.name}" if named.side.kind == "call" and named.side.value == "diff" else named.name
+
+
+def _unit(name: str) -> str | None:
+    """Return the conventional unit of a symbol of a formula, None where books differ."""
+    rate = re.fullmatch(r"diff\((\w+)(\(t\))?, t\)", name)
+    name = f"d{rate[1]}" if rate else name.removesuffix("(t)")
+    if re.fullmatch(r"[ABC]", name):
+        return "kg m^2"
+    return "1" if re.fullmatch(r"[qp][0-3]", name) else conventional_unit(name)
+
+
+def _strangeness(named: NamedFormula, known: Identification) -> tuple[int, int, int]:
+    """Return how odd a reading is: the component that the name says, symbols of another axis, renamed symbols."""
+    words = known.name.replace(",", "").split()
+    places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and
+              (after in ("component", "axis"))]  # fmt: skip
+    index = _plain(named)[-1]
+    misnamed = any(index in "".join(COMPONENTS.values()) and index not in letters for letters in places)
+    axes = [[next((n for n, axis in enumerate(AXES) if name[-1] in axis), None) for name in pair]
+            for pair in known.mapping.items()]  # fmt: skip
+    moved = sum(None not in pair and pair[0] != pair[1] for pair in axes)
+    return int(misnamed), moved, len(known.mapping)
+
+
+def _rarity(known: Identification) -> tuple[bool, int]:
+    """Return whether a reading uses a convention that books name, and the place of its sequence in the usual ones."""
+    sequences = [word for word in known.name.split() if word in SEQUENCES]
+    usual = [USUAL_SEQUENCES.index(name) if name in USUAL_SEQUENCES else len(USUAL_SEQUENCES) for name in sequences]
+    return bool(known.how), max(usual, default=0)

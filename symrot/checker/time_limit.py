@@ -1,0 +1,52 @@
+"""A limit on the processor time of a computation that spends it inside SymPy, where nothing can be counted."""
+
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import current_thread, main_thread
+from typing import Any
+
+__all__ = ["TimeUp", "processor_seconds"]
+
+AGAIN = 0.5  # seconds until TimeUp is raised once more, if a callback discarded it
+
+
+class TimeUp(BaseException):
+    """The processor time is used up. No Exception, so that SymPy, which catches those, does not go on."""
+
+
+@contextmanager
+def processor_seconds(limit: float) -> Iterator[None]:
+    """Raise TimeUp in the block when the process has computed for ``limit`` seconds since the block began.
+
+    The limit needs the timer of processor time of the operating system (``ITIMER_PROF``) and the main thread. Without
+    them, inside another limit, or if the program uses that timer itself, the block runs without a limit of its own.
+    """
+    if not _timer_is_free():
+        yield
+        return
+
+    running = True
+
+    def time_up(*_: Any) -> None:
+        if running:
+            raise TimeUp
+
+    previous = signal.signal(signal.SIGPROF, time_up)
+    try:
+        try:
+            signal.setitimer(signal.ITIMER_PROF, limit, AGAIN)
+            yield
+        finally:
+            running = False
+    finally:  # a finally of its own: TimeUp may be raised just before the line above
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, previous)
+
+
+def _timer_is_free() -> bool:
+    return (
+        hasattr(signal, "setitimer")
+        and current_thread() is main_thread()
+        and signal.getsignal(signal.SIGPROF) is signal.SIG_DFL
+    )

@@ -1,0 +1,31 @@
+"""The Hamilton product of quaternions of any numbers, without SymPy and without NumPy.
+
+:func:`symrot.quaternion_product` is the product of symbols, :func:`symrot.kinematics.conversions.multiply` the product
+of arrays of many quaternions.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+__all__ = ["hamilton"]
+
+
+def hamilton(left: Sequence[Any], right: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
+    """Return the Hamilton product of two quaternions, scalar first.
+
+    The components may be anything that adds, subtracts and multiplies: integers, fractions, floats of any precision,
+    arrays, dual numbers. The order of the operations is fixed, because the last bits of sums of floats depend on it.
+
+    Examples
+    --------
+    >>> hamilton((0, 1, 0, 0), (0, 0, 1, 0))  # i j = k
+    (0, 0, 0, 1)
+    """
+    a0, a1, a2, a3 = left
+    b0, b1, b2, b3 = right
+    return (
+        a0 * b0 - a1 * b1 - a2 * b2 - a3 * b3,
+        a0 * b1 + a1 * b0 + a2 * b3 - a3 * b2,
+        a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1,
+        a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0,
+    )

@@ -1,0 +1,115 @@
+"""Claims that name a formula: recognised, doubtful by one edit, or a definition about which nothing is claimed."""
+
+import json
+
+import pytest
+
+import symrot
+from symrot.cli.main import main
+from symrot.errors import InputError
+
+RIGHT = (
+    (r"I_{zz} = \frac{m}{12}(a^2+b^2)", "moment of inertia of a box about its centre of mass, z axis"),
+    (r"I_{xx} = \frac{1}{12} m (b^2 + c^2)", "moment of inertia of a box about its centre of mass, x axis"),
+    (r"I_1 \dot\omega_1 - (I_2 - I_3)\omega_2\omega_3 = M_1",
+     "first component of the torque by Euler's equations, principal axes; with I_1 for A, I_2 for B, I_3 for C"),
+    (r"\dot\omega_2 = \frac{I_3 - I_1}{I_2}\omega_3\omega_1", "second component of the Euler's equations of a free body"),
+    (r"\dot\phi = p + q\sin\phi\tan\theta + r\cos\phi\tan\theta",
+     "first component of the angle rates of xyz from omega in the body frame"),
+    (r"\dot\theta = q\cos\phi - r\sin\phi", "second component of the angle rates of xyz from omega in the body frame"),
+    (r"\dot\psi = (q\sin\phi + r\cos\phi)/\cos\theta", "third component of the angle rates of xyz from omega in the body"),
+    (r"\omega_x = \dot\phi - \dot\psi\sin\theta", "first component of the angular velocity of xyz in the body frame"),
+    ("omega_x == dphi*sin(theta)*sin(psi) + dtheta*cos(psi)",
+     "first component of the angular velocity of ZXZ in the body frame"),
+    (r"T = \frac12 (A\omega_1^2 + B\omega_2^2 + C\omega_3^2)", "kinetic energy of rotation, principal axes"),
+    (r"\dot{\theta} = \omega_x\cos\phi - \omega_y\sin\phi",  # a sign from ZXZ in the space frame, but exact here
+     "second component of the angle rates of zxz from omega in the body frame"),
+    ("R == Rz(psi)*Ry(theta)*Rx(phi)", "rotation matrix of extrinsic xyz, body to space"),
+    (r"L_x = I_{xx}\omega_x + I_{xy}\omega_y + I_{xz}\omega_z", "first component of the angular momentum I omega"),
+    (r"L_y = -I_{xy}\omega_x + I_{yy}\omega_y - I_{yz}\omega_z",
+     "second component of the angular momentum I omega, any body axes; for products of inertia without the minus sign"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("claim", "name"), RIGHT)
+def test_a_right_formula_is_recognised_in_its_usual_reading_first(claim, name, capsys):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "recognised" and verdict
+    assert str(verdict.recognised_as[0]).startswith(name)
+    assert all(reading.proven for reading in verdict.recognised_as)
+    assert not verdict.repairs and verdict.diagnosis.code == "none" and verdict.counterexample is None
+    assert main(["check", claim]) == 0
+    assert capsys.readouterr().out.startswith("recognised\n")
+
+
+WRONG = (
+    (r"\omega_x = \dot\phi \sin\theta \sin\psi - \dot\theta \cos\psi", "sign_of_term",
+     "first component of the angular velocity of ZXZ in the body frame"),
+    ("w2 == dphi*sin(theta)*cos(psi) - dtheta*cos(psi)", "sin_cos_swap",
+     "second component of the angular velocity of ZXZ in the body frame"),
+    (r"I_x = \frac{1}{12} m (b^2 - c^2)", "sign_of_term", "moment of inertia of a box about its centre"),
+    ("I_xx == m*(3*R**2 + h**2)/6", "factor", "moment of inertia of a cylinder about its centre of mass"),
+    ("T == (A*w1**2 + B*w2**2 - C*w3**2)/2", "sign_of_term",
+     "kinetic energy of rotation, principal axes; with w1 for omega_1, w2 for omega_2, w3 for omega_3"),
+    (r"\dot\omega_1 = \frac{(I_2 + I_3)\omega_2\omega_3}{I_1}", "sign_of_term", "first component of the Euler's equations"),
+    ("dq0 == -(q1*w1 + q2*w2 - q3*w3)/2", "sign_of_term",
+     "scalar component of the quaternion rates from omega in the body frame; with w1 for omega_1, w2 for omega_2,"),
+    (r"L_x = I_{xx}\omega_x + I_{xy}\omega_y - I_{xz}\omega_z", "sign_of_term", "first component of the angular momentum"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("claim", "code", "name"), WRONG)
+def test_a_formula_with_one_fault_is_doubtful_and_repaired(claim, code, name, capsys):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "doubtful" and not verdict
+    assert verdict.diagnosis.code == code
+    assert str(verdict.recognised_as[0]).startswith(name)
+    (repair,) = verdict.repairs
+    assert symrot.check(repair.text).verdict == "recognised"
+    assert main(["check", claim]) == 1
+    assert "instead:" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("claim", [
+    "y == p*s + s**3 + exp(u)", "y == sin(2*x)", "M == Matrix([[cos(a), sin(a)], [sin(a), cos(a)]])", "x == 5",
+    "Omega == m*g*l/(C*omega)",
+])  # fmt: skip
+def test_any_other_formula_may_be_a_definition(claim, capsys):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "definition" and not verdict and "it may be a definition" in verdict.reason
+    assert (main(["check", claim]), main(["check", claim, "--strict"])) == (0, 1)
+
+
+@pytest.mark.parametrize(("claim", "name"), [
+    ("omega_x == m/12*(a**2 + b**2)", "a moment of inertia is no angular velocity"),
+    ("I_zz == (A*omega_1**2 + B*omega_2**2 + C*omega_3**2)/2", "an energy is no moment of inertia"),
+    ("T == (phi*omega_1**2 + B*omega_2**2 + C*omega_3**2)/2", "an angle is no moment of inertia"),
+])  # fmt: skip
+def test_the_name_and_the_letters_count(claim, name):
+    assert symrot.check(claim).verdict != "recognised", name
+
+
+def test_a_name_that_something_defines_is_decided():
+    assert symrot.check("x*y == x + y").verdict == "false"
+    assert symrot.check("x == 2*x").verdict == "false"
+    assert symrot.check("phi(t) == diff(phi(t), t)").verdict == "false"
+    assert symrot.check("I_zz == m*R**2", assume=["I_zz == m*R**2/2"]).verdict == "false"
+    assert symrot.check("I_zz == m*R**2/2", assume=["I_zz == m*R**2/2"]).verdict == "true"
+
+
+def test_what_cannot_be_read_is_refused_in_a_named_formula_too():
+    with pytest.raises(InputError, match="a divisor that is not zero"):
+        symrot.check("y == 1/(x - x)")
+
+
+def test_json_has_the_readings(capsys):
+    assert main(["check", "--json", r"I_{zz} = \frac{m}{12}(a^2+b^2)"]) == 0
+    (verdict,) = json.loads(capsys.readouterr().out)
+    assert verdict["verdict"] == "recognised"
+    assert verdict["recognised_as"][0]["name"] == "moment of inertia of a box about its centre of mass, z axis"
+    assert verdict["recognised_as"][0]["mapping"] == {}
+    assert symrot.check("sin(x)**2 + cos(x)**2 == 1").to_json()["recognised_as"] == []
+
+
+def test_without_repairs_a_formula_with_a_fault_is_not_searched_for():
+    assert symrot.check("I_zz == m/12*(a**2 - b**2)", repair=False).verdict == "definition"

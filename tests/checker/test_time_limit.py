@@ -1,0 +1,98 @@
+"""A claim has an answer in bounded processor time, even if SymPy needs minutes for it."""
+
+import signal
+import threading
+import time
+
+import pytest
+
+import symrot
+from symrot.checker import interface
+from symrot.checker.time_limit import TimeUp, processor_seconds
+
+ENDLESS = 30.0  # seconds after which a test gives up waiting
+
+
+def compute(seconds: float) -> None:
+    start = time.process_time()
+    while time.process_time() - start < seconds:
+        pass
+
+
+def test_a_computation_ends_when_its_time_is_up():
+    start = time.process_time()
+    with pytest.raises(TimeUp), processor_seconds(0.1):
+        compute(ENDLESS)
+    assert time.process_time() - start < ENDLESS / 3
+    compute(0.2)  # the timer is off again
+
+
+def test_a_computation_within_its_time_is_not_disturbed_and_the_handler_is_restored():
+    with processor_seconds(60):
+        compute(0.02)
+    assert signal.getsignal(signal.SIGPROF) is signal.SIG_DFL
+    assert signal.getitimer(signal.ITIMER_PROF) == (0.0, 0.0)
+
+
+def test_an_exception_that_code_catches_is_raised_again():
+    with pytest.raises(TimeUp), processor_seconds(0.1):
+        try:
+            compute(ENDLESS)
+        except BaseException:
+            compute(ENDLESS)
+
+
+def test_a_limit_inside_another_one_keeps_the_outer_one():
+    with pytest.raises(TimeUp), processor_seconds(0.1), processor_seconds(1000):
+        compute(ENDLESS)
+
+
+def test_a_program_with_a_timer_of_its_own_keeps_it():
+    rings = []
+    previous = signal.signal(signal.SIGPROF, lambda *_: rings.append(1))
+    try:
+        signal.setitimer(signal.ITIMER_PROF, 0.05)
+        with processor_seconds(0.01):
+            compute(0.3)
+    finally:
+        signal.signal(signal.SIGPROF, previous)
+    assert rings == [1]
+
+
+def test_another_thread_computes_without_a_limit():
+    ends = []
+
+    def run() -> None:
+        with processor_seconds(0.01):
+            compute(0.1)
+        ends.append("end")
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    thread.join(ENDLESS)
+    assert ends == ["end"]
+
+
+SLOW = (
+    "tanh(asin(atan(cosh(tanh(cos(atan(tan(sqrt(atan(x)))))))))) == tanh(asin((atan(cosh(tanh(cos(atan(tan(sqrt(atan(x)"
+    "*(asin(x) + 3)/abs(asin(x) + 3))))))*(asin(x) + 3)/(asin(x) + 3)))**2 - 1)/(atan(cosh(tanh(cos(atan(tan(sqrt("
+    "atan(x)*(asin(x) + 3)/(asin(x) + 3))))))*(asin(x) + 3)/(asin(x) + 3))) - 1) - 1))"
+)  # SymPy needs more than a minute to build the right side
+
+
+def test_a_claim_for_which_sympy_needs_minutes_is_undecided_and_says_why(monkeypatch):
+    monkeypatch.setattr(interface, "MOST_SECONDS", 0.5)
+    start = time.process_time()
+    verdict = symrot.check(SLOW)
+    assert time.process_time() - start < ENDLESS
+    assert verdict.verdict == "undecided"
+    assert "more than 0.5 s of processor time" in verdict.reason
+    assert symrot.check("sin(2*x) == 2*sin(x)*cos(x)")  # the next claim has its own time
+
+
+def test_a_verdict_whose_repair_takes_too_long_is_kept(monkeypatch):
+    monkeypatch.setattr(interface, "MOST_SECONDS", 0.5)
+    monkeypatch.setattr(interface, "_diagnosed", lambda *_: compute(ENDLESS))
+    verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
+    assert verdict.verdict == "false"
+    assert any("ended after 0.5 s" in note for note in verdict.notes)
