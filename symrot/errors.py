@@ -5,7 +5,7 @@ a ``ValueError``, since an argument has an unusable value. The others are not: t
 and an ``except ValueError`` must not hide it.
 """
 
-__all__ = ["CertificateError", "CompilerError", "InputError", "PropagationError", "SymrotError"]
+__all__ = ["CertificateError", "CompilerError", "InputError", "PropagationError", "SymrotError", "complaint"]
 
 
 class SymrotError(Exception):
@@ -73,3 +73,11 @@ class CertificateError(SymrotError):
     ...
     symrot.errors.CertificateError: heavy_top.c: expected a certificate, got another file; ...
     """
+
+
+def complaint(source: str, where: str, position: int, expected: str) -> InputError:
+    """Return the error that names the expected text and the position, with an excerpt of the source around it."""
+    start = max(0, position - 25)
+    excerpt = ("..." if start else "") + source[start : start + 50] + ("..." if len(source) > start + 50 else "")
+    prefix = f"{where}: " if where else ""
+    return InputError(f"{prefix}expected {expected} at position {position + 1}, near {excerpt!r}")

@@ -178,11 +178,28 @@ def test_mathml_of_the_pages_own_latex():
     )
     assert "<mfrac><mn>1</mn><mn>2</mn></mfrac>" in mathml(r"\tfrac12 x")
     assert mathml("x_1^2").count("<msubsup>") == 1
+    assert mathml("f''").count("′") == 2 and "<mrow><mo>′</mo><mn>2</mn></mrow>" in mathml("x'^2")
     assert '<mo form="prefix">−</mo>' in mathml("-x") and "<mo>−</mo>" in mathml("x - y")
 
 
 @pytest.mark.parametrize(
-    "text", [r"\undefined x", r"\frac{1}", r"\begin{tikz}x\end{tikz}", "{x", r"\left( x", "x^", "}"]
+    "text",
+    [
+        r"\undefined x",
+        r"\frac{1}",
+        r"\begin{tikz}x\end{tikz}",
+        "{x",
+        r"\left( x",
+        "x^",
+        "}",
+        "x^2^3",
+        "50%",
+        r"\mathbf{\omega}",
+        r"\left< x \right>",
+        r"x \end{array}",
+        r"x \right)",
+        r"\mathbf\begin{matrix}x\end{matrix}",
+    ],
 )
 def test_latex_that_is_not_known_is_refused(text):
     with pytest.raises(InputError, match=r"LaTeX|formula"):
@@ -230,7 +247,25 @@ def test_what_a_page_shows_is_read_as_a_person_reads_it(text, value):
 
 
 @pytest.mark.parametrize(
-    "text", [r"\omega \times", r"f(t)", "y", r"x + \omega", r"\omega I", r"\frac{x}{0}", "x_", "{x", ""]
+    "text",
+    [
+        r"\omega \times",
+        r"f(t)",
+        "y",
+        r"x + \omega",
+        r"\omega I",
+        r"\frac{x}{0}",
+        "x_",
+        "{x",
+        "",
+        "x^I",
+        r"\left. x \right|_0",
+        r"\left. x \right|_{2 = 0}",
+        r"\left. x \right|_{\omega = 0}",
+        r"(x]",
+        "I + \\omega",
+        r"\sqrt[3]{x}",
+    ],
 )
 def test_what_has_no_meaning_is_not_read(text):
     with pytest.raises(Unread):

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from symrot.checker.claim.tree import Node, negated, product, sum_of
-from symrot.errors import InputError
+from symrot.errors import InputError, complaint
 
-__all__ = ["DEEPEST_NESTING", "LONGEST_TEXT", "Relation", "complaint", "read_expression", "read_relation"]
+__all__ = ["DEEPEST_NESTING", "LONGEST_TEXT", "Relation", "read_expression", "read_relation"]
 
 LONGEST_TEXT = 20_000
 DEEPEST_NESTING = 60
@@ -32,14 +32,6 @@ _HINTS = {
 }  # fmt: skip
 
 Relation = tuple[str, Node, Node]
-
-
-def complaint(source: str, where: str, position: int, expected: str) -> InputError:
-    """Return the error that names the expected text and the position, with an excerpt of the source around it."""
-    start = max(0, position - 25)
-    excerpt = ("..." if start else "") + source[start : start + 50] + ("..." if len(source) > start + 50 else "")
-    prefix = f"{where}: " if where else ""
-    return InputError(f"{prefix}expected {expected} at position {position + 1}, near {excerpt!r}")
 
 
 class _Reader:

@@ -7,10 +7,9 @@ from typing import Any
 import sympy
 from sympy import Expr, ImmutableMatrix, Mul
 
-from symrot.checker.claim.reader import complaint
 from symrot.checker.claim.size import MOST_NESTED, MOST_PIECES, nesting
 from symrot.checker.claim.tree import Node
-from symrot.errors import InputError
+from symrot.errors import InputError, complaint
 from symrot.exact.intervals import enclosure
 from symrot.exact.size import pieces
 

@@ -1,18 +1,29 @@
-"""The cursor of the LaTeX reader: the tokens of a formula, and the methods that parts of its grammar call in others."""
+"""The cursor of the LaTeX checker: the place in a formula, with the names that its claim declares."""
 
-from abc import ABC, abstractmethod
-from collections.abc import Collection
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from string import whitespace
+from typing import ClassVar
 
-from symrot.checker.claim.reader import complaint
+from symrot.checker.claim.reader import LONGEST_TEXT, MOST_PIECES
 from symrot.checker.claim.tree import Node
-from symrot.checker.latex.tokens import Token, tokens
-from symrot.errors import InputError
+from symrot.errors import InputError, complaint
+from symrot.latex import cursor, tree
+from symrot.latex.reader import read
+from symrot.latex.tokens import GREEK, tokens
 
-__all__ = ["CLOSING", "TIME", "Cursor", "Names"]
+__all__ = ["CLOSING", "MATRIX_CALLS", "TIME", "UPRIGHT", "Cursor", "Names", "is_d", "is_letter"]
 
-CLOSING = {"(": ")", "[": "]", "\\{": "\\}", "{": "}"}
+CLOSING = {"(": ")", "[": "]", "\\{": "\\}"}
 TIME = Node("name", "t")
+UPRIGHT = ("\\mathrm", "\\mathit", "\\mathsf", "\\textrm")
+MATRIX_CALLS = ("Matrix", "cross", "skew", "vee", "Rx", "Ry", "Rz", "inverse", "transpose", "eye", "diag", "qmul",
+                "dcm_of", "hstack")  # fmt: skip
+MARKS = frozenset("-+*/=()[]{}&|,−·×⋅")
+WRAPPERS = (
+    ("", ""), ("$$", "$$"), ("$", "$"), (r"\[", r"\]"), (r"\(", r"\)"),
+    *((f"\\begin{{{name}}}", f"\\end{{{name}}}") for name in ("equation*", "equation", "displaymath", "math")),
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -32,74 +43,79 @@ class Names:
     def __contains__(self, name: str) -> bool:
         return name in {*self.symbols, *self.functions, *self.matrices, *self.others}
 
+    def is_matrix(self, node: Node) -> bool:
+        """Return whether a tree is a vector or a matrix."""
+        if node.kind == "name":
+            return node.value in self.matrices
+        if node.kind == "call":
+            return node.value in MATRIX_CALLS or (node.value == "diff" and self.is_matrix(node.args[0]))
+        if node.kind == "index":
+            return False
+        kinds = [self.is_matrix(child) for child in node.args]
+        if node.kind == "product" and len(kinds) > 1 and node.args[0].kind == "transpose":
+            return True  # a row times a column is a 1 x 1 matrix
+        return any(kinds)
 
-@dataclass
-class Cursor(ABC):
-    """The position in the tokens of a formula, with the integrals and bars that are open there."""
+    def is_column(self, node: Node) -> bool:
+        """Return whether a matrix is a column: bars mean the length of a column, the determinant of other matrices."""
+        if node.kind == "name":
+            return node.value in self.columns
+        if node.kind == "call" and node.value == "Matrix":
+            return len(node.args[0].args[0].args) == 1
+        if node.kind == "call":
+            return node.value in ("cross", "vee") or (node.value == "diff" and self.is_column(node.args[0]))
+        if node.kind == "product":
+            return self.is_column(node.args[-1]) and node.args[0].kind != "transpose"
+        return node.kind in ("sum", "neg") and self.is_column(node.args[0])
 
-    source: str
-    where: str
-    names: Names
-    timed: set[str] = field(default_factory=set)
 
-    def __post_init__(self) -> None:
-        if not isinstance(self.source, str) or not self.source.strip():
-            raise InputError(f"{self.where + ': ' if self.where else ''}expected LaTeX of an equation, got empty text")
-        self.tokens = tokens(self.source, self.where)
-        self.index = self.depth = self.integrals = 0
-        self.timed.update(self.names.functions)
+def is_letter(item: tree.Node) -> bool:
+    """Return whether an item is a Latin or Greek letter."""
+    return item.kind == "letter" or item.text[1:] in GREEK
 
-    def peek(self, ahead: int = 0) -> Token:
-        return self.tokens[min(self.index + ahead, len(self.tokens) - 1)]
 
-    def at(self, *texts: str) -> bool:
-        return self.peek().text in texts
+def is_d(item: tree.Node) -> bool:
+    """Return whether an item is d, \\partial or an upright d, perhaps with a power."""
+    if isinstance(item, tree.Scripts):
+        return is_d(item.base) and [script.text for script in item.scripts] == ["^"]
+    if isinstance(item, tree.Font):
+        return item.text in UPRIGHT and tree.alone(item.inside).text == "d"
+    return item.text in ("d", "\\partial")
 
-    def next(self) -> Token:
-        token = self.peek()
-        self.index += token.kind != "end"
-        return token
 
-    def take(self, text: str) -> bool:
-        is_next = self.at(text)
-        self.index += is_next
-        return is_next
+class Cursor(cursor.Cursor):
+    """The place in a formula, with the integrals that are open there, and the names that depend on time."""
 
-    def expect(self, text: str) -> None:
-        if not self.take(text):
-            raise self.fail(f"'{text}'")
+    synonyms: ClassVar[Mapping[str, str]] = {
+        "\\top": "\\T", "\\intercal": "\\T", "\\lbrace": "\\{", "\\rbrace": "\\}", "\\lbrack": "[", "\\rbrack": "]",
+        "\\vert": "|", "\\lvert": "|", "\\rvert": "|", "\\Vert": "\\|", "\\lVert": "\\|", "\\rVert": "\\|",
+        "\\equiv": "=", "\\ast": "*", "−": "-", "·": "\\cdot", "×": "\\times", "⋅": "\\cdot",
+    }  # fmt: skip
+    depth = integrals = 0
 
-    def fail(self, expected: str, token: Token | None = None) -> InputError:
-        return complaint(self.source, self.where, (token or self.peek()).position, expected)
+    def __init__(self, source: str, where: str, names: Names) -> None:
+        place = f"{where}: " if where else ""
+        if not isinstance(source, str) or not source.strip():
+            raise InputError(f"{place}expected LaTeX of an equation, got empty text")
+        if len(source) > LONGEST_TEXT:
+            raise InputError(f"{place}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
+        self.source, self.where, self.names = source, where, names
+        self.timed = set(names.functions)
+        pieces = tokens(source, *_unwrapped(source))
+        for piece in pieces:
+            if piece.text not in MARKS and (piece.kind == "mark" or piece.text == "."):
+                raise complaint(source, where, source.index(piece.text, piece.start), "LaTeX of mathematics")
+        if len(pieces) > MOST_PIECES:
+            raise InputError(f"{place}expected a formula of at most {MOST_PIECES} pieces, got {len(pieces)}")
+        super().__init__(source, where, read(source, where, pieces))
 
-    # -- methods that parts of the grammar call in other parts --------------------------------------------------------
 
-    open_bars: tuple[str, ...] = ()
-
-    @abstractmethod
-    def expression(self) -> Node:
-        """Read a sum."""
-
-    @abstractmethod
-    def factor(self) -> Node:
-        """Read a piece with its powers."""
-
-    @abstractmethod
-    def base(self, script: bool = True) -> Node:
-        """Read a piece without its powers."""
-
-    @abstractmethod
-    def argument(self) -> Node:
-        """Read a group in braces, or one token."""
-
-    @abstractmethod
-    def bracket(self, token: Token) -> Node:
-        """Read an expression and its closing bracket, after the opening one."""
-
-    @abstractmethod
-    def starts_factor(self) -> bool:
-        """Return whether a factor may start at the cursor."""
-
-    @abstractmethod
-    def derivative(self, node: Node, times: int, token: Token) -> Node:
-        """Return a time derivative."""
+def _unwrapped(source: str) -> tuple[int, int]:
+    """Return where the formula starts and ends, without dollar signs around it and a full stop after it."""
+    start, end = 0, len(source)
+    for opening, closing in WRAPPERS:
+        if source.startswith(opening, start) and source.endswith(closing, start + len(opening), end):
+            inside = source[start + len(opening) : end - len(closing)]
+            end = start + len(opening) + len(inside.rstrip(whitespace + ".,;"))
+            start = end - len(inside.rstrip(whitespace + ".,;").lstrip())
+    return start, end

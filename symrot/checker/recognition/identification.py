@@ -15,13 +15,13 @@ from sympy.matrices import MatrixBase
 
 from symrot.checker.claim.claims import Claim, claim_of_text, named_formula
 from symrot.checker.claim.interpreter import Interpreter, time
-from symrot.checker.claim.reader import complaint, read_expression
+from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import walk
 from symrot.checker.latex.reader import read_latex_formula
 from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, Values, fingerprint, values_at
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
 from symrot.checker.verdict import Identification
-from symrot.errors import InputError
+from symrot.errors import InputError, complaint
 from symrot.exact.decide import decide
 from symrot.exact.decision import flatten
 from symrot.exact.printing import as_text

@@ -11,8 +11,7 @@ from typing import Any, NamedTuple
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, Path, text, walk
-from symrot.checker.latex.cursor import TIME
-from symrot.checker.latex.matrices import MATRIX_CALLS
+from symrot.checker.latex.cursor import MATRIX_CALLS, TIME
 from symrot.checker.repair.edits import COST, Edit
 from symrot.checker.repair.points import Point, UndefinedValue, agree, entries_of, points
 

@@ -1,26 +1,22 @@
 """Translation of LaTeX formulas into native MathML, for the part of LaTeX that the pages use.
 
-The same reader serves HTML and line breaking: a formula becomes a row of items, each with its LaTeX, its MathML, an
-estimate of its width, and whether a line may be broken before it. Unknown LaTeX raises InputError.
+The same translation serves HTML and line breaking: a formula becomes a row of items, each with its LaTeX, its MathML,
+an estimate of its width, and whether a line may be broken before it. Unknown LaTeX raises InputError.
 """
 
-import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from html import escape
+from string import ascii_letters, digits
+from typing import Any, NamedTuple
 
-from symrot.errors import InputError
+from symrot.errors import InputError, complaint
+from symrot.latex import reader
+from symrot.latex.tokens import GREEK, Token
+from symrot.latex.tree import Accent, Delimited, Font, Fraction, Node, Root, Row, Scripts, Table
 
 __all__ = ["Item", "mathml", "read", "rows"]
 
-TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[{}^_&]|\d+(?:\.\d+)?|\s+|.", re.DOTALL)
-
-LETTERS = {
-    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ϵ", "zeta": "ζ", "eta": "η", "theta": "θ",
-    "kappa": "κ", "lambda": "λ", "mu": "μ", "nu": "ν", "xi": "ξ", "pi": "π", "rho": "ρ", "sigma": "σ", "tau": "τ",
-    "phi": "ϕ", "varphi": "φ", "chi": "χ", "psi": "ψ", "omega": "ω", "Gamma": "Γ", "Delta": "Δ", "Theta": "Θ",
-    "Lambda": "Λ", "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω", "ell": "ℓ", "partial": "∂", "infty": "∞",
-}  # fmt: skip
+LETTERS = GREEK | {"pi": "π", "partial": "∂", "infty": "∞"}
 OPERATORS = {
     "times": "×", "cdot": "⋅", "le": "≤", "ge": "≥", "leq": "≤", "geq": "≥", "neq": "≠", "ne": "≠", "to": "→",
     "in": "∈", "Rightarrow": "⇒", "rightarrow": "→", "mapsto": "↦", "ldots": "…", "cdots": "⋯", "dots": "…",
@@ -40,242 +36,167 @@ FONTS = {
     "mathsf": "sans-serif", "mathrm": "normal", "mathbf": "bold", "mathcal": "script", "text": "normal",
     "operatorname": "normal",
 }  # fmt: skip
-SIZES = {"Bigl", "Bigr", "bigl", "bigr", "Big", "big"}
 FENCES = {"(": "(", ")": ")", "[": "[", "]": "]", "|": "|", "\\{": "{", "\\}": "}", ".": "", "/": "/", "\\lbrace": "{",
           "\\rbrace": "}", "\\lvert": "|", "\\rvert": "|", "\\langle": "⟨", "\\rangle": "⟩"}  # fmt: skip
 TABLES = {"matrix": ("", ""), "bmatrix": ("[", "]"), "pmatrix": ("(", ")"), "vmatrix": ("|", "|"), "cases": ("{", "")}
 THIN = '<mspace width="0.17em"></mspace>'
-BAR = '<mo stretchy="false" form="prefix" lspace="0" rspace="0">|</mo>'
 WIDEST = 42  # letters to a line
 SMALL = 0.75  # scripts, relative to the line
 
 
-@dataclass(frozen=True)
-class Item:
-    """One item of a formula: LaTeX, MathML, width in letters; ``kind`` is "relation", "sign", "function" or ""."""
+class Item(NamedTuple):
+    """One item of a row: MathML, width in letters, LaTeX; ``kind`` is "relation", "sign", "function" or ""."""
 
-    latex: str
     mathml: str
     width: float
     kind: str = ""
+    latex: str = ""
 
 
-class _Reader:
+TOKENS = {
+    **{mark: Item(f'<mo stretchy="false">{fence}</mo>', 0.4) for mark, fence in FENCES.items()},
+    **{mark: Item(f"<mo>{mark}</mo>", 0.4) for mark in ",;./!"},
+    "|": Item('<mo stretchy="false" form="prefix" lspace="0" rspace="0">|</mo>', 0.4),
+    **{mark: Item(f"<mo>{escape(mark)}</mo>", 1.4, "relation") for mark in "=<>:"},
+    "\\displaystyle": Item("", 0.0),
+    "\\textstyle": Item("", 0.0),
+    **{f"\\{name}": Item(f"<mo>{escape(mark)}</mo>", 1.2, "relation" if mark in RELATIONS else "")
+       for name, mark in OPERATORS.items()},
+    **{f"\\{name}": Item(f'<mo largeop="true">{mark}</mo>', 1.0) for name, mark in LARGE.items()},
+    **{f"\\{name}": Item(f"<mi>{name}</mi>", 1.8, "function") for name in FUNCTIONS},
+    "\\lim": Item("<mo>lim</mo>", 1.8, "function"),
+    **{letter: Item(f"<mi>{letter}</mi>", 0.7) for letter in ascii_letters},
+    **{digit: Item(f"<mn>{digit}</mn>", 0.6) for digit in digits},
+    **{f"\\{name}": Item(f"<mi>{letter}</mi>", 0.7) for name, letter in LETTERS.items()},
+    **{f"\\{name}": Item(f'<mspace width="{em}em"></mspace>', max(em, 0.0)) for name, em in SPACES.items()},
+}  # fmt: skip
+SCRIPTS = {
+    (True, False): ("msub", "munder"), (False, True): ("msup", "mover"), (True, True): ("msubsup", "munderover"),
+}  # fmt: skip
+SIGNS = {"+": "+", "-": "−"}
+
+
+class _Translation:
+    """The translation of a tree into items; it takes the LaTeX of each item from the source."""
+
     def __init__(self, latex: str) -> None:
         self.latex = latex
-        self.tokens = TOKEN.findall(latex)
-        self.place = 0
 
-    def peek(self) -> str:
-        while self.place < len(self.tokens) and self.tokens[self.place].isspace():
-            self.place += 1
-        return self.tokens[self.place] if self.place < len(self.tokens) else ""
+    def refuse(self, node: Node) -> InputError:
+        return complaint(self.latex, "formula", node.start, "LaTeX that the pages use")
 
-    def next(self) -> str:
-        token = self.peek()
-        if not token:
-            raise InputError(f"expected a complete formula, got {self.latex!r}, which ends too early")
-        self.place += 1
-        return token
-
-    def refuse(self, token: str) -> InputError:
-        return InputError(f"expected LaTeX that the pages use, got {token!r} in {self.latex!r}")
-
-    # -- rows -------------------------------------------------------------------------------------------------------
-
-    def row(self, *stops: str) -> list[Item]:
-        """Return the items of a formula up to one of the stop tokens, which is not consumed, or up to the end."""
+    def row(self, row: Row) -> list[Item]:
+        """Return the items of a row; the LaTeX of each reaches to the next one."""
         items: list[Item] = []
-        while (token := self.peek()) not in stops and token:
-            start = self.place
-            item = self.scripted(bool(items) and items[-1].kind in ("", "function"))
-            source = "".join(self.tokens[start : self.place])
+        kind = "sign"
+        for place, node in enumerate(row.items, start=1):
+            end = row.items[place].start if place < len(row.items) else row.end
+            item = self.item(node, kind in ("", "function"))
             body = item.mathml
             if item.kind == "function":  # set off by thin spaces, but for a parenthesis after it
-                body = THIN * bool(items and items[-1].kind == "") + body + THIN * (self.peek() not in ("\\left", "("))
-            items.append(Item(source, body, item.width, item.kind))
-        if self.peek() not in (stops or ("",)):
-            raise InputError(f"expected {' or '.join(stops)} before the end of the formula {self.latex!r}")
+                before = THIN if items and kind == "" else ""
+                body = before + body + ("" if self.latex.startswith(("(", "\\left"), end) else THIN)
+            kind = item.kind
+            # the constructor of a NamedTuple takes twice as long
+            items.append(tuple.__new__(Item, (body, item.width, kind, self.latex[node.start : end])))
         return items
 
-    def argument(self) -> list[Item]:
-        """Return the argument of a LaTeX command, a braced row or one token, as a list of items."""
-        if self.peek() == "{":
-            self.next()
-            items = self.row("}")
-            self.next()
-            return items
-        token = self.peek()
-        if token.isdigit() and len(token) > 1:  # \tfrac12 is one over two
-            self.tokens[self.place : self.place + 1] = list(token)
-        return [self.atom(False)]
+    def argument(self, node: Node) -> list[Item]:
+        """Return the items of a group, or one item, as the argument of a command."""
+        return self.row(node) if isinstance(node, Row) else [self.item(node)]
 
-    def group(self) -> Item:
-        """Return the argument of a LaTeX command as one item."""
-        return _joined(self.argument())
+    def group(self, node: Node) -> Item:
+        """Return an argument as one item."""
+        return _joined(self.argument(node))
 
-    def scripted(self, after_operand: bool) -> Item:
-        base = self.atom(after_operand)
-        scripts: dict[str, Item] = {}
-        while self.peek() in ("^", "_", "'"):
-            mark = self.next()
-            scripts["^" if mark == "'" else mark] = Item("'", "<mo>′</mo>", 0.4) if mark == "'" else self.group()
-        if not scripts:
-            return base
-        width = base.width + SMALL * max(item.width for item in scripts.values())
-        tag = {"^": "msup", "_": "msub", "^_": "msubsup"}["".join(sorted(scripts, reverse=True)).replace("_^", "^_")]
-        if "lim" in base.mathml or "∑" in base.mathml:
-            tag = {"msup": "mover", "msub": "munder", "msubsup": "munderover"}[tag]
-        inside = "".join(scripts[mark].mathml for mark in ("_", "^") if mark in scripts)
-        return Item("", f"<{tag}>{base.mathml}{inside}</{tag}>", width, base.kind)
-
-    # -- atoms ------------------------------------------------------------------------------------------------------
-
-    def atom(self, after_operand: bool) -> Item:
-        token = self.next()
-        if token.startswith("\\"):
-            return self.command(token, after_operand)
-        if token == "{":
-            items = self.row("}")
-            self.next()
-            return _joined(items)
-        if token[0].isdigit():
-            return Item("", f"<mn>{token}</mn>", 0.6 * len(token))
-        if token.isalpha():
-            return Item("", f"<mi>{token}</mi>", 0.7)
-        if token in "+-":
-            character = "−" if token == "-" else token
+    def item(self, node: Node, after_operand: bool = False) -> Item:
+        """Return one item; a sign is a prefix, except after an operand."""
+        if not isinstance(node, Token):
+            return self.scripted(node, after_operand) if isinstance(node, Scripts) else ITEMS[type(node)](self, node)
+        text = node.text
+        if node.kind == "sized" and text in FENCES:
+            return Item(f'<mo stretchy="true" minsize="1.6em">{FENCES[text]}</mo>', 0.5)
+        if text in TOKENS:
+            return TOKENS[text]
+        if node.kind == "number":
+            return Item(f"<mn>{text}</mn>", 0.6 * len(text))
+        if text in SIGNS:
             if after_operand:
-                return Item("", f"<mo>{character}</mo>", 1.2, "sign")
-            return Item("", f'<mo form="prefix">{character}</mo>', 0.7)
-        if token in "=<>:":
-            return Item("", f"<mo>{escape(token)}</mo>", 1.4, "relation")
-        if token == "|":
-            return Item("", BAR, 0.4)
-        if token in "()[]":
-            return Item("", f'<mo stretchy="false">{token}</mo>', 0.4)
-        if token in ",;./!":
-            return Item("", f"<mo>{token}</mo>", 0.4)
-        raise self.refuse(token)
+                return Item(f"<mo>{SIGNS[text]}</mo>", 1.2, "sign")
+            return Item(f'<mo form="prefix">{SIGNS[text]}</mo>', 0.7)
+        if text.isalpha():
+            return Item(f"<mi>{text}</mi>", 0.7)
+        raise self.refuse(node)
 
-    def command(self, token: str, after_operand: bool) -> Item:
-        name = token[1:]
-        if name in STRUCTURES:
-            return STRUCTURES[name](self)
-        if name in SPACES:
-            return Item("", f'<mspace width="{SPACES[name]}em"></mspace>', max(SPACES[name], 0.0))
-        if name in ACCENTS:
-            inner = self.group()
-            return Item("", f'<mover accent="true">{inner.mathml}<mo>{ACCENTS[name]}</mo></mover>', inner.width)
-        if name in FONTS:
-            return self.font(FONTS[name])
-        if name in LETTERS:
-            return Item("", f"<mi>{LETTERS[name]}</mi>", 0.7)
-        if name in FUNCTIONS:
-            return Item("", "<mo>lim</mo>" if name == "lim" else f"<mi>{name}</mi>", 1.8, "function")
-        if name in LARGE:
-            return Item("", f'<mo largeop="true">{LARGE[name]}</mo>', 1.0)
-        if name in OPERATORS:
-            operator = OPERATORS[name]
-            kind = "relation" if operator in RELATIONS else ""
-            return Item("", f"<mo>{escape(operator)}</mo>", 1.2, kind)
-        if token in FENCES:
-            return Item("", f'<mo stretchy="false">{FENCES[token]}</mo>', 0.4)
-        if name in SIZES:
-            fence = self.next()
-            return Item("", f'<mo stretchy="true" minsize="1.6em">{FENCES[fence]}</mo>', 0.5)
-        raise self.refuse(token)
+    def scripted(self, node: Scripts, after_operand: bool) -> Item:
+        base = self.item(node.base, after_operand)
+        below, above = [], []
+        for script in node.scripts:
+            if script.text == "_":
+                below.append(self.group(script.inside))
+            else:
+                primes = "<mo>′</mo>" * len(script.inside.text)
+                above.append(Item(primes, 0.4) if script.text == "'" else self.group(script.inside))
+        tag = SCRIPTS[bool(below), bool(above)]["lim" in base.mathml or "∑" in base.mathml]
+        parts = [items[0] if len(items) == 1 else _joined(items) for items in (below, above) if items]
+        width = base.width + SMALL * max([part.width for part in parts])
+        return Item(f"<{tag}>{base.mathml}{''.join([part.mathml for part in parts])}</{tag}>", width, base.kind)
 
-    def font(self, variant: str) -> Item:
-        if self.peek() != "{":
-            text = self.next()
-        else:
-            self.next()
-            start = self.place
-            while self.peek() != "}":
-                self.next()
-            text = "".join(self.tokens[start : self.place])
-            self.next()
+    def accent(self, accent: Accent) -> Item:
+        name = accent.text[1:]
+        if name not in ACCENTS:
+            raise self.refuse(accent)
+        inner = self.group(accent.inside)
+        return Item(f'<mover accent="true">{inner.mathml}<mo>{ACCENTS[name]}</mo></mover>', inner.width)
+
+    def font(self, font: Font) -> Item:
+        inside, variant = font.inside, FONTS.get(font.text[1:])
+        text = self.latex[inside.start + 1 : inside.end] if isinstance(inside, Row) else inside.text
+        if variant is None or "\\" in text or not isinstance(inside, Row | Token):
+            raise self.refuse(font)
         text = text.strip() if variant != "normal" else text
         letters = "".join(_letter(letter, variant) for letter in text)
         tag = "mtext" if " " in text else "mi"
         style = ' mathvariant="normal"' if tag == "mi" else ""
-        return Item("", f"<{tag}{style}>{escape(letters)}</{tag}>", 0.6 * len(text) + 0.4)
+        return Item(f"<{tag}{style}>{escape(letters)}</{tag}>", 0.6 * len(text) + 0.4)
 
-    # -- structures -------------------------------------------------------------------------------------------------
-
-    def fraction(self) -> Item:
-        small = self.tokens[self.place - 1] == "\\tfrac"
+    def fraction(self, fraction: Fraction) -> Item:
+        small = fraction.command == "\\tfrac"
         shape = _joined if small else _stacked
-        above, below = shape(self.argument()), shape(self.argument())
+        above, below = shape(self.argument(fraction.above)), shape(self.argument(fraction.below))
         body = f"<mfrac>{above.mathml}{below.mathml}</mfrac>"
         if small:
             body = f'<mstyle displaystyle="false">{body}</mstyle>'
-        return Item("", body, max(above.width, below.width) * (SMALL if small else 1) + 0.3)
+        return Item(body, max(above.width, below.width) * (SMALL if small else 1) + 0.3)
 
-    def root(self) -> Item:
-        if self.peek() == "[":
-            self.next()
-            index = _joined(self.row("]"))
-            self.next()
-            inner = self.group()
-            return Item("", f"<mroot>{inner.mathml}{index.mathml}</mroot>", inner.width + 1)
-        inner = self.group()
-        return Item("", f"<msqrt>{inner.mathml}</msqrt>", inner.width + 1)
+    def root(self, root: Root) -> Item:
+        inner = self.group(root.inside)
+        if root.index is None:
+            return Item(f"<msqrt>{inner.mathml}</msqrt>", inner.width + 1)
+        return Item(f"<mroot>{inner.mathml}{self.group(root.index).mathml}</mroot>", inner.width + 1)
 
-    def fenced(self) -> Item:
-        opening = self.next()
-        items = self.row("\\right")
-        self.next()
-        closing = self.next()
-        inner = _joined(items)
-        first, last = (_fence(mark, side) for mark, side in ((FENCES[opening], "prefix"), (FENCES[closing], "postfix")))
-        return Item("", f"<mrow>{first}{inner.mathml}{last}</mrow>", inner.width + 0.8)
+    def delimited(self, node: Delimited) -> Item:
+        for mark in (node.opening, node.closing):
+            if mark.text not in FENCES:
+                raise self.refuse(mark)
+        first, last = _fence(FENCES[node.opening.text], "prefix"), _fence(FENCES[node.closing.text], "postfix")
+        inner = self.group(node.inside)
+        return Item(f"<mrow>{first}{inner.mathml}{last}</mrow>", inner.width + 0.8)
 
-    def table(self) -> Item:
-        name = self.environment()
-        if name not in TABLES:
-            raise self.refuse(f"\\begin{{{name}}}")
-        lines: list[list[Item]] = [[]]
-        while True:
-            lines[-1].append(_joined(self.row("&", "\\\\", "\\end")))
-            stop = self.next()
-            if stop == "\\\\":
-                lines.append([])
-            elif stop == "\\end":
-                break
-        self.environment()
-        if len(lines[-1]) == 1 and not lines[-1][0].width:
-            lines.pop()
+    def table(self, table: Table) -> Item:
+        if table.name not in TABLES:
+            raise self.refuse(table)
+        lines = [[self.group(cell) for cell in line] for line in table.lines]
         body = "".join("<mtr>" + "".join(f"<mtd>{cell.mathml}</mtd>" for cell in line) + "</mtr>" for line in lines)
         widths = (max((line[n].width for line in lines if n < len(line)), default=0) for n in range(len(lines[0])))
-        first, last = (_fence(mark, side) for mark, side in zip(TABLES[name], ("prefix", "postfix"), strict=True))
-        width = sum(widths) + len(lines[0]) + 0.5
-        return Item("", f"<mrow>{first}<mtable>{body}</mtable>{last}</mrow>", width)
-
-    def environment(self) -> str:
-        """Return the name of an environment, read from ``{name}``."""
-        self.next()
-        name = ""
-        while (token := self.next()) != "}":
-            name += token
-        return name
-
-    def phantom(self) -> Item:
-        """Return an empty item for a style command, which is ignored."""
-        return Item("", "", 0.0)
+        first, last = map(_fence, TABLES[table.name], ("prefix", "postfix"))
+        return Item(f"<mrow>{first}<mtable>{body}</mtable>{last}</mrow>", sum(widths) + len(lines[0]) + 0.5)
 
 
-STRUCTURES: dict[str, Callable[[_Reader], Item]] = {
-    "frac": _Reader.fraction,
-    "tfrac": _Reader.fraction,
-    "dfrac": _Reader.fraction,
-    "sqrt": _Reader.root,
-    "left": _Reader.fenced,
-    "begin": _Reader.table,
-    "displaystyle": _Reader.phantom,
-    "textstyle": _Reader.phantom,
-}
+ITEMS: dict[type, Callable[[_Translation, Any], Item]] = {
+    Row: _Translation.group, Accent: _Translation.accent, Font: _Translation.font, Fraction: _Translation.fraction,
+    Root: _Translation.root, Delimited: _Translation.delimited, Table: _Translation.table,
+}  # fmt: skip
 
 
 def _fence(mark: str, form: str) -> str:
@@ -299,9 +220,10 @@ def _letter(letter: str, variant: str) -> str:
 
 
 def _joined(items: list[Item]) -> Item:
-    body = "".join(item.mathml for item in items)
-    return Item("", body if len(items) == 1 and body.count("<mspace") == 0 else f"<mrow>{body}</mrow>",
-                sum(item.width for item in items))  # fmt: skip
+    body = "".join([item.mathml for item in items])
+    if len(items) != 1 or "<mspace" in body:
+        body = f"<mrow>{body}</mrow>"
+    return Item(body, sum([item.width for item in items]))
 
 
 def read(latex: str) -> list[Item]:
@@ -312,7 +234,7 @@ def read(latex: str) -> list[Item]:
     InputError
         For unsupported LaTeX.
     """
-    return _Reader(latex).row()
+    return _Translation(latex).row(reader.read(latex, "formula"))
 
 
 def rows(latex: str, width: float) -> list[list[Item]]:
@@ -340,7 +262,7 @@ def _stacked(items: list[Item]) -> Item:
     if len(lines) == 1:
         return _joined(items)
     body = "".join(f"<mtr><mtd>{''.join(item.mathml for item in line)}</mtd></mtr>" for line in lines)
-    return Item("", f"<mtable>{body}</mtable>", max(sum(item.width for item in line) for line in lines))
+    return Item(f"<mtable>{body}</mtable>", max(sum(item.width for item in line) for line in lines))
 
 
 def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:

@@ -18,7 +18,7 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.claim.tree import Node
 from symrot.checker.decide.decision import Decision, decide_equation
-from symrot.checker.latex.matrices import MATRIX_CALLS
+from symrot.checker.latex.cursor import MATRIX_CALLS
 from symrot.checker.repair.canonical_form import canonical
 from symrot.checker.repair.diagnose import diagnose
 from symrot.checker.verdict import Repair

@@ -1,0 +1,201 @@
+"""Sums, products, powers, brackets and matrices in LaTeX: the order of operations."""
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from symrot.checker.claim.functions import BUILT_IN
+from symrot.checker.claim.reader import DEEPEST_NESTING
+from symrot.checker.claim.tree import Node, negated, number, product, sum_of
+from symrot.checker.latex.cursor import CLOSING, UPRIGHT, Cursor, is_d, is_letter
+from symrot.latex import tree
+
+__all__ = ["FUNCTIONS", "SumsPart"]
+
+FUNCTIONS = {
+    f"\\{command}": name
+    for command, name in (
+        *((name, name) for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp")),
+        *(("arcsin", "asin"), ("arccos", "acos"), ("arctan", "atan"), ("ln", "log")),
+    )
+    if name in BUILT_IN
+}
+"""Command -> function; ``\\log``, whose base differs from book to book, is refused."""
+
+MATRICES = {"matrix": "", "pmatrix": "", "bmatrix": "", "Bmatrix": "", "smallmatrix": "", "array": "", "vmatrix": "det"}
+SEVERAL_LINES = ("align", "aligned", "alignat", "gather", "gathered", "eqnarray", "split", "multline", "cases",
+                 "flalign")  # fmt: skip
+ENDS = frozenset(
+    ["", "+", "-", "=", ")", "]", "\\}", "}", "&", "\\\\", ",", "\\end", "\\cdot", "\\times", "*", "/", "^", "_", "'"]
+)
+"""Items that cannot start a factor."""
+
+
+class SumsPart(Cursor):
+    """The part of the checker's interpreter for sums, products, powers, brackets and matrices."""
+
+    readers: ClassVar[Mapping[str, Callable[[Any, Any], Node]]] = {}
+    """Kind or text of an item -> the method of a further part that reads it."""
+
+    def expression(self) -> Node:
+        """Read a sum."""
+        self.depth += 1
+        if self.depth > DEEPEST_NESTING // 2:
+            raise self.fail(f"at most {DEEPEST_NESTING // 2} nested levels")
+        terms = [self.term(sign=True)]
+        while self.at("+", "-"):
+            negative = self.next().text == "-"
+            term = self.term(sign=False)
+            terms.append(negated(term) if negative else term)
+        self.depth -= 1
+        return sum_of(terms)
+
+    def term(self, sign: bool) -> Node:
+        negative = False
+        if sign and self.at("+", "-"):
+            negative = self.next().text == "-"
+        left = self.run()
+        crossed = False
+        while self.at("\\cdot", "\\times", "*"):
+            operator = self.next()
+            right = self.run()
+            kinds = self.names.is_matrix(left), self.names.is_matrix(right)
+            if operator.text == "*" or not any(kinds) or (operator.text == "\\cdot" and not all(kinds)):
+                left = product([left, right])
+            elif not all(kinds):
+                raise self.fail("two vectors or two scalars around \\times", operator)
+            elif crossed:
+                raise self.fail("brackets that say which product of vectors comes first", operator)
+            else:
+                left, crossed = Node("call", "cross" if operator.text == "\\times" else "dot", (left, right)), True
+        return negated(left) if negative else left
+
+    def run(self) -> Node:
+        """Read factors side by side, with slashes: ``\\frac12 m v^2``, ``a/b``, ``1/2 m``."""
+        factors = [self.factor()]
+        divided: tree.Node | None = None
+        while True:
+            token = self.peek()
+            if token.text == "/":
+                self.next()
+                if divided:
+                    raise self.fail("brackets, since a second slash is ambiguous", token)
+                if factors[-1].kind == "call" and factors[-1].value in FUNCTIONS.values():
+                    raise self.fail("brackets, since the slash may belong to the argument", token)
+                factors.append(Node("inv", None, (self.factor(),)))
+                simple = len(factors) == 2 and all(f.kind == "number" for f in (factors[0], factors[1].args[0]))
+                divided = None if simple else token
+            elif not self.starts_factor():
+                return product(factors)
+            elif divided:
+                raise self.fail("brackets, since it is not clear how much the slash divides by", divided)
+            elif token.kind == "number":
+                raise self.fail("brackets or a product sign before a number")
+            else:
+                factors.append(self.factor())
+
+    def starts_factor(self) -> bool:
+        """Return whether a factor may start at the cursor."""
+        item = self.peek()
+        if item.text in ENDS:
+            return False
+        if item.text in ("|", "\\|"):
+            return item.text not in self.open_bars
+        return not (self.integrals and self.differential())
+
+    def differential(self) -> bool:
+        """Return whether a ``dx`` is at the cursor."""
+        return is_d(self.peek()) and is_letter(self.peek(1))
+
+    def factor(self) -> Node:
+        """Read a piece with its powers."""
+        item = self.next()
+        node = self.base(item)
+        while raised := self.script("^"):
+            if node.kind == "power":
+                raise self.fail("brackets around a repeated power", raised)
+            if node.kind == "call" and node.value in FUNCTIONS.values():
+                raise self.fail(f"the power after the name, {item.text}^n(..)", raised)
+            node = self.raised(node, raised.inside)
+        return node
+
+    def raised(self, node: Node, inside: tree.Node) -> Node:
+        """Return a transpose, a cross-product matrix or a power."""
+        mark = tree.alone(inside)
+        if isinstance(mark, tree.Font) and mark.text in UPRIGHT:
+            mark = tree.alone(mark.inside)
+        if mark.text in ("T", "\\top", "\\intercal"):
+            return Node("transpose", None, (node,))
+        if mark.text in ("\\times", "×"):
+            return Node("call", "skew", (node,))
+        texts = [item.text for item in getattr(inside, "items", ())]
+        if texts[:3:2] == ["(", ")"] or (isinstance(mark, tree.Delimited) and len(mark.inside.items) == 1):
+            raise self.fail("a power like x^2 instead of x^{(2)}", inside)
+        exponent = self.argument(inside)
+        if exponent == number(2) and self.names.is_column(node):
+            return Node("call", "dot", (node, node))
+        return Node("power", None, (node, exponent))
+
+    def argument(self, node: tree.Node) -> Node:
+        """Return the argument of a command: a group in braces, or one token."""
+        if isinstance(node, tree.Row):
+            return self.inside(node, self.expression)
+        if node.kind == "number":
+            if self.is_cut(node):
+                raise self.fail("braces around a number of several digits", node)
+            return number(Fraction(node.text))
+        if is_letter(node) or node.text == "\\pi":
+            return self.inside(node, lambda: self.base(self.next()))
+        raise self.fail("a group in braces", node)
+
+    def is_cut(self, digit: tree.Node) -> bool:
+        """Return whether a number without braces is one digit of several: LaTeX reads ``x^12`` as ``x^1 2``."""
+        return len(digit.text) > 1 or self.source[digit.start + 1 : digit.start + 2].isdigit()
+
+    def base(self, item: tree.Node) -> Node:
+        """Return a piece without its powers."""
+        if item.kind == "number":
+            return number(Fraction(item.text))
+        if item.text == "\\pi":
+            return Node("name", "pi")
+        read = self.readers.get("letter" if is_letter(item) else item.text)
+        if read is None:
+            known = "a command that is known" if item.text.startswith("\\") else "a number, a symbol or a bracket"
+            raise self.fail(known, item)
+        return read(self, item)
+
+    def bracket(self, opening: tree.Node) -> Node:
+        if opening.kind == "row":
+            return self.inside(opening, self.expression)
+        bars, self.open_bars = self.open_bars, ()
+        inner = self.expression()
+        self.expect(CLOSING[opening.text])
+        self.open_bars = bars
+        mark = self.peek()
+        if opening.text == "[" and isinstance(mark, tree.Script) and tree.alone(mark.inside).text in ("\\times", "×"):
+            self.next()
+            return Node("call", "skew", (inner,))
+        return inner
+
+    def bars(self, bar: tree.Node) -> Node:
+        inner = self.barred(self.expression, bar.text)
+        if bar.text == "\\|" or self.names.is_column(inner):
+            return Node("call", "sqrt", (Node("call", "dot", (inner, inner)),))
+        return Node("call", "det" if self.names.is_matrix(inner) else "abs", (inner,))
+
+    def environment(self, table: tree.Table) -> Node:
+        name = table.name
+        if name.rstrip("*") in SEVERAL_LINES:
+            raise self.fail(f"one equation instead of the lines of {name}", table)
+        if name not in MATRICES:
+            raise self.fail(f"one of the environments {', '.join(MATRICES)}", table)
+        between = "& or \\\\ between the entries of a matrix"
+        rows = [[self.inside(cell, self.expression, between) for cell in line] for line in table.lines]
+        if len({len(row) for row in rows}) > 1:
+            raise self.fail("rows of equal length in a matrix", table)
+        made = Node("call", "Matrix", (_listed([_listed(row) for row in rows]),))
+        return Node("call", MATRICES[name], (made,)) if MATRICES[name] else made
+
+
+def _listed(members: list[Node]) -> Node:
+    return Node("list", ("[", "]"), tuple(members))

@@ -1,0 +1,121 @@
+"""The cursor with which an interpreter moves along a row of the tree: pieces, then the scripts of each."""
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import ClassVar, TypeVar
+
+from symrot.errors import InputError, complaint
+from symrot.latex.tokens import Token
+from symrot.latex.tree import Delimited, Node, Row, Script, Scripts
+
+__all__ = ["Cursor"]
+
+Value = TypeVar("Value")
+
+
+class Cursor:
+    """The position in a row. Spaces are left out, delimiters are plain brackets, scripts follow the piece they mark.
+
+    Attributes
+    ----------
+    source, where : str
+        The whole formula and its place, for error messages.
+    synonyms : mapping
+        Text of a token -> the text by which the interpreter knows it.
+    after_space : set of int
+        Positions of the items after a command for space.
+    """
+
+    synonyms: ClassVar[Mapping[str, str]] = {}
+    open_bars: tuple[str, ...] = ()
+
+    def __init__(self, source: str, where: str, row: Row) -> None:
+        self.source, self.where = source, where
+        self.after_space: set[int] = set()
+        self.enter(row)
+
+    def fail(self, expected: str, item: Node | None = None) -> InputError:
+        """Return the error for an item, by default the next one, that is not the expected one."""
+        return complaint(self.source, self.where, (item or self.peek()).start, expected)
+
+    def enter(self, node: Node) -> None:
+        """Start to read a row, or a single item."""
+        self.items: list[Node] = []
+        self.index = 0
+        self.flatten(node.items if isinstance(node, Row) else (node,))
+        self.items.append(Token("end", "", node.end if isinstance(node, Row) else node.start))
+
+    def flatten(self, nodes: Iterable[Node]) -> None:
+        space = False
+        for node in nodes:
+            if isinstance(node, Scripts):
+                self.flatten((node.base, *node.scripts))
+            elif isinstance(node, Delimited):
+                self.flatten((node.opening, *node.inside.items, node.closing))
+            elif node.kind == "space":
+                space = space or node.text[0] == "\\"
+                continue
+            else:
+                text = self.synonyms.get(node.text)
+                self.items.append(Token("command" if text[0] == "\\" else "mark", text, node.start) if text else node)
+            if space:
+                self.after_space.add(node.start)
+                space = False
+
+    def inside(self, node: Node, read: Callable[[], Value], closing: str = "'}'") -> Value:
+        """Read the whole of a row, or a single item, and return to the place before it."""
+        outside = self.items, self.index, self.open_bars
+        self.enter(node)
+        self.open_bars = ()
+        value = read()
+        if self.peek().kind != "end":
+            raise self.fail(closing)
+        self.items, self.index, self.open_bars = outside
+        return value
+
+    def listed(self, read: Callable[[], Value], closing: str) -> list[Value]:
+        """Read values between commas, and the bracket that closes them."""
+        bars, self.open_bars = self.open_bars, ()
+        values = [read()]
+        while self.take(","):
+            values.append(read())
+        self.expect(closing)
+        self.open_bars = bars
+        return values
+
+    def barred(self, read: Callable[[], Value], bar: str) -> Value:
+        """Read a value, and the bar that closes it."""
+        outside, self.open_bars = self.open_bars, (*self.open_bars, bar)
+        value = read()
+        self.expect(bar)
+        self.open_bars = outside
+        return value
+
+    def peek(self, ahead: int = 0) -> Node:
+        place = self.index + ahead
+        return self.items[place] if place < len(self.items) else self.items[-1]
+
+    def at(self, *texts: str) -> bool:
+        return self.items[self.index].text in texts
+
+    def next(self) -> Node:
+        item = self.items[self.index]
+        self.index += item.kind != "end"
+        return item
+
+    def take(self, text: str) -> bool:
+        """Step over an item if it is next, and return whether it was."""
+        is_next = self.items[self.index].text == text
+        self.index += is_next
+        return is_next
+
+    def expect(self, text: str) -> None:
+        if not self.take(text):
+            raise self.fail(f"'{text}'")
+
+    def script(self, mark: str) -> Script | None:
+        """Step over a script if it is next, and return it."""
+        item = self.items[self.index]
+        if isinstance(item, Script) and item.text == mark:
+            self.index += 1
+            return item
+        return None

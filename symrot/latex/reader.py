@@ -1,0 +1,151 @@
+"""The reader of LaTeX: from tokens to the tree of what is written. What it cannot read is refused with its place."""
+
+from collections.abc import Callable, Sequence
+
+from symrot.errors import InputError, complaint
+from symrot.latex.tokens import Token, tokens
+from symrot.latex.tree import Accent, Delimited, Font, Fraction, Node, Root, Row, Script, Scripts, Table
+
+__all__ = ["read"]
+
+DEEPEST_NESTING = 60
+REPEATED = {"_": "only one subscript", "^": "brackets around a repeated power", "'": "primes in one place"}
+AFTER = frozenset(["script", "prime", "space"])
+"""Kinds of tokens that may be a script of the piece before them."""
+
+
+def read(source: str, where: str = "", pieces: Sequence[Token] = ()) -> Row:
+    """Return the tree of a formula: of the tokens ``pieces`` if they are given, else of all of the source.
+
+    Raises
+    ------
+    InputError
+        For a group, a matrix or a delimiter that is not closed, for a missing argument, and for two indices or two
+        powers of one piece, with the position.
+    """
+    return _Reader(source, where, pieces or tokens(source)).row("", "end")
+
+
+class _Reader:
+    def __init__(self, source: str, where: str, pieces: Sequence[Token]) -> None:
+        self.source, self.where, self.tokens = source, where, pieces
+        self.place = self.depth = 0
+
+    def fail(self, expected: str, token: Token) -> InputError:
+        return complaint(self.source, self.where, token.start, expected)
+
+    def row(self, closing: str, *stops: str) -> Row:
+        """Read items up to one of the stops, kinds or texts of tokens, which is not used."""
+        items: list[Node] = []
+        first = token = self.tokens[self.place]
+        while token.kind not in stops and token.text not in stops:
+            if token.kind in ("end", "right", "close"):
+                raise self.fail(f"'{closing}'" if closing else "\\left or \\begin before this", token)
+            if token.kind in READERS or self.tokens[self.place + 1].kind in AFTER:
+                items.append(self.item())
+            else:  # most items are a token
+                items.append(token)
+                self.place += 1
+            token = self.tokens[self.place]
+        return Row(tuple(items), first.start, token.start)
+
+    def group(self, opening: Token, closing: str = "}") -> Row:
+        """Read a row and the token that closes it."""
+        row = self.row(closing, closing)
+        self.place += 1
+        return Row(row.items, opening.start, row.end)
+
+    def item(self) -> Node:
+        """Read a piece with its scripts."""
+        base = self.atom()
+        scripts: dict[str, Script] = {}
+        while base.kind != "space" and (mark := self.mark()):
+            text = mark.text[0]
+            if text in scripts:
+                raise self.fail(REPEATED[text], mark)
+            scripts[text] = Script(text, mark if text == "'" else self.argument(), mark.start)
+        if not scripts:
+            return base
+        if "^" in scripts:
+            scripts["^"] = scripts.pop("^")  # last
+        return Scripts(base, tuple(scripts.values()), base.start)
+
+    def mark(self) -> Token | None:
+        """Step over the mark of a script and spaces before it, if it is next, and return it."""
+        place = self.place
+        while self.tokens[place].kind == "space":
+            place += 1
+        token = self.tokens[place]
+        if token.kind not in ("script", "prime"):
+            return None
+        self.place = place + 1
+        return token
+
+    def argument(self) -> Node:
+        """Read a group in braces, or one piece; of a number, one digit."""
+        while self.tokens[self.place].kind == "space":
+            self.place += 1
+        token = self.tokens[self.place]
+        if token.kind in ("end", "right", "close", "line", "script") or token.text in ("}", "&"):
+            raise self.fail("a group in braces", token)
+        if token.kind == "number" and token.text.isdigit() and len(token.text) > 1:
+            digits = Token("number", token.text[0], token.start), Token("number", token.text[1:], token.start + 1)
+            self.tokens = [*self.tokens[: self.place], *digits, *self.tokens[self.place + 1 :]]
+        return self.atom()
+
+    def atom(self) -> Node:
+        token = self.tokens[self.place]
+        self.place += 1
+        reader = READERS.get(token.kind)
+        if reader is None:
+            return token
+        self.depth += 1
+        if self.depth > DEEPEST_NESTING:
+            raise self.fail(f"at most {DEEPEST_NESTING} nested levels", token)
+        node = reader(self, token)
+        self.depth -= 1
+        return node
+
+    def no_piece(self, token: Token) -> Node:
+        raise self.fail("a number, a symbol or a bracket", token)
+
+    def unpaired(self, token: Token) -> Node:
+        raise self.fail(f"a delimiter, or an environment in braces, after {token.text}", token)
+
+    def fraction(self, token: Token) -> Fraction:
+        return Fraction(token.text, self.argument(), self.argument(), token.start)
+
+    def root(self, token: Token) -> Root:
+        opening = self.tokens[self.place]
+        self.place += opening.text == "["
+        return Root(self.group(opening, "]") if opening.text == "[" else None, self.argument(), token.start)
+
+    def delimited(self, token: Token) -> Delimited:
+        row = self.row("\\right", "right")
+        self.place += 1
+        return Delimited(token, row, self.tokens[self.place - 1], token.start)
+
+    def table(self, token: Token) -> Table:
+        end = f"\\end{{{token.text}}}"
+        lines: list[list[Row]] = [[]]
+        while True:
+            lines[-1].append(self.row(end, "&", "line", "close"))
+            mark = self.tokens[self.place]
+            self.place += 1
+            if mark.kind == "close":
+                break
+            lines += [[]] if mark.kind == "line" else []
+        if mark.text != token.text:
+            raise self.fail(f"'{end}'", mark)
+        if len(lines) > 1 and len(lines[-1]) == 1 and not lines[-1][0].items:
+            lines.pop()
+        return Table(token.text, tuple(map(tuple, lines)), token.start)
+
+
+READERS: dict[str, Callable[[_Reader, Token], Node]] = {
+    "group": _Reader.group, "fraction": _Reader.fraction, "root": _Reader.root, "left": _Reader.delimited,
+    "begin": _Reader.table,
+    "accent": lambda reader, token: Accent(token.text, reader.argument(), token.start),
+    "font": lambda reader, token: Font(token.text, reader.argument(), token.start),
+    "script": _Reader.no_piece, "prime": _Reader.no_piece, "unpaired": _Reader.unpaired,
+}  # fmt: skip
