@@ -145,28 +145,37 @@ class Propagator:
         message, began = f"{motion.choice.method}: {motion.choice.reason}", perf_counter()
         try:
             if events is not None:
-                from symrot.propagation.events.event_result import integrate_with_events
-                from symrot.propagation.events.events import read_events
-
-                result = integrate_with_events(motion, times, read_events(events))
-                return Trajectory(motion, result.t, result.states, motion.choice.method, result.stats, message, result)
+                return self._with_events(motion, times, events, message)
             states, stats = motion.follow(times, in_order)
         except (PropagationError, KeyboardInterrupt) as error:
             raise self._with_samples(error, motion, times, began) from None
         return Trajectory(motion, times, states, motion.choice.method, stats, message)
 
+    def _with_events(self, motion: Motion, times: Floats, events: Any, message: str) -> Trajectory:
+        from symrot.propagation.events.event_result import integrate_with_events
+        from symrot.propagation.events.events import read_events
+
+        result = integrate_with_events(motion, times, read_events(events))
+        message = message if result.error is None else str(result.error)
+        trajectory = Trajectory(motion, result.t, result.states, motion.choice.method, result.stats, message, result)
+        if result.error is not None:
+            result.error.trajectory = trajectory  # type: ignore[attr-defined]
+            raise result.error
+        return trajectory
+
     def _with_samples(self, error: BaseException, motion: Motion, times: Floats, began: float) -> BaseException:
         """Return the exception that ends a motion early, with the samples before it attached as ``trajectory``."""
         samples: Samples | None = getattr(error, "samples", None)
+        part: Trajectory | None = getattr(error, "trajectory", None)
         ended: BaseException = error
         if isinstance(error, PropagationError):
             ended = PropagationError(f"{self.scene.name}: {error}")
         if samples is not None:
             numbers = np.argsort(samples.numbers)  # in the order of the requested times
             states, stats = samples.states[numbers], Stats(*samples.cost, perf_counter() - began)
-            message = str(ended) or "interrupted"
-            part = Trajectory(motion, times[samples.numbers[numbers]], states, motion.choice.method, stats, message)
-            part.status = -1
+            part = Trajectory(motion, times[samples.numbers[numbers]], states, motion.choice.method, stats, "")
+        if part is not None:
+            part.message, part.status = str(ended) or "interrupted", -1
             ended.trajectory = part  # type: ignore[attr-defined]
         return ended
 

@@ -64,7 +64,8 @@ class Trajectory:
         As in solve_ivp: 1 if a terminal event ended the motion, else 0. A motion that cannot be followed raises a
         PropagationError; its ``trajectory`` holds the samples before, with status -1 and ``success`` false.
     warnings : tuple of str
-        Sentences about accuracy that cannot be guaranteed, as under a torque without a formula.
+        Sentences about what cannot be guaranteed: accuracy under a torque without a formula, or an event that comes
+        nearer to zero than the motion is accurate.
     t_events, y_events : list of arrays or None
         Per requested event: its times, shape (k,), and the states there, shape (k, N).
     event_kinds : list of lists of str, or None
@@ -94,7 +95,7 @@ class Trajectory:
         self.y_events = events and events.y_events
         self.event_kinds = events and events.kinds
         self.status = int(events is not None and events.ended)
-        self.warnings: tuple[str, ...] = motion.warnings
+        self.warnings: tuple[str, ...] = motion.warnings + (events.warnings if events else ())
 
     def __len__(self) -> int:
         return len(self.t)

@@ -107,6 +107,52 @@ def test_touches_are_told_from_crossings_and_from_near_misses(method):
     assert abs(cube - odd).max() < 1e-5 and trajectory.event_kinds[4] == ["falling", "rising", "falling"]
 
 
+TOUCHES = [  # formula of t, and its zeros in [0, 20] s
+    ("sin(t)**2", math.pi * np.arange(7)), ("1 - cos(t)", 2 * math.pi * np.arange(4)), ("abs(sin(t))", math.pi * np.arange(7)),
+    ("cos(t)**2/(1 + t)", math.pi * (np.arange(6) + 0.5)), ("sqrt(abs(sin(t)))", math.pi * np.arange(7)),
+    ("(t - 10/3)**2", [10 / 3]), ("abs(t - 10/3)", [10 / 3]), ("t**4 - 4*t**2 + 4", [math.sqrt(2)]),
+    ("sin(t)**2 + 1e-20", []), ("abs(sin(t)) + 1e-13", []), ("3/2 + (t - 5)/abs(t - 5)", []),
+    ("4 + atan2(sin(t), cos(t))", []),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("formula", "zeros"), TOUCHES)
+def test_a_touch_between_two_doubles_is_found(formula, zeros):
+    """No double is a multiple of pi: a touch there is only zero up to the rounding of the time. A jump is no touch."""
+    found = run(scene(stop=20, **SPIN), [formula]).t_events[0]
+    assert len(found) == len(zeros) and np.allclose(found, zeros, rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_squares_and_sizes_of_what_crosses_zero_touch_it(method):
+    """Each zero of g is a touch of g^2, abs(g) and (2 + cos t) g^2, wherever it lies between two doubles."""
+    for g in ("omega_2", "omega_1 - 1/3", "q1*q3", "q0*q2 - sin(3*t)/10"):
+        events = [g, f"({g})**2", f"abs({g})", f"(2 + cos(t))*({g})**2"]
+        crossings, *touches = run(scene(), events, method, 1e-13).t_events
+        assert len(crossings) >= 5
+        for found in touches:
+            assert len(found) == len(crossings) and np.allclose(found, crossings, rtol=0, atol=1e-12)
+
+
+def test_what_a_body_that_friction_holds_keeps_at_zero_is_one_event():
+    """omega_3 reaches zero at 6 s and stays there until 13 s."""
+    events = ["omega_3", "abs(omega_3)", "omega_3**2"]
+    trajectory = symrot.propagate("friction_wheel", events=events)
+    assert [t.tolist() for t in trajectory.t_events] == [[6.0]] * 3 and not trajectory.warnings
+    stopped = symrot.propagate("friction_wheel", events=[symrot.Event("abs(omega_3)", terminal=True)])
+    assert stopped.status == 1 and stopped.t[-1] == 6.0
+
+
+def test_a_touch_within_the_error_of_the_motion_is_reported():
+    """1 - q0^2 touches zero every 2 pi, but the motion is only known to its tolerance."""
+    motion = scene((0, 0, 1), 20, torque=[{"kind": "expression", "torque": ["0", "0", "1e-30*sin(t)"]}], **SPIN)
+    for method in ("taylor", "dop853"):
+        trajectory = run(motion, ["1 - q0**2", "q3**2", "1 - q0**2 + 1e-6"], method, 1e-12)
+        assert len(trajectory.t_events[0]) != 4 and len(trajectory.t_events[1]) == 4
+        (sentence,) = trajectory.warnings
+        assert "'1 - q0**2' comes nearer to zero at t = 6.28318530" in sentence
+
+
 @pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9])
 def test_close_pairs(gap):
     """Two zeros of omega-free formulas of t and of the motion, however close, and ten in one step."""
@@ -263,8 +309,14 @@ def test_dense_zeros_of_exact_motions_are_counted():
 @pytest.mark.long_motion
 @pytest.mark.parametrize("formula", ["sin(1/(t - 5))", "asin(sin(t)) - t", "sin(1e8*t)"])
 def test_zeros_that_cannot_be_told_apart_end_in_a_sentence(formula):
-    with pytest.raises(PropagationError, match=r"events: expected formulas whose zeros can be separated, but beyond t"):
-        run(scene(), [formula])
+    """Samples and events before that time are kept."""
+    motion, sentence = scene(), r"events: expected formulas whose zeros can be separated, but beyond t"
+    with pytest.raises(PropagationError, match=sentence) as stopped:
+        run(motion, [formula, "t - 1e-3"], "exact", t=[0.0, 1e-3, 30.0])
+    trajectory = stopped.value.trajectory
+    assert trajectory.status == -1 and not trajectory.success and trajectory.message == str(stopped.value)
+    if formula.endswith("- 5))"):
+        assert trajectory.t.tolist() == [0.0, 1e-3] and trajectory.t_events[1].tolist() == [1e-3]
 
 
 def test_coinciding_events_are_all_listed():

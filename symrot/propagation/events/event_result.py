@@ -1,6 +1,8 @@
 """Results of a motion with events: times of the events, states at these times, and samples up to a terminal event."""
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
+from itertools import pairwise
+from pathlib import Path
 from time import perf_counter
 from typing import NamedTuple
 
@@ -14,14 +16,16 @@ from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import (
     Event,
     EventZero,
+    SearchResult,
+    ZerosNotSeparated,
     event_library_source,
     search,
     stepped,
     timed,
     uses_attitude,
 )
-from symrot.propagation.events.polynomials import Piece, fitted, fitted_pieces
-from symrot.propagation.motion import Motion, MotionInParts, SciPyMotion, SteppedInC, on_clock
+from symrot.propagation.events.polynomials import HEAD, Piece, fitted, fitted_pieces
+from symrot.propagation.motion import ClosedFormMotion, Motion, MotionInParts, SciPyMotion, SteppedInC, on_clock
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import Integration, Stats, Switching, split_at, stats_of
 
@@ -31,6 +35,9 @@ Floats = NDArray[np.float64]
 
 TURN_PER_PIECE = 2.0  # rad: rotation in each of the first pieces into which a motion without steps is cut
 SAMPLES_OF_RATE = 257  # samples from which the largest rate of such a motion is estimated
+TOLERANCES = 20.0  # error of a stepped motion at most, see docs/step_control.md
+RESIDUE = 4.0 * float(np.finfo(np.float64).eps)  # part of the largest state that rounding leaves of a state that stops
+EXACT_ERROR = 16.0 * float(np.finfo(np.float64).eps)  # error of a motion in closed form
 
 
 class EventResult(NamedTuple):
@@ -46,6 +53,10 @@ class EventResult(NamedTuple):
         Per event: ``"rising"``, ``"falling"`` or ``"touching"``, seen along the motion away from its start.
     ended : bool
         Whether a terminal event ended the motion, on either side of the start.
+    warnings : tuple of str
+        A sentence for each event that comes nearer to zero than the motion is accurate.
+    error : PropagationError or None
+        The error that ended the motion or the search early; samples and events end at its time.
     """
 
     t: Floats
@@ -55,6 +66,8 @@ class EventResult(NamedTuple):
     y_events: list[Floats]
     kinds: list[list[str]]
     ended: bool
+    warnings: tuple[str, ...]
+    error: PropagationError | None
 
 
 class _Side(NamedTuple):
@@ -77,7 +90,7 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
     CompilerError
         If there is no C compiler.
     PropagationError
-        If the motion cannot be followed to the last time and no terminal event comes before.
+        If the motion cannot be followed at all. A motion that stops before its last time is returned with its error.
     """
     began, plan = perf_counter(), motion.plan
     if uses_attitude(events) and not plan.structure.attitude:
@@ -99,18 +112,22 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
     )  # before a terminal event
     zeros: list[tuple[EventZero, Floats]] = []
     counts, ended, switchings = np.zeros(3, dtype=int), False, list[Switching]()
+    doubts, errors = list[tuple[int, float]](), list[PropagationError]()
+    accuracy = EXACT_ERROR if isinstance(motion, ClosedFormMotion) else TOLERANCES * motion.tolerance
     for part in split_at(times, motion.start):
         end = float(times[part[-1]])
         try:
             side = _side(motion, end)
         except IntegrationStopped as early:
             raise (early.later(zero) if zero else early) from None
-        listed, stop = search(path, events, p, side.pieces, motion.start) if end != motion.start else ([], None)
-        if side.broken and stop is None:
-            error = side.broken[0]
-            raise error.later(zero) if isinstance(error, IntegrationStopped) else error
+        result, early_end = _searched(path, events, p, side, motion.start, end, accuracy)
+        listed, stop = result.zeros, result.stop
         ended |= stop is not None
-        inside = part if stop is None else part[np.abs(times[part] - motion.start) <= abs(stop - motion.start)]
+        reached = abs((end if stop is None else stop) - motion.start)
+        if early_end is not None:
+            errors.append(early_end.later(zero) if zero else early_end)
+            reached = abs(early_end.t - motion.start)
+        inside = part[np.abs(times[part] - motion.start) <= reached]
         known[inside] = True
         states[inside] = side.states(times[inside])
         rows = side.states(np.array([each.t for each in listed]))
@@ -118,9 +135,9 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
             last = part[len(inside)]  # the first sample beyond the event is moved to the event
             known[last], sample_times[last], states[last] = True, stop + zero, rows[-1]
         zeros = _joined(zeros, list(zip(listed, rows, strict=True)), motion.start)
+        doubts += [(event, t + zero) for event, t in result.doubts]
         side.pieces.close()
         counts += side.cost()
-        reached = abs((end if stop is None else stop) - motion.start)
         switchings += [each for each in side.switchings if abs(each.t - motion.start) <= reached]
     zeros.sort(key=lambda each: each[0].t)
     own = [[each for each in zeros if each[0].event == number] for number in range(len(events))]
@@ -132,7 +149,39 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
         [np.array([row for _, row in group]).reshape(-1, len(plan.states)) for group in own],
         [[each.kind for each, _ in group] for group in own],
         ended,
+        tuple(_warnings(events, doubts)),
+        errors[0] if errors else None,
     )
+
+
+def _searched(
+    path: Path, events: Sequence[Event], p: Sequence[float], side: "_Side", start: float, end: float, accuracy: float
+) -> tuple[SearchResult, IntegrationStopped | ZerosNotSeparated | None]:
+    """Return the events on one side of the start, and the error that ends the motion or the search before ``end``."""
+    if end == start:
+        return SearchResult([], None, []), None
+    try:
+        result = search(path, events, p, side.pieces, start, accuracy)
+    except ZerosNotSeparated as early:
+        return SearchResult(early.zeros, None, []), early
+    if not side.broken or result.stop is not None:
+        return result, None
+    stopped = side.broken[0]
+    if not isinstance(stopped, IntegrationStopped):
+        raise stopped
+    return result, stopped
+
+
+def _warnings(events: Sequence[Event], doubts: Sequence[tuple[int, float]]) -> Iterator[str]:
+    """Yield a sentence for each event that has an extremum nearer to zero than the motion is accurate."""
+    for number, event in enumerate(events):
+        times = [t for each, t in doubts if each == number]
+        if times:
+            more = f" and at {len(times) - 1} more times" if len(times) > 1 else ""
+            yield (
+                f"events: {event.formula!r} comes nearer to zero at t = {times[0]!r} s{more} than the motion is "
+                "accurate: whether it is zero there is not known"
+            )
 
 
 def _joined(
@@ -159,7 +208,8 @@ def _side(motion: Motion, end: float) -> _Side:
     broken: list[PropagationError] = []
     if isinstance(motion, MotionInParts):
         pieces, path = motion.parts(end, broken)
-        return _Side((piece for piece in pieces), path, broken, lambda: path.stats[:3], path.stats.switchings)
+        clean = _without_residues(pieces, error_blocks(plan)[0])
+        return _Side(clean, path, broken, lambda: path.stats[:3], path.stats.switchings)
     if isinstance(motion, SteppedInC):
         integration = motion.stepping.restarted()
         rows: list[Floats] = []
@@ -197,6 +247,25 @@ def _side(motion: Motion, end: float) -> _Side:
     rates = anywhere(np.linspace(start, end, SAMPLES_OF_RATE))[:, : blocks[0][1]]
     longest = min(TURN_PER_PIECE / max(float(np.abs(rates).max()), 1e-300), abs(end - start))
     return _Side(fitted_pieces(anywhere, start, end, longest, *blocks), anywhere, broken, lambda: (0, 0, 0))
+
+
+def _without_residues(pieces: Sequence[Piece], blocks: Sequence[int]) -> Generator[Piece, None, None]:
+    """Yield the pieces of a motion with zero for states that are only rounding errors of earlier, larger ones.
+
+    The angular velocity of a body that friction stopped is such a state.
+    """
+    count = blocks[-1]
+    terms = [np.abs(piece.rows[:, HEAD:]).reshape(len(piece.rows), -1, count) for piece in pieces]
+    largest = np.max([each[:, 0].max(axis=0) for each in terms if len(each)], axis=0)
+    for low, high in pairwise(blocks):
+        largest[low:high] = largest[low:high].max()
+    for piece, sizes in zip(pieces, terms, strict=True):
+        rows = piece.rows.copy()
+        coefficients = rows[:, HEAD:].reshape(sizes.shape)
+        coefficients[:, 0][sizes[:, 0] <= RESIDUE * largest] = 0.0
+        coefficients *= (sizes.sum(axis=1) > RESIDUE * largest)[:, None, :]
+        rows[:, HEAD:] = coefficients.reshape(len(rows), -1)
+        yield Piece(piece.edges, rows)
 
 
 def _cost(integration: Integration) -> tuple[int, int, int]:

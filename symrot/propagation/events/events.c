@@ -14,8 +14,9 @@
  *     of the series,               there is no zero;
  *     of the first derivative,     there is at most one: the signs at the ends tell;
  *     of the second derivative,    there is one extremum, which is located: it parts the zeros, or touches zero itself.
- * Otherwise the interval is cut in two. A value is compared with the bound of its own rounding errors, nothing else, so
- * no tolerance decides what a touch is. Zeros are closed in until no double is left between the ends.
+ * Otherwise the interval is cut in two. A value is compared with the bound of its own rounding errors, and at an extremum
+ * also with its change over the rounding of the time, nothing else, so no tolerance decides what a touch is. Zeros are
+ * closed in until no double is left between the ends.
  *
  * A change of sign is a zero where the function is bounded, or where it falls towards the place from both sides: poles
  * and jumps past zero are none.
@@ -35,7 +36,7 @@ extern "C" {
 #define SYMROT_EXPORT
 #endif
 
-enum { SYMROT_POINTS = 21, SYMROT_DEGREE = SYMROT_POINTS - 1, SYMROT_DEPTH = 128, SYMROT_FOUND = 5, SYMROT_DISCS = 2 };
+enum { SYMROT_POINTS = 21, SYMROT_DEGREE = SYMROT_POINTS - 1, SYMROT_DEPTH = 128, SYMROT_FOUND = 6, SYMROT_DISCS = 2 };
 static const double SYMROT_TOUCHING = 4.0;  /* rounding errors: an extremum so near zero touches it */
 enum { SYMROT_TOUCHES = 129 };  /* samples of an interval of 64 units in the last place: all numbers in it */
 
@@ -45,10 +46,11 @@ static const double SYMROT_LEBESGUE = 3.0;  /* what errors of samples grow to in
 typedef struct {
     const double *rows, *edges, *p;  /* edges: pieces + 1 times, in the order of the motion */
     int64_t pieces, terms;           /* terms: of each polynomial */
-    double *found;                   /* rows of SYMROT_FOUND numbers: event, from, to, sign before, sign after */
+    double *found;                   /* rows of SYMROT_FOUND numbers: event, from, to, sign before, sign after, doubt */
     int64_t count, room;
     int64_t piece, event, depth;     /* where the search stands */
     double work, most;               /* operations spent, and after how many a call returns */
+    double doubt;                    /* error of the motion, in rounding errors of its states */
     const double *row;               /* of this piece */
     double cosine[2*SYMROT_DEGREE];  /* of multiples of pi/SYMROT_DEGREE */
     double missing[SYMROT_DISCS][3]; /* what samples miss of the function and of two derivatives, per bound on a disc */
@@ -112,7 +114,7 @@ static void symrot_spend(symrot_search *search, int evaluations)
     search->work += evaluations*(double)(SYMROT_COST + 2*search->terms*(span[1] - span[0]));
 }
 
-static void symrot_add(symrot_search *search, int event, double from, double to, int before, int after)
+static void symrot_append(symrot_search *search, int event, double from, double to, int before, int after, int doubt)
 {
     if (search->count < search->room) {
         double *row = search->found + search->count*SYMROT_FOUND;
@@ -121,8 +123,21 @@ static void symrot_add(symrot_search *search, int event, double from, double to,
         row[2] = to;
         row[3] = before;
         row[4] = after;
+        row[5] = doubt;
     }
     ++search->count;
+}
+
+static void symrot_add(symrot_search *search, int event, double from, double to, int before, int after)
+{
+    symrot_append(search, event, from, to, before, after, 0);
+}
+
+/* Report an extremum, not zero, that the error of the motion may have moved past zero. */
+static void symrot_add_doubt(symrot_search *search, int event, double t, double value, double noise)
+{
+    const int *span = symrot_spans[event], sign = value > 0.0 ? 1 : -1;
+    if (span[1] > span[0] && fabs(value) <= search->doubt*noise) symrot_append(search, event, t, t, sign, sign, 1);
 }
 
 /* Close in on a change of sign between a and b, until they are neighbours; return the end with the smaller value. */
@@ -213,10 +228,26 @@ static int symrot_falls(const symrot_search *search, int event, double a, double
     return fabs(fa) <= 0.5*fabs(before) && fabs(fb) <= 0.5*fabs(after);
 }
 
+/*
+ * Return whether a value, the smallest around a time, is zero within rounding. The time of a touch is seldom a double, so
+ * that the value may change by as much as the formula does within the rounding of the time. Of the changes on both sides
+ * the smaller one counts: the larger one may be a jump.
+ */
+static int symrot_touches(symrot_search *search, int event, double t, double value, double noise)
+{
+    double own;
+    const double unit = SYMROT_TOUCHING*DBL_EPSILON*(fabs(t) + fabs(search->row[0]));
+    const double before = fabs(symrot_value(search, event, t - unit, &own) - value);
+    const double after = fabs(symrot_value(search, event, t + unit, &own) - value);
+    symrot_spend(search, 2);
+    const double change = before <= DBL_MAX && after <= DBL_MAX ? fmin(before, after) : 0.0;
+    return fabs(value) <= SYMROT_TOUCHING*noise + change;
+}
+
 /* Find the zeros in an interval too short to be cut. */
 static void symrot_shortest(symrot_search *search, int event, double a, double b, symrot_range all)
 {
-    double na, nb, least = INFINITY, place = a, own;
+    double na, nb, least = INFINITY, place = a, lowest = 0.0, noise = 0.0, own;
     const double fa = symrot_value(search, event, a, &na), fb = symrot_value(search, event, b, &nb);
     const int from = symrot_sign(fa, na), to = symrot_sign(fb, nb);
     symrot_spend(search, 2);
@@ -238,9 +269,15 @@ static void symrot_shortest(symrot_search *search, int event, double a, double b
         if (above < least) {
             least = above;
             place = t;
+            lowest = value;
+            noise = own;
         }
     }
-    if (least <= 0.0) symrot_add(search, event, place, place, 0, 0);  /* or the rounding of a zero beside it */
+    if (least <= 0.0 || symrot_touches(search, event, place, lowest, noise))
+        symrot_add(search, event, place, place, 0, 0);  /* or the rounding of a zero beside it */
+    else if (fabs(symrot_value(search, event, place - (b - a), &own)) >= fabs(lowest)
+        && fabs(symrot_value(search, event, place + (b - a), &own)) >= fabs(lowest))
+        symrot_add_doubt(search, event, place, lowest, noise);  /* smallest not only in this interval */
 }
 
 /* Return the time of an extremum within a distance of t, by parabolas through ever closer values. */
@@ -269,7 +306,7 @@ static int symrot_settle(symrot_search *search, int event, double a, double b, i
     symrot_spend(search, 3);
     if (symrot_empty(all) || all.lo > 0.0 || all.hi < 0.0) return 1;
     const double middle = fabs(symrot_event(event, centre, y, search->p, &own));
-    if (middle <= own && own <= DBL_MAX && all.hi - all.lo <= 16.0*own) {
+    if (middle <= own && own <= DBL_MAX && all.hi - all.lo <= 16.0*own + DBL_MIN) {
         symrot_add(search, event, a, b, 0, 0);
         return 1;
     }
@@ -346,8 +383,15 @@ static int symrot_settle(symrot_search *search, int event, double a, double b, i
     const double x = high == -1.0 ? -1.0 : low == 1.0 ? 1.0 : 0.5*(low + high);
     const double off = miss1/(fabs(e[0]) - rest2);  /* how far the extremum may lie from x: that changes its value */
     const double slack = (fabs(e[0]) + rest2)*off*off;
-    if (1.0 - fabs(x) <= off) {
+    if (1.0 - fabs(x) <= off) {  /* at an end, or beyond it */
         if (slack > noise) return 0;
+        const double end = x < 0.0 ? a : b, place = symrot_extremum(search, event, end, 0.5*fabs(b - a)*off);
+        const double extreme = symrot_value(search, event, place, &own);
+        if (extreme*turn >= 0.0 && symrot_touches(search, event, place, extreme, own)) {
+            symrot_add(search, event, end, end, (int)turn, (int)turn);
+            return 1;
+        }
+        symrot_add_doubt(search, event, end, extreme, own);
         symrot_at_most_one(search, event, a, f[0], n0, b, f[SYMROT_DEGREE], n1);
         return 1;
     }
@@ -359,8 +403,10 @@ static int symrot_settle(symrot_search *search, int event, double a, double b, i
         value = symrot_value(search, event, t, &own);
         sign = symrot_sign(value, SYMROT_TOUCHING*own);
     }
-    if (sign == 0) symrot_add(search, event, t, t, (int)turn, (int)turn);
+    if (sign == 0 || (sign*turn > 0.0 && symrot_touches(search, event, t, value, own)))
+        symrot_add(search, event, t, t, (int)turn, (int)turn);
     else {
+        symrot_add_doubt(search, event, t, value, own);
         symrot_at_most_one(search, event, a, f[0], n0, t, value, 0.0);
         symrot_at_most_one(search, event, t, value, 0.0, b, f[SYMROT_DEGREE], n1);
     }
@@ -414,15 +460,17 @@ SYMROT_EXPORT int symrot_events_sign(int event, double t, const double *row, int
  *
  * in    rows, terms   polynomials, see above
  * in    edges         pieces + 1 times, in the order of the motion, rising or falling: row i holds from edge i to i + 1
+ * in    doubt         error of the motion, in multiples of the rounding errors of its states; 0 for no doubts
  */
 SYMROT_EXPORT void symrot_events_begin(symrot_search *search, const double *rows, int64_t terms, const double *edges,
-    int64_t pieces, const double *p, int again)
+    int64_t pieces, const double *p, double doubt, int again)
 {
     search->rows = rows;
     search->terms = terms;
     search->edges = edges;
     search->pieces = pieces;
     search->p = p;
+    search->doubt = doubt;
     search->piece = search->event = search->depth = 0;
     if (again) return;
     for (int event = 0; event <= SYMROT_EVENTS; ++event) search->before[event] = 0;
@@ -444,7 +492,8 @@ SYMROT_EXPORT void symrot_events_begin(symrot_search *search, const double *rows
  * Go on with a search until all rows are searched, the room is used up, or about `most` operations are spent.
  *
  * out   found      room rows: event, from, to, sign before, sign after, as the motion goes; from = to but where the
- *                  event keeps within its rounding errors of zero; a sign is 0 where the zero lies on an edge
+ *                  event keeps within its rounding errors of zero; a sign is 0 where the zero lies on an edge; doubt is
+ *                  1 for an extremum that is not zero, but nearer to it than the motion is accurate
  * out   state[3]   rows written; whether the search is over; the number of the piece it stands at
  *
  * Returns the operations spent. There must be room for at least 4 rows.

@@ -8,6 +8,7 @@ at the edge of the domain of a formula are no events.
 """
 
 import ctypes
+from bisect import bisect, insort
 from collections.abc import Generator, Iterable, Sequence
 from contextlib import closing
 from functools import cache
@@ -41,12 +42,13 @@ Floats = NDArray[np.float64]
 ATTITUDE = frozenset(f"q{i}" for i in range(4))
 KNOWN = {"t", "omega_1", "omega_2", "omega_3", *ATTITUDE}
 NEAR = 64 * float(np.finfo(float).eps)  # relative distance in time below which two entries are joined
-FIELDS = 5  # numbers in one entry of events.c
+FIELDS = 6  # numbers in one entry of events.c
 ROOM = 1024  # entries per call
 LONG = 1e-3  # part of the motion: a formula that stays zero for longer, up to an end, has no event there
 OPERATIONS_PER_CALL = 5e6  # operations in some 20 ms, after which Python can react to an interrupt
 MOST_OPERATIONS, OPERATIONS_PER_ROW = 4e9, 2e5  # operations allowed for a search; each row of a motion adds to them
 MOST_ENTRIES = 500_000
+STATE_ERROR = 4 * float(np.finfo(float).eps)  # relative rounding error of a state in the C source
 
 
 class Event(NamedTuple):
@@ -81,6 +83,28 @@ class Event(NamedTuple):
         left, equals, right = self.formula.partition("==")
         node = parse(left, "event")
         return ("-", node, parse(right, "event")) if equals else node
+
+
+class ZerosNotSeparated(PropagationError):
+    """Error of a search that cannot tell the zeros of formulas apart beyond the time ``t``, s.
+
+    ``zeros`` are the zeros before that time.
+    """
+
+    def __init__(self, t: float, formulas: Sequence[str], effort: str) -> None:
+        named = ", ".join(map(repr, formulas))
+        super().__init__(
+            f"events: expected formulas whose zeros can be separated, but beyond t = {t!r} s the zeros of {named} are "
+            f"not settled after {effort}"
+        )
+        self.t, self.formulas, self.effort = t, formulas, effort
+        self.zeros: list[EventZero] = []
+
+    def later(self, epoch: float) -> "ZerosNotSeparated":
+        """Return the same error with its time on a clock that shows ``epoch`` where the present one shows 0."""
+        later = ZerosNotSeparated(self.t + epoch, self.formulas, self.effort)
+        later.zeros = self.zeros
+        return later
 
 
 class EventZero(NamedTuple):
@@ -199,7 +223,7 @@ class _Library:
         pointer, integer, real = ctypes.c_void_p, ctypes.c_int64, ctypes.c_double
         self.begin = library.symrot_events_begin
         self.begin.restype = None
-        self.begin.argtypes = (pointer, pointer, integer, pointer, integer, pointer, ctypes.c_int)
+        self.begin.argtypes = (pointer, pointer, integer, pointer, integer, pointer, real, ctypes.c_int)
         self.next = library.symrot_events_next
         self.next.restype = real
         self.next.argtypes = (pointer, pointer, integer, real, pointer)
@@ -217,20 +241,19 @@ _library = cache(_Library)
 class _Search:
     """State of a search for events along one motion: its state in C, and the number of operations so far."""
 
-    def __init__(self, path: Path | str, p: Sequence[float], formulas: Sequence[str]) -> None:
-        self.library, self.formulas = _library(str(path)), formulas
+    def __init__(self, path: Path | str, p: Sequence[float], formulas: Sequence[str], error: float = 0.0) -> None:
+        self.library, self.formulas, self.doubt = _library(str(path)), formulas, error / STATE_ERROR
         self.p = (ctypes.c_double * len(p))(*p)
         self.state = ctypes.create_string_buffer(self.library.bytes)
         self.arrived: set[tuple[int, float]] = set()  # events that are zero at an edge, and its time
+        self.doubts: list[tuple[int, float]] = []  # events nearer to zero than the motion is accurate, and when
         self.again, self.spent, self.allowed = False, 0.0, MOST_OPERATIONS
 
-    def entries(self, piece: Piece) -> list[list[float]]:
-        """Return the candidates for zeros in a piece of the motion, as the rows that :file:`events.c` describes.
+    def entries(self, piece: Piece) -> tuple[list[list[float]], ZerosNotSeparated | None]:
+        """Return the candidates for zeros in a piece of the motion: event, from, to, sign before, sign after.
 
-        Raises
-        ------
-        PropagationError
-            If the search takes more operations than a motion of so many rows may.
+        Extrema nearer to zero than the motion is accurate are added to ``doubts``. If the search takes more operations
+        than a motion of so many rows may, it ends early, and the error is returned too.
         """
         edges, rows = np.ascontiguousarray(piece.edges), np.ascontiguousarray(piece.rows)
         count, listed, answer = len(rows), [], (ctypes.c_int64 * 3)()
@@ -242,6 +265,7 @@ class _Search:
             edges.ctypes.data,
             count,
             ctypes.addressof(self.p),
+            self.doubt,
             self.again,
         )
         self.again = True
@@ -251,12 +275,12 @@ class _Search:
             listed += batch[: answer[0]].tolist()
             if self.spent > self.allowed or len(listed) > MOST_ENTRIES:
                 t = float(edges[min(answer[2], count)])
-                formulas = ", ".join(map(repr, self.formulas))
-                raise PropagationError(
-                    f"events: expected formulas whose zeros can be separated, but beyond t = {t!r} s the zeros of "
-                    f"{formulas} are not settled after {self.spent:.1g} operations and {len(listed)} entries"
-                )
-        return listed
+                effort = f"{self.spent:.1g} operations and {len(listed)} entries"
+                side = 1.0 if edges[-1] >= edges[0] else -1.0
+                known = [entry[:5] for entry in listed if side * (entry[2] - t) <= 0.0 and not entry[5]]
+                return known, ZerosNotSeparated(t, self.formulas, effort)
+        self.doubts += [(int(entry[0]), entry[1]) for entry in listed if entry[5]]
+        return [entry[:5] for entry in listed if not entry[5]], None
 
     def terms(self, rows: Floats) -> int:
         """Return the number of coefficients of each polynomial in the rows of a motion."""
@@ -274,10 +298,30 @@ class _Search:
         return value
 
 
+class SearchResult(NamedTuple):
+    """Zeros of events along a motion.
+
+    Attributes
+    ----------
+    zeros : list of EventZero
+        In the order of the motion.
+    stop : float or None
+        Time of the terminal event, s.
+    doubts : list of (int, float)
+        Events, by number, and times, s, at which the formula has an extremum nearer to zero than the motion is
+        accurate: whether it touches zero there, crosses it twice or misses it is not known.
+    """
+
+    zeros: list[EventZero]
+    stop: float | None
+    doubts: list[tuple[int, float]]
+
+
 def search(
-    path: Path | str, events: Sequence[Event], p: Sequence[float], pieces: Iterable[Piece], t0: float
-) -> tuple[list[EventZero], float | None]:
-    """Return the zeros of events along a motion, in its order, and the time of the terminal event or None.
+    path: Path | str, events: Sequence[Event], p: Sequence[float], pieces: Iterable[Piece], t0: float,
+    error: float = 0.0,
+) -> SearchResult:  # fmt: skip
+    """Return the zeros of events along a motion, up to the terminal event if there is one.
 
     A zero at the start ``t0`` is listed too, with the sign that the formula takes after it, but does not end the
     motion.
@@ -291,13 +335,15 @@ def search(
     pieces : iterable of Piece
         The motion from t0 on as polynomials (:mod:`symrot.propagation.events.polynomials`), in its order, each Piece
         beginning where the one before ends. The search takes pieces until it finds a terminal event.
+    error : float
+        Error of the states, relative to their sizes. Extrema that it may move past zero are listed as doubts.
 
     Raises
     ------
-    PropagationError
+    ZerosNotSeparated
         If the zeros cannot be told apart with the operations that a motion of such a length may take.
     """
-    searcher = _Search(path, p, [event.formula for event in events])
+    searcher = _Search(path, p, [event.formula for event in events], error)
     left = [int(event.terminal) for event in events]
     zeros: list[EventZero] = []
     held: list[list[float]] = []  # entries at the last edge, which may continue in the next piece
@@ -305,7 +351,8 @@ def search(
     for piece in pieces:
         if not len(piece.rows):
             continue
-        entries = held + searcher.entries(piece)
+        own, early = searcher.entries(piece)
+        entries = held + own
         for entry in entries:  # a zero from the first edge on: the piece before tells the sign before it
             if previous is not None and not entry[3] and entry[1] == float(piece.edges[0]):
                 entry[3] = _sign_before_end(searcher, int(entry[0]), previous)
@@ -314,12 +361,29 @@ def search(
         whole, held = _merged(entries, last)
         stop = _settled(searcher, piece, events, whole, t0, left, zeros)
         if stop is not None:
-            return zeros, stop
+            before = [(event, t) for event, t in searcher.doubts if abs(t - t0) < abs(stop - t0)]
+            return SearchResult(zeros, stop, _open_doubts(before, zeros, t0))
+        if early is not None:
+            early.zeros = zeros
+            raise early
         previous = piece
-    if previous is not None and held:
-        stop = _settled(searcher, previous, events, held, t0, left, zeros)
-        return zeros, stop
-    return zeros, None
+    stop = _settled(searcher, previous, events, held, t0, left, zeros) if previous is not None and held else None
+    return SearchResult(zeros, stop, _open_doubts(searcher.doubts, zeros, t0))
+
+
+def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: float) -> list[tuple[int, float]]:
+    """Return the doubts that lie at no zero of their event, each once, in the order of the motion."""
+    settled: dict[int, list[float]] = {}
+    for zero in zeros:
+        insort(settled.setdefault(zero.event, []), zero.t)
+    own: list[tuple[int, float]] = []
+    for event, t in sorted(doubts, key=lambda doubt: (doubt[0], abs(doubt[1] - t0))):
+        times = settled.setdefault(event, [])
+        place = bisect(times, t)
+        if all(abs(t - other) > 4 * NEAR * max(abs(t), abs(other)) for other in times[max(place - 1, 0) : place + 1]):
+            times.insert(place, t)
+            own.append((event, t))
+    return own
 
 
 def signs_at_ends(

@@ -14,7 +14,7 @@ from symrot.formula.switches import hold
 from symrot.formula.tree import evaluate, names, parse
 from symrot.propagation import progress
 from symrot.propagation.compiled_models import error_blocks
-from symrot.propagation.events.events import search, signs_at_ends
+from symrot.propagation.events.events import ZerosNotSeparated, search, signs_at_ends
 from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.motion import Motion
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
@@ -169,7 +169,11 @@ class SwitchedRun(RunState):
         current: list[tuple[Piece, Callable[[Floats], Floats]]] = []
         watching = watched()
         try:
-            zeros, stop = search(regime.path, events, values, watching, start)
+            zeros, stop, _ = search(regime.path, events, values, watching, start)
+        except ZerosNotSeparated as error:
+            functions = ", ".join(dict.fromkeys(self._name(guard.mode) for guard in regime.guards))
+            reason = f"the zeros inside {functions} cannot be told apart after {error.effort}"
+            raise IntegrationStopped(passed[-1], reason, self.end) from None
         except IntegrationStopped as error:
             at = passed[-1]
             y = current[0][1](np.array([at]))[0] if current else self.y
