@@ -223,6 +223,8 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
     result = formula(parse(source), values)
     if result.has(sympy.nan, sympy.zoo, sympy.oo, -sympy.oo):
         raise InputError(f"torque: expected a formula with finite values, got {source!r}, which divides by zero")
+    if result.has(sympy.I):
+        raise InputError(f"torque: expected a formula with real values, got {source!r}, whose values are not real")
     return result
 
 

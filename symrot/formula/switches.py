@@ -8,7 +8,7 @@ formula                smooth formula                 guard
 =====================  =============================  ==========================================
 ``sign(u)``            ``s``                          ``u``, s = 1 or -1
 ``step(u)``            ``(1 + s)/2``                  ``u``
-``abs(u)``             ``s u``                        ``u``
+``abs(u)``             ``s u``                        ``u``, unless u contains modes alone
 ``sqrt(u^2 v)``        ``s u sqrt(v)``                ``u``
 ``max(a, b)``          ``b + (1 + s)/2 (a - b)``      ``a - b``
 ``where(c, a, b)``     ``b + p (a - b)``              those of the condition, p = 1 or 0
@@ -242,6 +242,8 @@ class _Writer:
             return (kind, *parts, *(node[2:] if kind == "**" else ()))
         if node[1] not in BENDING or (node[1] in ("abs", "atan2") and not names(node) & CHANGING):
             return ("call", node[1], parts)
+        if node[1] == "abs" and not names(parts[0]) & CHANGING:
+            return ("call", "abs", parts)  # of modes alone: a constant between switches
         self.label = text(node)
         return getattr(self, f"_{node[1]}")(*parts)  # type: ignore[no-any-return]
 

@@ -3,24 +3,18 @@
 :mod:`symrot.codegen.scene_kernels` derives them, the cache stores them as JSON, the propagator binds them to numbers.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from fractions import Fraction
 from functools import cached_property
 from typing import Any, NamedTuple, TypedDict
 
 from symrot.formula import exact_numbers as number
+from symrot.formula.exact_functions import EXACT_FUNCTIONS
 from symrot.formula.program import Program, ProgramRecord, node_from_json, node_to_json
 from symrot.formula.tree import Node, evaluate
 
-__all__ = ["EPOCH", "EXACT_FUNCTIONS", "Conserved", "KernelRecord", "Parameters", "SceneKernel", "bind"]
+__all__ = ["EPOCH", "Conserved", "KernelRecord", "Parameters", "SceneKernel", "bind"]
 
-EXACT_FUNCTIONS: dict[str, Callable[..., Fraction]] = {
-    "sqrt": number.sqrt,
-    "sin": number.sin,
-    "cos": number.cos,
-    "abs": abs,
-    "without_turns": number.without_turns,
-}
 EPOCH = "epoch"  # name in formulas of parameters: the time of the scene, s, at which a moved clock shows 0
 
 Parameters = tuple[tuple[str, Node], ...]  # name in the kernel, formula over the physical constants

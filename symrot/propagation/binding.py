@@ -8,10 +8,12 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 
 from symrot.closed_form.arithmetic.pairs import quotient
+from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
-from symrot.formula.tree import Node, evaluate, names
+from symrot.formula.exact_functions import exact_value
+from symrot.formula.tree import Node, names, text
 from symrot.planning.plan import START_CONSTANTS, Plan
-from symrot.planning.scene_kernel import EXACT_FUNCTIONS, Parameters
+from symrot.planning.scene_kernel import Parameters
 
 __all__ = ["Binding", "folded", "one_double", "two_doubles", "value_of"]
 
@@ -112,8 +114,17 @@ def _monomial(node: Node) -> tuple[int, int, str, int] | None:
 
 
 def value_of(formula: Node, constants: Mapping[str, Fraction]) -> Fraction:
-    """Return the exact value of a formula that contains numbers and named constants only."""
-    return Fraction(evaluate(formula, constants, EXACT_FUNCTIONS))
+    """Return the exact value of a formula that contains numbers and named constants only.
+
+    Raises
+    ------
+    InputError
+        If it has no real value, as the logarithm of a negative number has none.
+    """
+    value = exact_value(formula, constants)
+    if value != value:
+        raise InputError(f"torque: expected constants with real values, but {text(formula)} has none")
+    return Fraction(value)
 
 
 def folded(node: Node, known: Mapping[str, Fraction]) -> Node:

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from symrot.formula import exact_numbers as number
+from symrot.formula.exact_functions import EXACT_FUNCTIONS
 from symrot.formula.tree import evaluate
 from symrot.planning.plan import Plan
-from symrot.planning.scene_kernel import EXACT_FUNCTIONS, SceneKernel
+from symrot.planning.scene_kernel import SceneKernel
 
 __all__ = ["invariant_parameters", "invariant_source"]
 

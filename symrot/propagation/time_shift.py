@@ -22,9 +22,10 @@ from typing import Any
 
 from symrot.build import cache as library
 from symrot.formula import exact_numbers as number
-from symrot.formula.tree import Node, children, evaluate, names
+from symrot.formula.exact_functions import exact_value
+from symrot.formula.tree import Node, children, names
 from symrot.planning.plan import Plan
-from symrot.planning.scene_kernel import EPOCH, EXACT_FUNCTIONS, Parameters, SceneKernel
+from symrot.planning.scene_kernel import EPOCH, Parameters, SceneKernel
 from symrot.propagation.compiled_models import kernel_key, motion_library
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE
@@ -87,7 +88,7 @@ class ShiftedParameters:
         top, bottom, values = time.numerator, time.denominator, {EPOCH: time}
         try:
             return [
-                float(evaluate(node, values, EXACT_FUNCTIONS))
+                float(exact_value(node, values))
                 if line is None
                 else (line[0] * bottom + line[1] * top) / (line[2] * bottom)
                 for node, line in zip(self._formulas, self._lines, strict=True)
@@ -109,7 +110,7 @@ def _line(node: Node) -> tuple[int, int, int] | None:
 def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
     """Return a and b if a formula equals a + b*epoch; otherwise None."""
     if node[0] == "number":
-        return Fraction(node[1]), Fraction(0)
+        return None if node[1] != node[1] else (Fraction(node[1]), Fraction(0))
     if node == ("symbol", EPOCH):
         return Fraction(0), Fraction(1)
     parts = [_coefficients(child) for child in children(node)]
@@ -160,7 +161,7 @@ def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:
     if node == ("symbol", EPOCH):
         return node
     if EPOCH not in names(node):
-        return ("number", evaluate(node, known, EXACT_FUNCTIONS))
+        return ("number", exact_value(node, known))
     if node[0] == "call":
         return ("call", node[1], tuple(_folded(child, known) for child in node[2]))
     return (node[0], *(_folded(child, known) for child in children(node)), *(node[2:] if node[0] == "**" else ()))

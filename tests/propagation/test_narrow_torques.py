@@ -266,6 +266,49 @@ def test_no_step_goes_past_the_bend_of_a_root(torque, impulse, tolerance, method
     assert abs(omega - 1 - impulse) < ALLOWED * tolerance
 
 
+CONSTANTS = {
+    "log(2)": log(2), "exp(1)": exp(1), "1/cosh(2)": 1 / cosh(2), "exp(-800)*exp(800)": 1.0, "sqrt(log(a))": sqrt(log(3)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
+@pytest.mark.parametrize("constant", CONSTANTS)
+def test_constants_of_torques_may_be_any_functions_of_numbers(constant, method):
+    made = scene(f"{constant}*t", {"a": 3}, stop=2, moments=(1, 1, 1))
+    assert symrot.propagate(made, method).omega[-1][2] == pytest.approx(2 * CONSTANTS[constant], rel=1e-11)
+
+
+@pytest.mark.parametrize("constant", ["log(-2)", "acos(2)", "sqrt(-2)", "log(a - 4)", "asin(a)"])
+def test_a_constant_without_a_real_value_is_refused(constant):
+    with pytest.raises(symrot.InputError, match=r"torque: expected .* real values"):
+        symrot.propagate(scene(f"{constant}*t", {"a": 3}))
+
+
+SIZES_OF_SWITCHES = {  # torque, and its integral over [0, 6] s
+    "sqrt(0.5 + abs(sign(sin(t))))": 6 * sqrt(1.5), "sqrt(abs(floor(sin(t))))": 6 - pi,
+    "sqrt(0.5 + abs(where(sin(t) > 0, 1, -1)))": 6 * sqrt(1.5), "1/(1 + abs(sign(sin(t))))": 3.0,
+    "log(1.5 + abs(sign(sin(t))))": 6 * log(2.5), "sqrt(0.5 + sign(sin(t)) - sign(2*sin(t)))": 6 * sqrt(0.5),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("method", ["auto", "scipy:DOP853"])
+@pytest.mark.parametrize("torque", SIZES_OF_SWITCHES)
+def test_functions_of_what_jumps(torque, method):
+    """Values that only occur between two switches of the same instant, such as sqrt(0.5 - 1), do no harm."""
+    omega = symrot.propagator(scene(torque, stop=6, moments=(1, 1, 1)), method, 1e-10)([0.0, 6.0]).omega[-1][2]
+    assert abs(omega - SIZES_OF_SWITCHES[torque]) < ALLOWED * 1e-10
+
+
+@pytest.mark.parametrize("method", ["auto", "scipy:DOP853"])
+def test_samples_before_a_torque_loses_its_value_are_kept(method):
+    """log(-sign(t - 1)) is 0 before 1 s, and has no value after it."""
+    with pytest.raises(
+        symrot.PropagationError, match=r"beyond t = 1\.0 s .* its rate of change is not finite there"
+    ) as ended:
+        symrot.propagator(scene("log(-sign(t - 1))", stop=2), method)([0.0, 0.5, 1.5])
+    assert ended.value.trajectory.t.tolist() == [0.0, 0.5]
+
+
 @pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
 def test_a_jump_in_the_last_bits_of_the_end_ends_the_motion(method):
     """mod(1e6 t, 1) jumps at 2 ms, of which the double is a little more."""

@@ -16,9 +16,9 @@ from symrot.codegen.taylor.coefficients import coefficients
 from symrot.codegen.taylor.recurrences import recurrences
 from symrot.errors import InputError, SymrotError
 from symrot.formula import exact_numbers as number
+from symrot.formula.exact_functions import EXACT_FUNCTIONS
 from symrot.formula.tree import evaluate
 from symrot.kinematics.hamilton import hamilton
-from symrot.planning.scene_kernel import EXACT_FUNCTIONS
 from symrot.propagation.compiled_models import error_blocks, formula_deviations
 from symrot.propagation.enclosures.step_limit import longest_followed
 from symrot.propagation.motion import Motion

@@ -43,9 +43,10 @@ from symrot.codegen.taylor.coefficients import coefficients
 from symrot.codegen.taylor.recurrences import recurrences
 from symrot.errors import SymrotError
 from symrot.formula import exact_numbers as number
+from symrot.formula.exact_functions import EXACT_FUNCTIONS
 from symrot.formula.tree import evaluate
 from symrot.planning.plan import Plan, general_structure
-from symrot.planning.scene_kernel import EXACT_FUNCTIONS, Parameters
+from symrot.planning.scene_kernel import Parameters
 from symrot.propagation.compiled_models import error_blocks, formula_deviations
 from symrot.propagation.enclosures.step_limit import Deviations, longest_followed
 from symrot.propagation.method import Choice

@@ -24,6 +24,8 @@ def to_node(expr: Expr) -> Node:
         return ("number", Fraction(int(expr.p), int(expr.q)))
     if expr.is_Symbol or expr is S.Pi:
         return ("symbol", str(expr))
+    if expr is S.Exp1:
+        return ("call", "exp", (("number", Fraction(1)),))
     if expr.is_Pow:
         base, power = expr.as_base_exp()
         if (2 * power).is_Integer:

@@ -25,7 +25,6 @@ ZERO: Node = ("number", Fraction(0))
 ONE: Node = ("number", Fraction(1))
 TIME = "t"
 TURNING = {"sin", "cos", "tan"}
-CONSTANT = {"sqrt", "sin", "cos", "abs"}  # functions of constants that can be found exactly enough
 HIGHEST = 12  # degree of a polynomial that is moved as one
 
 
@@ -225,9 +224,7 @@ def _terms(node: Node, parts: list[tuple[Node, ...] | None]) -> tuple[Node, ...]
     kind, polynomials = node[0], [part for part in parts if part is not None]
     constant = all(len(part) == 1 for part in polynomials)
     if kind == "call":
-        return (
-            (("call", node[1], tuple(part[0] for part in polynomials)),) if constant and node[1] in CONSTANT else None
-        )
+        return (("call", node[1], tuple(part[0] for part in polynomials)),) if constant else None
     if constant:
         return ((kind, polynomials[0][0], node[2]) if kind == "**" else (kind, *(part[0] for part in polynomials)),)
     if kind == "neg":

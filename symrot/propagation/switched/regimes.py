@@ -4,6 +4,7 @@ A guard is the formula inside a function such as sign or abs; a mode is the valu
 :mod:`symrot.propagation.switched.motion`.
 """
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -12,11 +13,12 @@ from typing import NamedTuple
 
 from symrot.build import cache as library
 from symrot.codegen.taylor.time_shift import moved, moved_formulas
+from symrot.formula.exact_functions import exact_value
 from symrot.formula.program import Argument, Program
 from symrot.formula.switches import Conditions, Switch, hold
 from symrot.formula.tree import Node, names, parse, rename, text
 from symrot.planning.scene_kernel import Parameters
-from symrot.propagation.binding import folded, two_doubles, value_of
+from symrot.propagation.binding import folded, two_doubles
 from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import Event, guard_library_source
 from symrot.propagation.motion import SciPyMotion, SteppedMotion
@@ -118,8 +120,12 @@ class Regime:
             taylor = self.motion.choice.method == "taylor"
             invariants = self.motion.kernel.quantity_parameters if taylor else ()
             constants = {**self.constants, **values}
-            ratios = [value_of(node, constants).as_integer_ratio() for _, node in invariants]
-            pairs = [part for ratio in ratios for part in two_doubles(*ratio)]
+            numbers = [exact_value(node, constants) for _, node in invariants]
+            pairs = [
+                part
+                for exact in numbers
+                for part in (two_doubles(*exact.as_integer_ratio()) if exact == exact else (math.nan, math.nan))
+            ]
             rates, guards, quantities = (ShiftedParameters(each, values) for each in self._with_constants)
             self._parameters[key] = RegimeParameters(rates, guards, quantities, pairs)
         return self._parameters[key]

@@ -1,0 +1,74 @@
+"""Functions of formulas on exact numbers: rational values are exact, others are rounded once.
+
+Roots, sines and cosines are those of :mod:`symrot.formula.exact_numbers`; mpmath computes the other functions, and is
+imported by the first call that needs it.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from functools import partial
+from typing import Any
+
+from symrot.formula import exact_numbers as number
+from symrot.formula.tree import FUNCTIONS, Node, evaluate
+
+__all__ = ["EXACT_FUNCTIONS", "exact_value"]
+
+GUARD_BITS = 64  # bits beyond those of the result that mpmath computes with
+MOST_BITS = 1 << 20  # of an argument or a result: an exponential of more than that is beyond all doubles, or zero
+
+
+def _transcendental(name: str, *arguments: Fraction) -> Fraction:
+    """Return a function of mpmath at exact arguments, with a relative error below 2^-300.
+
+    Raises
+    ------
+    ValueError
+        Where the function has no real value, such as the logarithm of a negative number.
+    OverflowError
+        If the value is beyond all doubles.
+    """
+    import mpmath
+
+    sizes = [max(x.numerator.bit_length(), x.denominator.bit_length()) for x in arguments]
+    if name in ("exp", "sinh", "cosh") and abs(arguments[0]) > MOST_BITS:
+        if name == "exp" and arguments[0] < 0:
+            return Fraction(1, 1 << MOST_BITS)
+        raise OverflowError(f"{name} of {number.show(arguments[0])} is beyond all doubles")
+    with mpmath.workprec(number.BITS + GUARD_BITS + min(max(sizes), MOST_BITS)):  # so that 1 + tiny keeps its digits
+        values = [mpmath.mpf(x.numerator) / x.denominator for x in arguments]
+        result: Any = None
+        if not (name == "atan2" and not any(arguments)) and not (name == "log" and not arguments[0]):
+            result = getattr(mpmath, name)(*values)
+    if not isinstance(result, mpmath.mpf) or not mpmath.isfinite(result):
+        listed = ", ".join(map(number.show, arguments))
+        raise ValueError(f"{name}({listed}) has no real value")
+    sign, mantissa, exponent, _ = result._mpf_
+    value = Fraction(mantissa) * Fraction(2) ** exponent
+    return Fraction(-value if sign else value)
+
+
+EXACT_FUNCTIONS: dict[str, Callable[..., Fraction]] = {
+    **{name: partial(_transcendental, name) for name in FUNCTIONS},
+    "sqrt": number.sqrt,
+    "sin": number.sin,
+    "cos": number.cos,
+    "abs": abs,
+    "without_turns": number.without_turns,
+}
+
+
+def exact_value(node: Node, values: Mapping[str, Fraction]) -> Fraction | float:
+    """Return the value of a formula of numbers and of named numbers; NaN where it has no real value.
+
+    Raises
+    ------
+    OverflowError
+        If the value is beyond all doubles.
+    """
+    try:
+        value: Fraction | float = evaluate(node, values, EXACT_FUNCTIONS)
+    except (ValueError, ZeroDivisionError):
+        return math.nan
+    return value
