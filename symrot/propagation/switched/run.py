@@ -18,7 +18,7 @@ from symrot.propagation.events.events import ZerosNotSeparated, search, signs_at
 from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.motion import Motion
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
-from symrot.propagation.steppers.stepping import Floats
+from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Floats
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Guard, Modes, Regime
 from symrot.propagation.switched.run_state import CHATTER, RunState
@@ -32,6 +32,7 @@ HOP_BITS = 10  # a hop over a switch is at most 2 to this power units in the las
 LEAST_TURN = 1e-3  # rad over the whole span: errors of slower rotations are relative to this rate
 AWAY = range(50, 400, 10)  # a hop away from a switch is the span divided by 2 to this power
 NEARBY, MOST_ULPS = 1e-6, 64.0  # part of the way since the last switch; units in the last place of a located time
+SHORT = 1e-9  # part of the span: how far formulas are looked at beyond an instant without rates
 CHATTERING = 1e-9  # part of the span: CHATTER switches within it count as endlessly many
 Consumer = Callable[["Chunk"], None]
 
@@ -140,6 +141,8 @@ class SwitchedRun(RunState):
             self._move_clock(self._at(self.t))
         rates, values = regime.bound(self.modes, self.zero)
         active = regime.active(self.modes)
+        if not all(map(math.isfinite, rates)):
+            return self._coincident(regime, active, values)
         events = [
             event if on else event._replace(terminal=False) for event, on in zip(regime.events, active, strict=True)
         ]
@@ -209,6 +212,20 @@ class SwitchedRun(RunState):
         self.t = stop
         self._arrive(instant)
         return guard
+
+    def _coincident(self, regime: Regime, active: list[bool], values: list[float]) -> Guard:
+        """Return a guard that is zero or negative at the present instant, where the rates have no value.
+
+        Several functions that switch at one instant do so one after the other; rates in between need not have values.
+        """
+        h = self.side * SHORT * self.span
+        row = np.concatenate([[self.t, h, 0.0, h], self.y, np.zeros_like(self.y)])
+        formulas = [guard.formula for guard in regime.guards]
+        signs, _ = signs_at_ends(regime.path, formulas, values, Piece(np.array([self.t, self.t + h]), row[None]))
+        for guard, on, sign in zip(regime.guards, active, signs, strict=True):
+            if on and sign <= 0 and guard.mode not in self.held and not self.flipped.get(guard.mode):
+                return guard
+        raise IntegrationStopped(self.t, NOT_FINITE_SENTENCE, self.end)
 
     def _arrive(self, instant: Instant) -> None:
         """Continue at a switch: the present time becomes ``instant``, and the clock shows 0 there, unless it is the

@@ -1,6 +1,5 @@
 """Pieces of a smooth motion up to the next switch, by each stepper: polynomials, and states as a function of time."""
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import pairwise
@@ -14,7 +13,7 @@ from symrot.propagation.events.polynomials import Piece, fitted, rows_of
 from symrot.propagation.motion import SciPyMotion, SteppedMotion
 from symrot.propagation.steppers import dop853, taylor
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped, why_hopeless
-from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Floats
+from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Regime
 from symrot.propagation.switched.run_state import RunState
@@ -158,8 +157,6 @@ def smooth_pieces(run: RunState, regime: Regime, rates: list[float]) -> SteppedP
     ``rates`` are the parameters of the rates.
     """
     motion = regime.motion
-    if not all(map(math.isfinite, rates)):
-        raise IntegrationStopped(run.t, NOT_FINITE_SENTENCE, run.end)
     if isinstance(motion, SteppedMotion):
         return SteppedPieces(run, regime, motion, rates)
     return SciPyPieces(run, regime, motion, rates)
