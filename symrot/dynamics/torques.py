@@ -34,6 +34,7 @@ from symrot import symbols
 from symrot.dynamics.structure import FieldPattern, FormulaTorque, Pattern, TorqueStructure, component_names
 from symrot.dynamics.torque_kinds import EXPRESSION_NAMES, TORQUE_KINDS
 from symrot.errors import InputError
+from symrot.formula.switches import CHANGING, has_switches
 from symrot.formula.tree import FUNCTIONS, Node, children, evaluate, parse
 from symrot.kinematics.quaternion import conjugate, quaternion_product, quaternion_rates, quaternion_to_dcm
 from symrot.symbols import constant
@@ -220,11 +221,17 @@ def formula_values(structure: FormulaTorque, motion: Motion) -> dict[str, Expr]:
 
 
 def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
-    result = formula(parse(source), values)
+    node = parse(source)
+    result = formula(node, values)
     if result.has(sympy.nan, sympy.zoo, sympy.oo, -sympy.oo):
         raise InputError(f"torque: expected a formula with finite values, got {source!r}, which divides by zero")
     if result.has(sympy.I):
         raise InputError(f"torque: expected a formula with real values, got {source!r}, whose values are not real")
+    for size in () if has_switches(node) else result.atoms(sympy.Abs):  # made by SymPy, so that no switch is known
+        if size.free_symbols & set().union(*(values[name].free_symbols for name in CHANGING & set(values))):
+            raise InputError(
+                f"torque: expected abs where a formula bends, got {source!r}, which is a formula of abs({size.args[0]})"
+            )
     return result
 
 

@@ -14,9 +14,12 @@ MOST_TERMS = 60  # of a polynomial that is examined for being a square
 def square_under_root(radicand: Node) -> tuple[Node, Node] | None:
     """Return (u, v) with radicand = u^2 v, so that its square root is abs(u) sqrt(v); None for u = 1.
 
-    A sum counts as a square if it is one as a polynomial in its symbols and functions: t**2 - 2*c*t + c**2.
+    What is left of the factors counts as a square if it is one as a polynomial in its symbols and functions:
+    t**2 - 2*c*t + c**2.
     """
     root, rest = _split(radicand)
+    if rest != ONE and (more := _root_of_sum(rest)) is not None:
+        root, rest = _joined("*", root, more), ONE
     return None if root == ONE else (root, rest)
 
 
@@ -30,8 +33,6 @@ def _split(node: Node) -> tuple[Node, Node]:
         half = node[2] // 2
         root: Node = node[1] if half == 1 else ("**", node[1], half)
         return root, node[1] if node[2] % 2 else ONE
-    if kind in ("+", "-") and (total := _root_of_sum(node)) is not None:
-        return total, ONE
     return ONE, node
 
 
@@ -42,7 +43,7 @@ def _joined(kind: str, left: Node, right: Node) -> Node:
 
 
 def _root_of_sum(node: Node) -> Node | None:
-    """Return the polynomial whose square a sum is, or None."""
+    """Return the polynomial whose square a formula is, or None."""
     generators: dict[str, Node] = {}
     polynomial = _polynomial(node, generators)
     if polynomial is None or len(polynomial.terms) > MOST_TERMS or set(polynomial.terms) <= {()}:

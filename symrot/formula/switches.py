@@ -234,10 +234,11 @@ class _Writer:
             if max(_degree(yes), _degree(no)) < RISKY:
                 return _blend(share, self.smooth(yes), self.smooth(no))
             return ("call", "where", (share, self.part(yes, share, 1), self.part(no, share, 0)))
-        if node[:2] == ("call", "sqrt") and (split := square_under_root(node[2][0])) and names(split[0]) & CHANGING:
-            size: Node = ("call", "abs", (split[0],))
-            return self.smooth(size if split[1] == ONE else ("*", size, ("call", "sqrt", (split[1],))))
         parts = tuple(map(self.smooth, children(node)))
+        if node[:2] == ("call", "sqrt") and (split := square_under_root(parts[0])) and names(split[0]) & CHANGING:
+            self.label = text(node)
+            size = self._abs(split[0])
+            return size if split[1] == ONE else ("*", size, ("call", "sqrt", (split[1],)))
         if kind != "call":
             return (kind, *parts, *(node[2:] if kind == "**" else ()))
         if node[1] not in BENDING or (node[1] in ("abs", "atan2") and not names(node) & CHANGING):
