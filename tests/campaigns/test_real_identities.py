@@ -147,6 +147,7 @@ def test_the_judge_refuses_a_wrong_verdict(claim, verdict, words):
     ("asin(sin(-pi)) == atan2(log(exp(sin(pi))), sqrt(1 - sin(-pi)**2))", Verdict("true")),
     ("sqrt(tan(cosh(exp(x**4 - x + 5)))) == sqrt(tan(cosh(exp(x**4 - x + 5)))) + 0*log(x + y)", Verdict("true")),
     ("sinh(-8)*cosh(x + 0*log(asin(x))) == log(exp(sinh(-8)) + 0*log(1/2))*cosh(x)", Verdict("true")),
+    ("sqrt((x*y)**(1/5) - 26)*sqrt(28 - (x*y)**(1/5)) == sqrt((x*y)**(1/5) - 26)*sqrt(28 - (x*y)**(1/5))", Verdict("true")),
     ("sin(x) == 1", Verdict("false", counterexample=Counterexample(((sin(Symbol("x", real=True)), Rational(1, 2)),), None, "", ""))),
 ])  # fmt: skip
 def test_the_judge_accepts_a_right_verdict(claim, verdict):

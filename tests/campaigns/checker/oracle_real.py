@@ -358,6 +358,14 @@ def generic_point(source: Random, names: Sequence[str] = NAMES) -> dict[str, Fra
     return _drawn(source, names, 3)  # never zero
 
 
+def far_point(source: Random, names: Sequence[str] = NAMES) -> dict[str, Fraction]:
+    """Return a random point whose numbers have sizes from 1e-12 to 1e12, all sizes alike: no narrow domain is left out."""
+    return {
+        name: source.choice((-1, 1)) * Fraction(10) ** source.randint(-12, 12) * Fraction(10 ** source.random())
+        for name in names
+    }
+
+
 def _drawn(source: Random, names: Sequence[str], least: int) -> dict[str, Fraction]:
     def value() -> Fraction:
         kind = source.randint(least, 4)

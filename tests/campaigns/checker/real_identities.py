@@ -19,6 +19,7 @@ from tests.campaigns.checker.oracle_real import (
     Unclear,
     compare,
     drawn_point,
+    far_point,
     has_values,
     lacks_a_value,
     real_value,
@@ -167,8 +168,8 @@ def _matched(pattern: Node, node: Node, found: dict[str, Node]) -> bool:
 
 # -- judging ----------------------------------------------------------------------------------------------------------
 
-POINTS, MOST_POINTS = 40, 2000
-"""Points looked at; where none of them is one of the domain, more are."""
+POINTS, MOST_POINTS, FAR_POINTS = 40, 2000, 4000
+"""Points looked at; where none of them is one of the domain, more are, and then more of all sizes."""
 
 _OF_THE_DOMAIN = ("nowhere", "no real", "not negative", "a positive number", "from -1 to 1", "zero everywhere",
                   "that is not zero", "real numbers")  # fmt: skip
@@ -216,8 +217,10 @@ def fault(claim: str, verdict: Verdict | str, source: Random) -> str:
 
 def _fault_of_true(left: Node, right: Node, source: Random, conditions: Sequence[tuple[str, Node, Node]]) -> str:
     defined, unclear = 0, 0
-    for number in range(MOST_POINTS):
-        point = drawn_point(source)
+    for number in range(MOST_POINTS + FAR_POINTS):
+        if number >= MOST_POINTS and (defined or unclear):
+            break
+        point = drawn_point(source) if number < MOST_POINTS else far_point(source)
         try:
             if not all(_obeyed(condition, point) for condition in conditions):
                 continue
