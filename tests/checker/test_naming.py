@@ -28,6 +28,27 @@ RIGHT = (
     (r"L_x = I_{xx}\omega_x + I_{xy}\omega_y + I_{xz}\omega_z", "first component of the angular momentum I omega"),
     (r"L_y = -I_{xy}\omega_x + I_{yy}\omega_y - I_{yz}\omega_z",
      "second component of the angular momentum I omega, any body axes; for products of inertia without the minus sign"),
+    (r"p = \dot\phi - \dot\psi\sin\theta", "first component of the angular velocity of xyz in the body frame"),
+    (r"L = I_x \dot p + (I_z - I_y) q r", "first component of the torque by Euler's equations, principal axes"),
+    (r"T = \frac{1}{2} I_1 (\dot\theta^2 + \dot\phi^2\sin^2\theta) + \frac12 I_3(\dot\psi+\dot\phi\cos\theta)^2",
+     "kinetic energy of a symmetric top; with I_1 for A, I_3 for C"),
+    (r"L = \frac12 A (\dot\theta^2 + \dot\phi^2\sin^2\theta) + \frac12 C(\dot\psi+\dot\phi\cos\theta)^2 - m g l\cos\theta",
+     "Lagrangian of a heavy top; with l for c_3"),
+    (r"p_\psi = I_3(\dot\psi + \dot\phi\cos\theta)", "momentum of spin of a symmetric top"),
+    (r"p_\phi = (I_1\sin^2\theta + I_3\cos^2\theta)\dot\phi + I_3\dot\psi\cos\theta", "momentum of precession of a symmetric"),
+    (r"\dot\phi = \frac{p_\phi - p_\psi\cos\theta}{I_1\sin^2\theta}", "rate of precession of a symmetric top from its momenta"),
+    (r"V_{eff} = \frac{(p_\phi-p_\psi\cos\theta)^2}{2 I_1\sin^2\theta} + \frac{p_\psi^2}{2 I_3} + m g l\cos\theta",
+     "effective potential of a heavy top; with I_1 for A, I_3 for C, l for c_3"),
+    ("Omega == m*g*l/(C*omega)", "rate of slow precession of a fast top"),
+    (r"\Omega = \frac{I_3 - I_1}{I_1}\omega_3", "rate at which the angular velocity of a free symmetric body goes round"),
+    (r"\dot\phi = \frac{I_3\omega_3}{I_1\cos\theta}", "rate of precession of a free symmetric body"),
+    ("T == J*omega**2/2", "kinetic energy of rotation about one axis; with J for C, omega for omega_3"),
+    ("tau == J*alpha", "torque about one axis; with J for C, alpha for domega_3"), ("P == M*omega", "power of a torque"),
+    ("T == m*v**2/2 + J*omega**2/2", "kinetic energy of a body that moves and rotates"),
+    ("T == 2*pi*sqrt(J/(m*g*d))", "period of a physical pendulum; with J for A"),
+    ("k == sqrt(J/m)", "radius of gyration; with J for C"), ("omega == L/J", "angular velocity about one axis"),
+    ("I_n == I_xx*l**2 + I_yy*m**2 + I_zz*n**2 - 2*I_xy*l*m - 2*I_yz*m*n - 2*I_xz*n*l",
+     "moment of inertia about an axis of any direction; for products of inertia without the minus sign"),
 )  # fmt: skip
 
 
@@ -55,6 +76,7 @@ WRONG = (
     ("dq0 == -(q1*w1 + q2*w2 - q3*w3)/2", "sign_of_term",
      "scalar component of the quaternion rates from omega in the body frame; with w1 for omega_1, w2 for omega_2,"),
     (r"L_x = I_{xx}\omega_x + I_{xy}\omega_y - I_{xz}\omega_z", "sign_of_term", "first component of the angular momentum"),
+    (r"p_\phi = (I_1\sin^2\theta + I_3\cos^2\theta)\dot\phi - I_3\dot\psi\cos\theta", "sign_of_term", "momentum of precession"),
 )  # fmt: skip
 
 
@@ -72,7 +94,7 @@ def test_a_formula_with_one_fault_is_doubtful_and_repaired(claim, code, name, ca
 
 @pytest.mark.parametrize("claim", [
     "y == p*s + s**3 + exp(u)", "y == sin(2*x)", "M == Matrix([[cos(a), sin(a)], [sin(a), cos(a)]])", "x == 5",
-    "Omega == m*g*l/(C*omega)",
+    "Omega == a*g*b/(c*d)", "omega == v/r", "k == J/m", "T == 4*pi**2*J/(m*g*d)", "I_0 == C*omega_3", "x == C*omega_3", "y == m*g/r",
 ])  # fmt: skip
 def test_any_other_formula_may_be_a_definition(claim, capsys):
     verdict = symrot.check(claim)

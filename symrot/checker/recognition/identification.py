@@ -4,6 +4,7 @@ A formula is recognised whatever its symbols are called, transposed or not (acti
 for either order of a quaternion's components. Every name that is returned has been proven by the exact engine.
 """
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -13,6 +14,7 @@ from typing import Any
 from sympy import Expr, Function, ImmutableMatrix, Rational, Symbol
 from sympy.matrices import MatrixBase
 
+from symrot import symbols
 from symrot.checker.claim.claims import Claim, claim_of_text, named_formula
 from symrot.checker.claim.interpreter import Interpreter, time
 from symrot.checker.claim.reader import read_expression
@@ -20,6 +22,7 @@ from symrot.checker.claim.tree import walk
 from symrot.checker.latex.reader import read_latex_formula
 from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, Values, fingerprint, values_at
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
+from symrot.checker.units.units import conventional_unit
 from symrot.checker.verdict import Identification
 from symrot.errors import InputError, complaint
 from symrot.exact.decide import decide
@@ -27,7 +30,9 @@ from symrot.exact.decision import flatten
 from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import TooLarge
 
-__all__ = ["Identification", "identified", "identify", "named_parts"]
+__all__ = ["Identification", "identified", "identify", "named_parts", "unit_of"]
+
+UNIT_OF_NAME = {symbol.name: unit for symbol, unit in symbols.UNIT.items()}
 
 MOST = 8
 """The most names that are returned by default."""
@@ -39,6 +44,14 @@ FACTORS = tuple(Rational(*pair) for pair in ((1, 1), (-1, 1)))
 SCALES = (*FACTORS, *(Rational(*pair) for pair in ((2, 1), (-2, 1), (1, 2), (-1, 2), (4, 1), (1, 4))))
 LAST_FIRST = (3, 0, 1, 2)
 """The order of the rows of a scalar-last quaternion that puts the scalar first."""
+
+
+LETTERS = {
+    "kg m^2": r"[ABCIJ]\w*", "kg": r"[mM]\w*", "N": r"[WPFG]\w*", "m": r"[a-hlrsLRD]\w*|ell", "kg m^2/s": r"[LHGhp]\w*",
+    "N m": r"(M|N|T|Q|tau|Gamma)(_\w+)?", "rad/s": r"(omega|w|Omega|n|nu|p|q|r|s|lambda)(_?\w+)?|d(phi|theta|psi)",
+    "rad/s^2": r"alpha\w*|d(omega|w)\w*|dd\w+", "m/s": r"[vuV]\w*", "m/s^2": r"g\w*",
+}  # fmt: skip
+"""Unit of a symbol -> the letters that books use for it; a product of few symbols is recognised in these letters."""
 
 
 @dataclass(frozen=True)
@@ -122,8 +135,11 @@ def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
             yield name, claim.definitions.values[name]
 
 
-def identified(value: Any, steps: bool = True) -> Iterator[Identification]:
-    """Yield the identifications of a SymPy value, nearest names first; steps of derivations only if ``steps``."""
+def identified(value: Any, steps: bool = True, named: bool = False) -> Iterator[Identification]:
+    """Yield the identifications of a SymPy value, nearest names first.
+
+    Steps of derivations are among them only if ``steps``, products of few symbols only if the value is ``named``.
+    """
     entries, shape = flatten(value)
     try:
         own = fingerprint(entries)
@@ -134,15 +150,17 @@ def identified(value: Any, steps: bool = True) -> Iterator[Identification]:
             match
             for view in views
             for known in by_fingerprint().get(own.key(view.shape, view.order), ())
-            if (steps or not known.is_step) and (match := _matched(known, own, entries, view)) is not None
+            if (steps or not known.is_step)
+            and (named or not known.only_named)
+            and (match := _matched(known, own, entries, view)) is not None
         ]
         if matches:
             break
     matches.sort(key=lambda match: (len(match.how.split(" and ")) if match.how else 0, len(match.mapping)))
-    named = set()
+    names = set()
     for identification in matches:
-        if identification.name not in named:
-            named.add(identification.name)
+        if identification.name not in names:
+            names.add(identification.name)
             yield identification
 
 
@@ -190,6 +208,8 @@ def _matched(known: Known, own: Fingerprint, entries: Sequence[Expr], view: View
     theirs, print_of = _known_value(known.text)
     ordered = [entries[n] for n in view.order]
     for pairing in islice(_pairings(print_of, own, view.order), MOST_TRIES):
+        if known.only_named and not all(_is_usual(*pair) for pair in pairing.items()):
+            continue
         factor = _factor(theirs, ordered, pairing, own.idle, SCALES if known.scaled else FACTORS)
         if factor is None:
             continue
@@ -204,6 +224,14 @@ def _matched(known: Known, own: Fingerprint, entries: Sequence[Expr], view: View
         changes = [part for part in (view.how, _factor_text(factor)) if part]
         return Identification(known.name, " and ".join(changes), dict(sorted(renaming.items())), known.source)
     return None
+
+
+def _is_usual(mine: Expr, own: Expr) -> bool:
+    """Return whether a symbol has a letter that books use for a quantity with the unit of a known symbol."""
+    name, rate = as_text(own), re.fullmatch(r"diff\((\w+)(\(t\))?, t\)", as_text(own))
+    name = f"d{rate[1]}" if rate else name.removesuffix("(t)")
+    pattern = LETTERS.get(UNIT_OF_NAME.get(as_text(mine), ""))
+    return pattern is None or re.fullmatch(pattern, name) is not None
 
 
 def _alike(mine: str, other: str) -> bool:
@@ -235,10 +263,28 @@ def _pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> It
 
 
 def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, ...]]:
-    """Return the orders of some symbols, those with the most equal names first."""
+    """Return the orders of some symbols, those with the fewest contradicting units and the most equal names first."""
     orders = list(islice(permutations(others), MOST_TRIES))
-    orders.sort(key=lambda order: sum(as_text(a) != as_text(b) for a, b in zip(atoms, order, strict=True)))
-    return orders
+    known = {atom: (as_text(atom), unit_of(as_text(atom))) for atom in (*atoms, *others)}
+
+    def differences(order: tuple[Expr, ...]) -> tuple[int, int, int]:
+        pairs = [(known[atom], known[other]) for atom, other in zip(atoms, order, strict=True)]
+        return (
+            sum(None not in (mine, own) and mine != own for (_, mine), (_, own) in pairs),
+            sum(name != other for (name, _), (other, _) in pairs),
+            sum(name[0].lower() != other[0].lower() for (name, _), (other, _) in pairs),
+        )
+
+    return sorted(orders, key=differences)
+
+
+def unit_of(name: str) -> str | None:
+    """Return the conventional unit of a symbol of a formula, None where books differ."""
+    rate = re.fullmatch(r"diff\((\w+)(\(t\))?, t\)", name)
+    name = f"d{rate[1]}" if rate else name.removesuffix("(t)")
+    if re.fullmatch(r"[ABC]", name):
+        return "kg m^2"
+    return "1" if re.fullmatch(r"[qp][0-3]", name) else conventional_unit(name)
 
 
 def _factor(

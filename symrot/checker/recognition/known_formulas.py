@@ -10,10 +10,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from sympy import Expr, ImmutableMatrix, Matrix, diag
+from sympy import Expr, ImmutableMatrix, Matrix, Mul, diag
 
 from symrot import catalogue, symbols
 from symrot.checker.recognition.fingerprint import NotInField, fingerprint
+from symrot.checker.recognition.mechanics import one_axis, tops
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.equations import euler_equations
 from symrot.dynamics.structure import FieldPattern, FieldTorque, Pattern
@@ -38,12 +39,17 @@ FRAMES = ("body", "space")
 
 @dataclass(frozen=True)
 class Known:
-    """A formula of the file: its name, source and text; ``scaled`` if a constant factor does not change what it is."""
+    """A formula of the file: its name, source and text.
+
+    ``scaled`` says that a constant factor does not change what it is; ``only_named``, that it is a product of few
+    symbols, such as ``C*omega_3``, which only the name of a quantity makes recognisable.
+    """
 
     name: str
     source: str
     text: str
     scaled: bool = False
+    only_named: bool = False
 
     @property
     def is_step(self) -> bool:
@@ -207,7 +213,7 @@ def _torques() -> Iterator[Named]:
 def stated() -> Iterator[Named]:
     """Yield the formulas of kinematics, inertia and dynamics in a fixed order, then the components of columns."""
     columns: list[Named] = []
-    for group in (_axes, _sequences, _quaternions, _vectors, _solids, _mechanics, _torques):
+    for group in (_axes, _sequences, _quaternions, _vectors, _solids, _mechanics, _torques, one_axis, tops):
         for name, source, value in group():
             yield name, source, value
             if getattr(value, "shape", None) in COMPONENTS:
@@ -237,7 +243,7 @@ def derived() -> Iterator[Named]:
 
 def _selected(formulas: Iterator[Named], least: int, longest: int) -> Iterator[tuple[str, Known]]:
     """Yield (fingerprint, formula), each once, of at least ``least`` symbols and at most ``longest`` letters."""
-    seen = set()
+    seen, few = set(), {name for name, *_ in (*tops(), *one_axis())}
     for name, source, value in formulas:
         entries, shape = flatten(value)
         if sum(entry.count_ops() for entry in entries) > longest // 3:
@@ -251,7 +257,14 @@ def _selected(formulas: Iterator[Named], least: int, longest: int) -> Iterator[t
             continue
         seen.add((name, text))
         scaled = "quaternion rate" in name
-        yield own.key(shape, range(len(entries))), Known(name, source, text, scaled)
+        known = Known(name, source, text, scaled, name in few and _is_monomial(entries[0]))
+        yield own.key(shape, range(len(entries))), known
+
+
+def _is_monomial(entry: Expr) -> bool:
+    """Return whether a formula is a product of powers of symbols."""
+    factors = [factor.as_base_exp()[0] for factor in Mul.make_args(entry)]
+    return all(factor.is_Symbol or factor.is_number for factor in factors)
 
 
 def _is_general(entries: Sequence[Expr]) -> bool:
@@ -275,7 +288,7 @@ def page(*groups: Iterator[Named]) -> str:
             texts.add(known.text)
             lines += ["", "[[formula]]", f'key = "{key}"']
             lines += [f"{field} = {_quoted(getattr(known, field))}" for field in ("name", "source", "text")]
-            lines += ["scaled = true"] * known.scaled
+            lines += ["scaled = true"] * known.scaled + ["only_named = true"] * known.only_named
     return "\n".join(lines) + "\n"
 
 

@@ -11,16 +11,15 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice, pairwise
 
-from sympy import Function, Symbol
+from sympy import Function, Mul, Rational, Symbol
 
 from symrot.checker.claim.claims import Claim, NamedFormula
 from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, text, walk
-from symrot.checker.recognition.identification import identified
+from symrot.checker.recognition.identification import identified, unit_of
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, Edit, single_edits
 from symrot.checker.repair.filter import NumericFilter
-from symrot.checker.units.units import conventional_unit
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
@@ -39,15 +38,23 @@ MOST_READINGS = 4
 """The most formulas that one verdict names."""
 
 QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
-    (r"[IJ]_?(p|t|s|a|c|g|cm|0|[xyz1-3]|([xyz1-3])\2)?", ("moment of inertia", "inertia tensor", "parallel-axis")),
-    (r"(omega|w|Omega)(_?[xyz1-3])?|[pqr]", ("angular velocity", "angle rates")),
-    (r"d(phi|theta|psi|alpha|beta|gamma)", ("angle rates",)),
-    (r"d(omega|w)(_?[xyz1-3])?|d[pqr]", ("Euler's equations",)),
-    (r"T(_?rot)?|K|K_?E|E(_?(k|kin|rot))?|KE", ("kinetic energy", "torque", "rotation matrix")),
+    (r"[IJ]_?(p|t|s|a|c|g|cm|0|n|[xyzO1-3A-D]|([xyz1-3])\2)?",
+     ("moment of inertia", "inertia tensor", "parallel-axis")),
+    (r"(omega|w|Omega)(_?[a-zA-Z0-3]+)?|n|lambda", ("angular velocity", "angle rates", "precession", "spin", "rate at",
+                                                   "frequency")),
+    (r"[pqr]", ("angular velocity", "angle rates")),
+    (r"d(phi|theta|psi|alpha|beta|gamma)", ("angle rates", "precession", "spin")),
+    (r"d(omega|w)(_?[xyz1-3])?|d[pqr]", ("Euler's equations", "angular acceleration")),
+    (r"alpha(_?[xyz1-3])?|d(dphi|dtheta|dpsi)", ("angular acceleration",)),
+    (r"T(_?rot)?|K|K_?E|E(_?(k|kin|rot))?|KE", ("kinetic energy", "torque", "rotation matrix", "period", "energy of")),
+    (r"(V|U)_?eff", ("effective potential",)),
     (r"V|U|E_?p|PE", ("potential",)),
-    (r"[HLh](_?[xyzO1-3])?", ("angular momentum",)),
-    (r"(M|N|tau|Gamma|Q)(_?[xyzO1-3])?", ("torque",)),
-    (r"dq_?[0-3]?|d(e|eta|epsilon)_?[0-3]?", ("quaternion",)),
+    (r"[HLh](_?[xyzO1-3])?", ("angular momentum", "Lagrangian", "torque")),
+    (r"p_?(phi|theta|psi|varphi)|P_?(phi|theta|psi)", ("momentum of",)),
+    (r"(M|N|tau|Gamma|Q)(_?[a-zA-Z1-3]+)?", ("torque",)),
+    (r"P(_?rot)?", ("power",)),
+    (r"[kK](_?[a-zA-Z0-3]+)?", ("radius of gyration", "kinetic energy")),
+    (r"dq_?[0-4swxyz]?|d(e|eta|epsilon)_?[0-3]?", ("quaternion",)),
 )  # fmt: skip
 """Pattern of a name, ``d`` in front of it for its rate -> the words of which one is in the name of its formulas.
 
@@ -56,8 +63,13 @@ Names without a pattern may name any formula.
 
 PLUS_PRODUCTS = "for products of inertia without the minus sign, I_xy = integral of x*y dm"
 
-COMPONENTS = {"first": "x1", "second": "y2", "third": "z3", "scalar": "0", "x": "x1", "y": "y2", "z": "z3"}
-"""A component or an axis of a known formula -> the last letters of names for it."""
+SQUARED = ", squared"
+"""The end of the names of those known formulas whose root has the name."""
+
+COMPONENTS = {
+    "first": "x1Ap", "second": "y2Bq", "third": "z3Cr", "scalar": "04sw", "x": "x1Ap", "y": "y2Bq", "z": "z3Cr",
+}  # fmt: skip
+"""A component or an axis of a known formula -> the last letters of names for it; p, q and r are aircraft rates."""
 
 AXES = ("x1Ap", "y2Bq", "z3Cr")
 """The last letters of symbols that belong to one axis; p, q and r are the rates of an aircraft."""
@@ -131,7 +143,13 @@ def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int)
         return ()
     if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < least_symbols:
         return ()
-    fitting = [known for known in identified(value, steps=False) if _fits(named, known, is_matrix(value))]
+    root = not is_matrix(value) and any(power.exp == Rational(1, 2) for power in Mul.make_args(value) if power.is_Pow)
+    looked_up = identified(value**2 if root else value, steps=False, named=_words(named) is not None)
+    fitting = [
+        replace(known, name=known.name.removesuffix(SQUARED))
+        for known in looked_up
+        if known.name.endswith(SQUARED) == root and _fits(named, known, is_matrix(value))
+    ]
     fitting.sort(key=lambda known: (*_strangeness(named, known), _rarity(known)))
     likeliest = [known for known in fitting if _strangeness(named, known)[:2] == _strangeness(named, fitting[0])[:2]]
     return tuple(likeliest[:MOST_READINGS])
@@ -144,11 +162,16 @@ def _fits(named: NamedFormula, known: Identification, matrix: bool) -> bool:
     """Return whether a claim may mean a known formula: by the name of the quantity, and by the units of its symbols."""
     if known.how and (not matrix or "sign" in known.how or "times" in known.how):
         return False
-    words = next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, _plain(named))), None)
+    words = _words(named)
     if words is not None and not any(word in known.name for word in words):
         return False
-    units = [(_unit(own), _unit(other)) for own, other in known.mapping.items()]
+    units = [(unit_of(own), unit_of(other)) for own, other in known.mapping.items()]
     return all(own is None or other is None or own == other for own, other in units)
+
+
+def _words(named: NamedFormula) -> tuple[str, ...] | None:
+    """Return the words of which one is in the name of the formulas of a quantity; None for a name of any quantity."""
+    return next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, _plain(named))), None)
 
 
 def _plain(named: NamedFormula) -> str:
@@ -156,17 +179,8 @@ def _plain(named: NamedFormula) -> str:
     return f"d{named.name}" if named.side.kind == "call" and named.side.value == "diff" else named.name
 
 
-def _unit(name: str) -> str | None:
-    """Return the conventional unit of a symbol of a formula, None where books differ."""
-    rate = re.fullmatch(r"diff\((\w+)(\(t\))?, t\)", name)
-    name = f"d{rate[1]}" if rate else name.removesuffix("(t)")
-    if re.fullmatch(r"[ABC]", name):
-        return "kg m^2"
-    return "1" if re.fullmatch(r"[qp][0-3]", name) else conventional_unit(name)
-
-
 def _strangeness(named: NamedFormula, known: Identification) -> tuple[int, int, int]:
-    """Return how odd a reading is: the component that the name says, symbols of another axis, renamed symbols."""
+    """Return how odd a reading is: another component or frame than the name says, symbols of another axis, renaming."""
     words = known.name.replace(",", "").split()
     places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and
               (after in ("component", "axis"))]  # fmt: skip
@@ -175,7 +189,8 @@ def _strangeness(named: NamedFormula, known: Identification) -> tuple[int, int, 
     axes = [[next((n for n, axis in enumerate(AXES) if name[-1] in axis), None) for name in pair]
             for pair in known.mapping.items()]  # fmt: skip
     moved = sum(None not in pair and pair[0] != pair[1] for pair in axes)
-    return int(misnamed), moved, len(known.mapping)
+    turned = re.fullmatch(r"[pqr]|(omega|w)_?[1-3]", _plain(named)) is not None and "space frame" in known.name
+    return int(misnamed) + int(turned), moved, len(known.mapping)
 
 
 def _rarity(known: Identification) -> tuple[bool, int]:
