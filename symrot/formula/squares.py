@@ -5,7 +5,7 @@ from fractions import Fraction
 from symrot.formula.polynomial import Polynomial, constant, generator, square_root
 from symrot.formula.tree import Node, children, text
 
-__all__ = ["square_under_root"]
+__all__ = ["as_polynomial", "square_under_root"]
 
 ONE: Node = ("number", Fraction(1))
 MOST_TERMS = 60  # of a polynomial that is examined for being a square
@@ -45,7 +45,7 @@ def _joined(kind: str, left: Node, right: Node) -> Node:
 def _root_of_sum(node: Node) -> Node | None:
     """Return the polynomial whose square a formula is, or None."""
     generators: dict[str, Node] = {}
-    polynomial = _polynomial(node, generators)
+    polynomial = as_polynomial(node, generators)
     if polynomial is None or len(polynomial.terms) > MOST_TERMS or set(polynomial.terms) <= {()}:
         return None
     try:
@@ -55,7 +55,7 @@ def _root_of_sum(node: Node) -> Node | None:
     return _node(root, generators)
 
 
-def _polynomial(node: Node, generators: dict[str, Node]) -> Polynomial | None:
+def as_polynomial(node: Node, generators: dict[str, Node]) -> Polynomial | None:
     """Return a formula as a polynomial in its symbols and functions, and add these to ``generators``."""
     kind = node[0]
     if kind == "number":
@@ -64,7 +64,7 @@ def _polynomial(node: Node, generators: dict[str, Node]) -> Polynomial | None:
         name = text(node)
         generators[name] = node
         return generator(name)
-    parts = [_polynomial(child, generators) for child in children(node)]
+    parts = [as_polynomial(child, generators) for child in children(node)]
     if any(part is None or len(part.terms) > MOST_TERMS for part in parts):
         return None
     first, *others = (part for part in parts if part is not None)

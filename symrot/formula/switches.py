@@ -31,14 +31,14 @@ Standard library only.
 from collections.abc import Collection, Iterable, Mapping
 from fractions import Fraction
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from symrot.formula.squares import square_under_root
+from symrot.formula.squares import as_polynomial, square_under_root
 from symrot.formula.tree import SWITCHING, Node, children, evaluate, names, parse, text
 
 __all__ = [
-    "CHANGING", "MODES", "Conditions", "Smooth", "Switch", "blended", "chosen", "condition_error", "has_choices",
-    "has_switches", "hold", "smooth",
+    "CHANGING", "MODES", "Conditions", "Smooth", "Switch", "between_sides", "blended", "chosen", "condition_error",
+    "has_choices", "has_switches", "hold", "on_line", "placed", "smooth",
 ]  # fmt: skip
 
 ONE: Node = ("number", Fraction(1))
@@ -152,6 +152,51 @@ def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> 
 def blended(node: Node) -> Node:
     """Return a smooth formula in which each ``where`` is the sum of both parts, each times its share."""
     return chosen(node, {}, names(node))
+
+
+def placed(node: Node, values: Mapping[str, Node]) -> Node:
+    """Return a formula in which names are replaced by formulas."""
+    if node[0] in ("number", "symbol"):
+        return values.get(node[1], node) if node[0] == "symbol" else node
+    parts = tuple(placed(child, values) for child in children(node))
+    return ("call", node[1], parts) if node[0] == "call" else (node[0], *parts, *(node[2:] if node[0] == "**" else ()))
+
+
+def on_line(node: Node) -> tuple[Any, int]:
+    """Return a key and a sign: formulas of one key are proportional, and have the same sign if their signs agree.
+
+    A formula that is no polynomial of symbols and functions is its own key.
+    """
+    polynomial = as_polynomial(node, {})
+    if polynomial is None or not polynomial.terms:
+        return node, 1
+    (_, first), *_ = terms = sorted(polynomial.terms.items())
+    return tuple((monomial, coefficient / first) for monomial, coefficient in terms), 1 if first > 0 else -1
+
+
+def between_sides(node: Node, mode: str) -> Node:
+    """Return a formula with a held mode as the mixture of its values for the modes 1 and -1, which is linear in it.
+
+    A motion that slides along a switch moves with a mixture of the rates on both sides (A. F. Filippov); a formula that
+    is linear in the mode is that mixture already.
+    """
+    if _is_linear(node, mode):
+        return node
+    above, below = (placed(node, {mode: ("number", Fraction(side))}) for side in (1, -1))
+    return _blend(("*", HALF, ("+", ONE, ("symbol", mode))), above, below)
+
+
+def _is_linear(node: Node, mode: str) -> bool:
+    """Return whether a formula is linear in a mode, by its form."""
+    if mode not in names(node) or node == ("symbol", mode):
+        return True
+    parts = children(node)
+    if node[0] in ("+", "-", "neg"):
+        return all(_is_linear(part, mode) for part in parts)
+    within = [part for part in parts if mode in names(part)]
+    return (
+        node[0] in ("*", "/") and within in ([parts[0]], [parts[1]][: node[0] == "*"]) and _is_linear(within[0], mode)
+    )
 
 
 def _degree(node: Node) -> int:

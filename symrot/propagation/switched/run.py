@@ -10,7 +10,7 @@ import numpy as np
 from symrot.closed_form.arithmetic.double_double import two_sum
 from symrot.errors import InputError
 from symrot.formula.float_functions import FLOAT_FUNCTIONS
-from symrot.formula.switches import hold
+from symrot.formula.switches import CHANGING, hold
 from symrot.formula.tree import evaluate, names, parse
 from symrot.propagation import progress
 from symrot.propagation.compiled_models import error_blocks
@@ -23,7 +23,7 @@ from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Guard, Modes, Regime
 from symrot.propagation.switched.run_state import CHATTER, RunState
 from symrot.propagation.switched.smooth_pieces import smooth_pieces
-from symrot.propagation.switched.system import SwitchedSystem
+from symrot.propagation.switched.system import SwitchedSystem, is_continuous
 
 __all__ = ["Chunk", "SwitchedRun"]
 
@@ -32,6 +32,7 @@ HOP_BITS = 10  # a hop over a switch is at most 2 to this power units in the las
 LEAST_TURN = 1e-3  # rad over the whole span: errors of slower rotations are relative to this rate
 AWAY = range(50, 400, 10)  # a hop away from a switch is the span divided by 2 to this power
 NEARBY, MOST_ULPS = 1e-6, 64.0  # part of the way since the last switch; units in the last place of a located time
+PERTURBATION, PARALLEL = 1e-6, 1e-6  # of time and states, for slopes; relative difference of parallel slopes
 SHORT = 1e-9  # part of the span: how far formulas are looked at beyond an instant without rates
 CHATTERING = 1e-9  # part of the span: CHATTER switches within it count as endlessly many
 Consumer = Callable[["Chunk"], None]
@@ -89,7 +90,7 @@ class SwitchedRun(RunState):
                     raise self.interrupt
                 while self.t != self.end:
                     progress.report(self.t, 0.0, self.end)
-                    regime = self.system.regime(self.held, self.modes)
+                    regime = self._regime(self.modes)
                     guard = self._segment(regime, consume)
                     if self.interrupt is not None:
                         raise self.interrupt
@@ -124,7 +125,7 @@ class SwitchedRun(RunState):
             leaving = 0
             for sign in (1, -1):
                 modes = self.system.beside_start(mode, sign)
-                regime = self.system.regime(self.held, modes)
+                regime = self._regime(modes)
                 rates, values = regime.bound(modes, self.zero)
                 piece, _ = next(smooth_pieces(self, regime, rates).pieces())
                 signs, _ = signs_at_ends(regime.path, [guard.formula for guard in regime.guards], values, piece)
@@ -141,6 +142,8 @@ class SwitchedRun(RunState):
             self._move_clock(self._at(self.t))
         rates, values = regime.bound(self.modes, self.zero)
         active = regime.active(self.modes)
+        if self.held:
+            self._check_held_alone()
         if not all(map(math.isfinite, rates)):
             return self._coincident(regime, active, values)
         events = [
@@ -402,7 +405,7 @@ class SwitchedRun(RunState):
         The function is named by its mode. For a floor it is the distance of the argument from the whole number that is
         its value.
         """
-        regime = self.system.regime(self.held, self.modes)
+        regime = self._regime(self.modes)
         return float(
             evaluate(regime.formulas[mode], self._values(regime, place or (self.t, self.y)), FLOAT_FUNCTIONS, float)
         )
@@ -438,8 +441,8 @@ class SwitchedRun(RunState):
         asleep = self._asleep()
         if mode in self.held:
             self.held -= {mode}
-            self.modes |= dict.fromkeys(self.system.twins[mode], guard.change)
-            self.released.update(self.system.twins[mode])
+            self.modes |= {twin: guard.change * sign for twin, sign in self.system.twins[mode]}
+            self.released.update(twin for twin, _ in self.system.twins[mode])
         elif again and kind == "sign":
             self._hold(regime, mode)
         elif kind == "sign":
@@ -483,18 +486,66 @@ class SwitchedRun(RunState):
     def _hold(self, regime: Regime, mode: str) -> None:
         if self.side < 0.0:
             raise IntegrationStopped(self.t, "a motion that slides along a switch has more than one past", self.end)
-        mode = self.system.twins[mode][0]
+        mode, _ = self.system.twins[mode][0]
         self.held |= {mode}
         self.changes[self.now, self._name(mode)] = "held"
         guard = self.by_name[mode].guard
         if guard[0] == "symbol" and guard[1] in regime.plan.states:
             self.y[regime.plan.states.index(guard[1])] = 0.0  # exactly zero, where the guard is a state
+        self._regime(self.modes)
+
+    def _regime(self, modes: Modes) -> Regime:
+        """Return the smooth motion for given values (modes) of the switching functions, sliding along those held."""
         try:
-            self.system.regime(self.held, self.modes)
+            return self.system.regime(self.held, modes)
         except InputError:
             raise IntegrationStopped(
-                self.t, f"the motion would slide along {self._name(mode)}, in no single way", self.end
+                self.t, f"the motion would slide along {self._names_of_held()}, in no single way", self.end
             ) from None
+
+    def _names_of_held(self) -> str:
+        return " and ".join(self._name(mode) for mode in sorted(self.held))
+
+    def _check_held_alone(self) -> None:
+        """Raise IntegrationStopped if a function that is not held jumps where the motion slides.
+
+        Its value there is not determined. Its argument is zero, and changes only with the arguments of held functions.
+        """
+        y = self.y.tolist()
+        steps = [PERTURBATION * max(abs(self.t), self.span), *(PERTURBATION * max(1.0, abs(x)) for x in y)]
+
+        def gradient(mode: str) -> Floats:
+            slopes = []
+            for k, h in enumerate(steps):
+                sides = []
+                for sign in (1.0, -1.0):
+                    place = [self.t, *y]
+                    place[k] += sign * h
+                    sides.append(self._guard_value(mode, (place[0], np.array(place[1:]))))
+                slopes.append((sides[0] - sides[1]) / 2.0)
+            return np.array(slopes)
+
+        arguments = CHANGING & set().union(*(names(self.by_name[mode].guard) for mode in self.held))
+        tied, slopes = self.system.tied(self.held), [gradient(mode) for mode in sorted(self.held)]
+        for switch in self.system.switches:
+            mode = switch.mode
+            if mode in self.held or mode in tied or mode in self.system.settled or is_continuous(switch):
+                continue
+            if not hold(switch.where, self.modes, self.held) or not names(switch.guard) & arguments:
+                continue
+            value = self._guard_value(mode)
+            distance = min(abs(value), abs(1.0 - value)) if switch.kind == "floor" else abs(value)
+            own = gradient(mode)
+            size = float(np.abs(own).max())
+            if distance > size:
+                continue
+            basis = np.array(slopes).T
+            rest = own - basis @ np.linalg.lstsq(basis, own, rcond=None)[0]
+            if float(np.abs(rest).max()) <= PARALLEL * size:
+                functions = f"{self._names_of_held()} and {self._name(mode)} at once"
+                raise IntegrationStopped(
+                    self.t, f"the motion would slide along {functions}, in no single way", self.end
+                )
 
     def _count(self) -> None:
         self.switches += 1

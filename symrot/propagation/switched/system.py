@@ -4,23 +4,25 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import Any
 
 from symrot.dynamics.structure import FormulaTorque, TorqueStructure, TorqueSwitch
+from symrot.errors import InputError
 from symrot.formula.exact_numbers import PI
 from symrot.formula.float_functions import FLOAT_FUNCTIONS
-from symrot.formula.switches import Switch, chosen, hold
-from symrot.formula.tree import evaluate, names, parse, rename, text
+from symrot.formula.switches import Switch, between_sides, chosen, hold, on_line, placed
+from symrot.formula.tree import Node, evaluate, names, parse, rename, text
 from symrot.planning.plan import Plan
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import on_own_clock
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.switched.regimes import Modes, Regime
 
-__all__ = ["SwitchedSystem"]
+__all__ = ["SwitchedSystem", "is_continuous"]
 
 STATES = frozenset({*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4))})
+CONTINUOUS = ("abs(", "max(", "min(", "clip(", "sqrt(")  # how the labels of functions begin that bend and do not jump
 
 
 class SwitchedSystem:
@@ -44,20 +46,30 @@ class SwitchedSystem:
         return [_switches(torque) for torque in self.plan.structure.formula_torques]
 
     @cached_property
-    def twins(self) -> dict[str, list[str]]:
-        """For each mode, the modes of the same torque whose functions have the same argument, itself included.
+    def twins(self) -> dict[str, list[tuple[str, int]]]:
+        """For each mode, the modes of the same torque whose functions switch at the same place, itself included.
 
-        A mode is the value of a switching function. Functions that jump come first. An example is sign(omega_3) and
-        abs(omega_3) in the friction of a bearing, which is greater at rest.
+        A mode is the value of a switching function. Functions that jump come first, each with the sign of its argument
+        relative to that of the first. An example is sign(omega_3) and abs(2*omega_3) in the friction of a bearing that
+        is greater at rest.
         """
-        twins: dict[str, list[str]] = {}
+        numbers: dict[str, Node] = {name: ("number", value) for name, value in self.constants.items()}
+        for mode in self.switches:
+            numbers.pop(mode.mode, None)
+        twins: dict[str, list[tuple[str, int]]] = {}
         for switches in self._switches_by_torque:
-            alike: dict[Any, list[str]] = {}
+            alike: dict[Any, list[tuple[str, int]]] = {}
             for switch in sorted(switches, key=_bends):
                 if switch.kind == "sign":
-                    alike.setdefault((switch.guard, switch.where), []).append(switch.mode)
-            twins |= {mode: modes for modes in alike.values() for mode in modes}
+                    key, sign = on_line(placed(switch.guard, numbers))
+                    alike.setdefault((key, switch.where), []).append((switch.mode, sign))
+            for modes in alike.values():
+                twins |= {mode: [(twin, other * modes[0][1]) for twin, other in modes] for mode, _ in modes}
         return twins
+
+    def tied(self, held: frozenset[str]) -> dict[str, tuple[str, int]]:
+        """Return, for each mode that equals a held mode or its negative, the held mode and the sign."""
+        return {twin: (mode, sign) for mode in held for twin, sign in self.twins[mode] if twin != mode}
 
     @cached_property
     def settled(self) -> set[str]:
@@ -128,7 +140,7 @@ class SwitchedSystem:
         """
         key = held, tuple(modes.values()) if self._chooses else ()
         if key not in self._regimes:
-            tied = {twin: mode for mode in held for twin in self.twins[mode][1:]}
+            tied = self.tied(held)
             torques = tuple([_chosen(torque, modes, held, tied) for torque in self.plan.structure.torques])
             content = held, torques
             if content not in self._regime_of:
@@ -140,6 +152,9 @@ class SwitchedSystem:
                     and switch.mode not in tied
                     and (not self._chooses or hold(switch.where, modes, held))
                 ]
+                for switch in switches:
+                    if names(switch.guard) & (held | tied.keys()):
+                        raise InputError(f"torque: {switch.label} contains a function along which the motion slides")
                 own = on_own_clock(plan, self.choice, self.tolerance)
                 self._regime_of[content] = Regime(self.constants, self.switches, own, held, switches)
             self._regimes[key] = self._regime_of[content]
@@ -175,6 +190,11 @@ def _switches(torque: FormulaTorque) -> list[Switch]:
     ]
 
 
+def is_continuous(switch: Switch) -> bool:
+    """Return whether the function of a switch bends where it switches, and does not jump."""
+    return switch.label.startswith(CONTINUOUS)
+
+
 def _bends(switch: Switch | TorqueSwitch) -> bool:
     """Return whether a formula bends but does not jump where a switching function switches.
 
@@ -183,12 +203,14 @@ def _bends(switch: Switch | TorqueSwitch) -> bool:
     return switch.at_zero == 1
 
 
-def _chosen(torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: Mapping[str, str]) -> TorqueStructure:
+def _chosen(
+    torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: Mapping[str, tuple[str, int]]
+) -> TorqueStructure:
     """Return a torque reduced to the parts of its formulas that apply for given values (modes) of its switching
     functions.
 
-    Functions that do not matter are left out. A function with the same argument as a held one is ``tied`` to it: if the
-    formula jumps there, it takes the value of the held function.
+    Functions that do not matter are left out. A function that switches where a held one does is ``tied`` to it: if the
+    formula jumps there, it takes the value of the held function or its negative. Formulas become linear in held modes.
     """
     if not isinstance(torque, FormulaTorque):
         return torque
@@ -196,16 +218,25 @@ def _chosen(torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: M
     own = tuple(sorted(name for name in names if prefix + name in held))
     torque = torque._replace(held=own)
     jumping = [switch.mode for switch in torque.switches if not _bends(switch)]
-    same = {name: tied[prefix + name].removeprefix(prefix) for name in jumping if prefix + name in tied}
-    if not same and not torque.has_choices:
+    same: dict[str, Node] = {}
+    for name in jumping:
+        if prefix + name in tied:
+            mode, sign = tied[prefix + name]
+            symbol: Node = ("symbol", mode.removeprefix(prefix))
+            same[name] = symbol if sign > 0 else ("neg", symbol)
+    if not own and not same and not torque.has_choices:
         return torque
     values = {name: modes[prefix + name] for name in names if prefix + name in modes}
 
     def read(formula: str) -> str:
-        return text(chosen(rename(parse(formula, switching=True), same), values, own))
+        return text(chosen(placed(parse(formula, switching=True), same), values, own))
+
+    def mixed(formula: str) -> str:
+        node = chosen(placed(parse(formula, switching=True), same), values, own)
+        return text(reduce(between_sides, own, node))
 
     return torque._replace(
-        formulas=tuple(map(read, torque.choices or torque.formulas)),
+        formulas=tuple(map(mixed, torque.choices or torque.formulas)),
         choices=(),
         switches=tuple(
             [

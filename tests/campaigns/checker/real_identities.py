@@ -193,7 +193,7 @@ def fault(claim: str, verdict: Verdict | str, source: Random) -> str:
         if any(words in verdict for words in _OF_THE_DOMAIN) and has_values((left, right), MOST_POINTS // 2):
             return f"refused as if it had no value: {verdict}"
         return ""
-    if verdict.verdict == "undecided":
+    if verdict.verdict in ("undecided", "definition"):  # nothing is claimed
         return ""
     if verdict.verdict == "true":
         return _fault_of_true(left, right, source, ())

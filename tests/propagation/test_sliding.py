@@ -1,0 +1,73 @@
+"""Sliding along switches: the rates are a mixture of those on both sides (Filippov), or one sentence says why not.
+
+``omega_1' = 0.2 - 0.5 sign(omega_1)`` holds omega_1 at zero: the sides +1 and -1 have the shares 0.7 and 0.3. Another
+formula of the same switch then has the mean of its values on both sides, with these shares.
+"""
+
+from math import sqrt
+
+import pytest
+
+import symrot
+from tests.needs import needs_compiler
+
+pytestmark = [needs_compiler, pytest.mark.usefixtures("quick_compiler")]
+HOLDING = "1/5 - sign(omega_1)/2"
+ABOVE, BELOW = 0.7, 0.3
+
+
+def scene(*torque, omega=(0, 0, 0), stop=5):
+    return symrot.Scene.from_dict({
+        "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": list(omega)}, "span": {"t": [0, stop]},
+        "torque": [{"kind": "expression", "torque": [*torque, *("0",) * (3 - len(torque))], "parameters": {"k": "3/2"}}],
+    })  # fmt: skip
+
+
+FOLLOWING = [  # torque about the second axis, and its values on the sides omega_1 > 0 and omega_1 < 0
+    ("sign(omega_1)**2", 1, 1), ("abs(sign(omega_1))", 1, 1), ("sqrt(2 + sign(omega_1))", sqrt(3), 1),
+    ("1/(2 + sign(omega_1))", 1 / 3, 1), ("sign(2*omega_1)", 1, -1), ("sign(-k*omega_1)", -1, 1),
+    ("step(3*omega_1)", 1, 0), ("where(omega_1/2 > 0, 2, 1)", 2, 1), ("sign(omega_1)*step(-omega_1)", 0, -1),
+    ("sign(omega_1)", 1, -1),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
+@pytest.mark.parametrize(("torque", "above", "below"), FOLLOWING)
+def test_formulas_of_the_switch_have_the_mean_of_both_sides(torque, above, below, method):
+    """From omega_1 = 0.3 the body reaches the switch after 1 s."""
+    omega = symrot.propagator(scene(HOLDING, torque, omega=("3/10", 0, 0)), method, 1e-10)([0, 5]).omega[-1]
+    assert abs(omega[0]) < 1e-9
+    assert abs(omega[1] - (above + 4 * (ABOVE * above + BELOW * below))) < 20 * 1e-10
+
+
+def test_a_switch_that_brakes_by_its_square_slides():
+    """0.2 - 0.5 s - 0.1 s^2 is -0.4 above and 0.6 below: shares 0.6 and 0.4, mean of s 0.2."""
+    made = scene("1/5 - sign(omega_1)/2 - sign(omega_1)**2/10", "sign(omega_1)")
+    assert abs(symrot.propagator(made, "auto", 1e-10)([0, 5]).omega[-1][1] - 1.0) < 20 * 1e-10
+
+
+@pytest.mark.parametrize("torque", [
+    "floor(omega_1)", "sign(omega_1**3)", "step(min(2 - t, 2*omega_1))", "sin(floor(step(omega_1)))",
+    "sign(omega_1*(2 + q1))", "clip(t - sign(omega_1), -1/4, 1/4)",
+])  # fmt: skip
+def test_what_has_no_single_value_while_sliding_ends_in_a_sentence(torque):
+    with pytest.raises(symrot.PropagationError, match=r"would slide along sign\(omega_1\).*, in no single way"):
+        symrot.propagator(scene(HOLDING, torque), "auto", 1e-9)([0, 5])
+
+
+def test_friction_written_in_two_torques_ends_in_a_sentence():
+    made = {
+        "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": [0, 0, 1]}, "span": {"t": [0, 5]},
+        "torque": [{"kind": "expression", "torque": ["0", "0", f"-{k}*sign(omega_3)"]} for k in (1, 2)],
+    }  # fmt: skip
+    with pytest.raises(symrot.PropagationError, match="in no single way") as stopped:
+        symrot.propagator(symrot.Scene.from_dict(made), "auto", 1e-9)([0, 0.25, 5])
+    assert stopped.value.trajectory.t.tolist() == [0, 0.25]
+
+
+@pytest.mark.parametrize(
+    "other", ["sign(omega_2)", "where(sin(t*t) < sin(t*t/2), 1, 0)", "sign(omega_1 - 2)", "step(t - 2)"]
+)
+def test_switches_elsewhere_do_not_disturb_a_slide(other):
+    omega = symrot.propagator(scene(HOLDING, "0", other, omega=("3/10", 0, 0)), "auto", 1e-9)([0, 5]).omega[-1]
+    assert abs(omega[0]) < 1e-9
