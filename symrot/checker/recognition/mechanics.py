@@ -65,8 +65,8 @@ def _steady(effective: Expr, spin: Expr, weight: Expr) -> Iterator[Named]:
     roots = solve(condition, rate)
     by_spin = {P_PSI: C * symbols.omega_3}
     for root in sorted(roots, key=lambda root: root.subs({P_PSI: 5, A: 1, THETA: 1, weight: 1, ARM: 1}).evalf()):
-        for given in ({}, by_spin):
-            yield "rate of steady precession of a heavy top", HEAVY, root.subs(given)
+        for values in ({}, by_spin):
+            yield "rate of steady precession of a heavy top", HEAVY, root.subs(values)
     slow = limit(condition.subs(rate, symbols.epsilon / P_PSI), P_PSI, oo)
     (first,) = solve(slow, symbols.epsilon)
     for momentum in (P_PSI, C * symbols.omega_3, C * DPSI):
