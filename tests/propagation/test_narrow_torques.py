@@ -289,7 +289,9 @@ def test_a_constant_without_a_real_value_is_refused(constant):
 SIZES_OF_SWITCHES = {  # torque, and its integral over [0, 6] s
     "sqrt(0.5 + abs(sign(sin(t))))": 6 * sqrt(1.5), "sqrt(abs(floor(sin(t))))": 6 - pi,
     "sqrt(0.5 + abs(where(sin(t) > 0, 1, -1)))": 6 * sqrt(1.5), "1/(1 + abs(sign(sin(t))))": 3.0,
-    "log(1.5 + abs(sign(sin(t))))": 6 * log(2.5), "sqrt(0.5 + sign(sin(t)) - sign(2*sin(t)))": 6 * sqrt(0.5),
+    "log(1.5 + abs(sign(sin(t))))": 6 * log(2.5), "sqrt(1 + abs(where(sin(t) >= 0, -1/2, 3)))": pi * sqrt(1.5) + (6 - pi) * 2,
+    "sqrt(2 + abs(where(sin(t) >= 0, -t/8, 4 + t)))": (2 + pi / 8) ** 1.5 * 16 / 3 - 2**1.5 * 16 / 3
+    + (12**1.5 - (6 + pi) ** 1.5) / 1.5, "sqrt(0.5 + sign(sin(t)) - sign(2*sin(t)))": 6 * sqrt(0.5),
 }  # fmt: skip
 
 

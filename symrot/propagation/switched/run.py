@@ -145,7 +145,9 @@ class SwitchedRun(RunState):
         if self.held:
             self._check_held_alone()
         if not all(map(math.isfinite, rates)):
-            return self._coincident(regime, active, values)
+            if (guard := self._coincident(regime, active, values, 0)) is None:
+                raise IntegrationStopped(self.t, NOT_FINITE_SENTENCE, self.end)
+            return guard
         events = [
             event if on else event._replace(terminal=False) for event, on in zip(regime.events, active, strict=True)
         ]
@@ -181,6 +183,12 @@ class SwitchedRun(RunState):
             reason = f"the zeros inside {functions} cannot be told apart after {error.effort}"
             raise IntegrationStopped(passed[-1], reason, self.end) from None
         except IntegrationStopped as error:
+            if (
+                passed[-1] == start
+                and not current
+                and (guard := self._coincident(regime, active, values, -1)) is not None
+            ):
+                return guard
             at = passed[-1]
             y = current[0][1](np.array([at]))[0] if current else self.y
             hop = self._hop(regime, active, rates, at, y, error)
@@ -216,8 +224,8 @@ class SwitchedRun(RunState):
         self._arrive(instant)
         return guard
 
-    def _coincident(self, regime: Regime, active: list[bool], values: list[float]) -> Guard:
-        """Return a guard that is zero or negative at the present instant, where the rates have no value.
+    def _coincident(self, regime: Regime, active: list[bool], values: list[float], most: int) -> Guard | None:
+        """Return a guard whose sign at the present instant is at most ``most``, where the rates have no value; or None.
 
         Several functions that switch at one instant do so one after the other; rates in between need not have values.
         """
@@ -225,10 +233,12 @@ class SwitchedRun(RunState):
         row = np.concatenate([[self.t, h, 0.0, h], self.y, np.zeros_like(self.y)])
         formulas = [guard.formula for guard in regime.guards]
         signs, _ = signs_at_ends(regime.path, formulas, values, Piece(np.array([self.t, self.t + h]), row[None]))
-        for guard, on, sign in zip(regime.guards, active, signs, strict=True):
-            if on and sign <= 0 and guard.mode not in self.held and not self.flipped.get(guard.mode):
-                return guard
-        raise IntegrationStopped(self.t, NOT_FINITE_SENTENCE, self.end)
+        guards = [
+            (sign, guard)
+            for guard, on, sign in zip(regime.guards, active, signs, strict=True)
+            if on and sign <= most and guard.mode not in self.held and not self.flipped.get(guard.mode)
+        ]
+        return min(guards, key=lambda pair: pair[0])[1] if guards else None
 
     def _arrive(self, instant: Instant) -> None:
         """Continue at a switch: the present time becomes ``instant``, and the clock shows 0 there, unless it is the
