@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, TypedDict
 
-from symrot.formula.tree import Node, evaluate, names, operations
+from symrot.formula.tree import Node, evaluate, names, operations, vanishes
 
 __all__ = ["Argument", "Program", "ProgramRecord", "Signature", "node_from_json", "node_to_json"]
 
@@ -78,6 +78,14 @@ class Program:
     def operations(self) -> Counter[str]:
         """Count the operations of one evaluation (see :func:`symrot.formula.tree.operations`)."""
         return sum((operations(node) for _, node in self.temporaries + self.outputs), Counter())
+
+    def vanishing(self, zeros: Collection[str]) -> frozenset[str]:
+        """Return the outputs that are zero, by the form of their formulas, when some inputs are zero."""
+        known = set(zeros)
+        for name, node in (*self.temporaries, *self.outputs):
+            if vanishes(node, known):
+                known.add(name)
+        return frozenset(name for name, _ in self.outputs if name in known)
 
     def uses(self, symbol: str, only: Collection[str] | None = None) -> bool:
         """Return whether a symbol occurs in the program; with ``only``, in the operations that those outputs need."""

@@ -10,7 +10,7 @@ Nothing here is ever given to Python's own evaluator.
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from fractions import Fraction
 from functools import reduce
 from typing import Any
@@ -19,6 +19,7 @@ from symrot.errors import InputError
 
 __all__ = [
     "FUNCTIONS", "LOGIC", "SWITCHING", "Node", "children", "evaluate", "names", "operations", "parse", "rename", "text",
+    "vanishes",
 ]  # fmt: skip
 
 Node = tuple[Any, ...]
@@ -255,6 +256,22 @@ def operations(node: Node) -> Counter[str]:
     elif kind not in ("number", "symbol"):
         count[{"+": "add", "-": "add", "*": "mul", "/": "div", "neg": "neg", "call": node[1]}[kind]] += 1
     return +count
+
+
+ODD = {"sqrt", "sin", "tan", "sinh", "tanh", "asin", "atan", "abs"}  # functions that are zero at zero
+
+
+def vanishes(node: Node, zeros: Collection[str]) -> bool:
+    """Return whether a formula is zero, by its form, when some symbols are zero."""
+    kind = node[0]
+    if kind in ("number", "symbol"):
+        return node[1] == 0 if kind == "number" else node[1] in zeros
+    parts = [vanishes(part, zeros) for part in children(node)]
+    if kind == "*":
+        return any(parts)
+    if kind == "call":
+        return node[1] in ODD and parts[0]
+    return parts[0] and (kind not in "+-" or parts[1]) and (kind != "**" or node[2] > 0)
 
 
 def evaluate(

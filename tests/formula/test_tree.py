@@ -7,7 +7,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from symrot.errors import InputError
-from symrot.formula.tree import evaluate, names, operations, parse, text
+from symrot.formula.tree import evaluate, names, operations, parse, text, vanishes
 
 LEAVES = st.one_of(
     st.integers(0, 99).map(lambda n: ("number", Fraction(n))), st.sampled_from("abc").map(lambda s: ("symbol", s))
@@ -64,3 +64,11 @@ def test_names_and_operations():
     node = parse("k*omega_1**3 - sin(t)/k")
     assert names(node) == {"k", "omega_1", "t"}
     assert operations(node) == {"mul": 3, "add": 1, "sin": 1, "div": 1}
+
+
+@pytest.mark.parametrize(("formula", "zero"), [
+    ("x*y", True), ("x + y", False), ("x - x*y", True), ("sin(x)*3", True), ("cos(x)", False), ("x/y", True),
+    ("y/x", False), ("-x**2", True), ("0*y", True), ("sqrt(x + 0)", True), ("exp(x) - 1", False), ("x**3*log(y)", True),
+])  # fmt: skip
+def test_a_formula_vanishes_by_its_form(formula, zero):
+    assert vanishes(parse(formula), {"x"}) is zero

@@ -71,3 +71,33 @@ def test_friction_written_in_two_torques_ends_in_a_sentence():
 def test_switches_elsewhere_do_not_disturb_a_slide(other):
     omega = symrot.propagator(scene(HOLDING, "0", other, omega=("3/10", 0, 0)), "auto", 1e-9)([0, 5]).omega[-1]
     assert abs(omega[0]) < 1e-9
+
+
+RESTING = [  # torque about the second axis, and its value where omega_1 = 0
+    ("where(omega_1 < 0, 3, 1)", 1), ("where(not (omega_1 < 0), 1, 3)", 1), ("sign(omega_1)**2", 0), ("step(-omega_1)", 0),
+    ("sqrt(1 + sign(omega_1))", 1), ("step(omega_1)", 0),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("method", ["auto", "scipy:DOP853"])
+@pytest.mark.parametrize(("torque", "value"), RESTING)
+def test_a_body_at_rest_has_the_values_at_zero(torque, value, method):
+    """No torque pulls, so that sign(0) = 0 holds: there is nothing to mix."""
+    omega = symrot.propagator(scene("-sign(omega_1)/10", torque), method, 1e-10)([0, 5]).omega[-1]
+    assert omega[0] == 0.0 and abs(omega[1] - 5 * value) < 20 * 1e-10
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
+def test_rest_ends_where_a_torque_begins_to_pull(method):
+    """At rest until 3 s; held until 5 s, with s from 0 to 1; then free."""
+    made = scene("-sign(omega_1)/10 + max(0, t - 3)/20", "sign(omega_1)**2 + step(omega_1)", stop=10)
+    omega = symrot.propagator(made, method, 1e-10)([0, 10]).omega[-1]
+    assert abs(omega[1] - (2 * (1 + 3 / 4) + 5 * 2)) < 20 * 1e-10
+    assert abs(omega[0] - ((49 - 4) / 40 - 5 / 10)) < 20 * 1e-10
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
+def test_a_torque_too_small_for_a_double_is_no_rest(method):
+    """The pulse is zero at no time, though exp(-250000) is no double: both sides are mixed all along."""
+    made = scene("-sign(omega_1)/10 + exp(-((t - 5)/0.01)**2)/20", "sign(omega_1)**2", stop=10)
+    assert abs(symrot.propagator(made, method, 1e-9)([0, 10]).omega[-1][1] - 10) < 20 * 1e-8

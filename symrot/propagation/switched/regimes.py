@@ -22,6 +22,7 @@ from symrot.propagation.binding import folded, two_doubles
 from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import Event, guard_library_source
 from symrot.propagation.motion import SciPyMotion, SteppedMotion
+from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.time_shift import ShiftedParameters
 
@@ -154,6 +155,13 @@ class Regime:
             numbers, values = [*rates.parameters(zero.exact), *invariants], self.values(modes, zero)
             self._bound[place] = numbers, [*quantities.parameters(zero.exact), *(values[name] for name in self.more)]
         return self._bound[place]
+
+    def zeros(self, modes: Modes, zero: Instant, y: Floats) -> set[str]:
+        """Return the states and the parameters of the quantities that are zero, by name."""
+        numbers = self._parameters_under(modes).quantities.parameters(zero.exact)
+        values = zip((name for name, _ in self.quantity_parameters), numbers, strict=True)
+        states = zip(self.plan.states, y.tolist(), strict=True)
+        return {name for name, value in (*values, *states) if value == 0.0}
 
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
         """Return a function from an epoch, s, to the parameters of rates that count time from the epoch.

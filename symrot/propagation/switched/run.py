@@ -78,6 +78,7 @@ class SwitchedRun(RunState):
         self.flipped: dict[str, int] = {}  # the modes that changed at the present time, and how often
         self.released: set[str] = set()  # modes whose guards were held until this time: they leave zero slowly
         self.order: list[str] = []  # the modes that changed at the present time, in the order of the changes
+        self.rested: set[str] = set()  # modes that were held at the present time and needed no holding
         self.left: set[tuple[str, int]] = set()  # the values of all modes before the changes at the present time
         self.settled, self.hopped = 0, False
 
@@ -91,6 +92,8 @@ class SwitchedRun(RunState):
                 while self.t != self.end:
                     progress.report(self.t, 0.0, self.end)
                     regime = self._regime(self.modes)
+                    if self._comes_to_rest(regime):
+                        continue
                     guard = self._segment(regime, consume)
                     if self.interrupt is not None:
                         raise self.interrupt
@@ -154,6 +157,7 @@ class SwitchedRun(RunState):
         source = smooth_pieces(self, regime, rates)
         start, passed = self.t, [self.t]
         violated: list[Guard] = []
+        left: list[bool] = []  # whether a formula left zero: repeat from there
 
         def watched() -> Generator[Piece, None, None]:
             for piece, states in source.pieces():
@@ -162,6 +166,12 @@ class SwitchedRun(RunState):
                 first = [guard for guard in first if not self._is_rounding(regime, guard)]
                 if passed[-1] == start and (first or self._settle(regime, active, piece, states)):
                     violated.extend(first)
+                    return
+                if self._leaves_zero(regime, active, piece):
+                    left.append(True)
+                    if passed[-1] != start:
+                        self.t, self.y = passed[-1], states(np.array(passed[-1:]))[0]
+                        self.flipped, self.order, self.left, self.released, self.rested = {}, [], set(), set(), set()
                     return
                 current[:] = [(piece, states)]
                 yield piece
@@ -208,6 +218,8 @@ class SwitchedRun(RunState):
             self.cost += source.cost()
         if violated:
             return violated[0]
+        if left:
+            return None
         if stop is None:
             self.t = self.end if current else self.t  # a mode was settled: repeat from here
             return None
@@ -247,6 +259,7 @@ class SwitchedRun(RunState):
         if self.t != self.end:
             self._move_clock(instant)
         self.flipped, self.order, self.left, self.released, self.hopped = {}, [], set(), set(), False
+        self.rested = set()
 
     def _hop(
         self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: IntegrationStopped
@@ -503,6 +516,41 @@ class SwitchedRun(RunState):
         if guard[0] == "symbol" and guard[1] in regime.plan.states:
             self.y[regime.plan.states.index(guard[1])] = 0.0  # exactly zero, where the guard is a state
         self._regime(self.modes)
+
+    def _comes_to_rest(self, regime: Regime) -> bool:
+        """Give signs that no torque needs to hold their values at zero; return whether there is such a sign.
+
+        A body at rest then moves with the values of all functions at zero, and not with a mixture of both sides.
+        """
+        resting = [mode for mode in sorted(self.held - self.rested) if self.system.matters_at_zero(mode)]
+        if resting:
+            zeros = regime.zeros(self.modes, self.zero, self.y)
+            vanishing = regime.motion.kernel.quantities.vanishing(zeros)
+            resting = [mode for mode in resting if f"{mode} of t" in vanishing]
+        self.rested.update(resting)
+        self.held -= set(resting)
+        for mode in resting:
+            self.modes |= {twin: self.by_name[twin].at_zero for twin, _ in self.system.twins[mode]}
+        return bool(resting)
+
+    def _leaves_zero(self, regime: Regime, active: list[bool], piece: Piece) -> bool:
+        """Give signs of formulas that are zero, and no longer so at the end of a piece, the values of that side.
+
+        The result says whether there is such a sign.
+        """
+        numbers = [
+            n
+            for n, (guard, on) in enumerate(zip(regime.guards, active, strict=True))
+            if on and self.modes[guard.mode] == 0 and guard.mode not in self.held
+            and self.by_name[guard.mode].kind == "sign"
+        ]  # fmt: skip
+        if not numbers:
+            return False
+        ones = {**self.modes, **{regime.guards[n].mode: 1 for n in numbers}}
+        formulas = [guard.formula for guard in regime.guards]
+        _, signs = signs_at_ends(regime.path, formulas, regime.bound(ones, self.zero)[1], piece)
+        self.modes |= {regime.guards[n].mode: signs[n] for n in numbers if signs[n]}
+        return any(signs[n] for n in numbers)
 
     def _regime(self, modes: Modes) -> Regime:
         """Return the smooth motion for given values (modes) of the switching functions, sliding along those held."""

@@ -71,6 +71,17 @@ class SwitchedSystem:
         """Return, for each mode that equals a held mode or its negative, the held mode and the sign."""
         return {twin: (mode, sign) for mode in held for twin, sign in self.twins[mode] if twin != mode}
 
+    def matters_at_zero(self, mode: str) -> bool:
+        """Return whether the motion depends on more than the mean of both sides of a sign that is held at zero.
+
+        Other functions then switch at the same place, or a torque is not linear in the sign.
+        """
+        if next(switch for switch in self.switches if switch.mode == mode).at_zero != 0:
+            return False
+        names_of = {twin for twin, _ in self.twins[mode]}
+        others = any(switch.mode in names_of - {mode} and not _bends(switch) for switch in self.switches)
+        return others or any(_is_mixed(torque, mode) for torque in self.plan.structure.formula_torques)
+
     @cached_property
     def settled(self) -> set[str]:
         """The modes of switching functions whose arguments are constant: they contain no time, no state and no changing
@@ -188,6 +199,13 @@ def _switches(torque: FormulaTorque) -> list[Switch]:
         )
         for switch in torque.switches
     ]
+
+
+def _is_mixed(torque: FormulaTorque, mode: str) -> bool:
+    """Return whether a torque is not linear in a mode."""
+    own = mode.removeprefix(torque.prefix)
+    nodes = [parse(formula, switching=True) for formula in torque.choices or torque.formulas]
+    return own in torque.parameters and any(between_sides(node, own) != node for node in nodes)
 
 
 def is_continuous(switch: Switch) -> bool:
