@@ -207,7 +207,7 @@ def _matched(known: Known, own: Fingerprint, entries: Sequence[Expr], view: View
 
 
 def _alike(mine: str, other: str) -> bool:
-    """Return whether two texts name one thing: ``phi`` and ``phi(t)``, ``dphi`` and ``diff(phi(t), t)``."""
+    """Tell whether two texts are names of one thing, such as ``dphi`` and ``diff(phi(t), t)``."""
     return other in (mine, f"{mine}(t)") or (mine.startswith("d") and other == f"diff({mine[1:]}(t), t)")
 
 
