@@ -106,9 +106,7 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
     data = load_certificate(path)
     for file in data["files"]:
         if not file.startswith("../") and not (path.parent / file).is_file():
-            raise CertificateError(
-                f"{path}: expected its file {file} in the same folder, and it is not there; copy it there"
-            )
+            raise CertificateError(f"{path}: expected its file {file} in the same folder, and it is not there")
     try:
         findings = [exact_check.check(path), *_audited(path, data, symrot_statement), *_compared(data)]
         return data, [*findings, _bounds(path, data, (path.parent / f"{data['kernel']}.c").read_text(encoding="utf-8"))]
