@@ -60,24 +60,26 @@ def load_certificate(path: Path) -> Data:
     try:
         data = json.loads(content, object_pairs_hook=_unique, parse_constant=_refused)
     except (ValueError, RecursionError) as reason:
-        raise CertificateError(f"{path}: expected a certificate as JSON, and it is not ({reason})") from None
+        raise CertificateError(f"{path}: expected a certificate as JSON, but the text is not JSON ({reason})") from None
     if not isinstance(data, dict):
         raise CertificateError(f"{path}: expected a certificate, a JSON object, got {type(data).__name__}")
     for name, kind in PARTS.items():
         if name not in data and name not in OPTIONAL:
-            raise CertificateError(f"{path}: expected {name!r} in a certificate, there is none")
+            raise CertificateError(f"{path}: expected the section {name!r} in a certificate, but it is missing")
         if name in data and not isinstance(data[name], kind):
-            raise CertificateError(f"{path}: expected another kind of {name!r}, got {type(data[name]).__name__}")
+            raise CertificateError(
+                f"{path}: expected {name!r} to be of type {kind.__name__}, got {type(data[name]).__name__}"
+            )
     unknown = sorted(set(data) - set(PARTS))
     if unknown:
-        raise CertificateError(f"{path}: expected nothing but the sections of a certificate, got {unknown[0]!r}")
+        raise CertificateError(f"{path}: expected no section but those of a certificate, got {unknown[0]!r}")
     return data
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> Data:
     data = dict(pairs)
     if len(data) != len(pairs):
-        raise ValueError("a name occurs twice")
+        raise ValueError("one object has the same name twice")
     return data
 
 
@@ -115,13 +117,15 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
 
 
 def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | None]) -> list[str]:
-    """Return the findings of the checks that need symrot's own derivations."""
+    """Return the findings of those checks of a certificate that need symrot's own derivations."""
     name = data["kernel"]
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
     check_header(header, source, name)
     _check_readback(data, source)
     if path.read_text(encoding="utf-8") != certificate_json(data):
-        raise CertificateError(f"{path}: expected a certificate as symrot prints it, got another layout")
+        raise CertificateError(
+            f"{path}: expected a certificate as symrot prints it, got another layout; emit the kernel again"
+        )
     statement = symrot_statement(data)
     if statement is None:
         return [f"symrot has no kernel {name}: its formulas and laws are only those that the certificate states"]
@@ -130,31 +134,37 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
 
 
 def _compared(data: Data) -> list[str]:
-    """Return the finding on object code: its verdicts belong to another machine and are not checked here."""
+    """Return a finding that the verdicts on object code were not checked, since they hold for another machine."""
     finding = "its verdicts on object code were not checked: --object compares an object file of yours"
     return [finding] if data.get("objects") else []
 
 
 def _compare(path: Path, data: Mapping[str, Any], statement: Mapping[str, Any]) -> None:
-    """Raise CertificateError if a part of a certificate differs from what symrot states now."""
+    """Raise CertificateError if a section of a certificate differs from the section that symrot derives now."""
     for name, value in statement.items():
         if json.dumps(data[name]) != json.dumps(value):
-            raise CertificateError(f"{path}: expected {name!r} as symrot prints it now, and it is not (emit it again)")
+            raise CertificateError(
+                f"{path}: expected {name!r} as symrot prints it now, got other content; emit the kernel again"
+            )
 
 
 def _bounds(path: Path, data: Data, source: str) -> str:
-    """Return the finding on rounding errors; raise CertificateError if the bounds are not those of the C text."""
+    """Return the finding on rounding error bounds; raise CertificateError if they do not belong to the C text."""
     section = data.get("rounding")
     own = library_section(data["kernel"], source) if data["kernel"] in kernel_names() else None
     if section is None:
         if isinstance(own, dict):
-            raise CertificateError(f"{path}: expected bounds of rounding errors, there are none (emit it again)")
+            raise CertificateError(
+                f"{path}: expected bounds of rounding errors, but the certificate has none; emit the kernel again"
+            )
         return "no bounds of rounding errors" + (f": {own}" if own else "")
     if json.dumps(section) == json.dumps(own):
         return "bounds of rounding errors are those that symrot knows of these operations on the kernel's own box"
     region = library_region(data["kernel"], source) if own is not None else None
     if region is not None and any(json.dumps(section.get(part)) != json.dumps(value) for part, value in region.items()):
-        raise CertificateError(f"{path}: expected bounds of rounding errors on the region of the kernel, got others")
+        raise CertificateError(
+            f"{path}: expected bounds of rounding errors on the region of the kernel, got another region"
+        )
     kernels = list(operations_of(data, source).values())
     double, single = kernels[0], kernels[1] if len(kernels) > 1 else None
     check_section(section, double, single)
@@ -168,7 +178,7 @@ def operations_of(data: Data, source: str) -> dict[str, Operations]:
 
 
 def _check_readback(data: Data, source: str) -> None:
-    """Raise CertificateError if the ``readback`` section differs from the operations that the C text has."""
+    """Raise CertificateError if the section ``readback`` differs from the operations in the C text."""
     where = f"{data['kernel']}.c"
     for name, stated in data["readback"].items():
         one, batch = read_kernel(source, name, where), read_batch(source, f"{name}_batch", where)

@@ -93,7 +93,7 @@ class KernelUnderTest:
 
 
 def _places(argument: Argument) -> list[tuple[str, tuple[str, str, str]]]:
-    """Return the places of an argument, each with its component (symbol, unit, description)."""
+    """Return each component of an argument: its place, such as ``"q[1]"``, with its symbol, unit and description."""
     if argument.is_scalar:
         return [(argument.name, argument.components[0])]
     return [(f"{argument.name}[{i}]", component) for i, component in enumerate(argument.components)]
@@ -163,7 +163,7 @@ def unproven_statement(kernel: KernelUnderTest) -> Data:
 
 
 def _functions(formulas: Sequence[Expr]) -> list[list[str]]:
-    """Return the functions with a removable singularity that formulas call: name, definition as text in x and y."""
+    """Return the functions in formulas that have a removable singularity, each with its definition as text."""
     x, y = (Symbol(name, real=True) for name in "xy")
     names = {type(call).__name__ for formula in formulas for call in formula.atoms(Function)}
     texts = {}
@@ -177,7 +177,7 @@ def _functions(formulas: Sequence[Expr]) -> list[list[str]]:
 
 
 def proven_statement(kernel: KernelUnderTest) -> Data:
-    """Return the statements about a kernel that symrot derives and proves: its certificate without optional sections.
+    """Return a kernel's certificate without its optional sections and its seal, every statement proven by symrot.
 
     The seal is left out too.
     """
@@ -216,7 +216,7 @@ def _as_lists(value: Any) -> Any:
 
 
 def _readback(kernel: KernelUnderTest, suffix: str, real: str) -> Data:
-    """Return the ``readback`` entry of one function: its operations and the proof that they are the formulas."""
+    """Return the ``readback`` entry of a C function: its operations, and the proof that they compute the formulas."""
     name, file = f"symrot_{kernel.name}{suffix}", f"{kernel.name}.c"
     text = kernel.files[file]
     one, batch = read_kernel(text, name, file), read_batch(text, f"{name}_batch", file)
@@ -236,7 +236,7 @@ def _readback(kernel: KernelUnderTest, suffix: str, real: str) -> Data:
 
 
 def intended_text(constant: IntendedConstant) -> str:
-    """Return the number that a constant stands for, as text."""
+    """Return the exact number that a rounded constant of the C text stands for, as text such as ``"1/3"``."""
     return f"{constant.fraction}*pi" if constant.times_pi else str(constant.fraction)
 
 
@@ -254,7 +254,7 @@ def _series(proof: Equality) -> list[list[Any]]:
 
 
 def seal(data: Data) -> str:
-    """Return the SHA-256 of a certificate without its seal."""
+    """Return the seal of a certificate: the SHA-256 of all its other content."""
     bare = {key: value for key, value in data.items() if key != "seal"}
     return sha256(json.dumps(bare, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
@@ -269,9 +269,10 @@ OPTIONAL_SECTIONS: dict[str, Callable[[Data, Any], bool]] = {  # section -> whet
 
 
 def with_sections(text: str, sections: Mapping[str, Any]) -> str:
-    """Return a certificate with bounds of rounding errors (``rounding``) and verdicts on object code (``objects``).
+    """Return a certificate to which bounds of rounding errors or verdicts on object code are added.
 
-    A section that is about other operations or another C text, because the kernel has changed, is left out.
+    ``sections`` maps ``"rounding"`` or ``"objects"`` to its content. A section that belongs to an earlier version of
+    the kernel's C text is left out.
     """
     data = json.loads(text)
     for name, is_about in OPTIONAL_SECTIONS.items():

@@ -67,7 +67,7 @@ PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459"
 
 
 def require(holds, message):
-    """Return ``holds`` if it is true, else raise ValueError with a message."""
+    """Return the value ``holds`` if it is true; otherwise raise ValueError with a message."""
     if not holds:
         raise ValueError(message)
     return holds
@@ -88,7 +88,7 @@ class RandomIntegers(defaultdict):
 
 
 class Evaluator:
-    """Evaluates formulas, or expressions of C if ``real`` names their type; ``calls`` maps C names to functions."""
+    """An evaluator of formulas as exact fractions, or of C expressions in floating-point numbers."""
 
     def __init__(self, names, functions, real="", calls=None, constants=(), cases=None):
         self.names, self.functions, self.real, self.calls = names, functions, real, calls
@@ -102,11 +102,11 @@ class Evaluator:
         return ast.parse(NUMBER.sub(r"'\1'", text.strip()), mode="eval").body
 
     def read(self, text):
-        """Return the value of an expression, a text."""
+        """Return the value of an expression that is passed as text."""
         return self.value(self.parsed(text))
 
     def value(self, node):
-        """Return the value of a syntax tree."""
+        """Return the value of an expression that is passed as a syntax tree."""
         match node:
             case ast.Constant(value=int(number)) if not self.real:
                 return Fraction(number)
@@ -138,7 +138,7 @@ class Evaluator:
         raise ValueError(f"expected a formula of kernels, got {ast.unparse(node)[:60]}")
 
     def call(self, name, *values):
-        """Return the value of a function at some arguments."""
+        """Return the value of a named function at the values of its arguments."""
         if self.cases is not None and name == "Abs":
             return self.call("copysign", Fraction(1), *values) * values[0]
         if self.cases is not None and name in SAFE and name != "select_ge":
@@ -205,7 +205,7 @@ class KernelCheck:
         self.constants = dict(map(self.constant, self.readback["constants"]))
 
     def constant(self, pair):
-        """Return a constant of the C text, and the number that it stands for."""
+        """Check a rounded constant of the C text; return the constant, and the exact number that it stands for."""
         written, exact = Fraction(pair[0]), Fraction(pair[1].removesuffix("*pi"))
         times_pi = pair[1].endswith("*pi")
         require(
@@ -214,7 +214,7 @@ class KernelCheck:
         return written, exact * self.symbols["pi"] if times_pi else exact
 
     def run(self, body, places, targets=(), near=()):
-        """Return the values that a body computes; only the angles ``near`` may go to functions of limited range."""
+        """Return the values that the body of a C function assigns or returns at given inputs."""
         reader = Evaluator({}, self.functions, self.real, self.calls, self.constants if targets else ())
         computed = reader.run(body, places, targets)
         require(
@@ -224,7 +224,7 @@ class KernelCheck:
         return computed
 
     def check(self):
-        """Check the function for one sample and the batch function."""
+        """Check that the one-sample function and the batch function both compute the formulas."""
         for function, bare in self.own.items():
             self.check_own(function, bare)
         places = [*self.inputs, *self.outputs]
@@ -266,7 +266,7 @@ class KernelCheck:
         self.compare([again], batch, map(of_sample, self.outputs))
 
     def compare(self, bodies, places, targets, near=()):
-        """Check that bodies assign to targets the values of the formulas."""
+        """Check that bodies of C functions assign to their targets the values of the formulas."""
         targets, computed = [*targets], {}
         for body in bodies:
             computed |= self.run(body, places, [target for target in targets if target not in computed], near)
@@ -274,7 +274,7 @@ class KernelCheck:
             require(target in computed and computed[target] == expected, f"{place} of {self.name} is not its formula")
 
     def check_own(self, function, bare):
-        """Check that a function of the file computes the function of its name; a series, up to its proven bound."""
+        """Check that a helper function of the C file computes its formula, or a series close enough to the formula."""
         (explicit, case), (_, _, arguments, body) = SAFE[bare], self.c_functions[function]
         for _, split, coefficients, rest in (each for each in self.readback["series"] if each[0] == bare):
             taylor = [
@@ -294,14 +294,14 @@ class KernelCheck:
 
 
 class FloatFunctions(dict):
-    """The values of functions in floating-point arithmetic."""
+    """The functions that formulas call, computed in floating-point arithmetic."""
 
     def __missing__(self, call):
         return Fraction(getattr(math, call[0])(*map(float, call[1:])))
 
 
 def hypotheses(values):
-    """Return expressions that are zero for the components of a unit vector, or for the nine entries of a rotation."""
+    """Return polynomials that are zero if some numbers are a unit vector's components or a rotation's nine entries."""
     if len(values) != 9:
         return [sum(each**2 for each in values) - 1] if values else []
     rows, pairs = [values[:3], values[3:6], values[6:]], [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
@@ -313,9 +313,9 @@ def hypotheses(values):
 
 
 def prove(law, case, formulas):
-    """Check the proof of a law in one case: each entry, times a factor, is a sum of cofactors times relations.
+    """Check the stored proof of a law in one case: entry times factor = sum of cofactors times relations.
 
-    An entry is an expression that the law says is zero.
+    An entry is an expression that is zero by the law; a relation is a polynomial that is known to be zero.
     Factors and cofactors are also evaluated at the witness, where the hypotheses hold, so that none of them hides a
     division by zero.
     """
@@ -380,7 +380,7 @@ def prove(law, case, formulas):
 
 
 def complete(cases):
-    """Tell whether cases are complete: both branches of the first choice, and recursively of the choices in them."""
+    """Tell whether the cases of a proof cover both branches of every choice in the formulas."""
     if not cases or not cases[0]:
         return len(cases) == 1
     left, _, right = cases[0][0]
@@ -389,7 +389,7 @@ def complete(cases):
 
 
 def functions_of(text, name, files):
-    """Return the functions of a C file, name -> (static, type, arguments, body); raise ValueError for other content."""
+    """Return the functions in a C text by name, as tuples (static, type, arguments, body)."""
     odd = re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", text)
     require(not odd, "expected no backslash, trigraph, // comment or control character in the C text")
     known = ["#include <math.h>", f'#include "{name}.h"', *['#include "symrot_math.h"'] * ("symrot_math.h" in files)]
@@ -434,7 +434,7 @@ REFUSALS += (ValueError,)
 
 
 def sentence(reason):
-    """Return an exception of REFUSALS as one sentence."""
+    """Return an exception that a check raised as one sentence for the user."""
     if isinstance(reason, (SyntaxError, LookupError)):
         return f"no text of kernels, or no certificate of the schema ({reason.args[0]!r})"
     text = str(reason) if isinstance(reason, (ValueError, OSError)) else f"no certificate of the schema ({reason!r})"

@@ -42,7 +42,7 @@ UNFIXED = "without it a compiler may contract a*b + c where the processor has it
 
 @dataclass(frozen=True)
 class FlagRule:
-    """The effect of all flags of one form: the properties of the code that they switch on (``sets``) and off."""
+    """A row of the table of compiler flags: a form of flag, and the properties of code that it switches on or off."""
 
     form: str  # regular expression that matches the whole flag
     reason: str
@@ -160,7 +160,7 @@ class FlagEffect:
         return self.holds != NOTHING
 
     def sentence(self) -> str:
-        """Return the effect and the reasons as one line."""
+        """Return the effect of the flags, and the reasons for it, as one line."""
         effect = {
             BITS: "the bits of the C text and its error bounds hold",
             BOUNDS: "the error bounds hold, not the bits",
@@ -192,7 +192,9 @@ def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
     except ValueError as reason:
         raise InputError(f"flags: expected words as a shell reads them, got {flags!r} ({reason})") from None
     if not words:
-        raise InputError("flags: expected the flags of a compiler, such as 'gcc -O2 -ffp-contract=off', got none")
+        raise InputError(
+            "flags: expected the flags of a compiler, such as 'gcc -O2 -ffp-contract=off', got an empty text"
+        )
     compiler, place = _compiler(words)
     switched: dict[str, str] = {}  # property that is on -> the flag that switched it on
     if _X87.fullmatch(compiler):
@@ -222,13 +224,15 @@ def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
 
 
 def _compiler(words: Sequence[str]) -> tuple[str, int]:
-    """Return the name of the compiler in front of its flags, or an empty text, and the place of the first flag."""
+    """Return the compiler's name in front of the flags, or an empty text, and the index of the first flag."""
     names = [re.split(r"[/\\]", word)[-1] for word in words[:2]]
     place = 1 if names[0] in LAUNCHERS and len(names) > 1 else 0
     if words[place].startswith("-") or _FILE.fullmatch(words[place]):
         return "", place
     if not _COMPILER.fullmatch(names[place]):
-        raise InputError(f"flags: expected gcc or clang, whose flags are known, in front, got {words[place][:80]!r}")
+        raise InputError(
+            f"flags: expected the compiler in front of the flags to be gcc or clang, got {words[place][:80]!r}"
+        )
     return names[place], place + 1
 
 
@@ -239,7 +243,7 @@ def _check_file(word: str) -> None:
 
 
 def _rule(flag: str) -> FlagRule:
-    """Return the rule for a flag; raise InputError if there is none."""
+    """Return the table's rule for a compiler flag; raise InputError if the flag is not in the table."""
     for rule in TABLE:
         if re.fullmatch(rule.form, flag):
             return rule
@@ -247,7 +251,7 @@ def _rule(flag: str) -> FlagRule:
 
 
 def flags_section() -> dict[str, object]:
-    """Return the ``flags`` section of a certificate: flags required, allowed, with bounds only, void, with reasons."""
+    """Return the certificate's section ``flags``: which flags it requires, allows or forbids, with reasons."""
     void = ("-ffast-math", "-Ofast", "-funsafe-math-optimizations", "-fassociative-math", "-freciprocal-math",
             "-ffinite-math-only", "-fno-signed-zeros", "-fapprox-func", "-mdaz-ftz", "-mfpmath=387",
             "-fsingle-precision-constant")  # fmt: skip

@@ -61,7 +61,7 @@ def scene_kernel_under_test(
 
 
 def _expression(node: Node) -> Expr:
-    """Return a formula in the constants of a scene as a SymPy expression."""
+    """Return a formula in the physical constants of a scene, given as a tree, as a SymPy expression."""
     return evaluate(node, _ConstantsByName(), number=lambda value: Rational(value.numerator, value.denominator))
 
 

@@ -91,7 +91,7 @@ def need(holds, sentence):
 
 
 def quoted(value):
-    """Return a value for a sentence: short, in one line."""
+    """Return a value as text for a message, shortened and on one line."""
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
@@ -101,7 +101,7 @@ def quoted(value):
 
 
 class Number(NamedTuple):
-    """A number of a formula, exactly."""
+    """A node for a number in a formula, with its exact value."""
 
     number: Fraction
 
@@ -110,7 +110,7 @@ class Number(NamedTuple):
 
 
 class Literal(NamedTuple):
-    """A number of a C text: the double or float that C makes of it."""
+    """A node for a number in a C text, with the value of the double or float that C makes of it."""
 
     number: float
 
@@ -119,7 +119,7 @@ class Literal(NamedTuple):
 
 
 class Variable(NamedTuple):
-    """A variable: a name, or (array, component)."""
+    """A node for a variable: its name, or (array, component)."""
 
     name: str | tuple[str, int]
 
@@ -128,7 +128,7 @@ class Variable(NamedTuple):
 
 
 class Negative(NamedTuple):
-    """Minus an operand."""
+    """A node for an operand with a minus sign."""
 
     operand: object
 
@@ -137,7 +137,7 @@ class Negative(NamedTuple):
 
 
 class Chain(NamedTuple):
-    """Sums and differences, or products and quotients, from left to right: ``first [(operation, operand), ..]``."""
+    """A node for sums and differences, or products and quotients: ``first [(operation, operand), ..]``."""
 
     first: object
     rest: list
@@ -150,7 +150,7 @@ class Chain(NamedTuple):
 
 
 class Power(NamedTuple):
-    """A whole power of an operand, or of its square root."""
+    """A node for an integer power of an operand, or of its square root."""
 
     operand: object
     exponent: int
@@ -160,7 +160,7 @@ class Power(NamedTuple):
 
 
 class Call(NamedTuple):
-    """A call of a mathematical function."""
+    """A node for a call of a mathematical function, such as ``sin(x)``."""
 
     function: str
     arguments: list
@@ -170,7 +170,7 @@ class Call(NamedTuple):
 
 
 class Choice(NamedTuple):
-    """``a < b ? x : y``, or with another comparison."""
+    """A node for ``a < b ? x : y``, where the comparison may also be ``>=`` or ``==``."""
 
     comparison: str
     a: object
@@ -186,7 +186,7 @@ class Choice(NamedTuple):
 
 
 class Definition(NamedTuple):
-    """A function that a certificate or a C text defines: local variables, then its value."""
+    """A function that a certificate or a C text defines: its local variables, then its value."""
 
     parameters: list
     local: list  # of (name, expression)
@@ -201,7 +201,7 @@ class Definition(NamedTuple):
 
 
 class OwnCall(NamedTuple):
-    """A call of a function that the certificate or the C text defines."""
+    """A node for a call of a function that the certificate or the C text itself defines."""
 
     definition: Definition
     arguments: list
@@ -217,13 +217,13 @@ OPERATIONS = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": oper
 
 
 class Arithmetic:
-    """Numbers of one kind, with random values of functions, at one random point. Subclasses say what differs."""
+    """The base class of arithmetics: numbers of one kind, with random values of functions, at one random point."""
 
     def __init__(self):
         self.drawn = {}  # (function, *arguments) or (comparison, a, b) -> random number
 
     def random(self, *key):
-        """Return a random number that depends on the key alone."""
+        """Return a random number that is always the same for the same key."""
         if key not in self.drawn:
             self.drawn[key] = self.draw()
         return self.drawn[key]
@@ -235,12 +235,12 @@ class Arithmetic:
         return OPERATIONS[operation](x, y)
 
     def choose(self, comparison, a, b, x, y):
-        """Return x() or y(): the way that is not chosen is not computed."""
+        """Return the value of a choice; the branch that is not chosen is not computed."""
         return x() if COMPARISONS[comparison](a, b) else y()
 
 
 class AnyFunctions(Arithmetic):
-    """Exact fractions, where functions and choices are any.
+    """An arithmetic of exact fractions, in which functions and choices have random values.
 
     A function is a random number for each argument; a choice is a random mean of its two ways for each comparison.
     Expressions that agree here agree, with overwhelming probability, for all functions of these names.
@@ -269,7 +269,7 @@ class AnyFunctions(Arithmetic):
         return x**exponent
 
     def short(self, x, times=1):
-        """Return a number, refused if it or its power is so long that the check would take too long."""
+        """Return a number; raise ValueError if the number, or its power, has too many digits for a fast check."""
         digits = max(x.numerator.bit_length(), x.denominator.bit_length()) * times
         need(digits <= LONGEST_NUMBER, f"expected numbers of at most {LONGEST_NUMBER} binary digits, got longer ones")
         return x
@@ -286,7 +286,7 @@ class AnyFunctions(Arithmetic):
 
 @cache
 def sine(x):
-    """Return the sine of a Decimal by 60 terms of its series, those of high powers first."""
+    """Return the sine of a Decimal, by 60 terms of its Taylor series, the highest powers first."""
     pi = Decimal(PI.numerator) / PI.denominator
     x = x % (2 * pi)
     square, total = x * x, 1
@@ -301,7 +301,7 @@ def cosine(x):
 
 
 def arc_tangent(y, x):
-    """Return atan2(y, x) of Decimals: the double, made closer twice; each step triples the digits."""
+    """Return atan2(y, x) of Decimals: the value in double precision, improved by steps that each triple its digits."""
     angle = Decimal(math.atan2(y, x))
     for _ in range(2):
         angle += (y * cosine(angle) - x * sine(angle)) / (x * x + y * y).sqrt()
@@ -313,7 +313,7 @@ EXACT_FUNCTIONS |= {"copysign": Decimal.copy_sign}
 
 
 class Decimals(Arithmetic):
-    """Numbers of 190 digits. Functions that no law knows (tan, exp, ..) are any functions."""
+    """An arithmetic of 190-digit numbers, in which functions that no law knows (tan, exp, ..) have random values."""
 
     def __init__(self):
         super().__init__()
@@ -358,7 +358,7 @@ class Machine(Arithmetic):
 
 
 class Names(dict):
-    """Values of symbols at a random point: those without a definition are drawn when they are first used."""
+    """The values of symbols at a random point; a symbol without a definition gets a random value at its first use."""
 
     def __init__(self, numbers):
         super().__init__(pi=numbers.number(PI))
@@ -374,7 +374,7 @@ class Names(dict):
 
 
 def at_a_point(compute):
-    """Return what a function computes at a random point; where it is not defined, another point is drawn."""
+    """Return the value of ``compute`` at a random point, which is drawn again while the value is undefined there."""
     for _ in range(200):
         try:
             return compute()
@@ -397,7 +397,7 @@ END = "the end"
 
 
 class Token(NamedTuple):
-    """A word of a text: its kind (name, number, symbol), and the line that it is on."""
+    """A word of a text, with its kind (name, number or symbol) and its line."""
 
     kind: str
     text: str
@@ -405,7 +405,7 @@ class Token(NamedTuple):
 
 
 def tokens(text, place):
-    """Return the words of a text as C takes them apart: each as long as possible."""
+    """Return the words of a text, each as long as possible, as a C compiler splits it."""
     words, start, line = [], 0, 1
     while start < len(text):
         match = TOKEN.match(text, start)
@@ -418,7 +418,7 @@ def tokens(text, place):
 
 
 class Reader:
-    """Recursive descent through expressions; subclasses say what numbers, names and functions there are."""
+    """A recursive-descent reader of expressions; subclasses define numbers, names and functions."""
 
     def __init__(self, text, place):
         self.place = place
@@ -434,40 +434,40 @@ class Reader:
         return f"{self.place}, line {self.token.line}"
 
     def refuse(self, expectation):
-        """Refuse the text at the next word."""
+        """Raise ValueError with the line, the expected text and the next word."""
         raise ValueError(f"{self.here()}: expected {expectation}, got {quoted(self.token.text)}")
 
     def need(self, holds, sentence):
         need(holds, f"{self.here()}: {sentence}")
 
     def advance(self):
-        """Return the next word and step over it."""
+        """Return the next word and move past it."""
         token = self.token
         self.position += token.kind != "end"
         self.weight += 1
         return token.text
 
     def accept(self, text):
-        """Step over the next word if it is this one."""
+        """Move past the next word and return true if it is ``text``; otherwise return false."""
         if self.token.text != text or self.token.kind == "end":
             return False
         self.advance()
         return True
 
     def take(self, phrase):
-        """Step over the words of a phrase, which have to come next."""
+        """Move past the words of a phrase; raise ValueError if other words come next."""
         for word in tokens(phrase, phrase)[:-1]:
             if not self.accept(word.text):
                 self.refuse(f"`{word.text}` of `{phrase}`")
 
     def take_name(self, what):
-        """Return the name that comes next. Names with _ in front or of macros mean something else to compilers."""
+        """Return the next word, a name; refuse names with _ in front and names of macros, as compilers reserve them."""
         if self.token.kind != "name" or self.token.text.startswith(("_", "SYMROT_")):
             self.refuse(what)
         return self.advance()
 
     def expression(self):
-        """Read a sum, or a choice between two sums: choices do not nest, so no reader can pair them in another way."""
+        """Read a sum, or a choice between two sums; a choice inside a choice is refused, since it is easily misread."""
         a = self.sum()
         if self.token.text not in COMPARISONS:
             return a
@@ -490,7 +490,7 @@ class Reader:
         return Chain(first, rest) if rest else first
 
     def factor(self):
-        """Read a number, a variable, a call or a sum in parentheses, and what its subclass allows behind it."""
+        """Read a number, a variable, a call or a sum in parentheses, with a power if the subclass allows one."""
         if self.accept("-"):
             return Negative(self.factor())
         if self.token.kind == "number":
@@ -506,7 +506,7 @@ class Reader:
         return operand
 
     def call(self, name):
-        """Read the arguments of a function, behind its parenthesis."""
+        """Read the arguments of a function call, after the opening parenthesis."""
         arguments = [self.sum()]
         while self.accept(","):
             arguments.append(self.sum())
@@ -526,9 +526,9 @@ class Reader:
 
 
 class FormulaReader(Reader):
-    """A formula of a certificate: free symbols, powers, and functions that the certificate defines.
+    """A reader of formulas in a certificate: free symbols, powers, and functions that the certificate defines.
 
-    With ``symbols``, it has no other names; a constant has no functions either.
+    If ``symbols`` is passed, all other names are refused; in a constant, functions are refused too.
     """
 
     def __init__(self, text, place, own, symbols=None, is_constant=False):
@@ -552,7 +552,7 @@ class FormulaReader(Reader):
         return name
 
     def power(self, operand):
-        """Read an exponent of one or two digits, or half of one, in parentheses if it is negative or a half."""
+        """Read an exponent of one or two digits, or half of it; negative and half exponents need parentheses."""
         if not self.accept("**"):
             return operand
         inner, sign = self.accept("("), -1 if self.accept("-") else 1
@@ -568,7 +568,7 @@ class FormulaReader(Reader):
         return Power(operand, exponent)
 
     def whole(self):
-        """Return the expression of the text, refused if anything follows it."""
+        """Return the expression of the whole text; refuse the text if anything follows the expression."""
         expression = self.expression()
         self.need(self.token.kind == "end", f"expected the end of the formula, got {quoted(self.token.text)}")
         self.check_weight()
@@ -576,7 +576,7 @@ class FormulaReader(Reader):
 
 
 def constant(text, place):
-    """Return the number that a text without variables and functions is, exactly; pi to 100 digits."""
+    """Return the exact value of a text without variables and functions; pi has 100 digits."""
     return FormulaReader(text, place, {}, ("pi",), is_constant=True).whole().value(AnyFunctions(), {"pi": PI})
 
 
@@ -607,14 +607,14 @@ class Parameter(NamedTuple):
 
 
 class Body(NamedTuple):
-    """What is computed for one sample, in order."""
+    """The statements that are computed for one sample, in order."""
 
     statements: list  # of (name or (array, component), expression)
     far: list  # expressions that `symrot_far` is asked about
 
 
 class Kernel(NamedTuple):
-    """A C function without result: what it is for one sample, or for n samples in a shape of loops."""
+    """A C function that writes arrays: its parameters, and its statements for one sample or for n samples in loops."""
 
     parameters: list
     shape: str  # "one sample", "each sample", "spans" or "blocks"
@@ -624,10 +624,10 @@ class Kernel(NamedTuple):
 
 
 def without_comments(text, file):
-    """Return a text with spaces for comments, on the same lines.
+    """Return a C text in which spaces replace comments; lines keep their numbers.
 
-    Refused is whatever compilers or versions of C may read in two ways: trigraphs, lines joined by a backslash, line
-    comments, comments in comments, and all characters but printable ASCII and ends of lines.
+    The text is refused if compilers or versions of C may read it in different ways: it must not have trigraphs, lines
+    joined by a backslash, line comments, comments in comments, or any characters but printable ASCII and ends of lines.
     """
     odd = re.search(r"[^\n -~]|\\|\?\?|//", text)
     need(not odd, f"{file}: expected plain ASCII without backslashes, ?? and //, got {quoted(odd and odd[0])}")
@@ -642,7 +642,7 @@ def without_comments(text, file):
 
 
 def split_includes(text, name, files):
-    """Return the headers that a C text includes, and the text with empty lines in their place.
+    """Return the headers that a C text includes, and the text with its #include lines emptied.
 
     Lines of the preprocessor are #include lines of the three known headers, in front of all code. Any other # is no
     word of the grammar, so that macros cannot change what is read here.
@@ -666,7 +666,7 @@ def split_includes(text, name, files):
 
 
 class CReader(Reader):
-    """The functions of a C file, by the grammar at the head of this file."""
+    """A reader of the functions of a C file, by the grammar at the head of this file."""
 
     def __init__(self, text, name, files, sizes):
         included, text = split_includes(without_comments(text, f"{name}.c"), name, files)
@@ -700,7 +700,7 @@ class CReader(Reader):
         return Variable(name)
 
     def component(self, name, is_input):
-        """Read an index: ``[2]`` of an array, or ``[2*n + k]`` of samples; ``[k]`` and ``[n + k]`` are 0 and 1."""
+        """Read an index: ``[2]`` of an array, or ``[2*n + k]`` of samples; ``[k]`` and ``[n + k]`` mean 0 and 1."""
         parameter = self.parameters.get(name)
         self.need(
             parameter and parameter.form != "value" and parameter.is_input == is_input,
@@ -726,7 +726,7 @@ class CReader(Reader):
         return int(self.advance())
 
     def use(self, real):
-        """Set the type of numbers, and the functions that there are for it."""
+        """Set the type of numbers, double or float, and the functions that exist for this type."""
         self.real, end = real, REALS[real]
         self.own = self.inline[real]
         functions = C_FUNCTIONS if "math.h" in self.included else {}
@@ -742,7 +742,7 @@ class CReader(Reader):
     # functions
 
     def new_name(self, what):
-        """Return a name that means nothing yet: not of a variable, a function, a loop or of C."""
+        """Return the next word, a name that is not yet used for a variable, function or loop, or by C itself."""
         name = self.take_name(what)
         known = [self.names, self.parameters, self.kernels, RESERVED, *self.inline.values()]
         for end in REALS.values():
@@ -762,7 +762,7 @@ class CReader(Reader):
         self.check_weight()
 
     def inline_function(self):
-        """Read a function of numbers: locals, then its value. It may call those above it, so it cannot call itself."""
+        """Read a helper function: local variables, then the value. It may only call functions above it."""
         self.take("static inline")
         if self.token.text not in REALS:
             self.refuse("double or float")
@@ -787,7 +787,7 @@ class CReader(Reader):
         self.inline[self.real][name] = Definition(parameters, local, result, self.weight)
 
     def kernel(self):
-        """Read a function of arrays, for one sample or, if its first parameter is n, for n samples."""
+        """Read a function that writes arrays, for one sample or, if its first parameter is n, for n samples."""
         start = self.position
         self.take("void")
         name = self.new_name("the name of a function")
@@ -829,11 +829,11 @@ class CReader(Reader):
         return Parameter(name, "value", 1, True)
 
     def loops(self):
-        """Read the loops over samples, which have one of three shapes, word for word.
+        """Read the loops over samples, which must have one of three fixed forms.
 
-        Each visits every sample from 0 to n - 1. Spans keep arrays in the cache: each of two loops computes a part of
-        the outputs. Blocks compute all outputs by functions for a range of angles; `beyond` counts the angles outside
-        it, and if there is one, the block is computed again by the functions of <math.h>.
+        Each form visits every sample from 0 to n - 1. Spans keep arrays in the cache: each of two loops computes a part
+        of the outputs. Blocks compute all outputs by functions for a range of angles; `beyond` counts the angles
+        outside it, and if there is one, the block is computed again by the functions of <math.h>.
         """
         if self.accept(INDEPENDENT):
             self.take(EACH_SAMPLE)
@@ -852,12 +852,12 @@ class CReader(Reader):
         return shape, bodies
 
     def comes(self, phrase):
-        """Tell whether the words of a phrase come next."""
+        """Tell whether the next words are those of a phrase."""
         words = [token.text for token in tokens(phrase, phrase)[:-1]]
         return words == [token.text for token in self.tokens[self.position : self.position + len(words)]]
 
     def body(self, asks_far=False):
-        """Read statements up to a closing brace; their names end there."""
+        """Read statements up to a closing brace; the variables that they declare are forgotten there."""
         outer, self.names, self.assigned = self.names, set(self.names), set()
         statements, far = [], []
         while not self.accept("}"):
@@ -871,7 +871,7 @@ class CReader(Reader):
         return Body(statements, far)
 
     def local(self):
-        """Read ``const double x = E;``. The name is known behind its value, so that it cannot be a part of it."""
+        """Read ``const double x = E;``, where E must not use x."""
         self.take(f"const {self.real}")
         name = self.new_name("the name of a variable")
         self.take("=")
@@ -881,7 +881,7 @@ class CReader(Reader):
         return name, expression
 
     def assignment(self):
-        """Read ``a[2] = E;``: each component of an output is written once, and never read."""
+        """Read ``a[2] = E;``: each component of an output is assigned once, and is never read."""
         place = self.component(self.take_name("`const`, an output or `}`"), is_input=False)
         self.need(place not in self.assigned, f"expected an output to be written once, got {place[0]} again")
         self.assigned.add(place)
@@ -891,7 +891,7 @@ class CReader(Reader):
         return place, expression
 
     def far(self):
-        """Read which angles are asked to be in the range of symrot_sin and symrot_cos."""
+        """Read the line that tests which angles are outside the range of symrot_sin and symrot_cos."""
         asked = []
         self.take("+=")
         while not asked or self.accept("+"):
@@ -903,7 +903,7 @@ class CReader(Reader):
 
 
 def run(body, numbers, inputs):
-    """Return the outputs of a body, and the angles that it asks about, for values of its inputs."""
+    """Return the outputs of a body at given inputs, and the angles that the body tests for their range."""
     names, outputs = dict(inputs), {}
     for target, expression in body.statements:
         value = expression.value(numbers, names)
@@ -928,7 +928,7 @@ ROUNDING_SHAPE = {
 
 
 def check_shape(value, shape, place):
-    """Refuse a value that has not the types of a shape; parts that a shape does not name are not looked at."""
+    """Raise ValueError if a value does not have the types that a schema says; parts not in the schema are ignored."""
     if isinstance(shape, type):
         need(isinstance(value, shape), f"{place}: expected a text, as the schema says, got {quoted(value)}")
     elif isinstance(shape, tuple):
@@ -948,14 +948,14 @@ def check_shape(value, shape, place):
 
 
 def content(path):
-    """Return the bytes of a regular file of a size that kernels have: nothing else is opened."""
+    """Return the bytes of a file; refuse a file that is not regular, or is larger than any file of a kernel."""
     small = path.is_file() and path.stat().st_size <= LARGEST_FILE
     need(small, f"{path.name} is no file of at most {LARGEST_FILE} bytes: expected one of the kernel")
     return path.read_bytes()
 
 
 def text_of(path):
-    """Return the text of a file as its bytes say it, ends of lines included."""
+    """Return the text of a file exactly, with its line ends unchanged."""
     try:
         return content(path).decode("utf-8")
     except UnicodeDecodeError:
@@ -963,24 +963,26 @@ def text_of(path):
 
 
 def without_repetition(pairs):
-    """Return a JSON object, refused if it says a name twice: people read the first value, programs the last."""
+    """Return a JSON object; refuse one with a name twice, since readers differ in which value they take."""
     items = dict(pairs)
     need(len(items) == len(pairs), "expected each name once in an object of the certificate, got one twice")
     return items
 
 
 def certified(path):
-    """Return a certificate whose seal is right and whose files have the hashes that it says.
+    """Return a certificate, after checking its seal and the hashes of the files that it names.
 
-    Hashes show that the files are those that were certified; that they are right is for the other checks. Files in
-    other folders (NumPy texts) may be missing, those beside the certificate not.
+    Hashes show only that no file was changed after it was certified; other checks show that the files are right. Files
+    in other folders (NumPy texts) may be missing, but those in the folder of the certificate may not.
     """
     try:
         data = json.loads(content(path), object_pairs_hook=without_repetition)
     except RecursionError:
-        raise ValueError(f"{path.name}: expected a certificate, got lists in lists without end") from None
+        raise ValueError(f"{path.name}: expected a certificate, got lists nested too deeply") from None
     except (json.JSONDecodeError, UnicodeDecodeError) as reason:
-        raise ValueError(f"{path.name}: expected JSON of the schema, got none ({reason})") from None
+        raise ValueError(
+            f"{path.name}: expected JSON as the schema says, but the text is not JSON ({reason})"
+        ) from None
     check_shape(data, {"schema": TEXT, "seal": TEXT, "kernel": TEXT, "files": {str: TEXT}}, "certificate")
     sealed = {key: value for key, value in data.items() if key != "seal"}
     text = json.dumps(sealed, sort_keys=True, separators=(",", ":"))
@@ -1002,13 +1004,13 @@ def certified(path):
 
 
 def is_name(text):
-    """Tell whether a text is a name of formulas that has no other meaning."""
+    """Tell whether a text is a valid name for a symbol of a formula, one without another meaning."""
     reserved = text in FORMULA_FUNCTIONS or text in FORMULA_CHOICES or text == "pi"
     return bool(re.fullmatch(r"[A-Za-z]\w*", text, re.ASCII)) and not reserved
 
 
 def defined_functions(definitions):
-    """Return the functions of x, y, z, w that a certificate defines, each by functions above it."""
+    """Return the functions of x, y, z, w that a certificate defines; each may only call functions above it."""
     functions = {}
     for name, text in definitions:
         new = is_name(name) and name not in functions
@@ -1022,7 +1024,7 @@ def defined_functions(definitions):
 
 
 class Specification:
-    """The formulas of a certificate, read with certain functions."""
+    """The formulas of a certificate, read with a given set of functions."""
 
     def __init__(self, data, functions):
         spec = data["spec"]
@@ -1054,7 +1056,7 @@ class Specification:
         return FormulaReader(text, place, self.functions).whole()
 
     def set_values(self, names):
-        """Set parts of formulas and outputs to their values, and return the values of inputs by place."""
+        """Compute parts of formulas and outputs and store them by name; return the values of inputs by place."""
         inputs = {place: expression.value(names.numbers, names) for place, expression in self.inputs}
         for symbol, expression in self.named:
             names.define(symbol, expression.value(names.numbers, names))
@@ -1065,7 +1067,7 @@ class Specification:
 
 
 def draw_hypothesis(members, names):
-    """Set the symbols that a law assumes to be a rotation matrix (nine, row by row) or of length one, at random.
+    """Draw random values for symbols that a law assumes to be a rotation matrix (nine, row by row) or a unit vector.
 
     The matrix is that of a random unit quaternion: 2*v*v^T + 2*q0*[v]x + (2*q0^2 - 1)*1.
     """
@@ -1085,7 +1087,7 @@ def draw_hypothesis(members, names):
 
 
 def check_law(law, specification, points):
-    """Refuse a law whose expressions do not vanish at random points, to 60 digits.
+    """Raise ValueError if an expression of a law, which must be zero, is not zero to 60 digits at random points.
 
     At each point, what is given holds and outputs are their formulas. An expression is small there if it is so compared
     with its size at another point, where all symbols are random; but at most 1e-40 in any case. An analytic expression
@@ -1120,10 +1122,10 @@ LEAST = {"double": Fraction(1, 2**55), "float": Fraction(1, 2**26)}  # a quarter
 
 
 def check_series(series, functions, real):
-    """Return functions with a polynomial where x*x is below a split, refused if it leaves out too much.
+    """Return a function that uses a polynomial where x*x is below a limit; refuse the polynomial if its error is large.
 
-    What is left out, relative to the function, is computed at 64 random points of the interval. It has to be at most
-    what the certificate says, and a quarter of a unit in the last place.
+    The error of the polynomial, relative to the function, is computed at 64 random points of the interval. It must be
+    at most as large as the certificate says, and at most a quarter of a unit in the last place.
     """
     name, split_text, coefficient_texts, rest_text = series
     place = f"series of {quoted(name)}"
@@ -1151,7 +1153,7 @@ def check_series(series, functions, real):
 
 
 def constants_of(readback, real):
-    """Return what a double or float of the C text stands for, refused unless it is the nearest to that number.
+    """Return the exact number for each rounded constant in C, after checking that the constant is nearest to it.
 
     Halves, quarters and other multiples of 2^-20 stand for themselves alone.
     """
@@ -1172,14 +1174,14 @@ def constants_of(readback, real):
 
 
 def component_of(place):
-    """Return (array, component) of a place such as ``q[2]``; a number by value is component 0 of its name."""
+    """Return (array, component) of a place such as ``q[2]``; a single number is component 0 of its name."""
     match = re.fullmatch(r"([A-Za-z]\w*)(?:\[(0|[1-9]\d{0,2})\])?", place, re.ASCII)
     need(match, f"{quoted(place)}: expected an argument of a function such as W or q[2]")
     return match[1], int(match[2] or 0)
 
 
 def array_sizes(data, is_input):
-    """Return the number of components of each input or output, in order, refused if places have gaps."""
+    """Return the number of components of each input or output, in order; refuse places with gaps in their numbers."""
     sizes = {}
     for place, *_ in data["inputs"] if is_input else data["spec"]["formulas"]:
         name, component = component_of(place)
@@ -1190,7 +1192,7 @@ def array_sizes(data, is_input):
 
 
 def expected_parameters(data, in_batch):
-    """Return the parameters that a kernel has, by the inputs and outputs of its certificate.
+    """Return the parameters that the C function must have, by the inputs and outputs of the certificate.
 
     A number comes by value and an array by its components; in a batch, both come as arrays of all samples, but for the
     parameters of a scene, which all samples share. Inputs are const.
@@ -1208,13 +1210,13 @@ def expected_parameters(data, in_batch):
 
 
 def by_component(values):
-    """Return values of places by component, and by name for numbers that come by value."""
+    """Return values by (array, component), or by name for a single number, from values by place."""
     named = {component_of(place): value for place, value in values.items()}
     return named | {place: value for place, value in values.items() if "[" not in place}
 
 
 class ExactPoint(NamedTuple):
-    """A random point of exact fractions: inputs and outputs by component, and the arithmetic that drew them."""
+    """A random point of exact fractions: inputs and outputs by component, and the arithmetic that computed them."""
 
     numbers: AnyFunctions
     inputs: dict
@@ -1222,7 +1224,7 @@ class ExactPoint(NamedTuple):
 
 
 def exact_point(specification):
-    """Return a random point where any two inputs differ, so that none can take the place of another."""
+    """Return a random point at which all inputs differ, so that using one in place of another is noticed."""
     names = Names(AnyFunctions())
     inputs = specification.set_values(names)
     need(
@@ -1234,10 +1236,10 @@ def exact_point(specification):
 
 
 def check_formulas(name, kernel, data, point):
-    """Refuse a C function whose outputs are not the formulas, at a random point of exact fractions.
+    """Raise ValueError if the outputs of a C function differ from the formulas at a random point of exact fractions.
 
-    Functions and choices are any there, so that equality at the point is equality as expressions. Each loop of a batch
-    computes all outputs; the two loops of spans compute a part each.
+    Functions and choices have random values there, so that equality at the point means equality as expressions. Each
+    loop of a batch computes all outputs; the two loops of spans compute a part each.
     """
     need(
         kernel.parameters == expected_parameters(data, kernel.shape != "one sample"),
@@ -1268,7 +1270,7 @@ def check_formulas(name, kernel, data, point):
 
 
 class BoxPoint(NamedTuple):
-    """A random point of the box of bounds: the inputs, and exact values and bounds of outputs."""
+    """A random point of the box for which rounding errors are bounded: inputs, exact outputs and their bounds."""
 
     inputs: dict
     exact: dict
@@ -1276,7 +1278,7 @@ class BoxPoint(NamedTuple):
 
 
 def hexadecimal(text, place):
-    """Return the double that a text such as 0x1.8p+3 is."""
+    """Return the double that a hexadecimal text such as 0x1.8p+3 stands for."""
     try:
         return float.fromhex(text)
     except (ValueError, OverflowError):
@@ -1284,7 +1286,7 @@ def hexadecimal(text, place):
 
 
 def point_of_box(data, specification, real):
-    """Return a random point of the box of rounding errors; None if nothing is bounded or the box has holes."""
+    """Return a random point of the box of rounding errors; None without bounds, or if the box has excluded points."""
     if "rounding" not in data or data["spec"]["parameters"]:
         return None
     check_shape(data["rounding"], ROUNDING_SHAPE, "rounding")
@@ -1315,10 +1317,10 @@ def point_of_box(data, specification, real):
 
 
 def check_rounding(name, kernel, point):
-    """Refuse a C function whose error at a point of the box is larger than its bound.
+    """Raise ValueError if a C function's error at a point of the box is larger than the certified bound.
 
-    It is computed as C computes, rounding by rounding, and compared with the exact formula at the same inputs. A bound
-    holds at every point, so one point where it does not refutes it.
+    The function is computed as C computes it, rounding by rounding, and compared with the exact formula at the same
+    inputs. A bound holds at every point, so one point where it does not refutes it.
     """
     machine = Machine(NEAREST[kernel.real])
     for body in kernel.bodies:
@@ -1333,9 +1335,10 @@ def check_rounding(name, kernel, point):
 
 
 def check_precision(name, data, specification, kernels):
-    """Refuse the functions of one precision, for one sample and for many, that are not the formulas or round more.
+    """Check the double or float functions, for one sample and for many, against the formulas and error bounds.
 
-    Numbers of the C text are taken for the constants that they stand for, and series for the functions of the formulas.
+    Rounded constants are replaced by the exact numbers that they stand for, and series by the functions they
+    approximate.
     """
     readback = data["readback"][name]
     real = readback["type"]
@@ -1394,9 +1397,9 @@ HEADER_END = """#ifdef __cplusplus
 
 
 def check_header(name, text, kernels):
-    """Refuse a header that is more than the known macros and one prototype of each function of the C file.
+    """Raise ValueError if a header holds more than the known macros and one prototype for each function of the C file.
 
-    The C file includes it, so a macro of its own could change what the C text means.
+    The C file includes the header, so another macro there could change the meaning of the C text.
     """
     text = without_comments(text, f"{name}.h holds what C may read in several ways")
     lines = [line.strip() for line in text.split("\n") if line.strip()]
@@ -1420,9 +1423,9 @@ def check_header(name, text, kernels):
 
 
 def check_banner(data, text):
-    """Refuse a C file whose first comment does not have the name, title and command of the certificate.
+    """Raise ValueError if a C file's first comment lacks the name, title or command in the certificate.
 
-    So a kernel under another name is seen wherever one file keeps the old name. Letters and digits are compared, as
+    So a renamed kernel is noticed if any file still has the old name. Letters and digits are compared, as
     banners break lines, leave out what would end a comment, and spell other alphabets as <U+00E9>.
     """
 
@@ -1441,12 +1444,12 @@ def check_banner(data, text):
 
 
 def has_choices(data):
-    """Tell whether formulas or laws choose between two ways: one point sees one way."""
+    """Tell whether formulas or laws choose between two branches, so that one random point tests only one."""
     return bool(re.search(r"select_|Abs|copysign|\?", json.dumps([data["spec"], data["laws"]])))
 
 
 def check_files(path):
-    """Check all that a certificate claims and this file can see; return one line on it."""
+    """Run all checks on a certificate and its files; return one line about them."""
     data = certified(path)
     check_shape(data, SHAPE, "certificate")
     name, files, readback = data["kernel"], data["files"], data["readback"]
@@ -1487,7 +1490,7 @@ def check(path):
 
 
 def main(paths):
-    """Check certificates in turn, a line for each; the first that does not hold ends the program with exit code 1."""
+    """Check certificates one after the other and print a line for each; exit with code 1 at the first that fails."""
     if not paths:
         sys.exit("usage: python recheck.py NAME.cert.json ..")
     for path in paths:

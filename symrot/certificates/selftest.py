@@ -52,9 +52,10 @@ class _CheckedFunction:
 
 
 def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Return angles up to 1e6: small and large ones, and ones near multiples of pi/2, where reduction loses digits.
+    """Return random angles up to 1e6 rad that test sine and cosine, many near multiples of pi/2.
 
-    Libraries are less accurate beyond: the cosine of glibc 2.36 has an error of 8 ulp at 6381956970095103*2^797.
+    Near multiples of pi/2 the reduction of an angle loses digits. Beyond 1e6 rad libraries are less accurate: the
+    cosine of glibc 2.36 has an error of 8 ulp at 6381956970095103*2^797.
     """
     from mpmath import mp, mpf
 
@@ -68,7 +69,7 @@ def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 def _sides(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Return arguments (y, x) of atan2, with ratios of many magnitudes."""
+    """Return random arguments (y, x) that test atan2, with ratios of many magnitudes."""
     from mpmath import mpf
 
     for size in (1e-12, 1e-6, 1e-3, 0.3, 1.0, 1.0, 3.0, 1e3, 1e6, 1e12):
@@ -80,7 +81,7 @@ def _sides(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 def _radicands(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Return arguments of the square root, of many magnitudes."""
+    """Return random arguments that test the square root, of many magnitudes."""
     from mpmath import mpf
 
     for _ in range(POINTS):
@@ -105,7 +106,7 @@ def _rounded(value: Any, digits: int) -> float:
 
 
 def _point(name: str, suffix: str, y: float, x: float) -> str:
-    """Return one row of a table in C: arguments, rounded value, exact minus rounded value in ulp, size of an ulp."""
+    """Return one row of a C table of test points: arguments, rounded value, exact minus rounded value and ulp."""
     from mpmath import floor, log, mp, mpf
 
     digits, smallest = FORMATS[suffix]
@@ -147,7 +148,7 @@ def selftest_files() -> dict[str, str]:
 
 
 def _string(text: str) -> str:
-    """Return a string as an entry of a table in C, on as many lines as it needs."""
+    """Return a text as C string literals, one for each line."""
     return "\n".join(f'        "{line}"' for line in wrap(text, 100, drop_whitespace=False)) + ","
 
 

@@ -1,4 +1,4 @@
-"""Run external programs, such as objdump and coqc, for a limited time; what they start is killed with them."""
+"""External programs, such as objdump and coqc, run with a time limit that also ends the programs they start."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""``check`` and ``check_file``: a claim in, a verdict out."""
+"""The functions ``check`` and ``check_file``, which return verdicts on claims."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -257,7 +257,7 @@ def _decide(claim: Claim) -> tuple[Decision, Verdict]:
 
 @contextmanager
 def _place_of(claim: Claim) -> Iterator[None]:
-    """Put the name of a claim in front of a refusal."""
+    """Run a block, and put the name of the claim in front of an InputError that the block raises."""
     try:
         yield
     except InputError as reason:
@@ -267,7 +267,7 @@ def _place_of(claim: Claim) -> Iterator[None]:
 
 
 def _completed(claim: Claim, verdict: Verdict, start: float) -> Verdict:
-    """Return a verdict with the check of units, and with the name and place of the claim."""
+    """Return a verdict to which the check of units, and the claim's name and place, are added."""
     if claim.relation is not None:
         hypotheses = [relation[1:] for relation in claim.hypotheses]
         dimensions = check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)

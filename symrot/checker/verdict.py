@@ -62,7 +62,7 @@ class Repair:
 
 @dataclass(frozen=True)
 class Dimensions:
-    """Whether the units of a claim fit.
+    """The result of the check of a claim's units.
 
     Attributes
     ----------

@@ -33,7 +33,7 @@ _PLACE = re.compile(r'File "[^"]*?([^/"]+)", line (\d+), characters [^:]*:\s*(.*
 
 @dataclass(frozen=True)
 class TheoremResult:
-    """The outcome of a theorem: ``"ok"``, ``"refused"``, or ``"not reached"`` if an earlier one was refused."""
+    """The outcome of a theorem: ``"ok"``, ``"refused"``, or ``"not reached"`` if Coq refused an earlier theorem."""
 
     file: str
     name: str
@@ -42,7 +42,7 @@ class TheoremResult:
 
 @dataclass(frozen=True)
 class CoqResult:
-    """The result of checking a set of files with Coq; it is true if there are no problems.
+    """The result of checking files of theorems with Coq; its truth value is True if there are no problems.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class CoqResult:
 
 
 def coqc() -> str | None:
-    """Return the path of Coq's compiler, from the variable ``COQC`` or the search path; None without Coq."""
+    """Return the path of Coq's compiler, from the variable ``COQC`` or the search path; None if it is not installed."""
     return shutil.which(os.environ.get("COQC") or "coqc")
 
 
@@ -77,12 +77,12 @@ def coq_version(compiler: str) -> str:
 
 
 def unproven(text: str) -> tuple[str, ...]:
-    """Return the keywords of a file that assume or skip a proof; keywords in comments do not count."""
+    """Return the keywords in a file of Coq that assume a statement or skip its proof, ignoring comments."""
     return tuple(match[0] for match in _UNPROVEN.finditer(_COMMENT.sub(" ", text)))
 
 
 def check_kernel(kernel: str, seconds: float = SECONDS) -> CoqResult:
-    """Print and check the file with the theorem about a kernel, and the files that it requires.
+    """Check with Coq the theorem about a kernel, together with the files that the theorem needs.
 
     Raises
     ------
@@ -122,7 +122,9 @@ def check_texts(
     """
     compiler = coqc()
     if compiler is None:
-        raise CertificateError("expected Coq's compiler coqc to check theorems with, found none (Debian package coq)")
+        raise CertificateError(
+            "expected Coq's compiler coqc, which checks theorems, but it is not installed (Debian package coq)"
+        )
     start = perf_counter()
     sources = {name.removesuffix(".v"): text for name, text in texts.items() if name.endswith(".v")}
     problems = [f"{name}.v: expected proofs, got {', '.join(sorted(set(words)))}"
@@ -161,13 +163,15 @@ def _required(text: str) -> set[str]:
 
 
 def _levels(sources: Mapping[str, str]) -> list[list[str]]:
-    """Return the files in groups; the files that a group requires are in earlier groups."""
+    """Return files of theorems in groups, so that each file requires only files of earlier groups."""
     levels: list[list[str]] = []
     left, done = dict(sources), set[str]()
     while left:
         ready = [name for name, text in left.items() if _required(text) & sources.keys() <= done]
         if not ready:
-            raise CertificateError(f"expected files that can be put in order, got a circle among {', '.join(left)}")
+            raise CertificateError(
+                f"expected files of theorems that do not require each other in a circle, got {', '.join(left)}"
+            )
         levels.append(ready)
         done |= set(ready)
         left = {name: text for name, text in left.items() if name not in done}
@@ -175,7 +179,7 @@ def _levels(sources: Mapping[str, str]) -> list[list[str]]:
 
 
 def _compile(compiler: str, place: Path, name: str, seconds: float) -> tuple[str | None, str]:
-    """Check one file; return the error message of Coq, or None, and its output."""
+    """Check one file with Coq; return Coq's error message, or None if it accepted the file, and its output."""
     command = [compiler, "-q", "-R", ".", "symrot", f"{name}.v"]
     try:
         done = run_tool(command, seconds, place)
@@ -195,7 +199,7 @@ def _axioms(printed: str) -> tuple[str, ...]:
 
 
 def _results(name: str, text: str, complaint: str | None) -> list[TheoremResult]:
-    """Return the outcome of each theorem of a file, given the error message of Coq, if any."""
+    """Return the outcome of each theorem of a file, given Coq's error message about the file, or None."""
     if name in (RULES, ASSUMPTIONS):
         return []
     theorems = [(text.count("\n", 0, match.start()) + 1, match[1]) for match in _THEOREM.finditer(text)]

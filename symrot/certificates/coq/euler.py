@@ -38,12 +38,12 @@ _PRINTED = {
 
 
 def euler_files() -> dict[str, str]:
-    """Return the names of the files, each with its sequence."""
+    """Return the names of the files of theorems about Euler angles, each with its axis sequence."""
     return {prefix(sequence): sequence for sequence in SEQUENCES}
 
 
 def euler_file(sequence: str) -> CoqFile:
-    """Return the file about a sequence: its kernels as definitions, and their theorems."""
+    """Return the file of theorems about one Euler sequence: its kernels as definitions, and the theorems on them."""
     name = prefix(sequence)
     kind = "intrinsic" if parse_sequence(sequence)[1] else "extrinsic"
     return CoqFile(
@@ -62,7 +62,7 @@ def euler_file(sequence: str) -> CoqFile:
 
 
 def _rotations(sequence: str) -> list[tuple[str, str]]:
-    """Return (axis letter, angle) of the three factors of the dcm from left to right."""
+    """Return the axis letter and the angle of each of the three rotations whose product is the dcm, left to right."""
     return [(AXES[factor.axis].lower(), str(factor.angle)) for factor in factors(sequence)]
 
 

@@ -11,7 +11,7 @@ __all__ = ["CoqFile", "Theorem", "derivatives", "statement"]
 
 @dataclass(frozen=True)
 class Theorem:
-    """A theorem: its statement in words (``about``) and in Coq, and the tactics that prove it.
+    """A theorem of Coq: the statement in words (``about``) and in Coq, and the tactics that prove it.
 
     ``kernel`` says whether the theorem is about the kernel of the same name.
     """
@@ -69,12 +69,12 @@ class CoqFile:
 
 
 def _short(line: str) -> str:
-    """Return a line, folded if it is too long, with its indent kept."""
+    """Return a line of Coq, folded into several indented lines if it is too long."""
     return folded(line, len(line) - len(line.lstrip()) + 2)
 
 
 def derivatives(functions: Sequence[str], rates: Sequence[str]) -> str:
-    """Return the hypotheses that functions have some derivatives at t, each followed by an arrow."""
+    """Return Coq hypotheses, each with an arrow, that some functions of time have given derivatives at t."""
     pairs = zip(functions, rates, strict=True)
     return folded("  " + " ".join(f"derivable_pt_lim {each} t {rate} ->" for each, rate in pairs), 2)
 

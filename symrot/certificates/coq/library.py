@@ -1,4 +1,4 @@
-"""The files of Coq that symrot prints, by name, and the theorem about each kernel."""
+"""The files of Coq theorems that symrot prints, and a look-up of the theorem about a kernel."""
 
 from collections.abc import Callable
 from functools import cache, partial
@@ -47,7 +47,7 @@ _FILES: dict[str, tuple[tuple[str, ...], Callable[[], CoqFile]]] = {
 
 
 def coq_file_names() -> tuple[str, ...]:
-    """Return the names of the files of theorems, without ``.v``, each after those that it requires."""
+    """Return the names of the files of theorems without ``.v``, in an order that Coq can check them in."""
     return tuple(_FILES)
 
 
@@ -83,7 +83,7 @@ def assumptions_text(names: tuple[str, ...]) -> str:
 
 
 def with_required(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return some files of theorems and the files that they require, in the order of the table."""
+    """Return some files of theorems, together with the files that they require, in an order for Coq."""
     files_needed = set(names)
     for name in names:
         files_needed |= set(coq_file(name).requires) - {RULES}
@@ -103,7 +103,7 @@ def coq_texts(names: tuple[str, ...] | None = None) -> dict[str, str]:
 
 
 def _theorem_about(kernel: str) -> tuple[str, Theorem] | None:
-    """Return the file and the theorem about a kernel, or None; only the file that may hold it is made."""
+    """Return the theorem about a kernel and its file, or None if the kernel has no theorem."""
     for name, (beginnings, _) in _FILES.items():
         if kernel.startswith(beginnings):
             for theorem in coq_file(name).theorems:
@@ -113,7 +113,7 @@ def _theorem_about(kernel: str) -> tuple[str, Theorem] | None:
 
 
 def coq_section(kernel: str) -> dict[str, Any] | None:
-    """Return the ``coq`` section of a certificate, about the theorem on a kernel; None if there is no theorem.
+    """Return the section ``coq`` of a certificate, about the theorem on a kernel; None if there is no theorem.
 
     The section is made without Coq: it states the theorem and does not say that Coq has checked it
     (:func:`symrot.certificates.coq.check.check_kernel` checks it).

@@ -75,7 +75,7 @@ def _wrapped(text: str) -> str:
 
 
 def _path(name: str, parameters: Sequence[str]) -> tuple[str, str]:
-    """Return a dcm as a function of time and as its value at t, in text of Coq."""
+    """Return a dcm as text of Coq, twice: as a function of time, and as its value at time t."""
     return (f"fun u => {name} " + " ".join(f"({each} u)" for each in parameters),
             f"{name} " + " ".join(f"({each} t)" for each in parameters))  # fmt: skip
 

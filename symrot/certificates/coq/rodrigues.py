@@ -36,12 +36,12 @@ def rodrigues_file(name: str) -> CoqFile:
 
 
 def _norm(parameters: tuple[str, ...], at: str = "") -> str:
-    """Return the sum of squares plus 1 by which the formulas divide, as text of Coq."""
+    """Return 1 + the sum of squares of the parameters, by which the formulas divide, as text of Coq."""
     return " + ".join(f"{each}{at} ^ 2" for each in parameters) + " + 1"
 
 
 def _positive(parameters: tuple[str, ...], at: str = "") -> str:
-    """Return the tactic that proves this sum to be positive."""
+    """Return the Coq tactic that proves 1 + the sum of squares of the parameters to be positive."""
     return "(" + "; ".join(f"pose proof (pow2_ge_0 ({each}{at}))" for each in parameters) + "; lra)"
 
 

@@ -33,7 +33,7 @@ def coq_expression(expression: Expr) -> str:
 
 
 def _print(expression: Expr) -> tuple[str, int]:
-    """Return the text of an expression and the precedence of its outermost operation."""
+    """Return the Coq text of an expression and the precedence of its outermost operation, which decides on brackets."""
     if isinstance(expression, Symbol):
         return str(expression), _ATOM
     if isinstance(expression, Rational):
@@ -96,17 +96,17 @@ def _power(expression: Pow) -> tuple[str, int]:
 
 
 def folded(text: str, indent: int = 0) -> str:
-    """Return a text in lines of at most :data:`WIDTH` characters, all but the first indented."""
+    """Return a text folded into lines of at most :data:`WIDTH` characters, all but the first indented."""
     return fill(text, WIDTH, subsequent_indent=" " * indent, break_long_words=False, break_on_hyphens=False)
 
 
 def comment(text: str) -> str:
-    """Return a comment of Coq in folded lines; comment marks inside the text are broken up."""
+    """Return a Coq comment in folded lines; comment marks inside the text are split so that they cannot end it."""
     return folded("(* " + text.replace("(*", "( *").replace("*)", "* )") + " *)", 3)
 
 
 def _record(formulas: Sequence[Expr]) -> str:
-    """Return formulas as a vector, quaternion or matrix (row by row), indented by 2; a single formula as itself."""
+    """Return formulas as Coq text of a vector, quaternion or matrix (row by row); one formula stays a number."""
     if len(formulas) == 1:
         return folded(f"  {coq_expression(formulas[0])}", 4)
     texts = [_within(formula, _ATOM) for formula in formulas]

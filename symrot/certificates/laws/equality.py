@@ -53,7 +53,7 @@ class Equality:
 
 
 class _AtomField(FractionField):
-    """Fractions over named inputs, pi, and atoms: values of functions, which are added as they occur."""
+    """A field of fractions over inputs, pi and atoms (values of functions); atoms are added when they first occur."""
 
     def __init__(self, inputs: Sequence[str], name: str) -> None:
         super().__init__(PolyRing([*inputs, "pi", *(f"atom_{k}" for k in range(MOST_ATOMS))], QQ, lex), name)
@@ -64,13 +64,13 @@ class _AtomField(FractionField):
         key = (function, arguments)
         if key not in self.atoms:
             if len(self.atoms) == MOST_ATOMS:
-                raise CertificateError(f"expected at most {MOST_ATOMS} values of functions in a kernel")
+                raise CertificateError(f"expected a kernel with at most {MOST_ATOMS} different function values")
             self.atoms[key] = f"atom_{len(self.atoms)}"
         return self.generator(self.atoms[key])
 
 
 class _Formulas(FormulaReader):
-    """Converts SymPy formulas to fractions over atoms."""
+    """A converter of SymPy formulas to fractions of polynomials over atoms."""
 
     def __init__(self, fractions: _AtomField, named: Sequence[tuple[Symbol, Expr]] = ()) -> None:
         self.fractions: _AtomField = fractions
@@ -91,7 +91,7 @@ class _Formulas(FormulaReader):
 
 @dataclass(frozen=True)
 class FunctionWithLimit:
-    """A function that the C text computes by a choice: its limit at zero, its formula elsewhere."""
+    """A function that the C text computes with a choice: by its limit at zero, by its formula elsewhere."""
 
     name: str
     formula: Expr
@@ -109,7 +109,7 @@ FUNCTIONS_WITH_LIMIT = (
 
 
 class _EqualityProver:
-    """Computes the operations of a kernel in fractions; choices are matched with functions of the formulas."""
+    """A prover that the operations of a C text are the formulas: it evaluates the operations in exact fractions."""
 
     def __init__(
         self,
@@ -125,7 +125,7 @@ class _EqualityProver:
         self.in_series: set[int] = set()
 
     def run(self) -> dict[str, Quotient]:
-        """Return the value of each output by place."""
+        """Return the exact value of each output, by its place such as ``"q[1]"``."""
         nodes = self.operations.nodes
         for node in nodes:
             if node[0] == "select" and node[1] == "<":
@@ -135,7 +135,7 @@ class _EqualityProver:
         return {place: self.values[index] for place, index in self.operations.outputs}
 
     def _below(self, index: int, leaf: int) -> set[int]:
-        """Return the nodes of a polynomial in the value of ``leaf``: sums, products and constants, without the leaf."""
+        """Return the nodes of the operations that form a polynomial in the value of the node ``leaf``."""
         if index == leaf:
             return set()
         node = self.operations.nodes[index]
@@ -146,7 +146,7 @@ class _EqualityProver:
         return {index} | self._below(node[1], leaf) | self._below(node[2], leaf)
 
     def _value(self, node: tuple[Any, ...]) -> Quotient:
-        """Return the value of a node; the nodes before it have values."""
+        """Return the exact value of an operation, given the values of the operations before it."""
         fractions, kind = self.fractions, node[0]
         if kind == "in":
             if node[1] not in self.symbol_of:
@@ -166,7 +166,7 @@ class _EqualityProver:
         return fractions.atom(kind, tuple(arguments))
 
     def _constant(self, value: Fraction) -> Quotient:
-        """Return the number that a constant stands for."""
+        """Return the exact number that a rounded constant of the C text stands for."""
         intended = intended_value(value, self.operations.precision)
         if intended.fraction != value or intended.times_pi:
             self.rounded[value] = intended
@@ -174,7 +174,7 @@ class _EqualityProver:
         return self.fractions.multiply(number, self.fractions.generator("pi")) if intended.times_pi else number
 
     def _choice(self, node: tuple[Any, ...]) -> Quotient:
-        """Return the value of a choice: an atom of the formulas, or a choice that the formulas make too."""
+        """Return the value of a choice ``a < b ? x : y`` in C, matched with a function or choice of the formulas."""
         _, relation, *places = node
         if relation == "<":
             return self._series(*places)
@@ -191,7 +191,7 @@ class _EqualityProver:
                     ):
                         return self.fractions.generator(atom)
         raise CertificateError(
-            f"{self.operations.name}: expected a choice that is part of the formula, got {relation!r}"
+            f"{self.operations.name}: expected a choice that the formula makes too, got one by {relation!r}"
         )
 
     def _is_limit_or_formula(
@@ -298,7 +298,9 @@ def prove_equal(
         )
     for place, value in computed.items():
         if value != expected[place]:
-            raise CertificateError(f"{operations.name}: expected {place} to be {formulas[place]}, and it is not")
+            raise CertificateError(
+                f"{operations.name}: expected {place} to be {formulas[place]}, but the C text computes another value"
+            )
     return Equality(
         tuple(
             (symbol, name, tuple(map(quotient_text, arguments)))

@@ -41,7 +41,9 @@ class FractionField:
     def lowest(self, above: PolyElement, below: PolyElement) -> Quotient:
         """Return a fraction in lowest terms, whose denominator has the leading coefficient 1."""
         if not below:
-            raise CertificateError(f"{self.name}: expected a formula that is defined somewhere, got a division by zero")
+            raise CertificateError(
+                f"{self.name}: expected a formula that is defined at some point, got one that divides by zero"
+            )
         if not below.is_ground:
             above, below = above.cancel(below)
         lead = below.LC
@@ -82,7 +84,7 @@ def quotient_text(value: Quotient) -> str:
 
 
 class FormulaReader(ABC):
-    """Converts SymPy formulas to fractions; a subclass says what symbols, roots and functions become.
+    """A converter of SymPy formulas to fractions; subclasses define the conversion of symbols, roots and functions.
 
     ``values`` holds the formulas that were read before.
     """
@@ -92,15 +94,15 @@ class FormulaReader(ABC):
 
     @abstractmethod
     def symbol(self, name: str) -> Quotient:
-        """Return the value of a symbol, or of pi."""
+        """Return a symbol, or pi, as a fraction of polynomials."""
 
     @abstractmethod
     def root(self, square: Quotient) -> Quotient:
-        """Return the square root of a fraction."""
+        """Return the square root of a fraction as a fraction of polynomials."""
 
     @abstractmethod
     def function(self, expr: Expr) -> Quotient:
-        """Return the value of a function call."""
+        """Return a function call, such as ``sin(x)``, as a fraction of polynomials."""
 
     def read(self, expr: Expr) -> Quotient:
         """Return a formula as a fraction."""

@@ -1,6 +1,7 @@
-"""One attempt to prove a law: functions become generators of a ring, and each entry a sum of cofactors times relations.
+"""An attempt to prove a law: write each entry as a sum of cofactors times relations, over a polynomial ring.
 
-An entry is an expression that the law says is zero.
+An entry is an expression that is zero by the law; a relation is a polynomial that is known to be zero. Each value of a
+function is a generator of the ring.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -65,11 +66,11 @@ class CaseProof:
 
 
 class UndecidedChoice(Exception):
-    """Raised for a choice that the current case does not decide; the arguments are its left and right side."""
+    """An exception for a choice that the current case does not decide; its arguments are the compared sides."""
 
 
 class BaseAngleTooLarge(Exception):
-    """Raised if an angle is not an integer multiple of its base angle.
+    """An exception for an angle that is not an integer multiple of the base angle chosen for it.
 
     The arguments are the monomial of which both are multiples, and the coefficient of the smaller base angle that is
     needed.
@@ -77,7 +78,7 @@ class BaseAngleTooLarge(Exception):
 
 
 class OutOfGenerators(Exception):
-    """Raised if a proof needs more generators than the ring has."""
+    """An exception for a proof that needs more generators than the polynomial ring has."""
 
 
 @dataclass
@@ -116,14 +117,16 @@ class LawProver(FormulaReader):
         self.decided = {(left, right): relation for left, relation, right in decided}
         hypotheses = [self.read(relation) for relation in self.law.relations]
         if any(below != 1 for _, below in hypotheses):
-            raise CertificateError(f"{self.name}: expected polynomials as hypotheses of {self.law.text!r}")
+            raise CertificateError(f"{self.name}: expected the hypotheses of {self.law.text!r} to be polynomials")
         self.hypotheses = [above for above, _ in hypotheses]
         fractions = [self.read(entry) for entry in self.law.vanishing]
         entries = []
         for above, below in fractions:
             cofactors = self.cofactors(above)
             if cofactors is None:
-                raise CertificateError(f"{self.name}: expected the law {self.law.text!r} to follow, and it does not")
+                raise CertificateError(
+                    f"{self.name}: expected the law {self.law.text!r} to follow from the formulas, but it does not"
+                )
             entries.append(EntryProof(str(below), cofactors))
         relations = tuple(map(str, (*self.hypotheses, *self.rules)))
         return CaseProof(tuple(decided), tuple(self.steps), relations, tuple(entries))
@@ -135,7 +138,7 @@ class LawProver(FormulaReader):
     # --- expressions --------------------------------------------------------------------------------------------------
 
     def symbol(self, name: str) -> Quotient:
-        """Return the value of a symbol: its formula if it has one, else the generator of its name."""
+        """Return a symbol's value: its formula if it has one, otherwise the ring's generator of its name."""
         return self.read(self.formulas[name]) if name in self.formulas else self.fractions.generator(name)
 
     def function(self, expr: Expr) -> Quotient:
@@ -231,7 +234,7 @@ class LawProver(FormulaReader):
         return self.signs[value]
 
     def arc(self, y: Quotient, x: Quotient) -> PolyElement:
-        """Return the generator for ``atan2(y, x)``; its cosine and sine are recorded."""
+        """Return the generator for ``atan2(y, x)``, and record the angle's cosine and sine."""
         if (y, x) not in self.arcs:
             radius = self.root(self.fractions.add(self.fractions.power(x, 2), self.fractions.power(y, 2)))
             generator = self.arcs[y, x] = self.generator(f"atan2({quotient_text(y)}, {quotient_text(x)})")
@@ -313,7 +316,7 @@ class LawProver(FormulaReader):
         return result if times > 0 else (result[0], (-result[1][0], result[1][1]))
 
     def _base(self, unit: PolyElement, coefficient: Fraction) -> Fraction:
-        """Return the coefficient of the base angle of a monomial; raise BaseAngleTooLarge if it must be smaller."""
+        """Return the coefficient of a monomial's base angle; raise BaseAngleTooLarge if a smaller one is needed."""
         if unit in self.angle_functions and unit in self.arcs.values():
             if coefficient.denominator != 1:
                 raise CertificateError(f"{self.name}: expected whole multiples of an arc tangent under a sine")
@@ -328,7 +331,7 @@ class LawProver(FormulaReader):
         return known
 
     def _pair(self, unit: PolyElement, angle: PolyElement) -> tuple[Quotient, Quotient]:
-        """Return cosine and sine of a base angle as generators."""
+        """Return the cosine and sine of a base angle as two generators of the ring."""
         if unit not in self.angle_functions:
             cosine, sine = self.generator(f"cos({angle})"), self.generator(f"sin({angle})")
             self.step("circle", str(angle))
@@ -339,7 +342,7 @@ class LawProver(FormulaReader):
     # --- cofactors ----------------------------------------------------------------------------------------------------
 
     def remainder(self, value: PolyElement) -> PolyElement:
-        """Return the remainder of a polynomial modulo the rules, and modulo the hypothesis if there is just one."""
+        """Return a polynomial's remainder after division by relations, and by the hypothesis if there is just one."""
         basis = [*self.rules, *(self.hypotheses if len(self.hypotheses) == 1 else ())]
         return value.rem(basis) if basis else value
 
@@ -362,7 +365,7 @@ class LawProver(FormulaReader):
         return tuple((place, str(cofactor)) for place, cofactor in enumerate(by_relation) if cofactor)
 
     def _combined(self, value: PolyElement, degree: int) -> tuple[list[PolyElement], PolyElement]:
-        """Return the quotients by rules and hypotheses and the remainder, for hypothesis cofactors of a degree."""
+        """Return a polynomial's quotients and remainder in a division by relations and hypotheses."""
         by_rules, remainder = value.div(self.rules) if self.rules else ([], value)
         by_hypotheses = _combination(remainder, self.hypotheses, degree)
         return (list(by_rules), remainder) if by_hypotheses is None else ([*by_rules, *by_hypotheses], self.ring.zero)

@@ -127,12 +127,14 @@ def _witness(name: str, law: Law, hypothesis_names: Sequence[str], names: Sequen
     if any(
         relation.subs({symbol: point[str(symbol)] for symbol in relation.free_symbols}) for relation in law.relations
     ):
-        raise CertificateError(f"{name}: expected the hypotheses of {law.text!r} to hold for an attitude, they do not")
+        raise CertificateError(
+            f"{name}: expected hypotheses of {law.text!r} that hold for some attitude, but they do not"
+        )
     return tuple((each, str(point[each])) for each in names)
 
 
 def _inputs(law: Law, formulas: Mapping[str, Expr]) -> list[str]:
-    """Return pi and the symbols without a formula in a law and in the formulas that it uses, in a fixed order."""
+    """Return pi and the symbols without a formula on which a law depends, in a fixed order."""
     inputs: set[str] = set()
     waiting, seen = [*law.vanishing, *law.relations], set()
     while waiting:
@@ -145,5 +147,5 @@ def _inputs(law: Law, formulas: Mapping[str, Expr]) -> list[str]:
 
 
 def _pool(size: int) -> list[str]:
-    """Return names of generators, the last first: a generator leads those that are made before it."""
+    """Return names of new generators, the last name first, so that later generators lead in the order of monomials."""
     return [f"g{k}_" for k in reversed(range(size))]

@@ -40,7 +40,7 @@ def compile_object(compiler: str, flags: Sequence[str], source: Path, target: Pa
     """
     path = which(compiler)
     if path is None:
-        raise CompilerError(f"expected a C compiler, {compiler} is not on the path")
+        raise CompilerError(f"expected a C compiler, but {compiler} is not on the path")
     command = [path, *flags, "-I", str(source.parent), "-c", str(source), "-o", str(target)]
     done = run_tool(command, SECONDS)
     if done.returncode:
@@ -124,7 +124,7 @@ MEANS = (
 def _object(
     source: Path, text: str, functions: Sequence[str], compiler: str, version: str, flags: tuple[str, ...]
 ) -> dict[str, Any]:
-    """Compile a C file once and return the entry for it in the ``objects`` section."""
+    """Compile a C file with one compiler and one set of flags; return the entry about it in the section ``objects``."""
     with TemporaryDirectory(prefix="symrot-") as directory:
         target = Path(directory) / f"{source.stem}.o"
         compile_object(compiler, flags, source, target)

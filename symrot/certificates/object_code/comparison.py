@@ -131,7 +131,7 @@ def compare_function(text: Operations, function: CFunction, listing: Listing) ->
 def _compare(
     text: Operations, function: CFunction, listing: Listing, start: tuple[str, int], top: int
 ) -> ObjectVerdict:
-    """Compare a function with its machine code, for one place of the return address on the stack."""
+    """Compare the C operations of a function with its machine code, for one alignment of the stack at the call."""
     width, terms = WIDTH[text.precision], Terms()
     expected = _terms_from_operations(text, terms, width)
     pointers = [p for p in function.parameters if p.size > 0]
@@ -158,7 +158,7 @@ def _compare(
 
 
 def _terms_from_operations(text: Operations, terms: Terms, width: int) -> list[int]:
-    """Return the terms of the outputs of the C text."""
+    """Return the outputs of the C text as symbolic terms."""
     known: list[int] = []
     binary = {"add": terms.add, "sub": terms.sub, "mul": terms.mul, "div": terms.div, "copysign": terms.copysign}
     unary = {"neg": terms.neg, "abs": terms.abs, "sqrt": terms.sqrt}
@@ -181,21 +181,22 @@ def _terms_from_operations(text: Operations, terms: Terms, width: int) -> list[i
 
 
 def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) -> list[int]:
-    """Return the terms that the output arrays hold at the end of one execution path."""
+    """Return the symbolic terms in the output arrays at the end of one execution path of the machine code."""
     outputs = []
     for place, _ in text.outputs:
         name, index = place.removesuffix("]").split("[")
         words = [path.memory.get((name, (int(index) * width + 32 * part) // 8)) for part in range(width // 32)]
         if None in words:
-            raise NotUnderstood(f"a path at whose end {place} is not written")
+            raise NotUnderstood(f"a path through the code at whose end {place} is not written")
         outputs.append(words[0] if width == 32 else terms.join(*(word for word in words if word is not None)))
     return [item for item in outputs if item is not None]
 
 
 def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Known, str]:
-    """Return outputs and comparisons with every fused operation split in two, and a product that was fused only partly.
+    """Return the machine code's terms with each fused multiply-add replaced by a rounded product and a sum.
 
-    The last is a product, as text, that is fused in one place and rounded in another, or whose comparison contradicts
+    The last value is the text of a product that is fused in one place and rounded in another, or whose comparison
+    contradicts
     another one; an empty text if there is none.
     """
     pairs = [operand for pair in known for operand in pair]
@@ -237,12 +238,12 @@ def _cases(
 
 
 def _apart_from_zeros(terms: Terms, first: list[int], second: list[int]) -> bool:
-    """Return whether outputs are equal except for signs of zeros: gcc fuses -(a*b + c) into (-a)*b + (-c)."""
+    """Tell whether two lists of outputs differ at most in signs of zeros: gcc fuses -(a*b + c) into (-a)*b + (-c)."""
     return terms.without_signs_of_zero(first) == terms.without_signs_of_zero(second)
 
 
 def _split_product(terms: Terms, roots: list[int]) -> str:
-    """Return a product, as text, that is rounded in one place and fused in another; an empty text if there is none.
+    """Return the text of a product that is rounded in one place and fused in another; an empty text if there is none.
 
     Where its rounding error cancels in the C text, it no longer cancels in the object code.
     """
@@ -253,14 +254,14 @@ def _split_product(terms: Terms, roots: list[int]) -> str:
 
 
 def _is_exact(terms: Terms, product: int) -> bool:
-    """Return whether a product is exact because a factor is 2."""
+    """Tell whether a product needs no rounding because a factor is 2."""
     width = terms.width(product)
     return any(terms.constant(factor) == terms.constant(terms.number(width, Fraction(2)))
                for factor in terms.nodes[product][2:])  # fmt: skip
 
 
 def _difference(terms: Terms, expected: int, got: int) -> str:
-    """Return a sentence that shows the first operations in which the terms of C text and object code differ."""
+    """Return a sentence that shows where the C text and the object code first compute different terms."""
     while True:
         first, second = terms.operands(expected), terms.operands(got)
         left, right = terms.nodes[expected], terms.nodes[got]

@@ -86,7 +86,7 @@ Operand = Register | Constant | Memory
 
 @dataclass(frozen=True)
 class Relocation:
-    """An address that the linker will write into an instruction; ``addend`` is relative to the instruction's end."""
+    """An address in the code that the linker fills in; ``addend`` is relative to the end of the instruction."""
 
     kind: str
     symbol: str
@@ -202,7 +202,7 @@ def _symbols(text: str, where: str) -> dict[str, tuple[str, int]]:
         section = {"*UND*": "", "*COM*": "*COM*"}.get(match["section"], match["section"])
         place = (section, int(match["value"], 16))
         if symbols.setdefault(match["name"], place) != place:
-            raise CertificateError(f"{where}: expected one place for the symbol {match['name']!r}, got two")
+            raise CertificateError(f"{where}: expected one definition of the symbol {match['name']!r}, got two")
     return symbols
 
 
@@ -231,7 +231,7 @@ def _constants(path: Path, where: str) -> dict[str, bytes]:
 
 
 def _code(text: str, where: str) -> dict[tuple[str, int], Instruction]:
-    """Return the instructions of all sections, by section and address."""
+    """Return the instructions in objdump's listing, by section and address."""
     rows: list[tuple[str, int, bytes, str]] = []
     relocations: dict[tuple[str, int], tuple[str, str, int]] = {}
     section = ""
@@ -255,7 +255,7 @@ def _code(text: str, where: str) -> dict[tuple[str, int], Instruction]:
                 relocations[section, int(relocation["address"], 16)] = (relocation["kind"], relocation["symbol"], plus)
     code = {(row[0], row[1]): _instruction(*row, relocations, where) for row in rows}
     if len(code) != len(rows):
-        raise CertificateError(f"{where}: expected one instruction at a place, got two sections of one name")
+        raise CertificateError(f"{where}: expected one instruction at each address, got two sections of one name")
     return code
 
 
@@ -263,7 +263,7 @@ def _instruction(
     section: str, address: int, content: bytes, text: str,
     relocations: Mapping[tuple[str, int], tuple[str, str, int]], where: str,
 ) -> Instruction:  # fmt: skip
-    """Return one instruction from a line of disassembly and the relocations inside it."""
+    """Return the instruction in one line of objdump's disassembly, with the relocation inside it."""
     inside = [
         (at, relocations[section, at]) for at in range(address, address + len(content)) if (section, at) in relocations
     ]
@@ -288,13 +288,13 @@ def _instruction(
 
 @cache
 def _operands(text: str) -> tuple[Operand, ...] | None:
-    """Return the operands of an instruction, or None if one of them cannot be parsed."""
+    """Return the operands in the text of an instruction, or None if one of them cannot be parsed."""
     operands = [_operand(item.strip()) for item in text.split(",")]
     return None if None in operands else tuple(item for item in operands if item is not None)
 
 
 def _operand(text: str) -> Operand | None:
-    """Return an operand in Intel syntax, or None if it cannot be parsed."""
+    """Return one operand in Intel syntax as an object, or None if it cannot be parsed."""
     if re.fullmatch(r"-?0x[0-9a-f]+|[0-9a-f]+|\d+", text) and not re.fullmatch(r"[a-d][hl]", text):
         return Constant(int(text, 16))
     if re.fullmatch(r"[a-z]\w*", text):

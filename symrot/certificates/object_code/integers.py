@@ -1,4 +1,4 @@
-"""Execute instructions on integers and addresses, and read and write the operands of any instruction."""
+"""The effect of machine instructions on integers and addresses, and access to the operands of any instruction."""
 
 from collections.abc import Callable
 
@@ -52,7 +52,7 @@ def memory_place(state: MachineState, instruction: Instruction, operand: Memory)
 
 
 def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[str, ...]) -> tuple[str, int]:
-    """Return the base and offset to which a relocation points; the base is "" if another file defines the symbol."""
+    """Return the base and offset of an address that the linker fills in; the base is "" for another file's symbol."""
     relocation = instruction.relocation
     if relocation is None or relocation.kind not in kinds:
         raise NotUnderstood("an address without a relocation of a known kind")
@@ -64,7 +64,7 @@ def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[
 
 
 def symbol_of(state: MachineState, instruction: Instruction) -> int:
-    """Return the address of a symbol that another file defines, read from the global offset table."""
+    """Return the address of a symbol of another file, which the instruction reads from the global offset table."""
     base, offset = relocated_place(state, instruction, INDIRECT)
     if base or offset or instruction.relocation is None:
         raise NotUnderstood("an address that only the linker knows")
@@ -72,10 +72,10 @@ def symbol_of(state: MachineState, instruction: Instruction) -> int:
 
 
 def read(state: MachineState, instruction: Instruction, operand: object, size: int) -> Words:
-    """Return the words of a source operand: a general register, memory or a constant."""
+    """Return the 32-bit words of a source operand: a general register, memory or a constant."""
     if isinstance(operand, Register):
         if GENERAL.get(operand.name, ("", 0))[1] != size:
-            raise NotUnderstood(f"{operand.name} as {size} bytes")
+            raise NotUnderstood(f"a use of the register {operand.name} as {size} bytes")
         return state.register(operand.name)
     if isinstance(operand, Constant):
         terms = state.context.terms
@@ -86,12 +86,12 @@ def read(state: MachineState, instruction: Instruction, operand: object, size: i
     if operand.base == "rip" and instruction.relocation is not None and instruction.relocation.kind in INDIRECT:
         return state.halves(symbol_of(state, instruction))
     if operand.size not in (size, 0) or size < 4:
-        raise NotUnderstood(f"{operand.size} bytes of memory")
+        raise NotUnderstood(f"an access to {operand.size} bytes of memory")
     return state.load(*memory_place(state, instruction, operand), size // 4)
 
 
 def write(state: MachineState, instruction: Instruction, operand: object, words: Words) -> None:
-    """Write words to a destination operand: a general register or memory."""
+    """Write 32-bit words to a destination operand: a general register or memory."""
     if isinstance(operand, Register):
         state.set_register(operand.name, words)
     elif isinstance(operand, Memory) and operand.size == 4 * len(words):
@@ -107,7 +107,7 @@ def _size(instruction: Instruction) -> int:
             return GENERAL[operand.name][1]
         if isinstance(operand, Memory) and operand.size:
             return operand.size
-    raise NotUnderstood("operands of unknown size")
+    raise NotUnderstood("operands whose size is not known")
 
 
 # --- integers and addresses -------------------------------------------------------------------------------------------
@@ -141,7 +141,7 @@ def _lea(state: MachineState, instruction: Instruction) -> None:
 def operands_of(instruction: Instruction, count: int) -> tuple[object, ...]:
     """Return the operands of an instruction; raise NotUnderstood if their number is not ``count``."""
     if len(instruction.operands) != count:
-        raise NotUnderstood(f"{len(instruction.operands)} operands")
+        raise NotUnderstood(f"an unexpected number of operands, {len(instruction.operands)}")
     return instruction.operands
 
 
@@ -162,7 +162,7 @@ def _arithmetic(name: str) -> Callable[[MachineState, Instruction], None]:
 
 
 def _byte_test(state: MachineState, instruction: Instruction, name: str) -> None:
-    """Execute ``test al, al`` and the like, whose byte must have a known value."""
+    """Execute ``test al, al`` and similar instructions on one byte, whose value must be known."""
     target, source = instruction.operands
     if name not in ("test", "or", "and") or target != source or not isinstance(target, Register):
         raise NotUnderstood("an operation on single bytes")
@@ -179,7 +179,7 @@ def _known_byte(state: MachineState, name: str) -> int:
 
 
 def _computed(state: MachineState, name: str, first: Words, second: Words) -> tuple[Words, tuple[str, tuple[int, ...]]]:
-    """Return the result of an operation on integers or addresses, and the flags after it."""
+    """Return the result of an instruction on integers or addresses, and the processor's flags after it."""
     terms, bits = state.context.terms, 32 * len(first)
     x, y = state.integer(first), state.integer(second)
     a, b = state.whole(first), state.whole(second)
@@ -193,7 +193,7 @@ def _computed(state: MachineState, name: str, first: Words, second: Words) -> tu
     if node[0] == "address" and y is not None and name in ("add", "sub", "and"):
         signed = y - (1 << bits) if y >> bits - 1 else y
         if name == "and" and (node[2] != STACK or signed not in (-16, -32, -64)):
-            raise NotUnderstood("a mask on an address")
+            raise NotUnderstood("a bit mask applied to an address")
         offset = {"add": node[3] + signed, "sub": node[3] - signed, "and": node[3] & signed}[name]
         return state.halves(terms.address(node[2], offset)), unknown
     if name in ("and", "or", "xor"):
@@ -209,7 +209,7 @@ _INTEGER: dict[str, Callable[[int, int], int]] = {
 
 
 def _flags(name: str, x: int, y: int, value: int, bits: int) -> tuple[int, int, int, int]:
-    """Return the flags zero, sign, carry and overflow after an operation on integers."""
+    """Return the processor's flags (zero, sign, carry, overflow) after an operation on integers."""
     top = bits - 1
     carry = overflow = 0
     if name in ("sub", "cmp"):
@@ -220,7 +220,7 @@ def _flags(name: str, x: int, y: int, value: int, bits: int) -> tuple[int, int, 
 
 
 def _one(name: str, number: int) -> Callable[[MachineState, Instruction], None]:
-    """Return the effect of inc or dec: adding or subtracting a constant."""
+    """Return the effect of the instruction ``inc`` or ``dec``: adding or subtracting 1."""
 
     def step(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)
@@ -294,7 +294,7 @@ def _leave(state: MachineState, instruction: Instruction) -> None:
 
 
 def condition_holds(state: MachineState, condition: str) -> bool:
-    """Return whether a condition code holds for the current flags."""
+    """Tell whether a jump condition, such as ``ne``, holds for the processor's current flags."""
     kind, values = state.flags
     if kind == "numbers" and condition in OF_NUMBERS:
         return state.decide(OF_NUMBERS[condition], values[0], values[1])

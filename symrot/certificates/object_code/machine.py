@@ -1,4 +1,4 @@
-"""Execute a function of an object file on symbolic terms, along every path that its comparisons of numbers allow.
+"""Symbolic execution of a function of an object file, along every path that its comparisons allow.
 
 Integers and addresses must have known values, so that loops and tables are followed as they are. A comparison of
 numbers whose outcome is not known is followed both ways. An instruction that is in no table, or a state of stack,
@@ -58,7 +58,7 @@ class ExecutionPath:
 def state_at_call(
     context: CallContext, names: tuple[str, ...], numbers: tuple[str, ...], start: tuple[str, int]
 ) -> MachineState:
-    """Return the state of the machine when a function is called, with its arrays by name, then its numbers."""
+    """Return the processor's state when a function is called with some arrays and numbers as arguments."""
     terms = context.terms
     state = MachineState(context, start, {}, {})
     for name in (*CALLER_SAVED, *CALLEE_SAVED, "rsp"):
@@ -113,7 +113,7 @@ def execution_paths(state: MachineState) -> Iterator[ExecutionPath]:
 
 
 def _run_step(state: MachineState) -> None:
-    """Execute the instruction at which the machine is; name it in the error if it is not understood."""
+    """Execute the next instruction; if it is not understood, raise NotUnderstood with its address."""
     instruction = state.context.listing.code.get(state.at)
     if instruction is None:
         raise NotUnderstood(f"no instruction at {state.at[1]:#x} of {state.at[0]}")
@@ -152,7 +152,7 @@ def _run_instruction(state: MachineState, instruction: Instruction) -> tuple[str
 
 
 def _target(state: MachineState, instruction: Instruction) -> tuple[str, int] | str:
-    """Return the target of a jump: a place in this file, or the name of a function that another file defines."""
+    """Return where a jump leads: an address in this file, or the name of a function that another file defines."""
     (operand,) = operands_of(instruction, 1)
     if isinstance(operand, Constant):
         if instruction.relocation is None:
@@ -202,10 +202,10 @@ def _return(state: MachineState, instruction: Instruction, _: tuple[str, int]) -
     node = terms.nodes[state.whole(pop_words(state))]
     if node == ("token", 64, "the return address"):
         if stack_place(state) != (STACK, state.context.top + 8):
-            raise NotUnderstood("a stack that is not as it was at the call")
+            raise NotUnderstood("a return at which the stack pointer is not as it was at the call")
         for name in CALLEE_SAVED:
             if state.general[name] != state.halves(terms.token(f"{name} at the call")):
-                raise NotUnderstood(f"{name} is not as it was at the call")
+                raise NotUnderstood(f"a return at which register {name} is not as it was at the call")
         return "", 0
     if node[0] != "address" or not node[2].startswith("section "):
         raise NotUnderstood("a return to an address that is not known")
@@ -218,7 +218,7 @@ FLOW: dict[str, Callable[[MachineState, Instruction, tuple[str, int]], tuple[str
 
 
 def _call_library(state: MachineState, name: str, on_stack: int) -> None:
-    """Apply a function of the C library; the registers that it may change become unknown."""
+    """Execute a call of a C library function; registers that the call may change become unknown."""
     terms = state.context.terms
     _, offset = stack_place(state)
     if (offset + on_stack) % 16:

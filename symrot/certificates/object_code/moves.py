@@ -1,4 +1,4 @@
-"""Execute SSE2 and AVX instructions on registers and memory: moves and comparisons, and the tables of other modules."""
+"""The effect of SSE2 and AVX moves and comparisons, and the look-up of every other vector instruction."""
 
 from collections.abc import Callable
 
@@ -15,7 +15,7 @@ UNALIGNED = {"movups", "movupd", "movdqu", "movdqu32", "movdqu64", "lddqu"}
 
 
 def _source(state: MachineState, instruction: Instruction, operand: object, size: int, bare: str) -> Words:
-    """Return the words of a source operand: a vector register, or ``size`` bytes of memory."""
+    """Return the 32-bit words of a source operand: a vector register, or ``size`` bytes of memory."""
     if isinstance(operand, Register) and operand.name in VECTORS:
         return list(state.register(operand.name))
     if not isinstance(operand, Memory) or operand.size not in (size, 0):
@@ -89,7 +89,7 @@ def _move_whole(state: MachineState, instruction: Instruction, bare: str, is_vex
 
 
 def _move_scalar(size: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return movss or movsd, which clear the upper words if the source is memory and keep them if it is a register."""
+    """Return the effect of movss or movsd: a load from memory clears the upper words, a register move keeps them."""
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources = instruction.operands
@@ -109,7 +109,7 @@ def _move_scalar(size: int) -> Callable[[MachineState, Instruction, str, bool], 
 
 
 def _move_bits(size: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return movd or movq, which move between vector registers, general registers and memory."""
+    """Return the effect of movd or movq, which copy bits between vector registers, general registers and memory."""
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, source = operands_of(instruction, 2)
@@ -126,7 +126,7 @@ def _move_bits(size: int) -> Callable[[MachineState, Instruction, str, bool], No
 
 
 def _move_half(start: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return movlpd or movhpd, which move 64 bits between memory and one half of a 128-bit register."""
+    """Return the effect of movlpd or movhpd, which copy 64 bits between memory and half of a 128-bit register."""
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources = instruction.operands

@@ -29,14 +29,14 @@ _QUIET = (  # predicates of the same relation, which differ in the floating-poin
 
 
 def _lanes(state: MachineState, words: Words, width: int) -> list[int]:
-    """Return the terms of a width that some words of 32 bits make up."""
+    """Return the terms, each ``width`` bits long, that a list of 32-bit words makes up."""
     if width == 32:
         return list(words)
     return [state.whole(words[place : place + 2]) for place in range(0, len(words), 2)]
 
 
 def _each(suffix: str, operation: Callable[..., int], arguments: int = 2) -> Numeric:
-    """Return an instruction that applies an operation to every lane (packed, ``p``) or to the first (scalar, ``s``)."""
+    """Return the effect of an arithmetic instruction on all lanes (packed, ``p``) or the first (scalar, ``s``)."""
     width, is_packed = WIDTHS[suffix[1]], suffix[0] == "p"
 
     def numeric(state: MachineState, sources: list[Words], _: int) -> Words:
@@ -76,7 +76,7 @@ def _horizontal(suffix: str, operation: Callable[..., int]) -> Numeric:
 
 
 def _bitwise(operation: Callable[..., int]) -> Numeric:
-    """Return an instruction on bits, applied to 64 bits at a time if a source is a term of 64 bits, else to 32."""
+    """Return the effect of a bitwise instruction, applied to 64 bits at a time where a source is a 64-bit term."""
 
     def numeric(state: MachineState, sources: list[Words], _: int) -> Words:
         terms, results = state.context.terms, list[int]()
@@ -94,12 +94,12 @@ def _bitwise(operation: Callable[..., int]) -> Numeric:
 
 
 def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
-    """Return a comparison whose result is a mask; the constant selects the relation if the mnemonic does not."""
+    """Return the effect of a comparison instruction, whose result is a mask."""
     by_number = list(PREDICATES.values())
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         if outcomes is None and not 0 <= constant < 32:
-            raise NotUnderstood(f"the comparison {constant}")
+            raise NotUnderstood(f"a comparison with the unknown code {constant}")
         chosen = by_number[constant % 16] if outcomes is None else outcomes
         return _each(suffix, lambda terms, a, b: terms.mask(WIDTHS[suffix[1]], chosen, a, b))(state, sources, 0)
 
@@ -134,7 +134,7 @@ def _greater(terms: Terms, a: int, b: int) -> int:
 
 
 def _blended(suffix: str) -> Numeric:
-    """Return a choice by the sign bit of the last source; all bits of a mask equal its sign bit."""
+    """Return the effect of a blend instruction: a choice between two sources by the sign bit of the last one."""
 
     def one(terms: Terms, a: int, b: int, mask: int) -> int:
         value = terms.constant(mask)
@@ -156,7 +156,7 @@ def _same(state: MachineState, sources: list[Words], _: int) -> Words:
 
 
 def _shifted(width: int, shift: Callable[[int, int, int], int]) -> Numeric:
-    """Return a shift of constants; kernels shift nothing else."""
+    """Return the effect of a shift instruction; only constants can be shifted, as kernels need no more."""
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         terms, results = state.context.terms, list[int]()

@@ -13,7 +13,7 @@ Shuffle = Callable[[MachineState, list[Words], int], Words]
 
 
 def _pick(places: Sequence[int]) -> Shuffle:
-    """Return a shuffle by fixed places within each 128 bits: 0 to 3 in the first source, 4 to 7 in the last."""
+    """Return the effect of a shuffle by fixed places per 128 bits: 0 to 3 in the first source, 4 to 7 in the last."""
 
     def shuffle(_: MachineState, sources: list[Words], __: int) -> Words:
         picked: Words = []
@@ -26,7 +26,7 @@ def _pick(places: Sequence[int]) -> Shuffle:
 
 
 def _by_constant(places: Callable[[int, int], Sequence[int]]) -> Shuffle:
-    """Return a shuffle whose places follow from its constant; ``places`` takes the constant and the lane's number."""
+    """Return the effect of a shuffle whose places follow from the instruction's constant."""
 
     def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:
         picked: Words = []
@@ -74,7 +74,7 @@ def _pblendw(_: MachineState, sources: list[Words], constant: int) -> Words:
     for place in range(len(sources[0])):
         chosen = constant >> 2 * (place % 4) & 3
         if chosen not in (0, 3):
-            raise NotUnderstood("a blend of half words")
+            raise NotUnderstood("a blend of 16-bit words")
         blended.append(sources[1 if chosen else 0][place])
     return blended
 
@@ -90,7 +90,7 @@ def _permute_lanes(state: MachineState, sources: list[Words], constant: int) -> 
 
 
 def _permps(state: MachineState, sources: list[Words], _: int) -> Words:
-    """Return the words of the second source that the first source numbers: vpermps, vpermd."""
+    """Execute vpermps or vpermd: pick the words of the second source whose numbers are in the first source."""
     return [sources[1][_constant(state, word) & 7] for word in sources[0]]
 
 
@@ -162,7 +162,7 @@ def _pshufb(state: MachineState, sources: list[Words], _: int) -> Words:
 
 
 def _broadcast(count: int) -> Shuffle:
-    """Return a shuffle that repeats the first ``count`` words; the machine cuts the result to the register's length."""
+    """Return the effect of a broadcast, which repeats the first ``count`` words over the whole register."""
     return lambda _, sources, __: sources[-1][:count] * (8 // count)
 
 
@@ -174,7 +174,7 @@ def _broadcast_byte(state: MachineState, sources: list[Words], _: int) -> Words:
 
 
 def _doubled(_: MachineState, sources: list[Words], __: int) -> Words:
-    """Return the low 64 bits of each 128, twice: movddup."""
+    """Execute movddup: repeat the low 64 bits of each 128."""
     return [word for start in range(0, len(sources[-1]), 4) for word in sources[-1][start : start + 2] * 2]
 
 

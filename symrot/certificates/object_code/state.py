@@ -39,11 +39,11 @@ VECTORS: dict[str, tuple[str, int]] = {  # name -> the full register, size in wo
 
 
 class NotUnderstood(Exception):
-    """Raised for an instruction, or an effect of it in the current state, that this module does not model."""
+    """An exception for an instruction, or an effect of it in the current state, that the machine does not model."""
 
 
 class UndecidedBranch(Exception):
-    """Raised where execution depends on a comparison with unknown outcome: both branches must be followed.
+    """An exception for a branch on a comparison of unknown outcome: both branches must be followed.
 
     ``pair`` are the terms that are compared, ``branches`` the two sets of outcomes.
     """
@@ -63,7 +63,7 @@ class ArrayArgument:
 
 @dataclass(frozen=True)
 class CallContext:
-    """The facts about a call that stay the same while the function runs."""
+    """The facts about a call that stay the same while the function runs: its arrays, constants and number type."""
 
     terms: Terms
     listing: Listing
@@ -74,7 +74,7 @@ class CallContext:
 
 @dataclass
 class MachineState:
-    """The state before one instruction; ``known`` holds the outcomes of comparisons on the path so far."""
+    """The state of the processor before one instruction; ``known`` holds outcomes of comparisons on the path."""
 
     context: CallContext
     at: tuple[str, int]
@@ -97,7 +97,7 @@ class MachineState:
     # --- numbers ------------------------------------------------------------------------------------------------------
 
     def decide(self, outcomes: Outcomes, a: int, b: int) -> bool:
-        """Return whether a comparison has one of the outcomes; raise :class:`UndecidedBranch` if that is not known."""
+        """Tell whether a comparison has one of the outcomes; raise :class:`UndecidedBranch` if that is not known."""
         terms = self.context.terms
         a, b = terms.rebuilt((a, b), self.known)
         inner = terms.undecided((a, b))
@@ -119,16 +119,16 @@ class MachineState:
         return sum(value << 32 * place for place, value in enumerate(values) if value is not None)
 
     def whole(self, words: Words) -> int:
-        """Return one term made of one or two words."""
+        """Return one term that consists of one or two 32-bit words."""
         return words[0] if len(words) == 1 else self.context.terms.join(*words)
 
     def halves(self, term: int) -> Words:
-        """Return a term split into its words."""
+        """Return a term split into its 32-bit words."""
         terms = self.context.terms
         return [term] if terms.width(term) == 32 else [terms.word(term, 0), terms.word(term, 1)]
 
     def zeros(self, count: int) -> Words:
-        """Return words whose bits are all 0."""
+        """Return ``count`` words whose bits are all 0."""
         return [self.context.terms.bits(32, 0)] * count
 
     # --- registers ----------------------------------------------------------------------------------------------------
@@ -168,7 +168,7 @@ class MachineState:
             if not name:
                 continue
             if GENERAL.get(name, ("", 0))[1] != 8:
-                raise NotUnderstood(f"{name} as an address register")
+                raise NotUnderstood(f"the register {name} used for an address")
             words = self.register(name)
             node = self.context.terms.nodes[self.whole(words)]
             value = self.integer(words)
@@ -221,6 +221,6 @@ class MachineState:
             self.memory[base, at] = word
 
     def forget_below(self, offset: int) -> None:
-        """Discard the memory below the stack pointer, where a call may write."""
+        """Discard the memory below the stack pointer, which a called function may overwrite."""
         for place in [place for place in self.memory if place[0] == STACK and place[1] < offset]:
             del self.memory[place]

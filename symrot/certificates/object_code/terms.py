@@ -1,4 +1,4 @@
-"""Symbolic values of machine code, brought to a common form by bit-exact laws when they are made.
+"""Symbolic values of machine code, simplified on creation by laws that keep every bit.
 
 A term stands for 32 or 64 bits. Two terms with the same index have the same bits on every input, in rounding to
 nearest; zeros of different sign differ, NaNs of different payload do not. The laws hold exactly, also under overflow
@@ -74,7 +74,7 @@ def swapped(outcomes: Iterable[str]) -> Outcomes:
 
 
 class Terms:
-    """A store of terms that holds equal terms once; its methods take and return indices of terms."""
+    """A store of symbolic terms that holds equal terms once; a term is referred to by its index."""
 
     def __init__(self) -> None:
         self.nodes: list[Term] = []
@@ -112,7 +112,7 @@ class Terms:
         return self.bits(width, bits)
 
     def unknown(self, byte: int | None = None) -> int:
-        """Return a new word of 32 unknown bits, except for its lowest byte if one is passed."""
+        """Return a new 32-bit term with unknown bits; ``byte`` sets the lowest byte."""
         return self._add("unknown", 32, len(self.nodes), byte)
 
     def lowest_byte(self, a: int) -> int | None:
@@ -121,7 +121,7 @@ class Terms:
         return None if value is None else int(value) & 0xFF
 
     def token(self, name: str) -> int:
-        """Return 64 bits known only by name, such as the content of a register before the call."""
+        """Return a 64-bit term known only by name, such as the content of a register before the call."""
         return self._add("token", 64, name)
 
     def address(self, base: str, offset: int) -> int:
@@ -251,7 +251,7 @@ class Terms:
     # --- rounded operations -------------------------------------------------------------------------------------------
 
     def _folded(self, a: int, b: int, operation: Callable[[float, float], float]) -> int | None:
-        """Return the result of an operation on two constants, or None if it is not a finite constant.
+        """Return the finite result of an operation on two constant terms, or None if there is no such result.
 
         Computing in double and then rounding to float rounds correctly: double has more than twice the digits.
         """
@@ -262,7 +262,7 @@ class Terms:
         return None if bits is None else self.bits(self.width(a), bits)
 
     def _signed(self, a: int) -> tuple[int, bool]:
-        """Return a factor without its minus sign, and whether it had one."""
+        """Return a factor without its minus sign, and whether it had a minus sign."""
         if self.kind(a) == "neg":
             return int(self.nodes[a][2]), True
         value = self.constant(a)
@@ -343,13 +343,13 @@ class Terms:
         return self._add("call", width, name, *arguments)
 
     def opaque(self, name: str, width: int, *arguments: int) -> int:
-        """Return the result of an instruction whose rounding no operation of C text can express."""
+        """Return the result of an instruction whose rounding cannot be expressed by operations of C."""
         return self.call(f"[{name}]", width, arguments)
 
     # --- choices ------------------------------------------------------------------------------------------------------
 
     def compared(self, outcomes: Outcomes, a: int, b: int) -> tuple[Outcomes, int, int]:
-        """Return a comparison in the form that all equivalent ones share: a constant second, no minus on both sides."""
+        """Return a comparison in a normal form that all equivalent comparisons share."""
         zero = self.bits(self.width(a), 0)
         a, b = (zero if self._value(item) == 0.0 else item for item in (a, b))
         if self.constant(a) is not None and self.constant(b) is None:
@@ -382,12 +382,12 @@ class Terms:
     # --- the whole graph ----------------------------------------------------------------------------------------------
 
     def operands(self, a: int) -> tuple[int, ...]:
-        """Return the operands of a term."""
+        """Return the indices of the operands of a term."""
         node = self.nodes[a]
         return tuple(node[_FIRST_OPERAND[node[0]] :]) if node[0] in _FIRST_OPERAND else ()
 
     def order(self, roots: Iterable[int]) -> list[int]:
-        """Return the terms on which some terms depend, these included, operands before their users."""
+        """Return some terms and all terms on which they depend, each after its operands."""
         seen: set[int] = set()
         ordered: list[int] = []
         stack = [(root, False) for root in reversed(list(roots))]
@@ -402,7 +402,7 @@ class Terms:
         return ordered
 
     def rebuilt(self, roots: Iterable[int], known: Known, fused: bool = True) -> list[int]:
-        """Return terms simplified by known outcomes of comparisons; without ``fused``, a*b + c is rounded twice."""
+        """Return terms simplified by the known outcomes of comparisons."""
         roots = list(roots)
         new: dict[int, int] = {}
         for index in self.order(roots):
@@ -462,7 +462,7 @@ class Terms:
         return [new[root] for root in roots]
 
     def undecided(self, roots: Iterable[int]) -> int | None:
-        """Return a mask on which some terms depend and which depends on no other mask; None if there is none."""
+        """Return the mask of a comparison on which some terms depend but no other mask; None if there is none."""
         return next((index for index in self.order(roots) if self.kind(index) == "mask"), None)
 
 

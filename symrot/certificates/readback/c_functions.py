@@ -99,7 +99,7 @@ class Cursor:
         return self.tokens[self.index - 1]
 
     def fail(self, expected: str, got: str = "") -> CertificateError:
-        """Return the error that says what was expected in a line, and what it is: by default the current token."""
+        """Return a CertificateError that names the line, the expected text, and the text found there."""
         at = min(self.index, len(self.tokens) - 1)
         if not got:
             got = repr(self.tokens[at].text) if 0 <= self.index < len(self.tokens) else "the end"
@@ -107,7 +107,7 @@ class Cursor:
         return CertificateError(f"{self.where}, line {line}: expected {expected}, got {got}")
 
     def expect(self, *marks: str) -> None:
-        """Advance past tokens with exactly these texts; raise CertificateError at the first that differs."""
+        """Advance past tokens that must have exactly these texts; raise CertificateError at the first difference."""
         for mark in marks:
             if self.peek() != mark:
                 raise self.fail(f"'{mark}'")
@@ -160,7 +160,7 @@ def functions_of(text: str, where: str = "kernel") -> Mapping[str, CFunction]:
 
 
 def _function(cursor: Cursor) -> CFunction | None:
-    """Read a function definition; return None for a prototype."""
+    """Return the next function definition of a C text, or None if it is a prototype."""
     while cursor.peek() in ("static", "inline"):
         cursor.next()
     line = cursor.tokens[cursor.index].line if cursor.index < len(cursor.tokens) else 0
@@ -183,7 +183,7 @@ def _function(cursor: Cursor) -> CFunction | None:
 
 
 def _parameter(cursor: Cursor) -> Parameter:
-    """Read one parameter of a function."""
+    """Return the next parameter of a C function."""
     is_const = cursor.peek() == "const"
     if is_const:
         cursor.next()

@@ -88,7 +88,7 @@ def check_header(header: str, source: str, name: str) -> None:
     defined = {_words(head) for head in re.findall(r"^(void \w+\([^()]*\))\s*\{", _COMMENT.sub(" ", source), re.M)}
     if declared != defined:
         odd = sorted(declared ^ defined)[0]
-        raise CertificateError(f"{name}.h: expected the prototypes of the functions of {name}.c, and {odd!r} differs")
+        raise CertificateError(f"{name}.h: expected the same functions as in {name}.c, but {odd!r} differs")
 
 
 def _lines(text: str) -> list[str]:

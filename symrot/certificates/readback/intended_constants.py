@@ -65,7 +65,7 @@ def intended_value(value: Fraction, precision: str) -> IntendedConstant:
         if _size(candidate.fraction) <= SIMPLE and candidate.rounds(precision):
             return candidate
     raise CertificateError(
-        f"expected a constant that a simple fraction or a multiple of pi rounds to, got {float(value)!r}"
+        f"expected a constant that is a rounded simple fraction or multiple of pi, got {float(value)!r}"
     )
 
 

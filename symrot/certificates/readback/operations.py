@@ -1,4 +1,4 @@
-"""The operations of a kernel, rounding for rounding: a graph in which each node is one rounded operation.
+"""The operations of a kernel as a graph in which each node is one rounded floating-point operation.
 
 The reader of C text (:mod:`symrot.certificates.readback.readback`) makes such graphs; the certificates compare and
 analyse them. This module uses only the standard library and nothing of the emitter: a checker that shared code with it
@@ -46,7 +46,7 @@ def operands(node: Node) -> tuple[int, ...]:
 
 @dataclass(frozen=True)
 class Operations:
-    """A kernel as rounded operations.
+    """The operations of a C function: a graph in which each node is one rounded operation.
 
     ``precision`` is ``"binary64"`` or ``"binary32"``; ``inputs`` are places such as ``"q[1]"`` or ``"t"`` in the order
     of the arguments; ``outputs`` are pairs (place, index of its node) in the order of the arguments. ``nodes`` holds
@@ -152,7 +152,7 @@ def _node_from_json(data: Sequence[Any]) -> Node:
 
 
 class GraphBuilder:
-    """Collects nodes, storing equal ones once, and makes :class:`Operations` of the nodes that the outputs need."""
+    """A builder of :class:`Operations`: it stores equal nodes once, and drops nodes that no output needs."""
 
     def __init__(self) -> None:
         self.nodes: list[Node] = []
@@ -168,7 +168,7 @@ class GraphBuilder:
     def finish(
         self, name: str, precision: str, inputs: Sequence[str], outputs: Sequence[tuple[str, int]]
     ) -> Operations:
-        """Return the operations that some outputs need, numbered in the order of first use."""
+        """Return the operations on which the outputs depend, numbered in the order of their first use."""
         order: dict[int, int] = {}
         needed: list[Node] = []
         for _, root in outputs:

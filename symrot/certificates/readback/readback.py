@@ -43,7 +43,7 @@ class _Scope:
 
 
 class _BodyReader:
-    """Reads the body of one function into a graph of operations; functions of the same file are inlined."""
+    """A reader of the body of a C function: it turns statements into a graph of rounded operations."""
 
     def __init__(self, functions: Mapping[str, CFunction], where: str, real: str, batch: bool = False) -> None:
         self.functions, self.where, self.real, self.batch = functions, where, real, batch
@@ -55,7 +55,7 @@ class _BodyReader:
         self.vectorised_angles: set[int] | None = None
 
     def input(self, place: str) -> int:
-        """Return the node of the input at a place."""
+        """Return the node for the input at a place, such as ``"q[1]"``."""
         return self.inputs.setdefault(place, self.builder.add("in", place))
 
     def statements(self, cursor: Cursor, scope: _Scope) -> int | None:
@@ -85,7 +85,7 @@ class _BodyReader:
         return None
 
     def _known(self, cursor: Cursor, scope: _Scope, name: str) -> None:
-        """Raise CertificateError if a name is neither a value nor an array."""
+        """Raise CertificateError if a name is neither a number nor an array that was declared before."""
         if name not in scope.values and name not in scope.arrays:
             raise cursor.fail("the name of a parameter", repr(name))
 
@@ -194,7 +194,7 @@ class _BodyReader:
         return self.builder.add("const", Fraction(value))
 
     def _element(self, cursor: Cursor, scope: _Scope, name: str) -> int:
-        """Read an element of an input array; return the node."""
+        """Return the node for an element of an input array."""
         array = scope.arrays.get(name)
         if array is None or not array.is_const:
             raise cursor.fail("an input array", repr(name))
@@ -230,7 +230,7 @@ class _BodyReader:
         return self.builder.add("call", bare, tuple(arguments))
 
     def _inlined(self, cursor: Cursor, function: CFunction, arguments: list[int]) -> int:
-        """Read the body of a function of the same file with these arguments; return the node of its result."""
+        """Return the result node of a call of a function in the same file, whose body is read with these arguments."""
         parameters = function.parameters
         if function.returns != self.real or any(p.size or p.type != self.real for p in parameters):
             raise cursor.fail(f"a function of {self.real}", repr(function.name))
@@ -356,7 +356,7 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
 
 
 def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token, ...]:
-    """Read the head of the loop over the samples from start to end; return its body."""
+    """Read the head of the loop over the samples from ``start`` to ``end``; return the tokens of its body."""
     if cursor.peek() == "SYMROT_INDEPENDENT":
         cursor.next()
     cursor.expect("for", "(", "size_t")
@@ -366,7 +366,7 @@ def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token
 
 
 def _parts(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
-    """Read several loops over the same block of samples, each of which assigns other outputs."""
+    """Read several loops over one block of samples; each loop assigns different outputs."""
     _heads(cursor, scope, SPAN)
     while cursor.peek() != "}":
         part = _Scope(arrays=scope.arrays, scalars=scope.scalars, count=scope.count)
@@ -379,7 +379,7 @@ def _parts(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
 
 
 def _heads(cursor: Cursor, scope: _Scope, size: str) -> None:
-    """Read the head of a loop over blocks of samples, and the line that computes the end of the current block."""
+    """Read the head of a loop over blocks of samples, and the line that computes where the current block ends."""
     cursor.expect(*f"for ( size_t start = 0 ; start < {scope.count} ; start + = {size} ) {{".split())
     cursor.expect(*f"const size_t end = {scope.count} - start < {size} ? {scope.count} : start + {size} ;".split())
 
@@ -420,7 +420,7 @@ def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
 def _finished(
     reader: _BodyReader, scope: _Scope, function: CFunction, places: list[tuple[str, int]], where: str
 ) -> Operations:
-    """Return the operations that were read; raise CertificateError if an output is not assigned."""
+    """Return the operations of a function whose body was read; raise CertificateError if an output is not assigned."""
     missing = [f"{name}[{index}]" for name, index in places if (name, index) not in scope.written]
     if missing or not places:
         raise CertificateError(f"{where}: expected {function.name} to assign {', '.join(missing) or 'an output'}")

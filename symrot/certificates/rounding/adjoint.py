@@ -39,7 +39,7 @@ LIBM_ULP = 1.0  # error of sin, cos and atan2, in units in the last place of the
 
 @dataclass(frozen=True)
 class Evaluation:
-    """The result for each box of a batch.
+    """The result of bounding the rounding error on a batch of boxes, one entry for each box.
 
     ``bound`` is the error bound: infinite if there is none, -1 if the box holds no point of the region. ``obstacle`` is
     the node that prevents a finite bound, or -1. ``undecided`` is a condition that the box does not decide, or -1.
@@ -55,7 +55,7 @@ class Evaluation:
 
 @dataclass
 class _ErrorPass:
-    """The state of one pass over the nodes of a graph."""
+    """The state of one pass over the nodes of a graph, on a batch of boxes."""
 
     graph: OutputGraph
     boxes: Array  # (2, inputs, n)
@@ -129,7 +129,7 @@ def _constant_error(written: Fraction, precision: str, use_intended: bool) -> fl
 
 
 def _grid_step(state: _ErrorPass, index: int) -> Array:
-    """Return a power of two of which every value of a node is a multiple."""
+    """Return a power of two such that all values of a node are multiples of it."""
     node, value = state.graph.nodes[index], state.values[index]
     if node[0] == "const":
         above, below = abs(node[1].numerator), node[1].denominator
@@ -253,7 +253,7 @@ GAP_CELLS = 8192
 
 @cache
 def _gap_errors(own: OutputGraph, libm_ulp: float) -> tuple[Array, ...]:
-    """Return, for k = 0, 1, .., the largest errors of a gap function on 2^k neighbouring cells of [0, GAP_END]."""
+    """Return error bounds of a gap function, (x - sin x)/x^3 or similar, on 2^k cells of [0, GAP_END], for each k."""
     ends = np.linspace(0.0, GAP_END, GAP_CELLS + 1)
     boxes = np.stack([ends[:-1], ends[1:]])[:, None]
     sides = [evaluate(own, boxes, np.full((1, GAP_CELLS), side, np.int8), libm_ulp=libm_ulp).bound for side in (0, 1)]
@@ -297,7 +297,7 @@ def _choice(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[A
 
 
 def _truncation_error(precision: str) -> float:
-    """Return a bound of a series' truncation error, relative to its value; the proof of the C text verifies it."""
+    """Return a bound of a series' truncation error relative to its value, which the proof of the C text checks."""
     return 2.0 ** -(DIGITS[precision] + 2) * (1 + 2.0**-20)
 
 
@@ -454,7 +454,7 @@ def evaluate(
 
 
 def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array | None:
-    """Enclose the values of a node between exact and computed, and its computed values; return its rounding error."""
+    """Enclose the exact and the computed values of a node; return a bound of its rounding error."""
     value, error = FORWARD[node[0]](state, node, [state.values[i] for i in operand_places(node)])
     state.values.append(value)
     if state.centred is not None:

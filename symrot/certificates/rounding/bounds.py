@@ -75,7 +75,7 @@ class OutputBound:
 
 @dataclass(frozen=True)
 class BoundTask:
-    """The task to bound the error of one computation on one box; equal tasks of different kernels are done once."""
+    """A task: bound the error of one computation on one box. Equal tasks of different kernels are done once."""
 
     graph: OutputGraph
     low: tuple[float, ...]
@@ -86,7 +86,7 @@ class BoundTask:
 
     @property
     def key(self) -> str:
-        """The key of the task in the store, which equal tasks share."""
+        """The key under which the store holds the bound; equal tasks have equal keys."""
         numbers = {place: k for k, place in enumerate(self.graph.places)}
         groups = sorted(tuple(numbers.get(place, -1) for place in group) for group in self.region.unit)
         ends = [x.hex() for x in (*self.low, *self.high)]
@@ -127,7 +127,7 @@ def bound_tasks(
 
 
 def _outward(value: Fraction, direction: float) -> float:
-    """Return a value rounded to a float towards ``direction``, which is -inf or inf."""
+    """Return a fraction rounded to a float, downward or upward: ``direction`` is -inf or inf."""
     near = float(value)
     exact = Fraction(near)
     return near if exact == value or (exact < value) == (direction < 0) else nextafter(near, direction)
@@ -273,7 +273,7 @@ def rounding_section(
 
 
 def _section_head(box: Box, region: Region, budget: int, libm_ulp: float) -> dict[str, Any]:
-    """Return the part of a section that states the problem: assumptions, box, region and budget."""
+    """Return the first part of the section ``rounding``: assumptions, box, region and budget."""
     return {
         "meaning": MEANING, "assumptions": _assumptions(libm_ulp), "libm_ulp": float(libm_ulp).hex(), "budget": budget,
         "box": {place: [_outward(low, -inf).hex(), _outward(high, inf).hex()] for place, (low, high) in box.items()},
@@ -298,7 +298,7 @@ def _precision_part(operations: Operations, outputs: list[dict[str, Any]]) -> di
 
 
 def _alike(a: object, b: object) -> bool:
-    """Tell whether two values are the same JSON text, in which true and 1 differ."""
+    """Tell whether two values have the same JSON text; unlike ``==``, this tells true from 1."""
     return json.dumps(a, sort_keys=True) == json.dumps(b, sort_keys=True)
 
 
@@ -425,7 +425,9 @@ def _check_precision(
             raise CertificateError(f"{name}: expected a finite bound of {item['output']}, got {item['units']}")
         choices, safe = _choice_phrases(task), task.graph.contraction_safe
         if item["choices"] != choices or item["contraction_safe"] is not safe:
-            raise CertificateError(f"{name}: expected the choices of {item['output']} as they are in its operations")
+            raise CertificateError(
+                f"{name}: expected the same choices for {item['output']} as in the operations of the C text"
+            )
         if at.size and not ((task.box[0] <= at) & (at <= task.box[1])).all():
             raise CertificateError(f"{name}: expected a point of the box for {item['output']}, got another")
         least = error_at_point(task, at)

@@ -46,7 +46,7 @@ def library_section(name: str, source: str) -> Section | str:
 
 
 def library_region(name: str, source: str) -> Section:
-    """Return the entries of a kernel's section that do not depend on the box: region, error of libm, budget."""
+    """Return the entries of a kernel's section ``rounding`` besides box and bounds: region, libm error, budget."""
     region = library_problem(definition(name), operations_of(name, source)[0]).region
     return {
         "unit_groups": [list(group) for group in region.unit], "clearance": float(region.clearance).hex(),
@@ -69,7 +69,7 @@ def bounds_sentence(name: str, source: str) -> str:
 
 
 def _result_phrase(section: Section, name: str, units: list[str]) -> str:
-    """Return the largest errors of one result in both precisions."""
+    """Return a phrase with the largest errors of one result, in double and in float."""
     double, single = (
         rounded_up(max(
             Fraction(float.fromhex(each["absolute"]))
@@ -103,7 +103,7 @@ def region_of(section: Mapping[str, Any]) -> Region:
 
 
 def region_phrases(region: Region) -> list[str]:
-    """Return the restrictions of a region as phrases."""
+    """Return the restrictions of the inputs in a region as phrases of a sentence."""
     spare = f"2^{frexp(UNIT_NORM)[1] - 1}"  # exact: a rounded number would claim more than is proven
     phrases = [f"{', '.join(group)}: squares add up to 1, but for {spare}" for group in region.unit]
     if region.clearance:

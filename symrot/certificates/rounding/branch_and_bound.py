@@ -49,7 +49,7 @@ class SearchResult:
 
 @dataclass
 class _Parts:
-    """Sub-boxes of a search with their decided branches, bounds and obstacles."""
+    """The parts (sub-boxes) of a search: their decided branches, error bounds, and nodes that prevent a bound."""
 
     boxes: Array  # (2, inputs, n)
     decided: NDArray[np.int8]  # (conditions, n)
@@ -72,7 +72,7 @@ class _Parts:
 
 
 class _BoundSearch:
-    """One search for the largest error: the problem, and the largest error at a point so far."""
+    """A search for the largest rounding error on a box: the problem, and the largest error at a point so far."""
 
     def __init__(self, graph: OutputGraph, box: Array, region: Region, libm_ulp: float, centred: bool) -> None:
         self.centred = centred
@@ -109,7 +109,7 @@ class _BoundSearch:
         return Evaluation(*(np.concatenate([getattr(part, name) for part in chunks]) for name in _FIELDS))
 
     def parts(self, boxes: Array, decided: NDArray[np.int8]) -> _Parts:
-        """Return the boxes that hold points of the region, narrowed to it, with their bounds."""
+        """Return the boxes that hold points of the region, narrowed to the region, with their error bounds."""
         boxes = narrowed(boxes, self.region, self.graph.places)
         evaluation = self.evaluate(boxes, decided)
         inside = evaluation.bound >= 0
@@ -117,7 +117,7 @@ class _BoundSearch:
         return _Parts(boxes, decided, evaluation.bound, evaluation.obstacle, evaluation.undecided).take(inside)
 
     def look_at_points(self, parts: _Parts) -> None:
-        """Raise the lower bound of the largest error by evaluating the middle and the outermost corner of each part."""
+        """Evaluate the error at the middle and a corner of each part, a lower bound of the largest error."""
         low, high = parts.boxes
         outermost = np.where(np.abs(high) >= np.abs(low), high, low)
         points = np.concatenate([(low + high) / 2, outermost], axis=1)
@@ -134,7 +134,7 @@ class _BoundSearch:
             self.pointwise, self.worst = float(reached[best]), tuple(float(x) for x in points[:, best])
 
     def halves(self, parts: _Parts) -> tuple[Array, NDArray[np.int8]]:
-        """Return the boxes and decisions into which parts are split."""
+        """Split each part in two, or four; return the new boxes and their decided branches."""
         choosing = parts.undecided >= 0
         boxes, decided = [], []
         if choosing.any():
@@ -172,7 +172,7 @@ class _BoundSearch:
         return boxes
 
     def directions(self, parts: _Parts) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return for each part the input in which to halve it, and the one in which to halve the halves, or -1."""
+        """Return for each part the input in which to halve it, and a second input (or -1) for its halves."""
         relative = np.where(self.width[:, None] > 0, (parts.boxes[1] - parts.boxes[0]) / self.width[:, None], 0.0)
         widest = np.argmax(relative * np.where(parts.obstacle < 0, True, self.depends[parts.obstacle].T), axis=0)
         second = np.full_like(widest, -1)
@@ -184,7 +184,7 @@ class _BoundSearch:
     def best(
         self, parts: _Parts, relative: Array, otherwise: NDArray[np.int64]
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return for each part the input that lowers its bound most when its range is shrunk, and the second best.
+        """Return for each part the input whose range, when shrunk, lowers the bound most, and the second best input.
 
         The second best is -1 if it lowers the bound by no more than ``SECOND`` times the gain of the best.
         """
@@ -286,7 +286,7 @@ def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchR
 
 
 def _narrow(run: _BoundSearch, parts: _Parts) -> NDArray[np.bool_]:
-    """Tell which parts have no bound although they are almost a point in the inputs of the obstacle."""
+    """Tell which parts still have no error bound although they are almost as small as a point."""
     stuck = np.isinf(parts.bound) & (parts.obstacle >= 0) & (parts.undecided < 0)
     return stuck & (_spread(run, parts) < NARROWEST)
 
@@ -306,7 +306,7 @@ def _narrowest(run: _BoundSearch, parts: _Parts) -> tuple[tuple[float, ...], int
 
 
 def _result(run: _BoundSearch, parts: _Parts, settled: float) -> SearchResult:
-    """Return the result when the search ends with these parts unsettled."""
+    """Return the result of a search that ends with some parts unsettled."""
     bound = max(settled, float(parts.bound.max(initial=-1.0)), 0.0)
     pointwise, worst, obstacle = max(run.pointwise, 0.0), run.worst, -1
     if np.isinf(bound):

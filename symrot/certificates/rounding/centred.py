@@ -1,4 +1,4 @@
-"""Mean value forms: tighter enclosures of polynomials from the value at the middle of a box and derivatives on the box.
+"""Enclosures of polynomials by mean value forms, from the value at the middle of a box and derivatives on the box.
 
 Plain intervals of ``x*y - x*z`` ignore that both factors x are the same number. The mean value form
 ``f(c) + sum of f_k'(box)*(x_k - c_k)`` accounts for it, to first order in the width. The enclosed values are those
@@ -77,7 +77,7 @@ class CentredForms:
         )  # fmt: skip
 
     def close(self, node: Node, places: Sequence[int], error: Array | None) -> None:
-        """Store the form of a node with its own rounding error added."""
+        """Store the mean value form of a node, with the node's own rounding error added."""
         form = self.waiting
         inputs, count = self.middle.shape
         zero = np.zeros(count)

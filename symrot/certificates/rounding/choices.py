@@ -56,7 +56,7 @@ def narrow_to_branch(graph: OutputGraph, number: int, decision: NDArray[np.int8]
 
 
 def _narrow_ordered(nodes: Sequence[Node], i: int, j: int, here: NDArray[np.bool_], computed: list[Array]) -> None:
-    """Narrow the enclosures of two numbers on the boxes ``here``, where the first is at least the second."""
+    """Narrow the enclosures of two numbers on the boxes marked in ``here``, where the first is at least the second."""
     least, most = computed[j][0], computed[i][1]
     middle = _middle(nodes[i], nodes[j])
     if middle is not None:

@@ -71,7 +71,7 @@ def _sqrt(value: ExactRange) -> ExactRange:
 
 
 def _bounded_by_one(value: ExactRange) -> ExactRange:
-    """Return the range of a sine or cosine, [-1, 1], whatever its argument."""
+    """Return the range of a sine or cosine whose argument is unknown, [-1, 1]."""
     return ExactRange(Fraction(-1), Fraction(1))
 
 

@@ -86,7 +86,7 @@ def cosine(x: Array) -> Array:
 
 
 def _size(x: Array) -> Array:
-    """Return |x| for intervals x."""
+    """Return enclosures of |x| for intervals x."""
     size = np.abs(x)
     return np.stack([np.where(contains_zero(x), 0.0, size.min(axis=0)), size.max(axis=0)])
 
@@ -105,7 +105,7 @@ class _EvenFunction:
     crude: float
 
     def __call__(self, x: Array) -> Array:
-        """Return an enclosure of the function on intervals."""
+        """Return an enclosure of the even function on intervals."""
         size = _size(x)
         low = np.minimum(size, self.end)
         far = np.maximum(low, 2.0)

@@ -55,12 +55,12 @@ def contains_zero(a: Array) -> NDArray[np.bool_]:
 
 
 def negative(a: Array) -> Array:
-    """Return -a."""
+    """Return enclosures of -a."""
     return -a[::-1]
 
 
 def add(a: Array, b: Array) -> Array:
-    """Return a + b; ends that are computed exactly are not moved."""
+    """Return enclosures of a + b; an end that is computed exactly is not rounded outward."""
     total = a + b
     back = total - a
     error = (a - (total - back)) + (b - back)
@@ -75,7 +75,7 @@ def _short(a: Array) -> NDArray[np.bool_]:
 
 
 def multiply(a: Array, b: Array) -> Array:
-    """Return a * b; ends that are computed exactly are not moved."""
+    """Return enclosures of a * b; an end that is computed exactly is not rounded outward."""
     products = a[:, None] * b[None]
     exact = (_short(a)[:, None] & _short(b)[None]) & (np.abs(products) > TINY)
     exact |= (a == 0)[:, None] | (b == 0)[None]
@@ -90,7 +90,7 @@ def multiply_loosely(a: Array, b: Array) -> Array:
 
 
 def square(a: Array) -> Array:
-    """Return a^2; the lower end is never negative."""
+    """Return enclosures of a^2; the lower end is never negative."""
     size = np.abs(a)
     low = np.where(contains_zero(a), 0.0, size.min(axis=0))
     ends = np.stack([low, size.max(axis=0)])
@@ -101,7 +101,7 @@ def square(a: Array) -> Array:
 
 
 def divide(a: Array, b: Array) -> Array:
-    """Return a / b; infinite where b contains zero."""
+    """Return enclosures of a / b, infinite where b contains zero."""
     quotients = a[:, None] / b[None]
     exact = _short(quotients) & _short(b)[None] & (quotients * b[None] == a[:, None]) & (np.abs(quotients) > TINY)
     exact |= (a == 0)[:, None] & (b != 0)[None]
@@ -112,7 +112,7 @@ def divide(a: Array, b: Array) -> Array:
 
 
 def square_root(a: Array) -> Array:
-    """Return the square root of a; infinite where a contains negative numbers."""
+    """Return enclosures of the square root of a, infinite where a contains negative numbers."""
     roots = np.sqrt(np.maximum(a, 0.0))
     step = (roots * PHI + ETA) * ~(_short(roots) & (roots * roots == a))
     result = np.stack([np.maximum(roots[0] - step[0], 0.0), roots[1] + step[1]])

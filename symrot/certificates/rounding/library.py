@@ -1,4 +1,4 @@
-"""Rounding bounds of the kernels of the library: their boxes, a parallel search for all bounds, the largest box.
+"""Rounding error bounds of the library's kernels: their boxes, a parallel search, and the largest box for an error.
 
 :func:`library_problem` returns the box and region of a kernel. :func:`prepare` bounds many kernels in several
 processes, so that :func:`symrot.certificates.rounding.bounds.rounding_section` finds every bound in the store.
@@ -30,14 +30,14 @@ LARGEST = 2.0**10  # largest size that is tried, relative to the box of the kern
 
 @dataclass(frozen=True)
 class RoundingProblem:
-    """The box and the region on which a kernel is bounded, and the symbols of its inputs."""
+    """The problem to bound a kernel: its box, the region in the box, and the symbols of its inputs."""
 
     box: Mapping[str, tuple[Fraction, Fraction]]
     region: Region
     symbols: Mapping[str, str]  # place -> component, such as "angles[1]" -> "theta"
 
     def place(self, name: str) -> str:
-        """Return the place of an input from its place or symbol; raise InputError if there is no such input."""
+        """Return the place of an input, such as ``"q[1]"``, from its place or symbol; raise InputError for others."""
         for place, symbol in self.symbols.items():
             if name in (place, symbol):
                 return place
@@ -83,7 +83,7 @@ def prepare(
     kernels: Iterable[tuple[str, str]], workers: int = 2, budget: int = BUDGET, libm_ulp: float = LIBM_ULP,
     progress: Callable[[str], object] = lambda text: None, with_table: bool = True,
 ) -> int:  # fmt: skip
-    """Bound the outputs of kernels of the library, each computation once, and put the bounds in the store.
+    """Compute the error bounds of library kernels in several processes, each computation once, and store them.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def largest_box(
     low, high = 0.0, 1.0
     if not holds(low):
         raise InputError(
-            f"{operations.name}: expected a target that is reached in the middle of the box, got {target:g}"
+            f"{operations.name}: expected a target of at least the error in the middle of the box, got {target:g}"
         )
     while holds(high):
         low, high = high, 2 * high
@@ -172,5 +172,5 @@ def largest_box(
         middle = (low + high) / 2
         low, high = (middle, high) if holds(middle) else (low, middle)
     if not low:
-        raise InputError(f"{operations.name}: expected a target that a box of some size meets, got {target:g}")
+        raise InputError(f"{operations.name}: expected a target error that a box of some size meets, got {target:g}")
     return low, resized(box, low, chosen)

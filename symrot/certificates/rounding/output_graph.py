@@ -88,7 +88,7 @@ class OutputGraph:
 
     @cached_property
     def exact(self) -> tuple[bool, ...]:
-        """Whether each node is free of rounding errors: inputs, their signs and absolute values, short constants."""
+        """Whether each node has no rounding error: inputs, their signs and absolute values, short constants."""
         flags: list[bool] = []
         for node in self.nodes:
             kind = node[0]
@@ -125,12 +125,12 @@ class OutputGraph:
         return f"{node[0]}({', '.join(operands)})"
 
     def singular_operand(self, index: int) -> int:
-        """Return the node whose value can make a node infinite: a divisor, a radicand, or else the node itself."""
+        """Return the operand that can make a node infinite, such as a divisor or radicand; otherwise the node."""
         node = self.nodes[index]
         return int({"div": node[-1], "sqrt": node[-1]}.get(node[0], index))
 
     def text(self, index: int) -> str:
-        """Return a node as a short formula, for messages."""
+        """Return a node as a short formula for messages."""
         return self._text(index)
 
 
@@ -175,7 +175,7 @@ def _is_two_pi(node: Node) -> bool:
 
 
 class _GraphReader:
-    """Copies the operations on which one output depends into a graph."""
+    """A reader that copies the operations on which one output depends into an :class:`OutputGraph`."""
 
     def __init__(self, operations: Operations, leaf: int = -1) -> None:
         self.operations, self.leaf = operations, leaf  # the leaf becomes an input of the graph
@@ -188,14 +188,14 @@ class _GraphReader:
         self.root = -1  # the output of the graph inside a gap, which must not become a gap again
 
     def put(self, *node: Any) -> int:
-        """Return the index of a node of the graph; the node is added if it is new."""
+        """Return the index of a node in the graph; add the node if it is new."""
         if node not in self.known:
             self.known[node] = len(self.nodes)
             self.nodes.append(node)
         return self.known[node]
 
     def read(self, index: int) -> int:
-        """Return the index of the node that an operation becomes."""
+        """Return the index of the graph's node for an operation of the kernel."""
         if index not in self.done:
             self.done[index] = self._read(self.source[index], index)
         return self.done[index]
@@ -222,12 +222,14 @@ class _GraphReader:
             return self.put("select", self.conditions.index(condition), self.read(node[4]), self.read(node[5]))
         if kind == "call":
             if node[1] not in CALLS:
-                raise CertificateError(f"expected one of {', '.join(CALLS)} where an error is bounded, got {node[1]}")
+                raise CertificateError(
+                    f"expected a function whose error is known, one of {', '.join(CALLS)}, got {node[1]}"
+                )
             return self.put(node[1], *(self.read(i) for i in node[2]))
         return self.put(kind, *(self.read(i) for i in operands(node)))
 
     def squares(self, index: int, depth: int = 0) -> list[tuple[int, int]] | None:
-        """Return the terms of a sum of squares, each with its number of roundings; None for any other node."""
+        """Return the terms of a sum of squares, each with its number of roundings; None for other nodes."""
         node = self.source[index]
         if node[0] == "mul" and node[1] == node[2]:
             return [(node[1], depth + 1)]
@@ -238,7 +240,7 @@ class _GraphReader:
 
 
 def _norm(reader: _GraphReader, node: Node) -> int | None:
-    """Return the node ``norm`` for the root of a sum of squares, or None for any other node."""
+    """Return the node ``norm`` if the operation is the root of a sum of squares, otherwise None."""
     squares = reader.squares(node[1]) if node[0] == "sqrt" else None
     if not squares:
         return None
@@ -246,7 +248,7 @@ def _norm(reader: _GraphReader, node: Node) -> int | None:
 
 
 def _at_zero(reader: _GraphReader, node: Node) -> tuple[Node, Node] | None:
-    """Return both branches of ``x == 0 ? limit : y/x``; None for any other node."""
+    """Return both branches if the operation is ``x == 0 ? limit : y/x``, otherwise None."""
     if node[0] != "select" or node[1] != "==" or reader.source[node[3]] != ("const", Fraction(0)):
         return None
     then, other = reader.source[node[4]], reader.source[node[5]]
@@ -254,7 +256,7 @@ def _at_zero(reader: _GraphReader, node: Node) -> tuple[Node, Node] | None:
 
 
 def _sinc(reader: _GraphReader, node: Node) -> int | None:
-    """Return the node ``sinc`` for ``x == 0 ? 1 : sin(x)/x``, or None for any other node."""
+    """Return the node ``sinc`` if the operation is ``x == 0 ? 1 : sin(x)/x``, otherwise None."""
     branches = _at_zero(reader, node)
     if not branches or branches[0] != ("const", Fraction(1)):
         return None
@@ -264,7 +266,7 @@ def _sinc(reader: _GraphReader, node: Node) -> int | None:
 
 
 def _arc_ratio(reader: _GraphReader, node: Node) -> int | None:
-    """Return the node ``arc_ratio`` for ``s == 0 ? 1/c : atan2(s, c)/s``, or None for any other node."""
+    """Return the node ``arc_ratio`` if the operation is ``s == 0 ? 1/c : atan2(s, c)/s``, otherwise None."""
     branches = _at_zero(reader, node)
     if not branches or branches[0][0] != "div" or reader.source[branches[0][1]] != ("const", Fraction(1)):
         return None
@@ -295,7 +297,7 @@ def _at_origin(reader: _GraphReader, index: int, square: int) -> Fraction | None
 
 
 def _gap(reader: _GraphReader, node: Node) -> int | None:
-    """Return the node ``gap`` for a choice between a series and a formula, or None for any other node."""
+    """Return the node ``gap`` if the operation is a choice between a series and its formula, otherwise None."""
     if node[0] != "select" or node[1] != "<" or reader.source[node[2]][0] != "mul":
         return None
     leaf, other = reader.source[node[2]][1:]

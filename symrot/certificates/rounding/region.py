@@ -1,4 +1,4 @@
-"""Restrictions of the inputs in a box, such as a quaternion of unit norm, and the part of a box that satisfies them.
+"""Regions: restrictions of the inputs in a box, such as a quaternion of unit norm.
 
 For a unit quaternion in a box, the ranges of three components limit the fourth, because the squares sum to 1.
 Halving a box in three components therefore narrows the fourth as well.
@@ -34,7 +34,7 @@ EVERYWHERE = Region()
 
 
 def _numbers(region: Region, places: Sequence[str]) -> list[list[int]]:
-    """Return for each unit group the numbers of its inputs, as far as they are among some places."""
+    """Return, for each group of inputs with unit norm, the indices of its inputs within a list of places."""
     return [[places.index(place) for place in group if place in places] for group in region.unit]
 
 
@@ -70,7 +70,7 @@ def narrowed(boxes: Array, region: Region, places: Sequence[str]) -> Array:
 
 
 def _left_by(others: Sequence[Array], count: int) -> tuple[Array, Array]:
-    """Return the least and largest absolute value of a number whose square and those of others sum to 1."""
+    """Return the least and the largest |x| for which x^2 and the squares of some other numbers sum to 1."""
     rest = intervals.point(1.0, count) + np.array([[-UNIT_NORM], [UNIT_NORM]])
     for other in others:
         rest = intervals.add(rest, intervals.negative(intervals.square(other)))

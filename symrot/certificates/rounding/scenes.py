@@ -39,7 +39,7 @@ class SceneInputs:
 
     @property
     def components(self) -> dict[str, tuple[str, str]]:
-        """The symbol and unit of each place, such as ``"y[0]"``."""
+        """The symbol and unit of each input, by place such as ``"y[0]"``."""
         return {
             (each.name if each.is_scalar else f"{each.name}[{i}]"): component[:2]
             for each in self.arguments
@@ -88,6 +88,6 @@ def header_lines(inputs: SceneInputs, section: Mapping[str, Any]) -> tuple[tuple
 
 
 def _range(low: float, high: float) -> str:
-    """Return a range as text."""
+    """Return a range of numbers as text, ``low .. high``."""
     low_text, high_text = (repr(value).removesuffix(".0") for value in (low, high))
     return f"= {low_text}" if low == high else f"in [{low_text}, {high_text}]"

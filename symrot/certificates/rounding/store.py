@@ -26,14 +26,14 @@ _NUMBERS = ("bound", "pointwise", "largest_value")
 
 @cache
 def method() -> str:
-    """Return the SHA-256 of the sources of the bounding method; bounds of another method are not used."""
+    """Return the SHA-256 of the sources of the bounding method; stored bounds of another version are not used."""
     here = Path(__file__).parent
     return hashlib.sha256(b"".join((here / f"{name}.py").read_bytes() for name in _METHOD)).hexdigest()
 
 
 @cache
 def table() -> Mapping[str, Any]:
-    """Return the table that comes with symrot: ``method``, the hash of its method, and ``bounds``, key -> bound."""
+    """Return the table of bounds that comes with symrot, with the hash of the method that computed them."""
     try:
         return dict(json.loads(TABLE.read_text(encoding="utf-8")))
     except OSError:
@@ -41,7 +41,7 @@ def table() -> Mapping[str, Any]:
 
 
 def printed_table(bounds: Iterable[tuple[str, SearchResult]]) -> str:
-    """Return the text of a table of bounds: one bound a line, in the order of their keys."""
+    """Return the text of a table of bounds, one bound a line, in the order of their keys."""
     rows = [f'  "{key}": {json.dumps(_to_json(bound))}' for key, bound in sorted(dict(bounds).items())]
     return f'{{\n "method": "{method()}",\n "bounds": {{\n' + ",\n".join(rows) + "\n }\n}\n"
 
@@ -57,7 +57,7 @@ def _from_json(plain: Mapping[str, Any]) -> SearchResult:
 
 
 class Store:
-    """Bounds by key, in memory, in the table and in the cache."""
+    """A store of rounding error bounds by key: in memory, in the table of symrot and in the cache."""
 
     def __init__(self) -> None:
         self.memory: dict[str, SearchResult] = {}

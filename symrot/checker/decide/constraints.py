@@ -131,7 +131,7 @@ def constraints_of(ring: FormulaRing) -> Constraints:
 
 
 def _free_angles(ring: FormulaRing) -> Iterator[int]:
-    """Yield the sines and cosines of angles that can have any value, whatever the values of the symbols.
+    """Yield the sine and cosine of each angle that may have any value, independent of all other symbols.
 
     Such an angle is proportional to a symbol, or a function of time, that occurs nowhere else. Its time derivatives may
     occur, since at one instant they are independent of the value of the function.

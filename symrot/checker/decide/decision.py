@@ -377,7 +377,7 @@ def _degree(node: Expr, known: dict[Expr, int]) -> int:
 
 
 def _multiple(argument: Expr) -> int:
-    """Return, at least roughly, the number of base angles whose sum is the argument of a sine."""
+    """Return, roughly, how many base angles add up to the argument of a sine."""
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
         number, atom = term.as_coeff_Mul()
@@ -426,7 +426,7 @@ def _branches(
 
 
 def _obstacle(ring: FormulaRing) -> str:
-    """Return the reason why no decision was reached."""
+    """Return a sentence that says why a claim could not be decided."""
     if ring.outside_scope:
         named = ring.outside_scope[:3]
         terms = ", ".join(f"functions of {as_text(term)}" if term.is_Rational else as_text(term) for term in named)

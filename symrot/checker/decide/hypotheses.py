@@ -45,7 +45,7 @@ OTHER_VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1)
 
 
 class Hypotheses:
-    """The hypotheses of one decision.
+    """The hypotheses of one claim, with methods that find points where they hold or prove that there are none.
 
     Parameters
     ----------
@@ -229,7 +229,7 @@ class Hypotheses:
     def near_witness(
         self, ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
     ) -> Counterexample | None:
-        """Return a counterexample among the first few points, as :meth:`witness` does among all."""
+        """Return a counterexample among the first few points that obey the hypotheses, or None."""
         return self.witness(ring, left, right, entry, FEW)
 
     def witness(
@@ -268,7 +268,7 @@ class Hypotheses:
         return point.number(above / below)
 
     def _parts(self, side: Expr) -> tuple[PolyElement, PolyElement]:
-        """Return the numerator and denominator of a side."""
+        """Return the numerator and the denominator of a side of the claim."""
         ratio, target = self.ring.ratio(side), self.constraints.ring
         return ratio.numerator.set_ring(target), self.ring.ratios.denominator(ratio).set_ring(target)
 

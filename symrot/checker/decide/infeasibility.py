@@ -32,7 +32,7 @@ MOST_PRODUCTS = 150_000
 
 
 class _Undecided(Exception):
-    """Raised for a case that could not be proven impossible."""
+    """An exception for a case that could not be proven impossible."""
 
 
 @dataclass(frozen=True)

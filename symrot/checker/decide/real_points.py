@@ -43,7 +43,7 @@ second, one of norm 64 six seconds.
 
 
 class _DeadEnd(Exception):
-    """Raised if the choices so far lead to no point."""
+    """An exception for a drawing of a point whose choices so far allow no point."""
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ def _allowed(constraints: Constraints, place: int, value: Any, field: Any) -> bo
 
 
 class _Drawing:
-    """One attempt: equations that are left, values so far, and unknowns that are solved as fractions of others."""
+    """One attempt to find a point: the equations left to solve, the values so far, and the solved unknowns."""
 
     def __init__(self, constraints: Constraints, source: Random, algebraic: bool, known: dict[Any, Any]) -> None:
         self.constraints, self.source, self.algebraic, self.known = constraints, source, algebraic, known

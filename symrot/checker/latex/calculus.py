@@ -12,7 +12,7 @@ DOTS = {"\\dot": 1, "\\ddot": 2, "\\dddot": 3}
 
 
 class CalculusPart(NamesPart):
-    """The part of the checker's interpreter for functions and calculus."""
+    """The methods of the LaTeX reader that read functions, roots, fractions, derivatives and integrals."""
 
     def trigonometric(self, function: tree.Node) -> Node:
         power = None

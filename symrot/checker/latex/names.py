@@ -18,7 +18,7 @@ NAME_MARKS = {"\\bar": "_bar", "\\tilde": "_tilde", "\\overline": "_bar", "\\wid
 
 
 class NamesPart(SumsPart):
-    """The part of the checker's interpreter for names, and for functions that are called by name."""
+    """The methods of the LaTeX reader that read names, and functions that are called by name."""
 
     def letter(self, item: tree.Node) -> Node:
         return self.named(item.text.removeprefix("\\"), item)
@@ -135,7 +135,7 @@ class NamesPart(SumsPart):
         return self.inside(tree.Row((*items, *scripts), inside.start, self.peek().start), read)
 
     def symbol(self, ending: str = "") -> Node:
-        """Read a letter, a number or a command, with an ending, or a symbol with a mark of its own."""
+        """Read a letter, a number or a command, or a symbol with a mark such as a hat."""
         item = self.next()
         if item.text in VECTOR_MARKS and not ending:  # \\hat{\\mathbf n}
             return self.base(item)

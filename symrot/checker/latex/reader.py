@@ -20,7 +20,7 @@ __all__ = ["Names", "Reading", "read_latex", "read_latex_formula"]
 
 @dataclass(frozen=True)
 class Reading:
-    """An equation with its text in the language of claims."""
+    """An equation read from LaTeX, with its text in the language of claims."""
 
     relation: Relation
     text: str
@@ -85,7 +85,7 @@ def _timed(node: Node, names: Collection[str]) -> Node:
 
 
 class _Interpreter(CalculusPart):
-    """The whole interpreter."""
+    """The complete LaTeX reader, put together from its parts."""
 
     readers: ClassVar[Mapping[str, Callable[[Any, Any], Node]]] = {
         "letter": CalculusPart.letter,

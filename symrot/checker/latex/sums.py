@@ -32,7 +32,7 @@ ENDS = frozenset(
 
 
 class SumsPart(Cursor):
-    """The part of the checker's interpreter for sums, products, powers, brackets and matrices."""
+    """The methods of the LaTeX reader that read sums, products, powers, brackets and matrices."""
 
     readers: ClassVar[Mapping[str, Callable[[Any, Any], Node]]] = {}
     """Kind or text of an item -> the method of a further part that reads it."""
@@ -71,7 +71,7 @@ class SumsPart(Cursor):
         return negated(left) if negative else left
 
     def run(self) -> Node:
-        """Read factors side by side, with slashes: ``\\frac12 m v^2``, ``a/b``, ``1/2 m``."""
+        """Read factors side by side, with slashes, as in ``a/b`` or ``1/2 m``."""
         factors = [self.factor()]
         divided: tree.Node | None = None
         while True:

@@ -30,7 +30,7 @@ Values = tuple[int, ...]
 
 
 class NotInField(Exception):
-    """Raised if a formula has no value in the field, at a point or at all."""
+    """An exception for a formula that has no value in the finite field, at a point or at all."""
 
 
 def values_at(entries: Sequence[Expr], point: Mapping[Expr, int]) -> Values:

@@ -235,7 +235,7 @@ def _is_usual(mine: Expr, own: Expr) -> bool:
 
 
 def _alike(mine: str, other: str) -> bool:
-    """Return whether two texts name one thing: ``phi`` and ``phi(t)``, ``dphi`` and ``diff(phi(t), t)``."""
+    """Tell whether two texts are names of one thing, such as ``dphi`` and ``diff(phi(t), t)``."""
     return other in (mine, f"{mine}(t)") or (mine.startswith("d") and other == f"diff({mine[1:]}(t), t)")
 
 

@@ -16,7 +16,7 @@ __all__ = [
 
 
 class UndefinedValue(ValueError):
-    """Raised for a tree without a value: shapes that do not fit, a root of a negative number, an unknown name."""
+    """An exception for a formula without a value, such as the root of a negative number or an unknown name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +96,7 @@ def absolute(x: Any) -> Any:
 
 
 def plain(x: Any) -> float:
-    """Return the real number in a dual number of any depth."""
+    """Return the real part of a number that may be a dual number of any depth."""
     while isinstance(x, Dual):
         x = x.value
     return float(x)

@@ -90,7 +90,7 @@ class Edit:
 
 
 def neighbours(name: str, names: Collection[str]) -> list[str]:
-    """Return the names that are easily confused with a name: other indices, other case, the same family."""
+    """Return the names with which a name is easily confused: other indices, other case, the same family."""
     family = next((set(members) for members in FAMILIES if name in members), set())
     match = _STEM.fullmatch(name)
     stem = match and match[1]
@@ -137,7 +137,7 @@ def single_edits(
 
 
 def _put(tree: Node, path: Path, made: Node) -> Node:
-    """Return a tree with a piece replaced; signs move in front of products, terms join the sum around them."""
+    """Return a tree in which a piece is replaced, with signs and sums brought to the usual form."""
     if path and made.kind in ("neg", "sum", "product"):
         *above, place = path
         return replaced(tree, tuple(above), lambda node: _regrouped(node, place, made))
@@ -352,7 +352,7 @@ def _substituted(tree: Node, old: Node, new: Node, inside: Collection[str] | Non
 
 
 def _rebuilt(node: Node) -> Node:
-    """Return a node with signs in front, as the reader makes it."""
+    """Return a node with its signs moved to the front, as the reader of claims writes it."""
     if node.kind == "product":
         return product(list(node.args), node.span)
     if node.kind == "neg":

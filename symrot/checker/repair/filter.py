@@ -44,7 +44,7 @@ class Candidate(NamedTuple):
 
 
 class NumericFilter:
-    """A claim at points that obey its hypotheses, with the values of its sides after changes of its trees."""
+    """A fast test of repairs: the claim is evaluated at points that obey its hypotheses, after changes of its trees."""
 
     def __init__(self, claim: Claim) -> None:
         assert claim.relation is not None
@@ -256,7 +256,7 @@ def is_nontrivial(tree: Node) -> bool:
 
 
 def at(tree: Node, path: Sequence[int]) -> Node | None:
-    """Return the piece at a path, or None if the path leaves the tree."""
+    """Return the piece of a tree at a path, or None if the tree has no such path."""
     for place in path:
         if place >= len(tree.args):
             return None

@@ -38,7 +38,7 @@ def is_matrix(value: Any) -> bool:
 
 
 def entries_of(value: Any) -> list[float]:
-    """Return the entries of a value row by row, as numbers."""
+    """Return the entries of a scalar or matrix, row by row."""
     return [plain(entry) for row in value for entry in row] if is_matrix(value) else [plain(value)]
 
 
@@ -53,7 +53,7 @@ def mapped(function: Callable[[Any], Any], value: Any) -> Any:
 
 
 def plus(left: Any, right: Any) -> Any:
-    """Return the sum; raise UndefinedValue if the shapes differ."""
+    """Return the sum of two scalars or matrices; raise UndefinedValue if their shapes differ."""
     if shape_of(left) != shape_of(right):
         raise UndefinedValue("shapes in a sum")
     if is_matrix(left):
@@ -62,7 +62,7 @@ def plus(left: Any, right: Any) -> Any:
 
 
 def times(left: Any, right: Any) -> Any:
-    """Return the product, of scalars or matrices."""
+    """Return the product of two scalars or matrices."""
     if not is_matrix(left):
         return mapped(lambda entry: left * entry, right)
     if not is_matrix(right):
@@ -109,7 +109,7 @@ def determinant(rows: Rows) -> Any:
 
 
 def inverted(rows: Rows) -> Rows:
-    """Return the inverse, by minors."""
+    """Return the inverse of a matrix, computed by minors."""
     below = inverse(determinant(rows))
     size = range(len(rows))
     if len(rows) == 1:
@@ -124,7 +124,7 @@ def inverted(rows: Rows) -> Rows:
 
 
 def column(values: Sequence[Any]) -> Rows:
-    """Return a column."""
+    """Return a column vector with the given entries."""
     return tuple((value,) for value in values)
 
 

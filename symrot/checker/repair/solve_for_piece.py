@@ -45,7 +45,7 @@ Values = tuple[float, ...]
 
 @dataclass(frozen=True)
 class Entry:
-    """A product of pieces of the claim, with its values at the points."""
+    """A product of symbols and functions of the claim, with its values at the points."""
 
     factors: tuple[Node, ...]
     values: Values
@@ -236,7 +236,7 @@ def _flattened(node: Node) -> Node:
 
 
 def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: Values) -> Values | None:
-    """Return the values that the unknown in a piece needs at the points; None if there are none."""
+    """Return the values that a piece must have at the points for the claim to hold, or None."""
     tree = replaced(numeric.tree_at(place), path, lambda _: made)
     if place not in SIDES and not numeric.sensible(place, tree):
         return None

@@ -33,7 +33,7 @@ Rows = tuple[tuple[Any, ...], ...]
 
 
 class Unreadable(Exception):
-    """Raised for shapes that do not fit, or for a piece without a known dimension."""
+    """An exception for shapes that do not fit, or for a piece of a formula without a known dimension."""
 
 
 @dataclass
@@ -95,7 +95,7 @@ class UnitInference:
         self.values[name] = value
 
     def relation(self, left: Node, right: Node, what: str) -> None:
-        """Demand that two sides have one dimension."""
+        """Require that the two sides of an equation have one dimension."""
         values: list[Value] = []
         for node, side in ((left, "left"), (right, "right")):
             self.place = f"in {what}" if what else f"on the {side} side"
@@ -154,7 +154,7 @@ class UnitInference:
     # -- equations --------------------------------------------------------------------------------------------------
 
     def same(self, first: Value, second: Value, words: str) -> Value:
-        """Demand that two values have one dimension, entry by entry, and return it."""
+        """Require that two values have one dimension, entry by entry, and return this dimension."""
         if isinstance(first, tuple) or isinstance(second, tuple):
             return self.same_matrices(first, second, words)
         if first is ZERO or second is ZERO:
@@ -187,7 +187,7 @@ class UnitInference:
         )
 
     def plain(self, value: Value, words: str) -> Dimension:
-        """Demand that a scalar has no dimension."""
+        """Require that a scalar is a number without a dimension."""
         if isinstance(value, tuple):
             raise Unreadable
         self.same(value, NOTHING, words)
