@@ -30,12 +30,13 @@ from symrot.kernels.removable import REMOVABLE
 __all__ = ["audit", "load_certificate"]
 
 LARGEST = 16_000_000  # bytes of the largest certificate that is read
-PARTS: dict[str, Any] = {  # section of a certificate -> its type
+PARTS: dict[str, type] = {  # section of a certificate -> its type
     "schema": str, "kernel": str, "title": str, "regenerate": str, "convention": str, "domain": str, "derivation": str,
-    "files": dict, "inputs": list, "spec": dict, "coq": (dict, type(None)), "flags": dict, "trusted": dict,
-    "laws": list, "readback": dict, "rounding": (dict, type(None)), "objects": (dict, type(None)), "seal": str,
+    "files": dict, "inputs": list, "spec": dict, "coq": dict, "flags": dict, "trusted": dict,
+    "laws": list, "readback": dict, "rounding": dict, "objects": dict, "seal": str,
 }  # fmt: skip
 OPTIONAL = ("rounding", "objects")
+NULLABLE = ("coq", *OPTIONAL)  # sections that may be null
 
 
 def load_certificate(path: Path) -> Data:
@@ -66,9 +67,10 @@ def load_certificate(path: Path) -> Data:
     for name, kind in PARTS.items():
         if name not in data and name not in OPTIONAL:
             raise CertificateError(f"{path}: expected the section {name!r} in a certificate, but it is missing")
-        if name in data and not isinstance(data[name], kind):
+        if name in data and not (isinstance(data[name], kind) or (data[name] is None and name in NULLABLE)):
+            expected = f"{kind.__name__} or null" if name in NULLABLE else kind.__name__
             raise CertificateError(
-                f"{path}: expected {name!r} to be of type {kind.__name__}, got {type(data[name]).__name__}"
+                f"{path}: expected {name!r} to be of type {expected}, got {type(data[name]).__name__}"
             )
     unknown = sorted(set(data) - set(PARTS))
     if unknown:

@@ -11,8 +11,10 @@ import pytest
 
 import symrot
 from symrot.certificates import recheck
+from symrot.certificates.audit import load_certificate
 from symrot.certificates.certificate import certificate_json
 from symrot.cli import main as cli
+from symrot.errors import CertificateError
 
 KERNELS = Path(symrot.__file__).parents[1] / "generated" / "c"
 PAIRS = [
@@ -120,3 +122,18 @@ def test_a_strange_value_anywhere_in_a_certificate_gets_one_sentence(name, seed,
         except Exception as reason:
             assert "\n" not in str(reason)
     assert refused > 0.75 * count
+
+
+def test_a_section_of_another_type_is_named_with_the_expected_one(tmp_path):
+    """For every section, those that may be null included; null itself is refused in the others."""
+    data = json.loads((KERNELS / "mrp_shadow.cert.json").read_text(encoding="utf-8"))
+    path = tmp_path / "mrp_shadow.cert.json"
+    for name in data:
+        for strange in (7, None):
+            if strange is None and name in ("coq", "rounding", "objects"):
+                continue
+            path.write_text(json.dumps({**data, name: strange}), encoding="utf-8")
+            with pytest.raises(
+                CertificateError, match=f"expected '{name}' to be of type .*, got {type(strange).__name__}"
+            ):
+                load_certificate(path)
