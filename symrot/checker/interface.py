@@ -7,7 +7,15 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from symrot.checker.claim.claims import Claim, Refusal, claim_of_text, named_formula, read_entries, relation_text
+from symrot.checker.claim.claims import (
+    Claim,
+    Refusal,
+    claim_of_text,
+    is_latex,
+    named_formula,
+    read_entries,
+    relation_text,
+)
 from symrot.checker.claim.size import MOST_NESTED, nesting
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import Equation, decide_equation
@@ -104,7 +112,13 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
             raise InputError("expected the whole claim 'left == right' as one text, got two arguments")
         if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
             raise InputError("assume: expected a list of texts like 'a == b' with a claim as text")
-        return check_claim(claim_of_text(left, assume, units or {}), repair)
+        if is_latex(left):
+            return _on_latex(left, assume, units, repair)
+        from symrot.checker.text import verdict_on_text
+
+        return verdict_on_text(left, assume, units, repair)
+    if right is None and getattr(left, "rel_op", "") == "==":
+        left, right = left.args
     if right is None:
         raise InputError("expected two sides, or one text 'left == right'")
     for side in (left, right):
@@ -119,6 +133,12 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
         decision = _unfinished()
     verdict = _verdict(decision, f"{as_text(left)} == {as_text(right)}", start)
     return replace(verdict, dimension=dimensions_of_formulas(left, right, units))
+
+
+def _on_latex(source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool) -> Verdict:
+    claim = claim_of_text(source, assume, units or {})
+    verdict = check_claim(claim, repair)
+    return replace(verdict, notes=(*claim.notes, *verdict.notes))
 
 
 def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:

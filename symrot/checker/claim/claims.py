@@ -13,7 +13,7 @@ from sympy import Expr, Symbol
 
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.interpreter import CONSTANTS, Interpreter, time
-from symrot.checker.claim.reader import Relation, read_expression, read_relation
+from symrot.checker.claim.reader import Declared, Reading, Relation, read_expression, read_relation
 from symrot.checker.claim.scope import Divisor, is_matrix
 from symrot.checker.claim.tree import Node, text, walk
 from symrot.checker.decide.decision import Equation
@@ -23,8 +23,8 @@ from symrot.errors import InputError
 from symrot.exact.decision import ShapeMismatch, matched_sides
 
 __all__ = [
-    "Claim", "Definitions", "NamedFormula", "Refusal", "claim_of_text", "named_formula", "read_claims", "read_entries",
-    "relation_text",
+    "Claim", "Definitions", "NamedFormula", "Refusal", "claim_of_relation", "claim_of_text", "claims_of_reading",
+    "is_latex", "letters_of_quantities", "named_formula", "read_claims", "read_entries", "relation_text",
 ]  # fmt: skip
 
 
@@ -74,6 +74,8 @@ class Claim:
         The texts that were read, by key, for error messages.
     units : mapping
         Units by name.
+    notes : tuple of str
+        Sentences about how the text is read.
     """
 
     id: str = ""
@@ -89,6 +91,7 @@ class Claim:
     implied: bool = False
     sources: Mapping[str, str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
     @property
     def text(self) -> str:
@@ -201,8 +204,8 @@ def _assumed(hypotheses: Sequence[Relation], sign: str) -> set[str]:
     return names
 
 
-def _hypothesis(source: str, where: str) -> Relation:
-    relation = read_relation(source, where)
+def _hypothesis(source: str, where: str, declared: Declared | None = None) -> Relation:
+    relation = read_relation(source, where, declared)
     if relation[0] in ("==", "!=") or _assumed([relation], ">") or _assumed([relation], ">="):
         return relation
     raise InputError(f"{where}: expected a hypothesis like a == b, a != b, or x > 0 for a symbol x, got {source!r}")
@@ -212,22 +215,135 @@ def claim_of_text(source: str, assume: Sequence[str] = (), units: Mapping[str, s
     """Return the claim of a text ``left == right``; text with a backslash, a brace or a dollar sign is LaTeX.
 
     Its names are real symbols, or functions of time if they are written ``f(t)``; so are the names in hypotheses.
+    A text with two readings is refused; :func:`claims_of_reading` is for those.
     """
     hypotheses = tuple(_hypothesis(text, "given") for text in assume)
-    if isinstance(source, str) and _is_latex(source):
+    if isinstance(source, str) and is_latex(source):
         source = read_latex(source, names=Names(functions=_functions_of_time(hypotheses))).text
-    relation = read_relation(source)
+    return claim_of_relation(read_relation(source), source, assume, units)
+
+
+def claim_of_relation(
+    relation: Relation, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None,
+    define: Sequence[tuple[str, Node]] = (), notes: Sequence[str] = (), context: Sequence[Node] = (),
+) -> Claim:  # fmt: skip
+    """Return the claim of an equation that was read from a text.
+
+    ``define`` are definitions that the text makes before, ``context`` the other formulas of the text.
+
+    Raises
+    ------
+    InputError
+        For a relation that is no equation, and for units of names that the claim does not have.
+    """
     if relation[0] != "==":
         raise InputError(f"expected a claim with '==', got '{relation[0]}' in {source[:60]!r}")
+    hypotheses = tuple(_hypothesis(text, "given") for text in assume)
     sources = {"claim": source.strip(), **{f"given.{n}": text for n, text in enumerate(assume)}}
+    sources |= {f"define.{n}": source for n in range(len(define))}
+    trees = [
+        *relation[1:],
+        *(side for hypothesis in hypotheses for side in hypothesis[1:]),
+        *(tree for _, tree in define),
+        *context,
+    ]
+    letters = letters_of_quantities(trees)
     used = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind in ("name", "call")}
     return Claim(
         relation=relation,
+        symbols=letters,
+        define=tuple(define),
         hypotheses=hypotheses,
         implied=True,
         sources=sources,
         units=_units(dict(units or {}), used, "claim"),
+        notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
+
+
+OTHER_MEANINGS = {"I": "the imaginary unit", "E": "the number e = 2.718.."}
+"""Letters that name a quantity in books on mechanics, and a number in SymPy -> the number in words."""
+
+USUAL_QUANTITIES = frozenset("mMgGhlLrRvFkTVUKJHNpqsabdcw")
+
+
+def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
+    """Return the letters I and E of trees in which they are quantities, an inertia and an energy.
+
+    They are, next to another name that books on mechanics use, unless they are where only a number makes sense: inside
+    of exp, log or a trigonometric function, or as the factor of nothing but a sine.
+    """
+    nodes = [node for tree in trees for _, node in walk(tree)]
+    names = {
+        str(node.value) for node in nodes if node.kind == "name" or (node.kind == "call" and node.value not in BUILT_IN)
+    }
+    others = names - set(OTHER_MEANINGS)
+    if not any(
+        name in USUAL_QUANTITIES or (len(name) > 1 and name not in ("pi", "theta", "phi", "psi")) for name in others
+    ):
+        return ()
+    letters = []
+    for letter in OTHER_MEANINGS:
+        used = [node for node in nodes if (node.kind, node.value) == ("name", letter)]
+        inside = [node for call in nodes if call.kind == "call" and call.value in BUILT_IN and call.value not in
+                  ("sqrt", "abs", "diff", "integrate", "Matrix", "diag") for _, node in walk(call)]  # fmt: skip
+        waves = [node for node in nodes if node.kind == "product" and _is_imaginary(node, letter)]
+        if used and not waves and not any((node.kind, node.value) == ("name", letter) for node in inside):
+            letters.append(letter)
+    return tuple(letters)
+
+
+def _is_imaginary(product: Node, letter: str) -> bool:
+    """Return whether a product has only the letter, numbers, and sines: I*sin(theta)."""
+    others = [factor for factor in product.args if (factor.kind, factor.value) != ("name", letter)]
+    pure = all(
+        factor.kind == "number" or (factor.kind == "call" and factor.value in ("sin", "cos", "sinh"))
+        for factor in others
+    )
+    return len(others) < len(product.args) and pure and any(factor.kind == "call" for factor in others)
+
+
+def claims_of_reading(
+    reading: Reading, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None
+) -> list[list[Claim]]:
+    """Return the claims of a text, line by line, and link by link of a chain ``a = b = c``.
+
+    A line that only gives a name to a formula is a definition for the lines after it.
+    """
+    define: list[tuple[str, Node]] = []
+    lines = []
+    names = {str(n.value) for chain in reading.lines for side in chain.sides for _, n in walk(side)}
+    _units(dict(units or {}), names, "claim")
+    context = [side for chain in reading.lines for side in chain.sides]
+    for chain in reading.lines:
+        links = chain.links
+        if len(links) > 1 and set(chain.signs) != {"=="}:
+            raise InputError(f"expected a chain of equals signs, got {' '.join(chain.signs)!r} in {source[:60]!r}")
+        used = {str(n.value) for side in chain.sides for _, n in walk(side) if n.kind in ("name", "call")}
+        known = _needed(define, used)
+        claims = []
+        for link in links:
+            in_link = {str(n.value) for side in link[1:] for _, n in walk(side)}
+            own = {name: unit for name, unit in (units or {}).items() if name in in_link}
+            claims.append(claim_of_relation(link, source, assume, own, known, reading.notes, context))
+        lines.append(claims)
+        first = chain.sides[0]
+        reserved = ("pi", "t", *(name for name, _ in define))
+        is_name = first.kind == "name" and chain.signs[0] == "==" and first.value not in reserved
+        if is_name and first not in [node for _, node in walk(chain.sides[1])]:
+            define.append((str(first.value), chain.sides[1]))
+    return lines
+
+
+def _needed(define: Sequence[tuple[str, Node]], used: set[str]) -> list[tuple[str, Node]]:
+    """Return the definitions that names need, and those that these need, in order."""
+    needed: list[tuple[str, Node]] = []
+    names = set(used)
+    for name, tree in reversed(define):
+        if name in names:
+            needed.insert(0, (name, tree))
+            names |= {str(node.value) for _, node in walk(tree) if node.kind == "name"}
+    return needed
 
 
 class NamedFormula(NamedTuple):
@@ -358,9 +474,11 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
         if defined in known:
             raise InputError(f"{place}: define: expected a new name, got {defined!r}, which the claim has already")
         known.add(defined)
-        define.append((defined, read_expression(formula, f"{place}: define {defined}")))
+        own = Declared((known | {*symbols}) - {*functions}, functions)
+        define.append((defined, read_expression(formula, f"{place}: define {defined}", own)))
         sources[f"define.{place_of}"] = formula
-    hypotheses = tuple(_hypothesis(text, f"{place}: given") for text in entry.get("given", ()))
+    own = Declared(known - {*functions}, functions)
+    hypotheses = tuple(_hypothesis(text, f"{place}: given", own) for text in entry.get("given", ()))
     sources |= {f"given.{n}": text for n, text in enumerate(entry.get("given", ()))}
     claim = Claim(
         name, entry.get("where", ""), symbols, functions, tuple(define), hypotheses, sources=sources,
@@ -380,23 +498,24 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
                 f"{place}: alternatives: expected other readings of a claim, got them together with a value"
             )
         sources["value"] = entry["value"]
-        value = read_expression(entry["value"], f"{place}: value")
+        value = read_expression(entry["value"], f"{place}: value", own)
         return replace(claim, value=value, printed=entry["printed_value"])
     (key,) = kinds
     names = None
     readings = []
     for number_of, (source, at) in enumerate([(entry[key], key), *((other, "alternatives") for other in others)]):
-        if _is_latex(source) or (number_of == 0 and key == "latex"):
+        if is_latex(source) or (number_of == 0 and key == "latex"):
             names = names or _names_for_latex(claim)
             reading = read_latex(source, f"{place}: {at}", names)
             readings.append((reading.relation, reading.text))
         else:
-            readings.append((_equation(source, f"{place}: {at}"), source))
+            readings.append((_equation(source, f"{place}: {at}", own), source))
     (relation, sources["claim"]), *rest = readings
     return claim.with_relation(relation, alternatives=tuple(other for other, _ in rest))
 
 
-def _is_latex(source: str) -> bool:
+def is_latex(source: str) -> bool:
+    """Return whether a text is LaTeX: it has a backslash, a brace or a dollar sign."""
     return any(mark in source for mark in "\\${")
 
 
@@ -431,8 +550,8 @@ def _names_for_latex(claim: Claim) -> Names:
     return Names(claim.symbols, claim.functions, matrices, columns, {*defined} - matrices, implied=False)
 
 
-def _equation(source: str, where: str) -> Relation:
-    relation = read_relation(source, where)
+def _equation(source: str, where: str, declared: Declared) -> Relation:
+    relation = read_relation(source, where, declared)
     if relation[0] != "==":
         raise InputError(f"{where}: expected '==', got '{relation[0]}' in {source[:60]!r}")
     return relation

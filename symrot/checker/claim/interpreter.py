@@ -32,6 +32,9 @@ UNKNOWN_HERE = (
 )  # fmt: skip
 """Names that never become symbols or functions of the user by mere use, since most readers know them as others."""
 
+INSTEAD = {"I": "I_1", "E": "E_k"}
+"""Such a name -> a name for the quantity that books on mechanics call by it."""
+
 
 @dataclass
 class Interpreter(Scope):
@@ -80,7 +83,10 @@ def _name(interpreter: Interpreter, node: Node) -> Any:
     if not interpreter.implied:
         raise interpreter.fail(node, f"a name that is declared ({_nearest(name, interpreter)}) instead of {name!r}")
     if name in UNKNOWN_HERE:
-        raise interpreter.fail(node, f"a symbol of another name, since {name!r} means something else to most readers,")
+        hint = f", such as {INSTEAD[name]}," if name in INSTEAD else ","
+        raise interpreter.fail(
+            node, f"a symbol of another name{hint} since {name!r} means something else to most readers,"
+        )
     symbol = interpreter.values[name] = time if name == "t" else Symbol(name, real=True)
     return symbol
 

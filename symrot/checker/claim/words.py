@@ -1,0 +1,88 @@
+"""Words that may be several names: ``mgh`` is m*g*h and ``sinx`` is sin(x), unless the whole word is a name.
+
+A word is split only into names that the text uses by themselves, or that nearly every book on mechanics uses.
+"""
+
+import re
+from collections.abc import Collection, Iterator, Mapping, Sequence
+
+from symrot.checker.claim.tokens import GREEK_WORDS, Token
+
+__all__ = ["ALIASES", "SINGLE_ARGUMENT", "pieces_of_word", "split_tokens"]
+
+SINGLE_ARGUMENT = (
+    "sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "arcsin", "arccos", "arctan", "sinh", "cosh",
+    "tanh", "coth", "sech", "csch", "exp", "log", "ln", "sqrt", "abs", "det", "trace", "inverse", "transpose",
+)  # fmt: skip
+"""The functions that may be written without brackets, ``sin x``."""
+
+ALIASES = {
+    "ln": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "Abs": "abs", "Derivative": "diff",
+    "Integral": "integrate", "ImmutableMatrix": "Matrix", "ImmutableDenseMatrix": "Matrix",
+    "MutableDenseMatrix": "Matrix", "Determinant": "det", "Trace": "trace", "Transpose": "transpose",
+    "Inverse": "inverse", "arctan2": "atan2",
+}  # fmt: skip
+"""Other names of built-in functions -> the name here. Names that SymPy's own text uses are among them."""
+
+_JOINED = re.compile(
+    rf"(a(?:rc)?(?:sin|cos|tan)|(?:sin|cos|tan|cot|sec|csc))(\d*)([A-Za-z]|{'|'.join(sorted(GREEK_WORDS))}|)(_?[0-9xyz])?",
+    re.ASCII,
+)
+_LETTER = re.compile(r"[A-Za-z][0-9]*", re.ASCII)
+
+USUAL_LETTERS = frozenset("mMghlLrRvatFIkws")
+"""Letters that nearly every book on mechanics uses for a quantity."""
+
+WHOLE_WORDS = frozenset([*GREEK_WORDS, *SINGLE_ARGUMENT, *ALIASES, "pi", "diff", "KE", "PE", "TE", "dt", "id"])
+
+MOST_LETTERS = 3
+"""The most letters of a product that the text does not use by themselves."""
+
+
+def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], bool]:
+    """Return the names and numbers of which a word may be made, in order, and whether it usually is; () for a name.
+
+    Parameters
+    ----------
+    word : str
+        A name of Latin letters, digits and underscores.
+    alone : collection of str
+        The names that the text uses by themselves.
+
+    Examples
+    --------
+    >>> pieces_of_word("mgh", ()), pieces_of_word("ab", ("a", "b")), pieces_of_word("cos2theta", ())
+    ((('m', 'g', 'h'), True), (('a', 'b'), True), (('cos', '2', 'theta'), True))
+    >>> pieces_of_word("ab", ()), pieces_of_word("phi", ()), pieces_of_word("KE", ())
+    ((('a', 'b'), False), ((), False), ((), False))
+    """
+    if word in WHOLE_WORDS or len(word) < 2 or (word.startswith("d") and word[1:] in GREEK_WORDS):
+        return (), False
+    if joined := _JOINED.fullmatch(word):
+        function, number, name, index = joined.groups()
+        if (number or name) and not (index and not name):
+            return tuple(piece for piece in (function, number, name + (index or "")) if piece), True
+    letters = tuple(_LETTER.findall(word))
+    if "".join(letters) != word or len(letters) < 2:
+        return (), False
+    if all(letter in alone for letter in letters):
+        return letters, True
+    if word[-1] in "xyz" or len(letters) > MOST_LETTERS or len(set(letters)) < len(letters):
+        return (), False
+    usual = all(
+        letter in alone or letter in USUAL_LETTERS or (place and letter == "d") for place, letter in enumerate(letters)
+    )
+    return letters, usual
+
+
+def split_tokens(tokens: Sequence[Token], words: Mapping[str, Sequence[str]]) -> Iterator[Token]:
+    """Yield tokens, with those of words split into their pieces."""
+    for token in tokens:
+        pieces = words.get(token.text, ()) if token.kind == "name" else ()
+        if not pieces or token.end - token.start != len(token.text):
+            yield token
+            continue
+        at, spaced, breaks = token.start, token.spaced, token.breaks
+        for piece in pieces:
+            yield Token("number" if piece.isdigit() else "name", piece, at, at + len(piece), spaced, breaks)
+            at, spaced, breaks = at + len(piece), False, False
