@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from decimal import Decimal
+from fractions import Fraction
 
 from symrot.checker.claim.reader import Reading, Relation, read_relation
 from symrot.checker.claim.tree import Node, text
@@ -45,6 +47,8 @@ class Notation:
             return Node("name", self.spelling.get(str(node.value), node.value))
         if node.kind == "call" and node.value == "Matrix" and parent not in ("call", "power", "index"):
             return self._spelled(node.args[0], "list")
+        if node.kind == "number":
+            return Node("name", decimal(node.value))
         if node.kind == "name" and node.value in self.spelling:
             return Node("name", self.spelling[str(node.value)])
         return replace(node, args=tuple(self._spelled(child, node.kind) for child in node.args))
@@ -68,6 +72,14 @@ class Notation:
             return self.relation(read_relation(claim)) + joint + rest
         except InputError:
             return source
+
+
+def decimal(value: Fraction) -> str:
+    """Return a number as a decimal number if that is exact and short, else as a quotient in brackets."""
+    if value.denominator == 1:
+        return str(value)
+    written = format(Decimal(value.numerator) / Decimal(value.denominator), "f")
+    return written if Fraction(written) == value else f"({value})"
 
 
 def notation_of(reading: Reading) -> Notation:

@@ -25,7 +25,8 @@ __all__ = [
 LONGEST_TEXT = 20_000
 MOST_PIECES = 5_000
 MOST_READINGS = 6
-"""The most readings of one text that are tried."""
+MOST_DOUBTS = 40
+"""The most readings of one text that are tried, and the most places with two readings that are looked at."""
 
 Relation = tuple[str, Node, Node]
 
@@ -338,11 +339,11 @@ def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
             raise
         return
     yield usual
-    keys = list(dict.fromkeys(doubt.key for doubt in usual.doubts))
+    keys = list(dict.fromkeys(doubt.key for doubt in usual.doubts))[:MOST_DOUBTS]
     kinds = dict.fromkeys(kind for kind, _ in keys)
     choices = [{key for key in keys if key[0] == kind} for kind in kinds]  # a writer is consistent
     choices += [{key} for key in keys if key[0] not in ("word", "name")]
-    for flips in choices[: 2 * MOST_READINGS]:
+    for flips in choices:
         try:
             yield text.read(False, False, flips, one_side)
         except InputError:
@@ -350,11 +351,15 @@ def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
 
 
 def _distinct(readings: Iterable[Reading]) -> list[Reading]:
-    """Return readings with different trees, at most as many as are tried."""
-    first: dict[Any, Reading] = {}
+    """Return readings with different trees; if there are more than are tried, the first one has a note about it."""
+    by_trees: dict[Any, Reading] = {}
     for reading in readings:
-        first.setdefault(reading.lines, reading)
-    return list(first.values())[:MOST_READINGS]
+        by_trees.setdefault(reading.lines, reading)
+    usual, *others = by_trees.values()
+    if len(others) >= MOST_READINGS:
+        note = f"the text has more readings than the {MOST_READINGS} that are decided here; brackets leave fewer"
+        usual = replace(usual, notes=(*usual.notes, note))
+    return [usual, *others[: MOST_READINGS - 1]]
 
 
 def _only(readings: Sequence[Reading], source: str, where: str) -> Reading:
