@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 from typing import ClassVar
 
 from symrot.checker.claim.functions import BUILT_IN
@@ -245,7 +246,11 @@ class Parser:
             token = self.token()
             if coefficient and token.spaced:
                 break
-            usual = token.text == "pi" if coefficient else token.tight and token.text not in ("(", "[")
+            usual = token.tight and token.text not in ("(", "[")
+            if coefficient:  # 1/2π is 1/(2π), but 4/3πr³ is (4/3)πr³
+                after = self.token(1)
+                alone = not (after.kind == "name" and after.tight)
+                usual = token.text == "pi" and alone and (above, first.text) in ((number(1), "2"), (number(1), "4"))
             if self.other_reading("divisor", token.start, start, self.end_of_run()) == usual:
                 break
             below.append(self.factor())
@@ -549,9 +554,18 @@ class Parser:
         self.expect("]")
         self.bars = bars
         span = self.span(token.start)
+        if all(len(row) == 1 for row in rows) and all(self.has_blanks(row[0]) for row in rows):
+            raise self.fail("commas between the entries of a matrix, or * in a product,", token.start)
         if len(rows) == 1:
             return Node("list", ("[", "]"), tuple(rows[0]), span)
         return Node("list", ("[", "]"), tuple(Node("list", ("[", "]"), tuple(row), span) for row in rows), span)
+
+    def has_blanks(self, entry: Node) -> bool:
+        """Return whether an entry is a product with nothing but blanks between two names: perhaps two entries."""
+        inner = entry.args[0] if entry.kind == "neg" else entry
+        pairs = pairwise(inner.args if inner.kind == "product" else ())
+        gaps = [self.source[a.span[1] : b.span[0]] for a, b in pairs if a.kind in ("name", "call", "number")]
+        return bool(gaps) and all(gap.isspace() for gap in gaps)
 
     def row(self) -> list[Node]:
         entries = [self.expression()]
@@ -700,6 +714,11 @@ class Parser:
             if self.other_reading("root", self.start(), token.start, self.end_of_run()) == usual:
                 break
             inside.append(self.power())
+        slash, below = self.token(), self.token(1)
+        open_end = not bracketed and slash.text == "/" and below.kind in ("name", "number") and first.kind == "name"
+        if open_end and self.other_reading("slash after root", token.start, token.start, below.end):
+            self.next()
+            inside.append(Node("inv", None, (self.power(),), self.span(slash.start)))
         return Node("call", "sqrt", (product(inside, self.span(first.start)),), self.span(token.start))
 
     # -- derivatives as quotients -----------------------------------------------------------------------------------

@@ -200,7 +200,11 @@ def _call(interpreter: Interpreter, node: Node) -> Any:
         raise interpreter.fail(node, f"an operator between {name} and '(', since {name} is no function,")
     close = get_close_matches(name, list(BUILT_IN), 1, 0.74)
     if not interpreter.implied or close or name in UNKNOWN_HERE or [a.value for a in arguments] != ["t"]:
-        known = f"did you mean {close[0]}?" if close else f"built in: {', '.join(BUILT_IN)}"
+        known = (
+            f"did you mean {close[0]}?"
+            if close
+            else f"for a product write {name}*(..); built in: {', '.join(BUILT_IN)}"
+        )
         expected = f"a function that is built in or declared as one of t instead of {name!r} ({known})"
         raise interpreter.fail(node, expected)
     interpreter.functions.add(name)

@@ -178,6 +178,7 @@ class _Text:
         """Return the words that are split into their pieces, with sentences about them, and the words in doubt."""
         words: dict[str, tuple[str, ...]] = {}
         notes, doubts = [], []
+        alone = {*alone}
         first = {token.text: token.start for token in reversed(self.tokens) if token.kind == "name"}
         for word, start in sorted(first.items(), key=lambda item: item[1]):
             if word in BUILT_IN or word in self.declared.symbols or word in self.declared.functions:
@@ -188,6 +189,7 @@ class _Text:
             doubt = Doubt(("word" if usual else "name", start), word)
             doubts.append(doubt)
             if usual != (doubt.key in flips):
+                alone |= {piece for piece in pieces if piece in ("x", "y", "z")}
                 words[word] = pieces
                 notes.append(f"{word} is read as {_in_words(pieces)}, not as one name")
         return words, notes, doubts

@@ -12,7 +12,8 @@ __all__ = ["ALIASES", "SINGLE_ARGUMENT", "pieces_of_word", "split_tokens"]
 
 SINGLE_ARGUMENT = (
     "sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "arcsin", "arccos", "arctan", "sinh", "cosh",
-    "tanh", "coth", "sech", "csch", "exp", "log", "ln", "sqrt", "abs", "det", "trace", "inverse", "transpose",
+    "tanh", "coth", "sech", "csch", "asinh", "acosh", "atanh", "arcsinh", "arccosh", "arctanh", "tg", "ctg", "cosec",
+    "exp", "log", "ln", "sqrt", "abs", "det", "trace", "inverse", "transpose",
 )  # fmt: skip
 """The functions that may be written without brackets, ``sin x``."""
 
@@ -30,10 +31,16 @@ _JOINED = re.compile(
 )
 _LETTER = re.compile(r"[A-Za-z][0-9]*", re.ASCII)
 
-USUAL_LETTERS = frozenset("mMghlLrRvatFIkws")
+USUAL_LETTERS = frozenset("mMghlLrRvatFIkwsuc")
 """Letters that nearly every book on mechanics uses for a quantity."""
 
-WHOLE_WORDS = frozenset([*GREEK_WORDS, *SINGLE_ARGUMENT, *ALIASES, "pi", "diff", "KE", "PE", "TE", "dt", "id"])
+UNITS = ("rpm", "deg", "rad", "kg", "mm", "cm", "km", "Hz", "ms", "rev", "min")
+
+SCALARS = frozenset("bckmn")
+VECTORS = frozenset("IJvwFLMHTRNPeuprfgst")
+"""Letters before x, y or z: of a product ``kx``, and of a component ``Fx``."""
+
+WHOLE_WORDS = frozenset([*GREEK_WORDS, *SINGLE_ARGUMENT, *ALIASES, "pi", "diff", "KE", "PE", "TE", "dt", "id", *UNITS])
 
 MOST_LETTERS = 3
 """The most letters of a product that the text does not use by themselves."""
@@ -67,6 +74,8 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
         return (), False
     if all(letter in alone for letter in letters):
         return letters, True
+    if len(word) == 2 and word[1] in "xyz":
+        return ((), False) if word[0] in VECTORS else (letters, word[0] in SCALARS or word[1] in alone)
     if word[-1] in "xyz" or len(letters) > MOST_LETTERS or len(set(letters)) < len(letters):
         return (), False
     usual = all(

@@ -65,7 +65,8 @@ TWO = (
     ("x^1/2", "x**(1/2)", "x**1/2"), ("x^3/2", "x**3/2", "x**(3/2)"), ("√2x", "sqrt(2)*x", "sqrt(2*x)"),
     ("x'", "diff(x(t), t)", "x_prime"), ("θ′′", "diff(theta(t), t, t)", "theta_prime_prime"), ("2mgh", "2*m*g*h", "2*mgh"),
     ("2bc", "2*bc", "2*b*c"), ("a + b + ab^2", "a + b + a*b**2", "a + b + ab**2"), ("sinx", "sin(x)", "sinx"),
-    ("cos2theta", "cos(2*theta)", "cos2theta"),
+    ("cos2theta", "cos(2*theta)", "cos2theta"), ("4/3πr³", "4/3*pi*r**3", "4/(3*pi)*r**3"), ("√k/m", "sqrt(k)/m", "sqrt(k/m)"),
+    ("2kx", "2*k*x", "2*kx"), ("2qx", "2*qx", "2*q*x"),
 )  # fmt: skip
 
 
@@ -123,7 +124,8 @@ REFUSED = (
     ("x.applyfunc(f) == 1", "T, the transpose, or another of"), ("x.__class__ == 1", "position 3"), ("x.y == 1", "position 3"),
     ("x.free_symbols == 1", "position 3"), ("open(x + y) == 1", "'open'"), ("f(x) = 2x", "'f'"), ("(x + = 1", "a number, a name"),
     ("x² + (y = 1", r"'\)'"), ("x = 1 < 2", "a chain of equals signs"), ("|x = 1", r"'\|'"), ("t' = 1", "may depend on t"),
-    ("[1, 2; 3] = x", "equal length"), ("2e3x = 1", "a product sign after the number"), ("x\n= 1\ny", "'=='"),
+    ("[1, 2; 3] = x", "equal length"), ("[a b; c d] = x", "commas between the entries"), ("arcsinh x = 1", "'arcsinh'"),
+    ("2e3x = 1", "a product sign after the number"), ("x\n= 1\ny", "'=='"),
     ("a × b × c = 0", "which of the products"), ("xⁿ = 1", "position 2"), ("x²⁻ = 1", "a whole number"), ("м = 1", "position 1"),
     ("exp(I*x) == cos(x) + I*sin(x)", "such as I_1"), ("I*I == -1", "means something else"), ("log(E) == 1", "means something else"),
     ("x.dot() == 1", "a number, a name|one argument"), ("M.inv(2) == 1", "no arguments"), ("Eq(x, y, z)", "two sides"),
