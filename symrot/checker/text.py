@@ -11,7 +11,7 @@ from symrot.checker.claim.claims import Claim, claims_of_reading, named_formula
 from symrot.checker.claim.grammar import TIME
 from symrot.checker.claim.notation import Notation, notation_of
 from symrot.checker.claim.reader import Reading, readings_of
-from symrot.checker.claim.tree import Node, text, walk
+from symrot.checker.claim.tree import Node, walk
 from symrot.checker.interface import check_claim
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
@@ -111,7 +111,7 @@ def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], not
     total = sum(map(len, lines))
     for number, line in enumerate(lines):
         own = [next(remaining) for _ in line]
-        own = _as_named_chain(line, own)
+        own = _as_named_chain(line, own, notation)
         later = {name for other in lines[number + 1 :] for claim in other for name, _ in claim.define}
         named = named_formula(line[0])
         defines = named is not None and named.name in later
@@ -134,7 +134,7 @@ def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], not
     return replace(worst, notes=tuple(dict.fromkeys([*claim_notes, *notes])), seconds=seconds)
 
 
-def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict]) -> list[Verdict]:
+def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
     """Return the verdicts on the links of a chain ``name = a = b``.
 
     The formulas need not be identical if each has letters of its own: the energies I*omega^2/2 and L^2/(2*I) of one
@@ -147,14 +147,11 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict]) -> list[
     for claim, verdict in zip(line[1:], verdicts[1:], strict=True):
         assert claim.relation is not None
         _, left, right = claim.relation
-        if (
-            verdict.verdict in ("false", "conditional")
-            and _names(left) - _names(right)
-            and _names(right) - _names(left)
-        ):
+        others = _names(right) - _names(left)
+        if verdict.verdict in ("false", "conditional") and others and _names(left) - _names(right):
             under_name = check_claim(claim.with_relation(("==", named.side, right)), repair=False)
-            others = ", ".join(sorted(_names(right) - _names(left)))
-            note = f"{text(left)} and {text(right)} have different letters ({others}), so that they are no identity"
+            link = notation.relation(claim.relation)
+            note = f"{link} is no identity, since only one side has {', '.join(sorted(others))}"
             verdict = replace(under_name, notes=(*under_name.notes, note))
         decided.append(verdict)
     return decided

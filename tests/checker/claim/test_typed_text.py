@@ -1,13 +1,18 @@
 """Formulas as people type them: one tree for each text, the other readings of a text with two, refusals that help."""
 
+from pathlib import Path
+
 import pytest
 
 import symrot
+from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.notation import notation_of
 from symrot.checker.claim.reader import read_expression, readings_of
 from symrot.checker.claim.tokens import tokens_of
 from symrot.checker.claim.tree import text
 from symrot.errors import InputError
+
+PAGE = Path(__file__).parents[3] / "docs" / "checkers.md"
 
 SAME = (
     # powers
@@ -151,7 +156,7 @@ def test_a_chain_is_decided_link_by_link():
 def test_a_chain_that_names_a_quantity_may_have_formulas_in_different_letters():
     verdict = symrot.check("I = 1/2 m r² = 1/8 m d²")
     assert verdict.verdict == "definition"
-    assert any("have different letters (d)" in note for note in verdict.notes)
+    assert any("is no identity, since only one side has d" in note for note in verdict.notes)
     assert symrot.check("I = 1/2 m r² = 1/3 m r²").verdict == "false"
     assert symrot.check("I = 1/2 m r² = m r²/2").verdict == "recognised"
 
@@ -190,3 +195,19 @@ def test_sympy_equations_and_values_are_read():
     assert symrot.check("Eq(sin(2*x), 2*sin(x)*cos(x))").verdict == "true"
     with pytest.raises(InputError, match="two sides"):
         symrot.check(sin(x))
+
+
+def test_the_page_of_the_language_lists_every_built_in_function():
+    page = PAGE.read_text("utf-8").partition("## How formulas are read")[2]
+    names = page.partition("Built-in functions:")[2].partition(".\n")[0]
+    assert [name.strip(" `\n") for name in names.split(",")] == list(BUILT_IN)
+
+
+def test_the_table_of_two_readings_holds():
+    """The texts of the page have two readings each, in its order."""
+    rows = PAGE.read_text("utf-8").partition("| text | usual reading")[2].splitlines()[2:]
+    texts = [cell for row in rows[: rows.index("")] for cell in row.split("|")[1].replace("`", "").split(",")]
+    assert len(texts) > 15
+    for typed in texts:
+        _, *others = readings_of(f"2 {typed.strip()} + a + b = 0")
+        assert others, typed
