@@ -136,9 +136,18 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
 
 
 def _on_latex(source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool) -> Verdict:
+    """Return the verdict on a claim in LaTeX, with its reading and its repairs in LaTeX."""
+    from symrot.checker.latex.writing import latex_of, latex_of_text
+
     claim = claim_of_text(source, assume, units or {})
+    assert claim.relation is not None
     verdict = check_claim(claim, repair)
-    return replace(verdict, notes=(*claim.notes, *verdict.notes))
+    functions = claim.definitions.functions
+    repairs = tuple(replace(near, text=latex_of_text(near.text, functions)) for near in verdict.repairs)
+    echo = latex_of(claim.relation, functions) or claim.text
+    reading = echo if "".join(echo.split()) != "".join(source.split()) else ""
+    notes = (*claim.notes, *verdict.notes)
+    return replace(verdict, text=source.strip(), reading=reading, repairs=repairs, notes=notes)
 
 
 def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:

@@ -209,5 +209,5 @@ def test_the_table_of_two_readings_holds():
     texts = [cell for row in rows[: rows.index("")] for cell in row.split("|")[1].replace("`", "").split(",")]
     assert len(texts) > 15
     for typed in texts:
-        _, *others = readings_of(f"2 {typed.strip()} + a + b = 0")
+        _, *others = readings_of(f"y + {typed.strip()} + a + b = 0")
         assert others, typed
