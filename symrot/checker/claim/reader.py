@@ -10,8 +10,9 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from symrot.checker.claim.cursor import DEEPEST_NESTING, TIME, Doubt, Vocabulary, is_cross_letter
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.grammar import DEEPEST_NESTING, TIME, Doubt, Parser, Vocabulary, is_cross_letter
+from symrot.checker.claim.grammar import Parser
 from symrot.checker.claim.tokens import SIGNS, Token, tokens_of, without_dots
 from symrot.checker.claim.tree import Node
 from symrot.checker.claim.words import pieces_of_word, split_tokens
@@ -139,7 +140,10 @@ class _Text:
             frozenset(_crossed(tokens, flips)),
         )
         lines, plain, timed = [], not self.source.isascii() or not whole, set()
-        for line in [tokens] if one_side else self.lines(tokens):
+        divided = [tokens] if one_side else list(self.lines(tokens))
+        if not divided:
+            raise complaint(self.source, self.where, 0, "a formula")
+        for line in divided:
             parser = Parser(line, self.source, self.where, vocabulary, flips, as_sympy)
             signs, sides = ([], [parser.whole()]) if one_side else parser.relation()
             lines.append((signs, sides))
@@ -185,6 +189,9 @@ class _Text:
                 continue
             pieces, usual = pieces_of_word(word, alone)
             if not pieces:
+                continue
+            if self.declared.symbols and all(piece in self.declared.symbols or piece.isdigit() for piece in pieces):
+                words[word] = pieces  # the claim says which names it has
                 continue
             doubt = Doubt(("word" if usual else "name", start), word)
             doubts.append(doubt)

@@ -13,8 +13,9 @@ from typing import Any
 from sympy import Expr, Function, ImmutableMatrix, Rational, Symbol
 from sympy.matrices import MatrixBase
 
-from symrot.checker.claim.claims import Claim, claim_of_text, letters_of_quantities, named_formula
+from symrot.checker.claim.claims import Claim, claim_of_text, named_formula
 from symrot.checker.claim.interpreter import Interpreter, time
+from symrot.checker.claim.quantities import letters_of_quantities
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.latex.reader import read_latex_formula
