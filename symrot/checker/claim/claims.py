@@ -262,6 +262,10 @@ def claim_of_relation(
     )
 
 
+MOST_EQUATIONS = 30
+"""The most equations in one text, lines and links of chains."""
+
+
 def claims_of_reading(
     reading: Reading, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None
 ) -> list[list[Claim]]:
@@ -271,6 +275,8 @@ def claims_of_reading(
     """
     define: list[tuple[str, Node]] = []
     lines = []
+    if sum(len(chain.links) for chain in reading.lines) > MOST_EQUATIONS:
+        raise InputError(f"expected at most {MOST_EQUATIONS} equations in one text; a file of claims may have more")
     names = {str(n.value) for chain in reading.lines for side in chain.sides for _, n in walk(side)}
     _units(dict(units or {}), names, "claim")
     context = [side for chain in reading.lines for side in chain.sides]

@@ -51,7 +51,13 @@ class Notation:
             return Node("name", decimal(node.value))
         if node.kind == "name" and node.value in self.spelling:
             return Node("name", self.spelling[str(node.value)])
-        return replace(node, args=tuple(self._spelled(child, node.kind) for child in node.args))
+        args = [self._spelled(child, node.kind) for child in node.args]
+        if node.kind == "product":
+            args = [
+                Node("name", f"({text(factor)})") if _is_number_power(factor) and after.kind == "inv" else factor
+                for factor, after in zip(args, [*args[1:], END], strict=True)
+            ]
+        return replace(node, args=tuple(args))
 
     def _in_full(self, node: Node) -> Node:
         """Return the tree of a formula that is differentiated, in which functions of time keep their ``(t)``."""
@@ -85,6 +91,15 @@ def decimal(value: Fraction) -> str:
 def notation_of(reading: Reading) -> Notation:
     """Return the notation in which a text is typed."""
     return Notation(reading.plain, dict(reading.spelling), reading.timed)
+
+
+END = Node("name", "")
+"""No factor, after the last one."""
+
+
+def _is_number_power(node: Node) -> bool:
+    """Return whether a tree is a power like x^3, which before a slash might be read as x^(3/2)."""
+    return node.kind == "power" and node.args[1].kind == "name" and str(node.args[1].value) in ("1", "3", "5", "7", "9")
 
 
 def _is_rate(node: Node) -> bool:

@@ -127,6 +127,7 @@ class OpenFunctionsPart(Cursor):
     def root(self, token: Token) -> Node:
         """Read the formula under a root sign without a bar over it."""
         self.plain = True
+        self.deeper()
         first = self.token()
         bracketed = first.text == "("
         inside = [self.power()]
@@ -140,6 +141,7 @@ class OpenFunctionsPart(Cursor):
         if open_end and self.other_reading("slash after root", token.start, token.start, below.end):
             self.next()
             inside.append(Node("inv", None, (self.power(),), self.span(slash.start)))
+        self.depth -= 1
         return Node("call", "sqrt", (product(inside, self.span(first.start)),), self.span(token.start))
 
     def leibniz(self, token: Token) -> Node | None:
@@ -176,7 +178,9 @@ class OpenFunctionsPart(Cursor):
     def derivative_of_next(self, token: Token) -> Node:
         self.plain = True
         self.index += 2
+        self.deeper()
         operand = self.factor()
+        self.depth -= 1
         for _, node in walk(operand):
             if node.kind == "name" and node.value not in ("t", "pi") and node.value not in self.vocabulary.symbols:
                 self.timed.add(str(node.value))

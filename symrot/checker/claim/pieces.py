@@ -5,7 +5,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any, ClassVar
 
-from symrot.checker.claim.cursor import TIME
+from symrot.checker.claim.cursor import DEEPEST_NESTING, TIME
 from symrot.checker.claim.open_functions import OpenFunctionsPart
 from symrot.checker.claim.tokens import GREEK_WORDS, Token
 from symrot.checker.claim.tree import Node, number, product
@@ -24,14 +24,21 @@ CONSTRUCTORS = {"hstack": "hstack", "eye": "eye", "diag": "diag"}
 """Name after ``Matrix.`` -> the function."""
 
 
+MOST_DOTS = 4
+"""The highest order of a derivative that is written with primes or dots."""
+
+
 class PiecesPart(OpenFunctionsPart):
     """The part of the parser for pieces without an operator."""
 
     def postfix(self) -> Node:
         start = self.start()
         node = self.atom()
+        first = self.index
         while True:
             token = self.token()
+            if self.index - first > 5 * DEEPEST_NESTING:
+                raise self.fail("fewer methods and indices after each other")
             if token.text == "." and token.kind == "mark":
                 self.next()
                 node = self.method(node, start)
@@ -41,6 +48,8 @@ class PiecesPart(OpenFunctionsPart):
             elif token.kind in ("prime", "dots"):
                 node = self.rate(node, self.next(), start)
             elif token.text == "°":
+                if self.tokens[self.index - 1].text == "°":
+                    raise self.fail("one sign of degrees")
                 self.plain = True
                 self.next()
                 degrees = [node, Node("name", "pi"), Node("inv", None, (number(180),))]
@@ -86,6 +95,8 @@ class PiecesPart(OpenFunctionsPart):
         """Return the derivative with respect to time that primes or dots mean; x' may also be a name of its own."""
         self.plain = True
         order = int(mark.text) if mark.kind == "dots" else len(mark.text)
+        if order > MOST_DOTS:
+            raise self.fail(f"a rate of order {MOST_DOTS} at most", mark.start)
         if node.kind == "name":
             name = str(node.value)
             doubtful = mark.kind == "prime" and name not in self.vocabulary.functions
