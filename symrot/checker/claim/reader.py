@@ -15,7 +15,7 @@ from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.grammar import Parser
 from symrot.checker.claim.tokens import SIGNS, Token, tokens_of, without_dots
 from symrot.checker.claim.tree import Node
-from symrot.checker.claim.words import pieces_of_word, split_tokens
+from symrot.checker.claim.words import pieces_of_word, shorthands, split_tokens
 from symrot.errors import InputError, complaint
 
 __all__ = [
@@ -131,7 +131,7 @@ class _Text:
         tokens, notes, doubts = list(self.tokens), list[str](), list[Doubt]()
         if not whole:
             words, notes, doubts = self.words(alone, flips)
-            tokens = list(split_tokens(tokens, words))
+            tokens = self.without_shorthand(list(split_tokens(tokens, words)), flips, notes, doubts)
             alone |= set(_alone(tokens))
         vocabulary = Vocabulary(
             frozenset(self.declared.symbols),
@@ -200,6 +200,30 @@ class _Text:
                 words[word] = pieces
                 notes.append(f"{word} is read as {_in_words(pieces)}, not as one name")
         return words, notes, doubts
+
+    def without_shorthand(
+        self, tokens: list[Token], flips: Collection[tuple[str, int]], notes: list[str], doubts: list[Doubt]
+    ) -> list[Token]:
+        """Return tokens with cosines and sines for cθ and sθ, if the text has both and neither letter by itself."""
+        short = [form for form in shorthands(tokens) if tokens[form.index].text not in self.declared.symbols]
+        if not short:
+            return tokens
+        places = {form.index for form in short}
+        alone = {token.text for index, token in enumerate(tokens) if index not in places}
+        both = {form.function for form in short} == {"cos", "sin"}
+        if not both and all(form.length == 1 for form in short):
+            return tokens  # a name with an index
+        usual = both and not alone & {"c", "s", "C", "S"}
+        first, last = tokens[short[0].index], tokens[short[0].index + short[0].length - 1]
+        doubt = Doubt(("shorthand", first.start), self.source[first.start : last.end])
+        doubts.append(doubt)
+        if usual == (doubt.key in flips):
+            return tokens
+        for form in reversed(short):
+            own = tokens[form.index : form.index + form.length]
+            tokens[form.index : form.index + form.length] = form.tokens(own[0], own[-1])
+        notes.append(f"{doubt.excerpt} is read as {short[0].function}({short[0].angle}), and so are letters like it")
+        return tokens
 
     def lines(self, tokens: Sequence[Token]) -> Iterator[list[Token]]:
         """Yield the tokens of each line; a line that starts or ends with an operator goes on."""

@@ -5,10 +5,11 @@ A word is split only into names that the text uses by themselves, or that nearly
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from symrot.checker.claim.tokens import GREEK_WORDS, Token
 
-__all__ = ["ALIASES", "SINGLE_ARGUMENT", "pieces_of_word", "split_tokens"]
+__all__ = ["ALIASES", "SINGLE_ARGUMENT", "Shorthand", "pieces_of_word", "shorthands", "split_tokens"]
 
 SINGLE_ARGUMENT = (
     "sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "arcsin", "arccos", "arctan", "sinh", "cosh",
@@ -82,6 +83,42 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
         letter in alone or letter in USUAL_LETTERS or (place and letter == "d") for place, letter in enumerate(letters)
     )
     return letters, usual
+
+
+class Shorthand(NamedTuple):
+    """A short form of a cosine or a sine, ``cθ`` or ``c_theta``: its first token, the number of tokens, its formula."""
+
+    index: int
+    length: int
+    function: str
+    angle: str
+
+    def tokens(self, first: Token, last: Token) -> tuple[Token, ...]:
+        """Return the tokens of the formula in full, in the place of the short form."""
+        mark = Token("mark", "(", first.start, first.start)
+        start = last.start if self.length == 2 else first.start + 2
+        return (
+            first._replace(kind="name", text=self.function, end=first.start), mark,
+            Token("name", self.angle, start, last.end), Token("mark", ")", last.end, last.end),
+        )  # fmt: skip
+
+
+def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
+    """Return the pieces of a text that may be short for the cosine or sine of an angle."""
+    short = []
+    for index, token in enumerate(tokens[:-1]):
+        letter, _, angle = token.text.partition("_")
+        function = {"c": "cos", "s": "sin", "C": "cos", "S": "sin"}.get(letter)
+        if token.kind != "name" or function is None:
+            continue
+        after = tokens[index + 1]
+        if angle in GREEK_WORDS and angle != "pi" and after.text != "(":
+            short.append(Shorthand(index, 1, function, angle))
+        elif (
+            not angle and after.kind == "name" and after.tight and after.text.partition("_")[0] in GREEK_WORDS - {"pi"}
+        ):
+            short.append(Shorthand(index, 2, function, after.text))
+    return short
 
 
 def split_tokens(tokens: Sequence[Token], words: Mapping[str, Sequence[str]]) -> Iterator[Token]:

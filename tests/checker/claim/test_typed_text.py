@@ -71,7 +71,8 @@ TWO = (
     ("x'", "diff(x(t), t)", "x_prime"), ("θ′′", "diff(theta(t), t, t)", "theta_prime_prime"), ("2mgh", "2*m*g*h", "2*mgh"),
     ("2bc", "2*bc", "2*b*c"), ("a + b + ab^2", "a + b + a*b**2", "a + b + ab**2"), ("sinx", "sin(x)", "sinx"),
     ("cos2theta", "cos(2*theta)", "cos2theta"), ("4/3πr³", "4/3*pi*r**3", "4/(3*pi)*r**3"), ("√k/m", "sqrt(k)/m", "sqrt(k/m)"),
-    ("2kx", "2*k*x", "2*kx"), ("2qx", "2*qx", "2*q*x"),
+    ("cθ sφ", "cos(theta)*sin(phi)", "c*theta*s*phi"), ("cθ + a", "c*theta + a", "cos(theta) + a"),
+    ("2c_θ s_ψ²", "2*cos(theta)*sin(psi)**2", "2*c_theta*s_psi**2"), ("2kx", "2*k*x", "2*kx"), ("2qx", "2*qx", "2*q*x"),
 )  # fmt: skip
 
 
