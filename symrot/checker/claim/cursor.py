@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from symrot.checker.claim.defined_functions import DEFINED
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tokens import Token
 from symrot.checker.claim.tree import Node
@@ -58,7 +59,7 @@ class Vocabulary:
         """Return the name of a built-in or declared function, None for any other name."""
         if name in self.symbols:
             return None
-        if name in BUILT_IN or name in self.functions:
+        if name in BUILT_IN or name in self.functions or name in DEFINED:
             return name
         return ALIASES.get(name)
 
@@ -164,8 +165,11 @@ class Cursor(ABC):
         return members
 
     def called(self, function: str, token: Token) -> Node:
+        """Read the arguments of a function in brackets."""
         self.expect("(")
         arguments = self.members(")")
+        if function in DEFINED and function not in self.vocabulary.functions and len(arguments) == 1:
+            return DEFINED[function](arguments[0])
         return Node("call", function, tuple(arguments), self.span(token.start))
 
     def numeral(self, token: Token) -> Node:

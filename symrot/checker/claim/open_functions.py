@@ -3,6 +3,7 @@
 import re
 
 from symrot.checker.claim.cursor import ADDING, FACTOR_MARKS, TIME, Cursor
+from symrot.checker.claim.defined_functions import DEFINED
 from symrot.checker.claim.tokens import Token
 from symrot.checker.claim.tree import Node, negated, number, product, walk
 from symrot.checker.claim.words import SINGLE_ARGUMENT
@@ -70,7 +71,8 @@ class OpenFunctionsPart(Cursor):
         self.depth -= 1
         if negative:
             argument = negated(argument)
-        call = Node("call", function, (argument,), self.span(token.start))
+        defined = DEFINED.get(function)
+        call = defined(argument) if defined else Node("call", function, (argument,), self.span(token.start))
         if power is not None:
             exponent = power if exponent is None else product([exponent, power])
         return call, exponent

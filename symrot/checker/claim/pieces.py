@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Any, ClassVar
 
 from symrot.checker.claim.cursor import DEEPEST_NESTING, TIME
+from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.open_functions import OpenFunctionsPart
 from symrot.checker.claim.tokens import GREEK_WORDS, Token
 from symrot.checker.claim.tree import Node, number, product
@@ -135,7 +136,9 @@ class PiecesPart(OpenFunctionsPart):
             self.index += 2
             return self.called(CONSTRUCTORS[self.tokens[self.index - 1].text], token)
         function = self.vocabulary.function(word)
-        if function is None and word in SINGLE_ARGUMENT and word not in self.vocabulary.symbols and not self.as_sympy:
+        if self.as_sympy and self.peek() != "(" and word not in BUILT_IN and word not in self.vocabulary.functions:
+            function = None  # a name in SymPy's text
+        elif function is None and word in SINGLE_ARGUMENT and word not in self.vocabulary.symbols:
             function = word  # a function that is not built in, which the interpreter refuses
         if word == "Rational" and self.peek() == "(":
             return self.rational(token)

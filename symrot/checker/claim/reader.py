@@ -205,23 +205,23 @@ class _Text:
         self, tokens: list[Token], flips: Collection[tuple[str, int]], notes: list[str], doubts: list[Doubt]
     ) -> list[Token]:
         """Return tokens with cosines and sines for cθ and sθ, if the text has both and neither letter by itself."""
-        short = [form for form in shorthands(tokens) if tokens[form.index].text not in self.declared.symbols]
+        short = [form for form in shorthands(tokens) if tokens[form.place].text not in self.declared.symbols]
         if not short:
             return tokens
-        places = {form.index for form in short}
+        places = {form.place for form in short}
         alone = {token.text for index, token in enumerate(tokens) if index not in places}
         both = {form.function for form in short} == {"cos", "sin"}
         if not both and all(form.length == 1 for form in short):
             return tokens  # a name with an index
         usual = both and not alone & {"c", "s", "C", "S"}
-        first, last = tokens[short[0].index], tokens[short[0].index + short[0].length - 1]
+        first, last = tokens[short[0].place], tokens[short[0].place + short[0].length - 1]
         doubt = Doubt(("shorthand", first.start), self.source[first.start : last.end])
         doubts.append(doubt)
         if usual == (doubt.key in flips):
             return tokens
         for form in reversed(short):
-            own = tokens[form.index : form.index + form.length]
-            tokens[form.index : form.index + form.length] = form.tokens(own[0], own[-1])
+            own = tokens[form.place : form.place + form.length]
+            tokens[form.place : form.place + form.length] = form.tokens(own[0], own[-1])
         notes.append(f"{doubt.excerpt} is read as {short[0].function}({short[0].angle}), and so are letters like it")
         return tokens
 

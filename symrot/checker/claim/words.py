@@ -13,7 +13,8 @@ __all__ = ["ALIASES", "SINGLE_ARGUMENT", "Shorthand", "pieces_of_word", "shortha
 
 SINGLE_ARGUMENT = (
     "sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "arcsin", "arccos", "arctan", "sinh", "cosh",
-    "tanh", "coth", "sech", "csch", "asinh", "acosh", "atanh", "arcsinh", "arccosh", "arctanh", "tg", "ctg", "cosec",
+    "tanh", "coth", "sech", "csch", "asinh", "acosh", "atanh", "arcsinh", "arccosh", "arctanh", "acoth", "asech",
+    "acsch", "tg", "ctg", "cosec",
     "exp", "log", "ln", "sqrt", "abs", "det", "trace", "inverse", "transpose",
 )  # fmt: skip
 """The functions that may be written without brackets, ``sin x``."""
@@ -23,6 +24,8 @@ ALIASES = {
     "Integral": "integrate", "ImmutableMatrix": "Matrix", "ImmutableDenseMatrix": "Matrix",
     "MutableDenseMatrix": "Matrix", "Determinant": "det", "Trace": "trace", "Transpose": "transpose",
     "Inverse": "inverse", "arctan2": "atan2",
+    **{f"arc{name}": f"a{name}" for name in ("sinh", "cosh", "tanh", "coth", "sech", "csch")},
+    "tg": "tan", "ctg": "cot", "cosec": "csc",
 }  # fmt: skip
 """Other names of built-in functions -> the name here. Names that SymPy's own text uses are among them."""
 
@@ -88,7 +91,7 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
 class Shorthand(NamedTuple):
     """A short form of a cosine or a sine, ``cθ`` or ``c_theta``: its first token, the number of tokens, its formula."""
 
-    index: int
+    place: int
     length: int
     function: str
     angle: str
@@ -106,18 +109,18 @@ class Shorthand(NamedTuple):
 def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
     """Return the pieces of a text that may be short for the cosine or sine of an angle."""
     short = []
-    for index, token in enumerate(tokens[:-1]):
+    for place, token in enumerate(tokens[:-1]):
         letter, _, angle = token.text.partition("_")
         function = {"c": "cos", "s": "sin", "C": "cos", "S": "sin"}.get(letter)
         if token.kind != "name" or function is None:
             continue
-        after = tokens[index + 1]
+        after = tokens[place + 1]
         if angle in GREEK_WORDS and angle != "pi" and after.text != "(":
-            short.append(Shorthand(index, 1, function, angle))
+            short.append(Shorthand(place, 1, function, angle))
         elif (
             not angle and after.kind == "name" and after.tight and after.text.partition("_")[0] in GREEK_WORDS - {"pi"}
         ):
-            short.append(Shorthand(index, 2, function, after.text))
+            short.append(Shorthand(place, 2, function, after.text))
     return short
 
 
