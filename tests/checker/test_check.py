@@ -166,7 +166,7 @@ REFUSED = (
     ("eye(2)*eye(3) == 0", "3 x 3"),
     ("eye(2) == eye(3)", "one shape"),
     ("eye(2)[2, 0] == 0", "indices"),
-    ("x**y == 1", "exponent"),
+    ("x**sin(y) == 1", "exponent"),
     ("x**65 == 1", "exponent"),
     ("((9**64)**64)**64 == x", "bits"),
     ("sin(1000000*x) == 0", "terms"),

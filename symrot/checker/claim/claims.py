@@ -13,14 +13,20 @@ from sympy import Expr, Symbol
 
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.interpreter import CONSTANTS, Interpreter, time
-from symrot.checker.claim.quantities import OTHER_MEANINGS, letters_of_quantities
+from symrot.checker.claim.quantities import (
+    OTHER_MEANINGS,
+    has_natural_base,
+    imaginary_letter,
+    letters_of_quantities,
+    with_natural_base,
+)
 from symrot.checker.claim.reader import Declared, Reading, Relation, read_expression, read_relation
 from symrot.checker.claim.scope import Divisor, is_matrix
 from symrot.checker.claim.tree import Node, text, walk
 from symrot.checker.decide.decision import Equation
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.units.units import read_unit
-from symrot.errors import InputError
+from symrot.errors import InputError, complaint
 from symrot.exact.decision import ShapeMismatch, matched_sides
 
 __all__ = [
@@ -240,6 +246,19 @@ def claim_of_relation(
     if relation[0] != "==":
         raise InputError(f"expected a claim with '==', got '{relation[0]}' in {source[:60]!r}")
     hypotheses = tuple(_hypothesis(text, "given") for text in assume)
+    notes = list(notes)
+    everything = [*relation[1:], *context, *(side for hypothesis in hypotheses for side in hypothesis[1:])]
+    letter = imaginary_letter(everything)
+    if has_natural_base(everything) and not any(name == "e" for name, _ in define):
+        if letter is not None:
+            expected = f"real numbers (write cos(x) and sin(x) for the parts of exp({letter.value}*x))"
+            raise complaint(source, "", letter.span[0], expected)
+        notes.append("e is read as the base of the exponential function")
+        relation = _with_natural_base(relation)
+        hypotheses = tuple(map(_with_natural_base, hypotheses))
+        define = [(name, with_natural_base(tree)) for name, tree in define]
+    elif letter is not None:
+        notes.append(f"{letter.value} is read as a real symbol, not as the imaginary unit")
     sources = {"claim": source.strip(), **{f"given.{n}": text for n, text in enumerate(assume)}}
     sources |= {f"define.{n}": source for n in range(len(define))}
     trees = [
@@ -260,6 +279,11 @@ def claim_of_relation(
         units=_units(dict(units or {}), used, "claim"),
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
+
+
+def _with_natural_base(relation: Relation) -> Relation:
+    sign, left, right = relation
+    return sign, with_natural_base(left), with_natural_base(right)
 
 
 MOST_EQUATIONS = 30

@@ -10,7 +10,7 @@ import re
 from symrot.checker.claim.cursor import ADDING
 from symrot.checker.claim.pieces import PiecesPart
 from symrot.checker.claim.tokens import SIGNS, Token
-from symrot.checker.claim.tree import Node, negated, number, product, sum_of, walk
+from symrot.checker.claim.tree import Node, negated, number, product, sum_of
 
 __all__ = ["Parser"]
 
@@ -189,12 +189,9 @@ class Parser(PiecesPart):
                 self.index += 2
                 exponent = product([exponent, Node("inv", None, (self.numeral(below),), self.span(slash.start))])
         is_e = base.kind == "name" and base.value == "e" and "e" not in self.vocabulary.symbols
-        follower = self.token()
-        goes_on = is_e and exponent.kind in ("number", "neg") and follower.kind == "name" and follower.tight
-        if goes_on and not self.other_reading("exponent of e", start, start, follower.end):
-            exponent = product([exponent, self.factor()])
+        while is_e and self.token().kind == "name" and self.token().tight:  # e^-kt
+            if self.other_reading("exponent of e", self.start(), start, self.token().end):
+                break
+            exponent = product([exponent, self.power()])
         self.depth -= 1
-        if is_e and any(node.kind in ("name", "call") for _, node in walk(exponent)):
-            self.note("e is read as the base of the exponential function")
-            return Node("call", "exp", (exponent,), self.span(start))
         return Node("power", None, (base, exponent), self.span(start))

@@ -142,6 +142,8 @@ def _inverse(interpreter: Interpreter, node: Node) -> Any:
 
 def _power(interpreter: Interpreter, node: Node) -> Any:
     base, exponent = interpreter.evaluate(node.args[0]), interpreter.scalar(node.args[1], "as an exponent")
+    if not exponent.is_Rational and not is_matrix(base):
+        return _power_of_positive(interpreter, node, base, exponent)
     if not exponent.is_Rational:
         raise interpreter.fail(node.args[1], "a number as an exponent")
     if abs(exponent.p) > LARGEST_EXPONENT or exponent.q > LARGEST_ROOT:
@@ -164,6 +166,19 @@ def _power(interpreter: Interpreter, node: Node) -> Any:
         interpreter.within_nesting(base, node.args[0])
         interpreter.take_root(base, node.args[0])
     return base**exponent
+
+
+def _power_of_positive(interpreter: Interpreter, node: Node, base: Expr, exponent: Expr) -> Expr:
+    """Return a power with an exponent that is no number, exp(exponent*log(base)); its base is positive."""
+    interpreter.shape(base, node.args[0])
+    if any(not (part.is_Pow and part.exp.is_Integer) for part in exponent.atoms(sympy.Pow, sympy.Function)):
+        raise interpreter.fail(node.args[1], "a number as an exponent, or a formula without functions and roots,")
+    if base.is_nonpositive:
+        raise interpreter.fail(node.args[0], "a positive number below an exponent that is no number")
+    interpreter.within_nesting(base, node.args[0])
+    interpreter.divide_by(base, node.args[0])
+    interpreter.take_root(base, node.args[0])
+    return sympy.exp(exponent * sympy.log(base))
 
 
 def _transpose(interpreter: Interpreter, node: Node) -> ImmutableMatrix:

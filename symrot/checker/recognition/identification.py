@@ -15,7 +15,7 @@ from sympy.matrices import MatrixBase
 
 from symrot.checker.claim.claims import Claim, claim_of_text, named_formula
 from symrot.checker.claim.interpreter import Interpreter, time
-from symrot.checker.claim.quantities import letters_of_quantities
+from symrot.checker.claim.quantities import has_natural_base, letters_of_quantities, with_natural_base
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.latex.reader import read_latex_formula
@@ -101,6 +101,7 @@ def _value(formula: Any) -> Any:
 
 def _in_new_names(tree: Node, source: str) -> Any:
     """Return the value of a tree whose names are declared by their use."""
+    tree = with_natural_base(tree) if has_natural_base([tree]) else tree
     quantities = {letter: Symbol(letter, real=True) for letter in letters_of_quantities([tree])}
     return Interpreter(implied=True, values=quantities).read(tree, source)
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from symrot.checker.claim.tree import Node
+from symrot.checker.claim.tree import Node, walk
 from symrot.checker.repair.dual import (
     Dual,
     UndefinedValue,
@@ -183,6 +183,8 @@ def _product(point: Point, node: Node) -> Any:
 
 def _raised(point: Point, node: Node) -> Any:
     base, exponent = (point._value(part) for part in node.args)
+    if not is_matrix(base) and any(part.kind in ("name", "call") for _, part in walk(node.args[1])):
+        return exponential(exponent * logarithm(base))
     if not is_matrix(base):
         return power(base, plain(exponent))
     result = base = inverted(base) if exponent < 0 else base

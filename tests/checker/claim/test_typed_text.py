@@ -17,7 +17,7 @@ PAGE = Path(__file__).parents[3] / "docs" / "checkers.md"
 SAME = (
     # powers
     ("-x^2", "-x**2"), ("2^-1", "2**(-1)"), ("2^3^2", "2**3**2"), ("x²", "x**2"), ("x⁻¹ + y³", "x**(-1) + y**3"),
-    ("(a + b)²c", "(a + b)**2*c"), ("x^2 y", "x**2*y"), ("r^2/5", "r**2/5"), ("e^(2x)", "exp(2*x)"), ("√x", "sqrt(x)"),
+    ("(a + b)²c", "(a + b)**2*c"), ("x^2 y", "x**2*y"), ("r^2/5", "r**2/5"), ("e^(2x)", "e**(2*x)"), ("e^-kt", "e**(-k*t)"), ("√x", "sqrt(x)"),
     ("√(x + 1) y", "sqrt(x + 1)*y"), ("R^T", "R.T"), ("Rᵀ R⁻¹", "R.T*R**(-1)"),
     # products
     ("2x", "2*x"), ("2 x y", "2*x*y"), ("1/12 m (b^2 + c^2)", "1/12*m*(b**2 + c**2)"), ("(a + b)(a - b)", "(a + b)*(a - b)"),
@@ -130,7 +130,7 @@ REFUSED = (
     ("x.applyfunc(f) == 1", "T, the transpose, or another of"), ("x.__class__ == 1", "position 3"), ("x.y == 1", "position 3"),
     ("x.free_symbols == 1", "position 3"), ("open(x + y) == 1", "'open'"), ("f(x) = 2x", "'f'"), ("(x + = 1", "a number, a name"),
     ("x² + (y = 1", r"'\)'"), ("x = 1 < 2", "a chain of equals signs"), ("|x = 1", r"'\|'"), ("t' = 1", "may depend on t"),
-    ("[1, 2; 3] = x", "equal length"), ("[a b; c d] = x", "commas between the entries"), 
+    ("[1, 2; 3] = x", "equal length"), ("[a b; c d] = x", "commas between the entries"),
     ("2e3x = 1", "a product sign after the number"), ("x\n= 1\ny", "'=='"),
     ("a × b × c = 0", "which of the products"), ("xⁿ = 1", "position 2"), ("x²⁻ = 1", "a whole number"), ("м = 1", "position 1"),
     ("exp(I*x) == cos(x) + I*sin(x)", "such as I_1"), ("I*I == -1", "means something else"), ("log(E) == 1", "means something else"),
