@@ -16,7 +16,10 @@ from symrot.checker.claim.claims import (
     read_entries,
     relation_text,
 )
+from symrot.checker.claim.cursor import TIME
+from symrot.checker.claim.reader import Relation
 from symrot.checker.claim.size import MOST_NESTED, nesting
+from symrot.checker.claim.tree import walk
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.time_limit import TimeUp, processor_seconds
@@ -146,8 +149,21 @@ def _on_latex(source: str, assume: Sequence[str], units: Mapping[str, str] | Non
     repairs = tuple(replace(near, text=latex_of_text(near.text, functions)) for near in verdict.repairs)
     echo = latex_of(claim.relation, functions) or claim.text
     reading = echo if "".join(echo.split()) != "".join(source.split()) else ""
-    notes = (*claim.notes, *verdict.notes)
+    notes = (*claim.notes, *_constants(claim.relation), *verdict.notes)
     return replace(verdict, text=source.strip(), reading=reading, repairs=repairs, notes=notes)
+
+
+def _constants(relation: Relation) -> tuple[str, ...]:
+    """Return a note on the symbols that are constants in derivatives with respect to time."""
+    nodes = [node for side in relation[1:] for _, node in walk(side)]
+    rates = [node.args[0] for node in nodes if node.kind == "call" and node.value == "diff" and node.args[-1] == TIME]
+    parts = (part for rate in rates if rate.kind != "call" for _, part in walk(rate))
+    inner = {argument for node in nodes if node.kind == "call" for argument in node.args if argument == TIME}
+    names = sorted({str(part.value) for part in parts if part.kind == "name" and part not in inner} - {"pi"})
+    if not names:
+        return ()
+    are = "is read as a constant" if len(names) == 1 else "are read as constants"
+    return (f"{', '.join(names)} {are}, having no rate in the text",)
 
 
 def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:

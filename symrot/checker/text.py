@@ -7,8 +7,9 @@ lines after them.
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from symrot.checker.claim.claims import Claim, claims_of_reading, named_formula
+from symrot.checker.claim.claims import Claim, named_formula
 from symrot.checker.claim.cursor import TIME
+from symrot.checker.claim.lines import claims_of_reading
 from symrot.checker.claim.notation import Notation, notation_of
 from symrot.checker.claim.reader import Reading, readings_of
 from symrot.checker.claim.tree import Node, walk

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from sympy import Expr, Symbol
 
+from symrot.checker.claim.cursor import TIME
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.interpreter import CONSTANTS, Interpreter, time
 from symrot.checker.claim.quantities import (
@@ -20,7 +21,7 @@ from symrot.checker.claim.quantities import (
     letters_of_quantities,
     with_natural_base,
 )
-from symrot.checker.claim.reader import Declared, Reading, Relation, read_expression, read_relation
+from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation
 from symrot.checker.claim.scope import Divisor, is_matrix
 from symrot.checker.claim.tree import Node, text, walk
 from symrot.checker.decide.decision import Equation
@@ -30,8 +31,18 @@ from symrot.errors import InputError, complaint
 from symrot.exact.decision import ShapeMismatch, matched_sides
 
 __all__ = [
-    "Claim", "Definitions", "NamedFormula", "Refusal", "claim_of_relation", "claim_of_text", "claims_of_reading",
-    "is_latex", "named_formula", "read_claims", "read_entries", "relation_text",
+    "Claim",
+    "Definitions",
+    "NamedFormula",
+    "Refusal",
+    "check_units",
+    "claim_of_relation",
+    "claim_of_text",
+    "is_latex",
+    "named_formula",
+    "read_claims",
+    "read_entries",
+    "relation_text",
 ]  # fmt: skip
 
 
@@ -222,7 +233,7 @@ def claim_of_text(source: str, assume: Sequence[str] = (), units: Mapping[str, s
     """Return the claim of a text ``left == right``; text with a backslash, a brace or a dollar sign is LaTeX.
 
     Its names are real symbols, or functions of time if they are written ``f(t)``; so are the names in hypotheses.
-    A text with two readings is refused; :func:`claims_of_reading` is for those.
+    A text with two readings is refused; :func:`symrot.checker.claim.lines.claims_of_reading` is for those.
     """
     hypotheses = tuple(_hypothesis(text, "given") for text in assume)
     if isinstance(source, str) and is_latex(source):
@@ -267,16 +278,20 @@ def claim_of_relation(
         *(tree for _, tree in define),
         *context,
     ]
+    rates = {
+        str(node.value) for tree in trees for _, node in walk(tree) if node.kind == "call" and node.args == (TIME,)
+    }
     letters = letters_of_quantities(trees)
     used = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind in ("name", "call")}
     return Claim(
         relation=relation,
         symbols=letters,
+        functions=tuple(letter for letter in OTHER_MEANINGS if letter in rates),
         define=tuple(define),
         hypotheses=hypotheses,
         implied=True,
         sources=sources,
-        units=_units(dict(units or {}), used, "claim"),
+        units=check_units(dict(units or {}), used, "claim"),
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
 
@@ -284,55 +299,6 @@ def claim_of_relation(
 def _with_natural_base(relation: Relation) -> Relation:
     sign, left, right = relation
     return sign, with_natural_base(left), with_natural_base(right)
-
-
-MOST_EQUATIONS = 30
-"""The most equations in one text, lines and links of chains."""
-
-
-def claims_of_reading(
-    reading: Reading, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None
-) -> list[list[Claim]]:
-    """Return the claims of a text, line by line, and link by link of a chain ``a = b = c``.
-
-    A line that only gives a name to a formula is a definition for the lines after it.
-    """
-    define: list[tuple[str, Node]] = []
-    lines = []
-    if sum(len(chain.links) for chain in reading.lines) > MOST_EQUATIONS:
-        raise InputError(f"expected at most {MOST_EQUATIONS} equations in one text; a file of claims may have more")
-    names = {str(n.value) for chain in reading.lines for side in chain.sides for _, n in walk(side)}
-    _units(dict(units or {}), names, "claim")
-    context = [side for chain in reading.lines for side in chain.sides]
-    for chain in reading.lines:
-        links = chain.links
-        if len(links) > 1 and set(chain.signs) != {"=="}:
-            raise InputError(f"expected a chain of equals signs, got {' '.join(chain.signs)!r} in {source[:60]!r}")
-        used = {str(n.value) for side in chain.sides for _, n in walk(side) if n.kind in ("name", "call")}
-        known = _needed(define, used)
-        claims = []
-        for link in links:
-            in_link = {str(n.value) for side in link[1:] for _, n in walk(side)}
-            own = {name: unit for name, unit in (units or {}).items() if name in in_link}
-            claims.append(claim_of_relation(link, source, assume, own, known, reading.notes, context))
-        lines.append(claims)
-        first = chain.sides[0]
-        reserved = ("pi", "t", *(name for name, _ in define))
-        is_name = first.kind == "name" and chain.signs[0] == "==" and first.value not in reserved
-        if is_name and first not in [node for _, node in walk(chain.sides[1])]:
-            define.append((str(first.value), chain.sides[1]))
-    return lines
-
-
-def _needed(define: Sequence[tuple[str, Node]], used: set[str]) -> list[tuple[str, Node]]:
-    """Return the definitions that names need, and those that these need, in order."""
-    needed: list[tuple[str, Node]] = []
-    names = set(used)
-    for name, tree in reversed(define):
-        if name in names:
-            needed.insert(0, (name, tree))
-            names |= {str(node.value) for _, node in walk(tree) if node.kind == "name"}
-    return needed
 
 
 class NamedFormula(NamedTuple):
@@ -471,7 +437,7 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
     sources |= {f"given.{n}": text for n, text in enumerate(entry.get("given", ()))}
     claim = Claim(
         name, entry.get("where", ""), symbols, functions, tuple(define), hypotheses, sources=sources,
-        units=_units(entry.get("units", {}), known, place),
+        units=check_units(entry.get("units", {}), known, place),
     )  # fmt: skip
     others = list(entry.get("alternatives", ()))
     kinds = [key for key in ("claim", "latex", "value") if key in entry]
@@ -519,7 +485,7 @@ def _functions_of_time(relations: Sequence[Relation]) -> set[str]:
     }
 
 
-def _units(units: dict[str, str], known: set[str], place: str) -> dict[str, str]:
+def check_units(units: dict[str, str], known: set[str], place: str) -> dict[str, str]:
     """Return the units of a claim; raise InputError for a name that it does not have, or an unknown unit."""
     for name, unit in units.items():
         if name not in known:

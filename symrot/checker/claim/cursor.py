@@ -76,6 +76,8 @@ class Cursor(ABC):
         Sentences about readings that a reader should know.
     timed : set of str
         Names with a prime or a dot, which are functions of time.
+    differentiated : set of str
+        Names in formulas after d/dt, which may be functions of time.
     """
 
     def __init__(
@@ -89,6 +91,7 @@ class Cursor(ABC):
         self.doubts: list[Doubt] = []
         self.notes: list[str] = []
         self.timed: set[str] = set()
+        self.differentiated: set[str] = set()
 
     def fail(self, expected: str, position: int | None = None) -> InputError:
         return complaint(self.source, self.where, self.start() if position is None else position, expected)

@@ -184,8 +184,9 @@ class OpenFunctionsPart(Cursor):
         operand = self.factor()
         self.depth -= 1
         for _, node in walk(operand):
-            if node.kind == "name" and node.value not in ("t", "pi") and node.value not in self.vocabulary.symbols:
-                self.timed.add(str(node.value))
+            varies = node.kind == "name" and node.value not in ("t", "pi", *self.vocabulary.symbols)
+            if varies or (node.kind == "call" and node.args == (TIME,)):
+                self.differentiated.add(str(node.value))
         if self.peek() == "" and self.starts_factor():
             raise self.fail("brackets around the formula after d/dt")
         return Node("call", "diff", (operand, TIME), self.span(token.start))

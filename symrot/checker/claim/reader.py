@@ -139,7 +139,8 @@ class _Text:
             frozenset(alone),
             frozenset(_crossed(tokens, flips)),
         )
-        lines, plain, timed = [], not self.source.isascii() or not whole, set()
+        lines, plain = [], not self.source.isascii() or not whole
+        timed, differentiated = set[str](), set[str]()
         divided = [tokens] if one_side else list(self.lines(tokens))
         if not divided:
             raise complaint(self.source, self.where, 0, "a formula")
@@ -151,6 +152,16 @@ class _Text:
             doubts += parser.doubts
             notes += [note for note in parser.notes if note not in notes]
             timed |= parser.timed
+            differentiated |= parser.differentiated
+        constants = differentiated - timed
+        if constants and len(constants) < len(differentiated):
+            doubt = Doubt(("constants", 0), f"d/dt with {_listed(sorted(constants))}")
+            doubts.append(doubt)
+            if doubt.key not in flips:
+                are = "is read as a constant" if len(constants) == 1 else "are read as constants"
+                notes.append(f"{_listed(sorted(constants))} {are}, having no rate in the text")
+                constants = set()
+        timed |= constants
         plain |= len(lines) > 1 or any(len(sides) > 2 for _, sides in lines)
         finished = tuple(
             Chain(tuple(signs), tuple(_finished(side, timed, vocabulary.vectors) for side in sides))

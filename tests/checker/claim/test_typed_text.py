@@ -180,6 +180,18 @@ def test_the_letters_of_an_inertia_and_an_energy_are_quantities(claim):
     assert all("is read as a quantity, not as" in note for note in verdict.notes)
 
 
+def test_the_names_after_d_dt_that_have_no_rate_are_told_as_constants():
+    verdict = symrot.check("d/dt (m l² θ̇) = m l² θ̈")
+    assert verdict.verdict == "true"
+    assert verdict.notes[0] == "l and m are read as constants, having no rate in the text"
+    assert verdict.notes[1].endswith("it is false")
+    assert symrot.check("d/dt (x y) = ẋ y + x ẏ").notes == ()
+    assert symrot.check("d/dt (x y) = ẏ x").notes[0] == "x is read as a constant, having no rate in the text"
+    latex = symrot.check(r"\frac{d}{dt}(x y) = \dot x y")
+    assert latex.notes == ("y is read as a constant, having no rate in the text",)
+    assert symrot.check("M = d/dt (I ω)").reading == "M = diff(I(t)*ω(t), t)"
+
+
 HYPERBOLIC = (
     "coth x = 1/tanh x", "coth(x)**2 - csch(x)**2 == 1", "sech²x + tanh²x = 1", "sinh(asinh x) = x", "cosh(acosh(x)) == x",
     "atanh(tanh(x)) == x", "tanh(acoth x) = 1/x", "sech(asech(x)) == x", "csch(acsch x) = x", "tg x ctg x = 1",
