@@ -8,12 +8,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim, named_formula
-from symrot.checker.claim.cursor import TIME
 from symrot.checker.claim.lines import claims_of_reading
 from symrot.checker.claim.notation import Notation, notation_of
 from symrot.checker.claim.reader import Reading, readings_of
 from symrot.checker.claim.tree import Node, walk
-from symrot.checker.interface import check_claim
+from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
+from symrot.checker.typed.cursor import TIME
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
 
@@ -45,7 +45,11 @@ def verdict_on_text(
     readings = readings_of(source)
     verdicts: list[tuple[Reading, Verdict]] = []
     refusal: InputError | None = None
+    late = False
     for reading in readings:
+        late = late or sum(verdict.seconds for _, verdict in verdicts) > MOST_SECONDS
+        if late:
+            break
         try:
             verdict = _verdict(reading, source, assume, units, repair and not verdicts)
         except InputError as reason:
@@ -61,6 +65,8 @@ def verdict_on_text(
     for reading, other in others:
         if other.verdict != verdict.verdict:
             notes.append(_on_reading(usual, reading, other))
+    if late:
+        notes.append(f"other readings were not decided, since this one took more than {MOST_SECONDS} s")
     seconds = sum(other.seconds for _, other in verdicts)
     return replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds)
 

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 from sympy import Expr, Symbol
 
-from symrot.checker.claim.cursor import TIME
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.interpreter import CONSTANTS, Interpreter, time
 from symrot.checker.claim.quantities import (
@@ -26,6 +25,7 @@ from symrot.checker.claim.scope import Divisor, is_matrix
 from symrot.checker.claim.tree import Node, text, walk
 from symrot.checker.decide.decision import Equation
 from symrot.checker.latex.reader import Names, read_latex
+from symrot.checker.typed.cursor import TIME
 from symrot.checker.units.units import read_unit
 from symrot.errors import InputError, complaint
 from symrot.exact.decision import ShapeMismatch, matched_sides

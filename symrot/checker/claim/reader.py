@@ -10,12 +10,12 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from symrot.checker.claim.cursor import DEEPEST_NESTING, TIME, Doubt, Vocabulary, is_cross_letter
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.grammar import Parser
-from symrot.checker.claim.tokens import SIGNS, Token, tokens_of, without_dots
 from symrot.checker.claim.tree import Node
-from symrot.checker.claim.words import pieces_of_word, shorthands, split_tokens
+from symrot.checker.typed.cursor import DEEPEST_NESTING, TIME, Doubt, Vocabulary, is_cross_letter
+from symrot.checker.typed.grammar import Parser
+from symrot.checker.typed.tokens import SIGNS, Token, tokens_of, without_dots
+from symrot.checker.typed.words import pieces_of_word, shorthands, split_tokens
 from symrot.errors import InputError, complaint
 
 __all__ = [

@@ -8,8 +8,8 @@ import symrot
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.notation import notation_of
 from symrot.checker.claim.reader import read_expression, readings_of
-from symrot.checker.claim.tokens import tokens_of
 from symrot.checker.claim.tree import text
+from symrot.checker.typed.tokens import tokens_of
 from symrot.errors import InputError
 
 PAGE = Path(__file__).parents[3] / "docs" / "checkers.md"

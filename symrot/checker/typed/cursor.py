@@ -6,11 +6,11 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from symrot.checker.claim.defined_functions import DEFINED
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.tokens import Token
 from symrot.checker.claim.tree import Node
-from symrot.checker.claim.words import ALIASES
+from symrot.checker.typed.defined_functions import DEFINED
+from symrot.checker.typed.tokens import Token
+from symrot.checker.typed.words import ALIASES
 from symrot.errors import InputError, complaint
 
 __all__ = ["ADDING", "DEEPEST_NESTING", "FACTOR_MARKS", "TIME", "Cursor", "Doubt", "Vocabulary", "is_cross_letter"]

@@ -7,7 +7,7 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from symrot.checker.claim.tokens import GREEK_WORDS, Token
+from symrot.checker.typed.tokens import GREEK_WORDS, Token
 
 __all__ = ["ALIASES", "SINGLE_ARGUMENT", "Shorthand", "pieces_of_word", "shorthands", "split_tokens"]
 

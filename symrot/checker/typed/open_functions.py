@@ -2,11 +2,11 @@
 
 import re
 
-from symrot.checker.claim.cursor import ADDING, FACTOR_MARKS, TIME, Cursor
-from symrot.checker.claim.defined_functions import DEFINED
-from symrot.checker.claim.tokens import Token
 from symrot.checker.claim.tree import Node, negated, number, product, walk
-from symrot.checker.claim.words import SINGLE_ARGUMENT
+from symrot.checker.typed.cursor import ADDING, FACTOR_MARKS, TIME, Cursor
+from symrot.checker.typed.defined_functions import DEFINED
+from symrot.checker.typed.tokens import Token
+from symrot.checker.typed.words import SINGLE_ARGUMENT
 
 __all__ = ["OpenFunctionsPart"]
 

@@ -5,12 +5,12 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any, ClassVar
 
-from symrot.checker.claim.cursor import DEEPEST_NESTING, TIME
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.open_functions import OpenFunctionsPart
-from symrot.checker.claim.tokens import GREEK_WORDS, Token
 from symrot.checker.claim.tree import Node, number, product
-from symrot.checker.claim.words import SINGLE_ARGUMENT
+from symrot.checker.typed.cursor import DEEPEST_NESTING, TIME
+from symrot.checker.typed.open_functions import OpenFunctionsPart
+from symrot.checker.typed.tokens import GREEK_WORDS, Token
+from symrot.checker.typed.words import SINGLE_ARGUMENT
 
 __all__ = ["PiecesPart"]
 

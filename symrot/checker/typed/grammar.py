@@ -7,10 +7,10 @@ takes the usual one and records each such place as a :class:`Doubt`; with the pl
 
 import re
 
-from symrot.checker.claim.cursor import ADDING
-from symrot.checker.claim.pieces import PiecesPart
-from symrot.checker.claim.tokens import SIGNS, Token
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of
+from symrot.checker.typed.cursor import ADDING
+from symrot.checker.typed.pieces import PiecesPart
+from symrot.checker.typed.tokens import SIGNS, Token
 
 __all__ = ["Parser"]
 
