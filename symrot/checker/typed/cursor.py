@@ -173,6 +173,9 @@ class Cursor(ABC):
         arguments = self.members(")")
         if function in DEFINED and function not in self.vocabulary.functions and len(arguments) == 1:
             return DEFINED[function](arguments[0])
+        if function == "diff":  # SymPy writes Derivative(x(t), (t, 2))
+            pairs = [a.args if a.kind == "list" and len(a.args) == 2 else (a,) for a in arguments[1:]]
+            arguments = [arguments[0], *(variable for pair in pairs for variable in pair)]
         return Node("call", function, tuple(arguments), self.span(token.start))
 
     def numeral(self, token: Token) -> Node:

@@ -227,6 +227,19 @@ def test_sympy_equations_and_values_are_read():
         symrot.check(sin(x))
 
 
+def test_the_text_of_sympy_expressions_is_read():
+    from sympy import Derivative, Function, Integral, Matrix, Rational, cos, sin, sqrt, symbols
+
+    t, x, y = symbols("t x y", real=True)
+    theta = Function("theta")(t)
+    matrix = Matrix([[cos(x), -sin(x)], [sin(x), y]])
+    values = [Derivative(theta, t, t) + Rational(1, 3) * sqrt(x) * abs(y), theta.diff(t) ** 2, Integral(x * y, (x, 0, y)),
+              matrix.det(), 2 * x ** Rational(3, 2) / y, sin(x) ** 2 * cos(theta)]  # fmt: skip
+    for value in values:
+        assert symrot.check(f"{value} == {value} + y - y").verdict == "true", value
+    assert symrot.check(f"{matrix}.T == {matrix.T}").verdict == "true"
+
+
 def test_the_page_of_the_language_lists_every_built_in_function():
     page = PAGE.read_text("utf-8").partition("## How formulas are read")[2]
     names = page.partition("Built-in functions:")[2].partition(".\n")[0]
