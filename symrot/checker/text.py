@@ -13,6 +13,7 @@ from symrot.checker.claim.notation import Notation, notation_of
 from symrot.checker.claim.reader import Reading, readings_of
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
+from symrot.checker.rounding import with_rounding
 from symrot.checker.typed.cursor import TIME
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
@@ -106,7 +107,7 @@ def _differs(echo: str, source: str) -> bool:
 
 
 def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
-    verdict = check_claim(claim, repair)
+    verdict = with_rounding(claim, check_claim(claim, repair))
     repairs = tuple(replace(repair, text=notation.rewritten(repair.text)) for repair in verdict.repairs)
     return replace(verdict, repairs=repairs, notes=(*claim.notes, *verdict.notes))
 
