@@ -54,7 +54,7 @@ class Notation:
         args = [self._spelled(child, node.kind) for child in node.args]
         if node.kind == "product":
             args = [
-                Node("name", f"({text(factor)})") if _is_number_power(factor) and after.kind == "inv" else factor
+                Node("name", f"({text(factor)})") if _is_number_power(factor) and _is_over_digit(after) else factor
                 for factor, after in zip(args, [*args[1:], END], strict=True)
             ]
         return replace(node, args=tuple(args))
@@ -100,6 +100,10 @@ END = Node("name", "")
 def _is_number_power(node: Node) -> bool:
     """Return whether a tree is a power like x^3, which before a slash might be read as x^(3/2)."""
     return node.kind == "power" and node.args[1].kind == "name" and str(node.args[1].value) in ("1", "3", "5", "7", "9")
+
+
+def _is_over_digit(node: Node) -> bool:
+    return node.kind == "inv" and str(node.args[0].value).isdigit()
 
 
 def _is_rate(node: Node) -> bool:

@@ -8,14 +8,15 @@ have several, and the usual one comes first.
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Any
 
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node
 from symrot.checker.typed.cursor import DEEPEST_NESTING, TIME, Doubt, Vocabulary, is_cross_letter
 from symrot.checker.typed.grammar import Parser
-from symrot.checker.typed.tokens import SIGNS, Token, tokens_of, without_dots
-from symrot.checker.typed.words import pieces_of_word, shorthands, split_tokens
+from symrot.checker.typed.tokens import GREEK_WORDS, SIGNS, Token, tokens_of, without_dots
+from symrot.checker.typed.words import UNITS, pieces_of_word, shorthands, split_tokens
 from symrot.errors import InputError, complaint
 
 __all__ = [
@@ -132,6 +133,10 @@ class _Text:
         if not whole:
             words, notes, doubts = self.words(alone, flips)
             tokens = self.without_shorthand(list(split_tokens(tokens, words)), flips, notes, doubts)
+            tokens = self.with_indices(tokens, flips, doubts)
+            pairs = pairwise(self.tokens)
+            units = [after.text for before, after in pairs if before.kind == "number" and after.text in UNITS]
+            notes += [f"{unit} is read as a name, not as a unit" for unit in units]
             alone |= set(_alone(tokens))
         vocabulary = Vocabulary(
             frozenset(self.declared.symbols),
@@ -234,6 +239,24 @@ class _Text:
             own = tokens[form.place : form.place + form.length]
             tokens[form.place : form.place + form.length] = form.tokens(own[0], own[-1])
         notes.append(f"{doubt.excerpt} is read as {short[0].function}({short[0].angle}), and so are letters like it")
+        return tokens
+
+    def with_indices(self, tokens: list[Token], flips: Collection[tuple[str, int]], doubts: list[Doubt]) -> list[Token]:
+        """Return tokens with one name for ``ωp`` where it is a whole side of an equation; elsewhere it is a product."""
+        padded = [None, *tokens]
+        for place in range(len(tokens) - 3, -1, -1):
+            before, first, second, after = padded[place], *tokens[place : place + 3]
+            greek = first.kind == second.kind == "name" and first.text in GREEK_WORDS and first.end == first.start + 1
+            whole = (before is None or before.text in SIGNS or first.breaks) and (
+                after.text in SIGNS or after.kind == "end"
+            )
+            if not greek or not whole or not second.tight or len(second.text) > 1 or first.text == "pi":
+                continue
+            doubt = Doubt(("index", first.start), self.source[first.start : second.end])
+            doubts.append(doubt)
+            if doubt.key not in flips:
+                merged = first._replace(text=f"{first.text}_{second.text}", end=second.end)
+                tokens[place : place + 2] = [merged]
         return tokens
 
     def lines(self, tokens: Sequence[Token]) -> Iterator[list[Token]]:

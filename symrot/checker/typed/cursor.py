@@ -10,7 +10,7 @@ from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node
 from symrot.checker.typed.defined_functions import DEFINED
 from symrot.checker.typed.tokens import Token
-from symrot.checker.typed.words import ALIASES
+from symrot.checker.typed.words import ALIASES, ENGLISH
 from symrot.errors import InputError, complaint
 
 __all__ = ["ADDING", "DEEPEST_NESTING", "FACTOR_MARKS", "TIME", "Cursor", "Doubt", "Vocabulary", "is_cross_letter"]
@@ -193,6 +193,8 @@ class Cursor(ABC):
         token = self.token()
         if token.kind in ("number", "fraction"):
             raise self.fail("a product sign before a number" if token.kind == "number" else "an operator")
+        if token.text in ENGLISH:
+            raise self.fail(f"each claim on a line of its own, without the word {token.text!r},")
         return token.kind == "name" or token.text in FACTOR_MARKS or (token.text == "|" and not self.bars)
 
     def end_of_run(self) -> int:

@@ -43,6 +43,8 @@ class Parser(PiecesPart):
                 self.plain |= sign == "="
                 self.next()
                 sides.append(self.expression())
+        if self.peek() == "," and signs:
+            raise self.fail("an operator, the end, or the next claim on a line of its own")
         if self.token().kind != "end":
             raise self.fail("an operator or the end" if signs else "an operator or '=='")
         if not signs:

@@ -9,13 +9,22 @@ from typing import NamedTuple
 
 from symrot.checker.typed.tokens import GREEK_WORDS, Token
 
-__all__ = ["ALIASES", "SINGLE_ARGUMENT", "Shorthand", "pieces_of_word", "shorthands", "split_tokens"]
+__all__ = [
+    "ALIASES",
+    "ENGLISH",
+    "SINGLE_ARGUMENT",
+    "UNITS",
+    "Shorthand",
+    "pieces_of_word",
+    "shorthands",
+    "split_tokens",
+]
 
 SINGLE_ARGUMENT = (
     "sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "arcsin", "arccos", "arctan", "sinh", "cosh",
     "tanh", "coth", "sech", "csch", "asinh", "acosh", "atanh", "arcsinh", "arccosh", "arctanh", "acoth", "asech",
     "acsch", "tg", "ctg", "cosec",
-    "exp", "log", "ln", "sqrt", "abs", "det", "trace", "inverse", "transpose",
+    "exp", "log", "ln", "sqrt", "abs", "det", "trace", "tr", "inverse", "transpose",
 )  # fmt: skip
 """The functions that may be written without brackets, ``sin x``."""
 
@@ -25,7 +34,7 @@ ALIASES = {
     "MutableDenseMatrix": "Matrix", "Determinant": "det", "Trace": "trace", "Transpose": "transpose",
     "Inverse": "inverse", "arctan2": "atan2",
     **{f"arc{name}": f"a{name}" for name in ("sinh", "cosh", "tanh", "coth", "sech", "csch")},
-    "tg": "tan", "ctg": "cot", "cosec": "csc",
+    "tr": "trace", "tg": "tan", "ctg": "cot", "cosec": "csc",
 }  # fmt: skip
 """Other names of built-in functions -> the name here. Names that SymPy's own text uses are among them."""
 
@@ -39,6 +48,9 @@ USUAL_LETTERS = frozenset("mMghlLrRvatFIkwsuc")
 """Letters that nearly every book on mechanics uses for a quantity."""
 
 UNITS = ("rpm", "deg", "rad", "kg", "mm", "cm", "km", "Hz", "ms", "rev", "min")
+
+ENGLISH = frozenset(["and", "or", "if", "for", "where", "then", "with", "when", "mod", "is", "are", "so", "but", "not"])
+"""Words between formulas, which are no factors."""
 
 SCALARS = frozenset("bckmn")
 VECTORS = frozenset("IJvwFLMHTRNPeuprfgst")

@@ -134,7 +134,7 @@ REFUSED = (
     ("2e3x = 1", "a product sign after the number"), ("x\n= 1\ny", "'=='"),
     ("a × b × c = 0", "which of the products"), ("xⁿ = 1", "position 2"), ("x²⁻ = 1", "a whole number"), ("м = 1", "position 1"),
     ("exp(I*x) == cos(x) + I*sin(x)", "such as I_1"), ("I*I == -1", "means something else"), ("log(E) == 1", "means something else"),
-    (";", "a formula at position 1"), ("x.dot() == 1", "a number, a name|one argument"), ("M.inv(2) == 1", "no arguments"), ("Eq(x, y, z)", "two sides"),
+    ("x = 1 and y = 2", "without the word 'and'"), ("x = 1, y = 2", "on a line of its own"), (";", "a formula at position 1"), ("x.dot() == 1", "a number, a name|one argument"), ("M.inv(2) == 1", "no arguments"), ("Eq(x, y, z)", "two sides"),
 )  # fmt: skip
 
 
@@ -190,6 +190,11 @@ def test_the_names_after_d_dt_that_have_no_rate_are_told_as_constants():
     latex = symrot.check(r"\frac{d}{dt}(x y) = \dot x y")
     assert latex.notes == ("y is read as a constant, having no rate in the text",)
     assert symrot.check("M = d/dt (I ω)").reading == "M = diff(I(t)*ω(t), t)"
+
+
+def test_a_unit_after_a_number_is_told_to_be_a_name():
+    assert symrot.check("5 km = 5000 m").notes[0] == "km is read as a name, not as a unit"
+    assert symrot.check("ω = 1500 rpm").notes == ("rpm is read as a name, not as a unit",)
 
 
 HYPERBOLIC = (
@@ -254,3 +259,15 @@ def test_the_table_of_two_readings_holds():
     for typed in texts:
         _, *others = readings_of(f"y + {typed.strip()} + a + b = 0")
         assert others, typed
+
+
+def test_a_greek_letter_with_an_index_is_a_name_where_it_is_a_whole_side():
+    verdict = symrot.check("ωp = m g r/(I_3 ω)")
+    assert verdict.reading == "ωp = m*g*r/(I_3*ω)"
+    assert any("read as ω*p = " in note for note in verdict.notes)
+    assert symrot.check("v = ωr").reading == "v = ω*r"
+
+
+def test_tr_is_the_trace():
+    assert symrot.check("R = [cos a, -sin a; sin a, cos a]\ntr R = 2 cos a").verdict == "true"
+    assert symrot.check("tr == 2*x").verdict == "definition"
