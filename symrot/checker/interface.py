@@ -1,27 +1,32 @@
 """The functions ``check`` and ``check_file``, which return verdicts on claims."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from symrot.checker.claim.claims import Claim, Refusal, claim_of_text, named_formula, read_entries, relation_text
+from symrot.checker.claim.claims import (
+    Refusal,
+    claim_of_text,
+    is_latex,
+    read_entries,
+)
+from symrot.checker.claim.reader import Relation
 from symrot.checker.claim.size import MOST_NESTED, nesting
-from symrot.checker.claim.values import decide_value
+from symrot.checker.claim.tree import walk
+from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, check_readings, unfinished, verdict_of_decision
 from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.text import verdict_on_text
 from symrot.checker.time_limit import TimeUp, processor_seconds
-from symrot.checker.units.check import check_dimensions, dimensions_of_formulas
-from symrot.checker.verdict import Diagnosis, Verdict
+from symrot.checker.typed.cursor import TIME
+from symrot.checker.units.check import dimensions_of_formulas
+from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
-from symrot.exact.decision import Decision, flatten
+from symrot.exact.decision import flatten
 from symrot.exact.printing import as_text
 
 __all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_readings", "verdicts_of_file"]
-
-MOST_SECONDS = 20
-"""The most processor time for one claim. The slowest claim of the campaigns that is decided needs 10 s."""
 
 
 class RefusedClaims(InputError):
@@ -104,7 +109,11 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
             raise InputError("expected the whole claim 'left == right' as one text, got two arguments")
         if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
             raise InputError("assume: expected a list of texts like 'a == b' with a claim as text")
-        return check_claim(claim_of_text(left, assume, units or {}), repair)
+        if is_latex(left):
+            return _on_latex(left, assume, units, repair)
+        return verdict_on_text(left, assume, units, repair)
+    if right is None and getattr(left, "rel_op", "") == "==":
+        left, right = left.args
     if right is None:
         raise InputError("expected two sides, or one text 'left == right'")
     for side in (left, right):
@@ -116,9 +125,37 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
         with processor_seconds(MOST_SECONDS):
             decision = decide_equation(Equation(left, right, tuple(assume)))
     except TimeUp:
-        decision = _unfinished()
-    verdict = _verdict(decision, f"{as_text(left)} == {as_text(right)}", start)
+        decision = unfinished()
+    verdict = verdict_of_decision(decision, f"{as_text(left)} == {as_text(right)}", start)
     return replace(verdict, dimension=dimensions_of_formulas(left, right, units))
+
+
+def _on_latex(source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool) -> Verdict:
+    """Return the verdict on a claim in LaTeX, with its reading and its repairs in LaTeX."""
+    from symrot.checker.latex.writing import latex_of, latex_of_text
+
+    claim = claim_of_text(source, assume, units or {})
+    assert claim.relation is not None
+    verdict = check_claim(claim, repair)
+    functions = claim.definitions.functions
+    repairs = tuple(replace(near, text=latex_of_text(near.text, functions)) for near in verdict.repairs)
+    echo = latex_of(claim.relation, functions) or claim.text
+    reading = echo if "".join(echo.split()) != "".join(source.split()) else ""
+    notes = (*claim.notes, *_constants(claim.relation), *verdict.notes)
+    return replace(verdict, text=source.strip(), reading=reading, repairs=repairs, notes=notes)
+
+
+def _constants(relation: Relation) -> tuple[str, ...]:
+    """Return a note on the symbols that are constants in derivatives with respect to time."""
+    nodes = [node for side in relation[1:] for _, node in walk(side)]
+    rates = [node.args[0] for node in nodes if node.kind == "call" and node.value == "diff" and node.args[-1] == TIME]
+    parts = (part for rate in rates if rate.kind != "call" for _, part in walk(rate))
+    inner = {argument for node in nodes if node.kind == "call" for argument in node.args if argument == TIME}
+    names = sorted({str(part.value) for part in parts if part.kind == "name" and part not in inner} - {"pi"})
+    if not names:
+        return ()
+    are = "is read as a constant" if len(names) == 1 else "are read as constants"
+    return (f"{', '.join(names)} {are}, having no rate in the text",)
 
 
 def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
@@ -175,142 +212,3 @@ def verdicts_of_file(
         except InputError as reason:
             sentence = str(reason) if str(path) in str(reason) else f"{path}: {reason}"
             yield Verdict("refused", reason=sentence, id=entry.id, where=entry.where, text=entry.text)
-
-
-def check_claim(claim: Claim, repair: bool = True) -> Verdict:
-    """Return the verdict on a claim: on its first reading, or on another reading if only that one is true."""
-    try:
-        verdict, other = check_readings(claim, repair)
-    except RecursionError:
-        raise InputError(f"{claim.id or 'claim'}: expected formulas that are nested less deeply") from None
-    if other is None:
-        return verdict
-    note = f"this is another reading of the claim; the first, {verdict.text}, is {verdict.verdict}"
-    return replace(other, notes=(*other.notes, note), seconds=verdict.seconds + other.seconds)
-
-
-def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict | None]:
-    """Return the verdict on the first reading of a claim, and the verdict on the first other one that is true, or None.
-
-    A claim of which no reading is true is diagnosed.
-    """
-    start = perf_counter()
-    verdict: Verdict | None = None
-    try:
-        with processor_seconds(MOST_SECONDS):
-            decision, verdict = _on_name(claim, repair) or _decide(claim)
-            other_verdict = None if verdict else _of_another_reading(claim)
-            if other_verdict is None and repair and decision is not None:
-                verdict = _diagnosed(claim, decision, verdict)
-    except TimeUp:
-        other_verdict = None
-        if verdict is None:
-            unfinished = _verdict(_unfinished(), claim.text, start)
-            verdict = replace(unfinished, id=claim.id, where=claim.where)
-        else:
-            note = f"the search for other readings and for repairs was ended after {MOST_SECONDS} s of processor time"
-            verdict = replace(verdict, notes=(*verdict.notes, note))
-    if other_verdict is not None:
-        return verdict, other_verdict
-    return replace(verdict, seconds=perf_counter() - start), None
-
-
-def _unfinished() -> Decision:
-    """Return the decision on a claim that needs more processor time than it may have."""
-    reason = (
-        f"SymPy needs more than {MOST_SECONDS} s of processor time for these formulas; "
-        "check the claim with a letter in place of one of the inner functions"
-    )
-    return Decision("undecided", reason=reason)
-
-
-def _of_another_reading(claim: Claim) -> Verdict | None:
-    """Return the verdict on the first other reading of a claim that is true."""
-    for relation in claim.alternatives:
-        source = relation_text(relation)
-        other = claim.with_relation(relation, alternatives=(), sources={**claim.sources, "claim": source})
-        _, verdict = _decide(other)
-        if verdict:
-            return verdict
-    return None
-
-
-def _on_name(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
-    """Return the verdict on a claim that names a formula, for which there is no decision; None for any other claim."""
-    named = named_formula(claim) if claim.relation is not None else None
-    if named is None:
-        return None
-    from symrot.checker.recognition.naming import verdict_on_name
-
-    start = perf_counter()
-    with _place_of(claim):
-        verdict = verdict_on_name(claim, named, repair)
-    return None, _completed(claim, replace(verdict, text=claim.text), start)
-
-
-def _decide(claim: Claim) -> tuple[Decision, Verdict]:
-    start = perf_counter()
-    with _place_of(claim):
-        decision = decide_value(claim) if claim.relation is None else decide_equation(claim.equation)
-    return decision, _completed(claim, _verdict(decision, claim.text, start), start)
-
-
-@contextmanager
-def _place_of(claim: Claim) -> Iterator[None]:
-    """Run a block, and put the name of the claim in front of an InputError that the block raises."""
-    try:
-        yield
-    except InputError as reason:
-        if not claim.id or claim.id in str(reason):
-            raise
-        raise InputError(f"{claim.id}: {reason}") from None
-
-
-def _completed(claim: Claim, verdict: Verdict, start: float) -> Verdict:
-    """Return a verdict to which the check of units, and the claim's name and place, are added."""
-    if claim.relation is not None:
-        hypotheses = [relation[1:] for relation in claim.hypotheses]
-        dimensions = check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)
-        verdict = replace(verdict, dimension=dimensions)
-    return replace(verdict, id=claim.id, where=claim.where, seconds=perf_counter() - start)
-
-
-def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
-    """Return the verdict with a diagnosis: of the fault, or of the side that is not defined everywhere."""
-    if claim.relation is None:
-        return verdict
-    if decision.verdict not in ("false", "conditional"):
-        return replace(verdict, diagnosis=_domain(claim)) if verdict and verdict.conditions else verdict
-    from symrot.checker.recognition.identification import named_parts
-    from symrot.checker.repair.diagnose import diagnose
-
-    diagnosis, repairs = diagnose(claim, decision)
-    if diagnosis.code == "none" and verdict.dimension.status == "inconsistent":
-        diagnosis = Diagnosis("dimension", f"the units do not fit: {verdict.dimension.text}")
-    notes = (*verdict.notes, *named_parts(claim))
-    return replace(verdict, diagnosis=diagnosis, repairs=repairs, notes=notes)
-
-
-def _domain(claim: Claim) -> Diagnosis:
-    """Return the remark that one side of a true claim is not defined everywhere, while the other side is."""
-    assert claim.relation is not None
-    sides = [claim.with_relation(("==", side, side)) for side in claim.relation[1:]]
-    left, right = (decide_equation(side.equation).conditions for side in sides)
-    if bool(left) == bool(right):
-        return Diagnosis("none", "")
-    narrow, wide = ("left", "right") if left else ("right", "left")
-    where = ", ".join(map(as_text, left or right))
-    text = f"it holds only where it is defined: the {narrow} side needs {where}, the {wide} side needs nothing"
-    return Diagnosis("domain", text)
-
-
-def _verdict(decision: Decision, text: str, start: float) -> Verdict:
-    return Verdict(
-        verdict=decision.verdict,
-        conditions=tuple(map(as_text, decision.conditions)),
-        requires=tuple(requirement.text for requirement in decision.requires),
-        counterexample=decision.counterexample,
-        reason=decision.reason,
-        text=text,
-        seconds=perf_counter() - start,
-    )

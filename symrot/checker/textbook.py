@@ -6,7 +6,7 @@ from typing import Any
 
 from symrot.checker.claim.claims import Claim, read_claims
 from symrot.checker.claim.tree import text
-from symrot.checker.interface import check_readings
+from symrot.checker.claim_verdict import check_readings
 from symrot.checker.verdict import Verdict
 from symrot.textbook import Document
 

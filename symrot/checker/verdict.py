@@ -161,6 +161,8 @@ class Verdict:
         The name of the claim, its place in a document, and its text.
     seconds : float
         The time that it took.
+    reading : str
+        The claim as it was read, in the notation of the input; empty if it is no different from the text.
 
     Examples
     --------
@@ -183,6 +185,7 @@ class Verdict:
     where: str = ""
     text: str = ""
     seconds: float = 0.0
+    reading: str = ""
 
     @property
     def entry(self) -> tuple[int, int] | None:
@@ -203,6 +206,7 @@ class Verdict:
         kinds = ["near to" if near else "formula of", *["or to" if near else "or of"] * len(self.recognised_as)]
         rows = [
             ("claim", self.text),
+            ("read as", self.reading),
             *((kind, f"the {reading}") for kind, reading in zip(kinds, self.recognised_as, strict=False)),
             ("true if", " or ".join(self.requires)),
             ("where", ", ".join(defined)),
@@ -234,6 +238,7 @@ class Verdict:
             "seconds": round(self.seconds, 4),
             "where": self.where,
             "claim": self.text,
+            "reading": self.reading,
             "requires": list(self.requires),
             "reason": self.reason,
             "dimension": {

@@ -47,8 +47,8 @@ TEXTS = {
     "a lambda": ("lambda: 1 == 1", "position 7"),
     "a Cyrillic letter": ("х == 1", "position 1"),
     "a wide letter": ("ｘ == 1", "position 1"),
-    "a Greek letter": ("ω == 1", "position 1"),
-    "a mathematical minus": ("x − y == 0", "write - for a minus"),
+    "a letter with a hat": ("n̂ == 1", "a letter with a hat"),
+    "a sign for both signs": ("x ± y == 0", "write two claims"),
     "a hidden letter": ("x\u200b == 1", "position 2"),
     "a turned text": ("x\u202e == 1", "position 2"),
     "a null": ("x\0 == 1", "position 2"),
@@ -58,6 +58,19 @@ TEXTS = {
     "a derivative of a list": ("diff((x, y), x) == 0", "list"),
     "a derivative by a product": ("diff(x**2, x*y) == 0", "differentiate"),
     "nothing": ("   ", "empty"),
+    "300 functions without brackets": ("sin " * 300 + "x = 1", "nested"),
+    "300 roots": ("√" * 300 + "x = 1", "nested"),
+    "300 derivatives": ("d/dt " * 300 + "x = 1", "nested"),
+    "300 bars": ("|" * 300 + "x = 1", "nested"),
+    "300 primes": ("x" + "'" * 300 + " = 1", "order 4"),
+    "300 dots": ("x" + "\u0307" * 300 + " = 1", "order 4"),
+    "2000 methods": ("x" + ".T" * 2000 + " = 1", "fewer methods"),
+    "900 lines": ("x = y\n" * 900, "at most 30 equations|not a chain"),
+    "a chain of 900": ("x = " * 900 + "x", "at most 30 equations|not a chain"),
+    "a raised tower": ("(x + y)⁹⁹⁹ = 1", "exponent up to 64"),
+    "a chain of crosses": (" × ".join("abc" * 20) + " = 1", "comes first"),
+    "a method of another name": ("x.applyfunc(eval) == 1", "after '.'"),
+    "a method of SymPy that runs code": ("x.subs(y, z) == x.evalf() + x.free_symbols", "after '.'"),
 }
 
 
@@ -77,7 +90,8 @@ def test_a_hostile_hypothesis_is_refused_too(text, words):
 
 def test_a_file_of_hostile_claims_refuses_each_and_decides_the_rest(tmp_path, capsys):
     """Exit code 2, one sentence for each with file and id; the verdicts of the others are there."""
-    texts = [text for text, _ in TEXTS.values() if "\0" not in text and len(text) < 100_000]
+    no_toml = ("\0", "'''", ".T" * 100)
+    texts = [text for text, _ in TEXTS.values() if len(text) < 100_000 and not any(part in text for part in no_toml)]
     bad = "".join(f"[[claim]]\nid = 'bad-{n}'\nsymbols = ['x', 'y']\nclaim = '''{t}'''\n" for n, t in enumerate(texts))
     path = tmp_path / "hostile.toml"
     path.write_text("schema = 1\n[[claim]]\nid = 'good'\nsymbols = ['x']\nclaim = 'x + x == 2*x'\n" + bad, "utf-8")

@@ -7,7 +7,7 @@ import time
 import pytest
 
 import symrot
-from symrot.checker import interface
+from symrot.checker import claim_verdict
 from symrot.checker.time_limit import TimeUp, processor_seconds
 
 ENDLESS = 30.0  # seconds after which a test gives up waiting
@@ -81,7 +81,7 @@ SLOW = (
 
 
 def test_a_claim_for_which_sympy_needs_minutes_is_undecided_and_says_why(monkeypatch):
-    monkeypatch.setattr(interface, "MOST_SECONDS", 0.5)
+    monkeypatch.setattr(claim_verdict, "MOST_SECONDS", 0.5)
     start = time.process_time()
     verdict = symrot.check(SLOW)
     assert time.process_time() - start < ENDLESS
@@ -91,8 +91,8 @@ def test_a_claim_for_which_sympy_needs_minutes_is_undecided_and_says_why(monkeyp
 
 
 def test_a_verdict_whose_repair_takes_too_long_is_kept(monkeypatch):
-    monkeypatch.setattr(interface, "MOST_SECONDS", 0.5)
-    monkeypatch.setattr(interface, "_diagnosed", lambda *_: compute(ENDLESS))
+    monkeypatch.setattr(claim_verdict, "MOST_SECONDS", 0.5)
+    monkeypatch.setattr(claim_verdict, "_diagnosed", lambda *_: compute(ENDLESS))
     verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
     assert verdict.verdict == "false"
     assert any("ended after 0.5 s" in note for note in verdict.notes)

@@ -13,17 +13,35 @@ from sympy import Expr, Symbol
 
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.interpreter import CONSTANTS, Interpreter, time
-from symrot.checker.claim.reader import Relation, read_expression, read_relation
+from symrot.checker.claim.quantities import (
+    OTHER_MEANINGS,
+    has_natural_base,
+    imaginary_letter,
+    letters_of_quantities,
+    with_natural_base,
+)
+from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation
 from symrot.checker.claim.scope import Divisor, is_matrix
 from symrot.checker.claim.tree import Node, text, walk
 from symrot.checker.decide.decision import Equation
 from symrot.checker.latex.reader import Names, read_latex
+from symrot.checker.typed.cursor import TIME
 from symrot.checker.units.units import read_unit
-from symrot.errors import InputError
+from symrot.errors import InputError, complaint
 from symrot.exact.decision import ShapeMismatch, matched_sides
 
 __all__ = [
-    "Claim", "Definitions", "NamedFormula", "Refusal", "claim_of_text", "named_formula", "read_claims", "read_entries",
+    "Claim",
+    "Definitions",
+    "NamedFormula",
+    "Refusal",
+    "check_units",
+    "claim_of_relation",
+    "claim_of_text",
+    "is_latex",
+    "named_formula",
+    "read_claims",
+    "read_entries",
     "relation_text",
 ]  # fmt: skip
 
@@ -74,6 +92,8 @@ class Claim:
         The texts that were read, by key, for error messages.
     units : mapping
         Units by name.
+    notes : tuple of str
+        Sentences about how the text is read.
     """
 
     id: str = ""
@@ -89,6 +109,7 @@ class Claim:
     implied: bool = False
     sources: Mapping[str, str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
     @property
     def text(self) -> str:
@@ -201,8 +222,8 @@ def _assumed(hypotheses: Sequence[Relation], sign: str) -> set[str]:
     return names
 
 
-def _hypothesis(source: str, where: str) -> Relation:
-    relation = read_relation(source, where)
+def _hypothesis(source: str, where: str, declared: Declared | None = None) -> Relation:
+    relation = read_relation(source, where, declared)
     if relation[0] in ("==", "!=") or _assumed([relation], ">") or _assumed([relation], ">="):
         return relation
     raise InputError(f"{where}: expected a hypothesis like a == b, a != b, or x > 0 for a symbol x, got {source!r}")
@@ -212,22 +233,72 @@ def claim_of_text(source: str, assume: Sequence[str] = (), units: Mapping[str, s
     """Return the claim of a text ``left == right``; text with a backslash, a brace or a dollar sign is LaTeX.
 
     Its names are real symbols, or functions of time if they are written ``f(t)``; so are the names in hypotheses.
+    A text with two readings is refused; :func:`symrot.checker.claim.lines.claims_of_reading` is for those.
     """
     hypotheses = tuple(_hypothesis(text, "given") for text in assume)
-    if isinstance(source, str) and _is_latex(source):
+    if isinstance(source, str) and is_latex(source):
         source = read_latex(source, names=Names(functions=_functions_of_time(hypotheses))).text
-    relation = read_relation(source)
+    return claim_of_relation(read_relation(source), source, assume, units)
+
+
+def claim_of_relation(
+    relation: Relation, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None,
+    define: Sequence[tuple[str, Node]] = (), notes: Sequence[str] = (), context: Sequence[Node] = (),
+) -> Claim:  # fmt: skip
+    """Return the claim of an equation that was read from a text.
+
+    ``define`` are definitions that the text makes before, ``context`` the other formulas of the text.
+
+    Raises
+    ------
+    InputError
+        For a relation that is no equation, and for units of names that the claim does not have.
+    """
     if relation[0] != "==":
         raise InputError(f"expected a claim with '==', got '{relation[0]}' in {source[:60]!r}")
+    hypotheses = tuple(_hypothesis(text, "given") for text in assume)
+    notes = list(notes)
+    everything = [*relation[1:], *context, *(side for hypothesis in hypotheses for side in hypothesis[1:])]
+    letter = imaginary_letter(everything)
+    if has_natural_base(everything) and not any(name == "e" for name, _ in define):
+        if letter is not None:
+            expected = f"real numbers (write cos(x) and sin(x) for the parts of exp({letter.value}*x))"
+            raise complaint(source, "", letter.span[0], expected)
+        notes.append("e is read as the base of the exponential function")
+        relation = _with_natural_base(relation)
+        hypotheses = tuple(map(_with_natural_base, hypotheses))
+        define = [(name, with_natural_base(tree)) for name, tree in define]
+    elif letter is not None:
+        notes.append(f"{letter.value} is read as a real symbol, not as the imaginary unit")
     sources = {"claim": source.strip(), **{f"given.{n}": text for n, text in enumerate(assume)}}
+    sources |= {f"define.{n}": source for n in range(len(define))}
+    trees = [
+        *relation[1:],
+        *(side for hypothesis in hypotheses for side in hypothesis[1:]),
+        *(tree for _, tree in define),
+        *context,
+    ]
+    rates = {
+        str(node.value) for tree in trees for _, node in walk(tree) if node.kind == "call" and node.args == (TIME,)
+    }
+    letters = letters_of_quantities(trees)
     used = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind in ("name", "call")}
     return Claim(
         relation=relation,
+        symbols=letters,
+        functions=tuple(letter for letter in OTHER_MEANINGS if letter in rates),
+        define=tuple(define),
         hypotheses=hypotheses,
         implied=True,
         sources=sources,
-        units=_units(dict(units or {}), used, "claim"),
+        units=check_units(dict(units or {}), used, "claim"),
+        notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
+
+
+def _with_natural_base(relation: Relation) -> Relation:
+    sign, left, right = relation
+    return sign, with_natural_base(left), with_natural_base(right)
 
 
 class NamedFormula(NamedTuple):
@@ -358,13 +429,15 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
         if defined in known:
             raise InputError(f"{place}: define: expected a new name, got {defined!r}, which the claim has already")
         known.add(defined)
-        define.append((defined, read_expression(formula, f"{place}: define {defined}")))
+        own = Declared((known | {*symbols}) - {*functions}, functions)
+        define.append((defined, read_expression(formula, f"{place}: define {defined}", own)))
         sources[f"define.{place_of}"] = formula
-    hypotheses = tuple(_hypothesis(text, f"{place}: given") for text in entry.get("given", ()))
+    own = Declared(known - {*functions}, functions)
+    hypotheses = tuple(_hypothesis(text, f"{place}: given", own) for text in entry.get("given", ()))
     sources |= {f"given.{n}": text for n, text in enumerate(entry.get("given", ()))}
     claim = Claim(
         name, entry.get("where", ""), symbols, functions, tuple(define), hypotheses, sources=sources,
-        units=_units(entry.get("units", {}), known, place),
+        units=check_units(entry.get("units", {}), known, place),
     )  # fmt: skip
     others = list(entry.get("alternatives", ()))
     kinds = [key for key in ("claim", "latex", "value") if key in entry]
@@ -380,23 +453,24 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
                 f"{place}: alternatives: expected other readings of a claim, got them together with a value"
             )
         sources["value"] = entry["value"]
-        value = read_expression(entry["value"], f"{place}: value")
+        value = read_expression(entry["value"], f"{place}: value", own)
         return replace(claim, value=value, printed=entry["printed_value"])
     (key,) = kinds
     names = None
     readings = []
     for number_of, (source, at) in enumerate([(entry[key], key), *((other, "alternatives") for other in others)]):
-        if _is_latex(source) or (number_of == 0 and key == "latex"):
+        if is_latex(source) or (number_of == 0 and key == "latex"):
             names = names or _names_for_latex(claim)
             reading = read_latex(source, f"{place}: {at}", names)
             readings.append((reading.relation, reading.text))
         else:
-            readings.append((_equation(source, f"{place}: {at}"), source))
+            readings.append((_equation(source, f"{place}: {at}", own), source))
     (relation, sources["claim"]), *rest = readings
     return claim.with_relation(relation, alternatives=tuple(other for other, _ in rest))
 
 
-def _is_latex(source: str) -> bool:
+def is_latex(source: str) -> bool:
+    """Return whether a text is LaTeX: it has a backslash, a brace or a dollar sign."""
     return any(mark in source for mark in "\\${")
 
 
@@ -411,7 +485,7 @@ def _functions_of_time(relations: Sequence[Relation]) -> set[str]:
     }
 
 
-def _units(units: dict[str, str], known: set[str], place: str) -> dict[str, str]:
+def check_units(units: dict[str, str], known: set[str], place: str) -> dict[str, str]:
     """Return the units of a claim; raise InputError for a name that it does not have, or an unknown unit."""
     for name, unit in units.items():
         if name not in known:
@@ -431,8 +505,8 @@ def _names_for_latex(claim: Claim) -> Names:
     return Names(claim.symbols, claim.functions, matrices, columns, {*defined} - matrices, implied=False)
 
 
-def _equation(source: str, where: str) -> Relation:
-    relation = read_relation(source, where)
+def _equation(source: str, where: str, declared: Declared) -> Relation:
+    relation = read_relation(source, where, declared)
     if relation[0] != "==":
         raise InputError(f"{where}: expected '==', got '{relation[0]}' in {source[:60]!r}")
     return relation

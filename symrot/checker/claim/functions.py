@@ -165,6 +165,16 @@ def inverted(scope: Scope, matrix: ImmutableMatrix, node: Node) -> ImmutableMatr
     return matrix.adjugate(method="berkowitz") / shortest
 
 
+def _adjugate(scope: Scope, node: Node) -> ImmutableMatrix:
+    matrix = _square(scope, node)
+    products = products_of_determinant(matrix)
+    if products > LARGEST_INVERSE:
+        raise scope.fail(
+            node.args[0], f"a matrix whose determinant has at most {LARGEST_INVERSE} products instead of {products}"
+        )
+    return matrix.adjugate(method="berkowitz")
+
+
 def _trace(scope: Scope, node: Node) -> Expr:
     return _square(scope, node).trace()
 
@@ -289,6 +299,7 @@ BUILT_IN: Mapping[str, tuple[int, int, Callable[[Scope, Node], Any]]] = {
     "hstack": (1, LARGEST_MATRIX, _hstack),
     "transpose": (1, 1, _transpose_of),
     "inverse": (1, 1, _inverse_of),
+    "adjugate": (1, 1, _adjugate),
     "det": (1, 1, _det),
     "trace": (1, 1, _trace),
     "Rx": (1, 1, _rotation("X")),

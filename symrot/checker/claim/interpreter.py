@@ -32,6 +32,9 @@ UNKNOWN_HERE = (
 )  # fmt: skip
 """Names that never become symbols or functions of the user by mere use, since most readers know them as others."""
 
+INSTEAD = {"I": "I_1", "E": "E_k"}
+"""Such a name -> a name for the quantity that books on mechanics call by it."""
+
 
 @dataclass
 class Interpreter(Scope):
@@ -80,7 +83,10 @@ def _name(interpreter: Interpreter, node: Node) -> Any:
     if not interpreter.implied:
         raise interpreter.fail(node, f"a name that is declared ({_nearest(name, interpreter)}) instead of {name!r}")
     if name in UNKNOWN_HERE:
-        raise interpreter.fail(node, f"a symbol of another name, since {name!r} means something else to most readers,")
+        hint = f", such as {INSTEAD[name]}," if name in INSTEAD else ","
+        raise interpreter.fail(
+            node, f"a symbol of another name{hint} since {name!r} means something else to most readers,"
+        )
     symbol = interpreter.values[name] = time if name == "t" else Symbol(name, real=True)
     return symbol
 
@@ -136,6 +142,8 @@ def _inverse(interpreter: Interpreter, node: Node) -> Any:
 
 def _power(interpreter: Interpreter, node: Node) -> Any:
     base, exponent = interpreter.evaluate(node.args[0]), interpreter.scalar(node.args[1], "as an exponent")
+    if not exponent.is_Rational and not is_matrix(base):
+        return _power_of_positive(interpreter, node, base, exponent)
     if not exponent.is_Rational:
         raise interpreter.fail(node.args[1], "a number as an exponent")
     if abs(exponent.p) > LARGEST_EXPONENT or exponent.q > LARGEST_ROOT:
@@ -158,6 +166,19 @@ def _power(interpreter: Interpreter, node: Node) -> Any:
         interpreter.within_nesting(base, node.args[0])
         interpreter.take_root(base, node.args[0])
     return base**exponent
+
+
+def _power_of_positive(interpreter: Interpreter, node: Node, base: Expr, exponent: Expr) -> Expr:
+    """Return a power with an exponent that is no number, exp(exponent*log(base)); its base is positive."""
+    interpreter.shape(base, node.args[0])
+    if any(not (part.is_Pow and part.exp.is_Integer) for part in exponent.atoms(sympy.Pow, sympy.Function)):
+        raise interpreter.fail(node.args[1], "a number as an exponent, or a formula without functions and roots,")
+    if base.is_nonpositive:
+        raise interpreter.fail(node.args[0], "a positive number below an exponent that is no number")
+    interpreter.within_nesting(base, node.args[0])
+    interpreter.divide_by(base, node.args[0])
+    interpreter.take_root(base, node.args[0])
+    return sympy.exp(exponent * sympy.log(base))
 
 
 def _transpose(interpreter: Interpreter, node: Node) -> ImmutableMatrix:
@@ -194,7 +215,11 @@ def _call(interpreter: Interpreter, node: Node) -> Any:
         raise interpreter.fail(node, f"an operator between {name} and '(', since {name} is no function,")
     close = get_close_matches(name, list(BUILT_IN), 1, 0.74)
     if not interpreter.implied or close or name in UNKNOWN_HERE or [a.value for a in arguments] != ["t"]:
-        known = f"did you mean {close[0]}?" if close else f"built in: {', '.join(BUILT_IN)}"
+        known = (
+            f"did you mean {close[0]}?"
+            if close
+            else f"for a product write {name}*(..); built in: {', '.join(BUILT_IN)}"
+        )
         expected = f"a function that is built in or declared as one of t instead of {name!r} ({known})"
         raise interpreter.fail(node, expected)
     interpreter.functions.add(name)

@@ -1,42 +1,106 @@
-"""The reader of claims, from text to tree: tokens, then precedence climbing, without Python's evaluator or SymPy.
+"""The reader of claims, from text to tree, without Python's evaluator or SymPy.
 
-It reads ``left == right`` with numbers, names, ``+ - * / **``, brackets, calls, ``Matrix([[..], [..]])``, ``.T`` and
-``M[0, 1]``. Any other text is refused with its position; nothing is dropped.
+It reads SymPy's text, ``left == right`` with ``+ - * / **``, calls, ``Matrix([[..], [..]])``, ``.T`` and ``M[0, 1]``;
+and formulas as people type them: ``2x``, ``sin^2 x``, ``m g l``, ``x'``, ``ω₁``, ``½``, chains ``a = b = c``, several
+lines. Any other text is refused with its position; nothing is dropped. SymPy's text has one reading; any other text may
+have several, and the usual one comes first.
 """
 
-import re
-from collections.abc import Iterator
-from fractions import Fraction
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import Any
 
-from symrot.checker.claim.tree import Node, negated, product, sum_of
+from symrot.checker.claim.functions import BUILT_IN
+from symrot.checker.claim.tree import Node
+from symrot.checker.typed.cursor import DEEPEST_NESTING, TIME, Doubt, Vocabulary, is_cross_letter
+from symrot.checker.typed.grammar import Parser
+from symrot.checker.typed.tokens import GREEK_WORDS, SIGNS, Token, tokens_of, without_dots
+from symrot.checker.typed.words import UNITS, pieces_of_word, shorthands, split_tokens
 from symrot.errors import InputError, complaint
 
-__all__ = ["DEEPEST_NESTING", "LONGEST_TEXT", "Relation", "read_expression", "read_relation"]
+__all__ = [
+    "DEEPEST_NESTING", "LONGEST_TEXT", "Chain", "Declared", "Reading", "Relation", "read_expression", "read_relation",
+    "readings_of", "with_time",
+]  # fmt: skip
 
 LONGEST_TEXT = 20_000
-DEEPEST_NESTING = 60
-LONGEST_NUMBER = 200
 MOST_PIECES = 5_000
-
-SIGNS = ("==", "=", "!=", ">=", "<=", ">", "<")
-
-_TOKEN = re.compile(
-    r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?![A-Za-z_])|(?P<name>[A-Za-z][A-Za-z0-9_]*)"
-    r"|(?P<mark>\*\*|==|!=|>=|<=|[-+*/(),\[\].=<>])",
-    re.ASCII,
-)
-_HINTS = {
-    "^": "write ** for a power", "'": "write diff(x, t) for a derivative", "\\": "LaTeX goes into latex = ..",
-    "\u2212": "write - for a minus sign", "\u00b7": "write * for a product", "\u00d7": "write * for a product",
-    "\u00b2": "write **2 for a square",
-}  # fmt: skip
+MOST_READINGS = 6
+MOST_DOUBTS = 40
+"""The most readings of one text that are tried, and the most places with two readings that are looked at."""
 
 Relation = tuple[str, Node, Node]
 
 
-class _Reader:
-    def __init__(self, source: str, where: str) -> None:
-        self.source, self.where = source, where
+@dataclass(frozen=True)
+class Declared:
+    """The names that a claim declares or defines: symbols and functions of time. They are never split."""
+
+    symbols: Collection[str] = ()
+    functions: Collection[str] = ()
+
+
+@dataclass(frozen=True)
+class Chain:
+    """One line of a text: its sides and the signs between them; one sign, or several equals signs.
+
+    Attributes
+    ----------
+    signs : tuple of str
+    sides : tuple of Node
+    """
+
+    signs: tuple[str, ...]
+    sides: tuple[Node, ...]
+
+    @property
+    def links(self) -> tuple[Relation, ...]:
+        """The relations between neighbouring sides."""
+        return tuple(zip(self.signs, self.sides, self.sides[1:], strict=False))
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One reading of a text.
+
+    Attributes
+    ----------
+    lines : tuple of Chain
+    plain : bool
+        Whether the text has anything that SymPy's text does not have.
+    doubts : tuple of Doubt
+        The places that have another reading.
+    notes : tuple of str
+        Sentences about how the text is read.
+    spelling : dict
+        Name here -> name as it is typed, where they differ.
+    timed, vectors : frozenset of str
+        Names that are functions of time, and names that are vectors, because of the way in which they are used.
+    flipped : tuple of str
+        The places that are read in the other way than usual.
+    """
+
+    lines: tuple[Chain, ...]
+    plain: bool = False
+    doubts: tuple[Doubt, ...] = ()
+    notes: tuple[str, ...] = ()
+    spelling: Mapping[str, str] = field(default_factory=dict, compare=False)
+    timed: frozenset[str] = frozenset()
+    vectors: frozenset[str] = frozenset()
+    flipped: tuple[str, ...] = ()
+
+    @property
+    def relation(self) -> Relation:
+        """The only relation of the text."""
+        return self.lines[0].links[0]
+
+
+class _Text:
+    """The tokens of a text, with the functions that read it in one way or another."""
+
+    def __init__(self, source: str, where: str, declared: Declared) -> None:
+        self.source, self.where, self.declared = source, where, declared
         prefix = f"{where}: " if where else ""
         if not isinstance(source, str):
             raise InputError(f"{prefix}expected the text of a formula, got {type(source).__name__}")
@@ -44,176 +108,263 @@ class _Reader:
             raise InputError(f"{prefix}expected a formula, got empty text")
         if len(source) > LONGEST_TEXT:
             raise InputError(f"{prefix}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
-        self.depth = self.index = 0
-        self.tokens = list(self._split())
+        self.tokens = list(tokens_of(source, where))
         if len(self.tokens) > MOST_PIECES:
             raise InputError(f"{prefix}expected a formula of at most {MOST_PIECES} pieces, got {len(self.tokens)}")
 
-    def fail(self, expected: str, position: int | None = None) -> InputError:
-        return complaint(self.source, self.where, self.start() if position is None else position, expected)
+    def read(
+        self, whole: bool, as_sympy: bool, flips: Collection[tuple[str, int]] = (), one_side: bool = False
+    ) -> Reading:
+        """Return the reading in which the places of ``flips`` have their other reading.
 
-    def _split(self) -> Iterator[tuple[str, str, int]]:
-        position, end = 0, len(self.source.rstrip())
-        while position < end:
-            if self.source[position].isspace():
-                position += 1
+        Parameters
+        ----------
+        whole : bool
+            Whether words that may be several names are names.
+        as_sympy : bool
+            Whether ``dx/dt`` is a quotient of two names.
+        flips : collection of (str, int)
+            Keys of doubts.
+        one_side : bool
+            Whether the text is a formula without a relation.
+        """
+        alone = {*_alone(self.tokens), *self.declared.symbols}
+        tokens, notes, doubts = list(self.tokens), list[str](), list[Doubt]()
+        if not whole:
+            words, notes, doubts = self.words(alone, flips)
+            tokens = self.without_shorthand(list(split_tokens(tokens, words)), flips, notes, doubts)
+            tokens = self.with_indices(tokens, flips, doubts)
+            pairs = pairwise(self.tokens)
+            units = [after.text for before, after in pairs if before.kind == "number" and after.text in UNITS]
+            notes += [f"{unit} is read as a name, not as a unit" for unit in units]
+            alone |= set(_alone(tokens))
+        vocabulary = Vocabulary(
+            frozenset(self.declared.symbols),
+            frozenset(self.declared.functions),
+            frozenset(alone),
+            frozenset(_crossed(tokens, flips)),
+        )
+        lines, plain = [], not self.source.isascii() or not whole
+        timed, differentiated = set[str](), set[str]()
+        divided = [tokens] if one_side else list(self.lines(tokens))
+        if not divided:
+            raise complaint(self.source, self.where, 0, "a formula")
+        for line in divided:
+            parser = Parser(line, self.source, self.where, vocabulary, flips, as_sympy)
+            signs, sides = ([], [parser.whole()]) if one_side else parser.relation()
+            lines.append((signs, sides))
+            plain |= parser.plain
+            doubts += parser.doubts
+            notes += [note for note in parser.notes if note not in notes]
+            timed |= parser.timed
+            differentiated |= parser.differentiated
+        constants = differentiated - timed
+        if constants and len(constants) < len(differentiated):
+            doubt = Doubt(("constants", 0), f"d/dt with {_listed(sorted(constants))}")
+            doubts.append(doubt)
+            if doubt.key not in flips:
+                are = "is read as a constant" if len(constants) == 1 else "are read as constants"
+                notes.append(f"{_listed(sorted(constants))} {are}, having no rate in the text")
+                constants = set()
+        timed |= constants
+        plain |= len(lines) > 1 or any(len(sides) > 2 for _, sides in lines)
+        finished = tuple(
+            Chain(tuple(signs), tuple(_finished(side, timed, vocabulary.vectors) for side in sides))
+            for signs, sides in lines
+        )
+        if vocabulary.vectors and plain:
+            names = sorted(vocabulary.vectors)
+            notes.append(
+                f"{_listed(names)} {'is a vector' if len(names) == 1 else 'are vectors'} with the components "
+                f"{names[0]}_x, {names[0]}_y, {names[0]}_z{'' if len(names) == 1 else ' and so on'}"
+            )
+        typed = {t.text: without_dots(self.source[t.start : t.end]) for t in tokens if t.kind == "name"}
+        spelling = {name: word for name, word in typed.items() if word != name}
+        flipped = tuple(dict.fromkeys(doubt.excerpt for doubt in doubts if doubt.key in flips))
+        return Reading(
+            finished,
+            plain,
+            tuple(doubts),
+            tuple(dict.fromkeys(notes)),
+            spelling,
+            frozenset(timed),
+            vocabulary.vectors,
+            flipped,
+        )
+
+    def words(
+        self, alone: Collection[str], flips: Collection[tuple[str, int]]
+    ) -> tuple[dict[str, tuple[str, ...]], list[str], list[Doubt]]:
+        """Return the words that are split into their pieces, with sentences about them, and the words in doubt."""
+        words: dict[str, tuple[str, ...]] = {}
+        notes, doubts = [], []
+        alone = {*alone}
+        first = {token.text: token.start for token in reversed(self.tokens) if token.kind == "name"}
+        for word, start in sorted(first.items(), key=lambda item: item[1]):
+            if word in BUILT_IN or word in self.declared.symbols or word in self.declared.functions:
                 continue
-            match = _TOKEN.match(self.source, position)
-            if match is None:
-                hint = _HINTS.get(self.source[position])
-                expected = "a number, a name, an operator or a bracket" + (f" ({hint})" if hint else "")
-                raise complaint(self.source, self.where, position, expected)
-            yield str(match.lastgroup), match[0], position
-            position = match.end()
-        yield "end", "", end
-
-    # -- tokens -----------------------------------------------------------------------------------------------------
-
-    def peek(self) -> str:
-        return self.tokens[self.index][1]
-
-    def next(self) -> tuple[str, str, int]:
-        token = self.tokens[self.index]
-        self.index += token[0] != "end"
-        return token
-
-    def take(self, mark: str) -> bool:
-        """Step over a mark if it is the next token, and return whether it was."""
-        is_next = self.peek() == mark
-        self.index += is_next
-        return is_next
-
-    def expect(self, mark: str) -> None:
-        if not self.take(mark):
-            raise self.fail(f"'{mark}'")
-
-    def start(self) -> int:
-        return self.tokens[self.index][2]
-
-    def span(self, start: int) -> tuple[int, int]:
-        _, last, position = self.tokens[self.index - 1]
-        return start, position + len(last)
-
-    # -- grammar ----------------------------------------------------------------------------------------------------
-
-    def whole(self) -> Node:
-        node = self.expression()
-        if self.tokens[self.index][0] != "end":
-            raise self.fail("an operator or the end")
-        return node
-
-    def relation(self) -> Relation:
-        left = self.expression()
-        sign = self.peek()
-        if sign not in SIGNS:
-            raise self.fail("'==' between two sides" if not sign else "an operator or '=='")
-        self.next()
-        right = self.expression()
-        if self.peek() in SIGNS:
-            raise self.fail("one '==' in a claim, not a chain of them")
-        if self.tokens[self.index][0] != "end":
-            raise self.fail("an operator or the end")
-        return "==" if sign == "=" else sign, left, right
-
-    def expression(self) -> Node:
-        self.depth += 1
-        if self.depth > DEEPEST_NESTING:
-            raise self.fail(f"at most {DEEPEST_NESTING} nested levels")
-        start = self.start()
-        terms = [self.term()]
-        while self.peek() in ("+", "-"):
-            negative = self.next()[1] == "-"
-            term = self.term()
-            terms.append(negated(term) if negative else term)
-        self.depth -= 1
-        return sum_of(terms, self.span(start)) if len(terms) > 1 else terms[0]
-
-    def term(self) -> Node:
-        start = self.start()
-        factors = [self.factor()]
-        while self.peek() in ("*", "/"):
-            at = self.start()
-            inverse = self.next()[1] == "/"
-            factor = self.factor()
-            factors.append(Node("inv", None, (factor,), self.span(at)) if inverse else factor)
-        return product(factors, self.span(start)) if len(factors) > 1 else factors[0]
-
-    def factor(self) -> Node:
-        negative, start = False, self.start()
-        while self.peek() in ("+", "-"):
-            negative ^= self.next()[1] == "-"
-        made = self.power()
-        return Node("neg", None, (made,), self.span(start)) if negative else made
-
-    def power(self) -> Node:
-        start = self.start()
-        base = self.postfix()
-        if not self.take("**"):
-            return base
-        self.depth += 1
-        if self.depth > DEEPEST_NESTING:
-            raise self.fail(f"at most {DEEPEST_NESTING} nested levels")
-        exponent = self.factor()
-        self.depth -= 1
-        return Node("power", None, (base, exponent), self.span(start))
-
-    def postfix(self) -> Node:
-        start = self.start()
-        node = self.atom()
-        while self.peek() in (".", "["):
-            if self.take("["):
-                indices = self.members("]")
-                node = Node("index", None, (node, *indices), self.span(start))
+            pieces, usual = pieces_of_word(word, alone)
+            if not pieces:
                 continue
-            self.next()
-            if not self.take("T"):
-                raise self.fail("T, the transpose, after '.'")
-            node = Node("transpose", None, (node,), self.span(start))
+            if self.declared.symbols and all(piece in self.declared.symbols or piece.isdigit() for piece in pieces):
+                words[word] = pieces  # the claim says which names it has
+                continue
+            doubt = Doubt(("word" if usual else "name", start), word)
+            doubts.append(doubt)
+            if usual != (doubt.key in flips):
+                alone |= {piece for piece in pieces if piece in ("x", "y", "z")}
+                words[word] = pieces
+                notes.append(f"{word} is read as {_in_words(pieces)}, not as one name")
+        return words, notes, doubts
+
+    def without_shorthand(
+        self, tokens: list[Token], flips: Collection[tuple[str, int]], notes: list[str], doubts: list[Doubt]
+    ) -> list[Token]:
+        """Return tokens with cosines and sines for cθ and sθ, if the text has both and neither letter by itself."""
+        short = [form for form in shorthands(tokens) if tokens[form.place].text not in self.declared.symbols]
+        if not short:
+            return tokens
+        places = {form.place for form in short}
+        alone = {token.text for index, token in enumerate(tokens) if index not in places}
+        both = {form.function for form in short} == {"cos", "sin"}
+        if not both and all(form.length == 1 for form in short):
+            return tokens  # a name with an index
+        usual = both and not alone & {"c", "s", "C", "S"}
+        first, last = tokens[short[0].place], tokens[short[0].place + short[0].length - 1]
+        doubt = Doubt(("shorthand", first.start), self.source[first.start : last.end])
+        doubts.append(doubt)
+        if usual == (doubt.key in flips):
+            return tokens
+        for form in reversed(short):
+            own = tokens[form.place : form.place + form.length]
+            tokens[form.place : form.place + form.length] = form.tokens(own[0], own[-1])
+        notes.append(f"{doubt.excerpt} is read as {short[0].function}({short[0].angle}), and so are letters like it")
+        return tokens
+
+    def with_indices(self, tokens: list[Token], flips: Collection[tuple[str, int]], doubts: list[Doubt]) -> list[Token]:
+        """Return tokens with one name for ``ωp`` where it is a whole side of an equation; elsewhere it is a product."""
+        padded = [None, *tokens]
+        for place in range(len(tokens) - 3, -1, -1):
+            before, first, second, after = padded[place], *tokens[place : place + 3]
+            greek = first.kind == second.kind == "name" and first.text in GREEK_WORDS and first.end == first.start + 1
+            whole = (before is None or before.text in SIGNS or first.breaks) and (
+                after.text in SIGNS or after.kind == "end"
+            )
+            if not greek or not whole or not second.tight or len(second.text) > 1 or first.text == "pi":
+                continue
+            doubt = Doubt(("index", first.start), self.source[first.start : second.end])
+            doubts.append(doubt)
+            if doubt.key not in flips:
+                merged = first._replace(text=f"{first.text}_{second.text}", end=second.end)
+                tokens[place : place + 2] = [merged]
+        return tokens
+
+    def lines(self, tokens: Sequence[Token]) -> Iterator[list[Token]]:
+        """Yield the tokens of each line; a line that starts or ends with an operator goes on."""
+        line: list[Token] = []
+        depth = 0
+        for token in tokens:
+            at_top = depth == 0
+            depth += (token.text in ("(", "[")) - (token.text in (")", "]"))
+            separates = token.text == ";" and at_top
+            if line and at_top and (separates or (token.breaks and self.is_new_line(line, token, tokens))):
+                yield self.ended(line)
+                line = []
+            if separates:
+                continue
+            if token.kind == "end":
+                break
+            line.append(token)
+        if line:
+            yield self.ended(line)
+
+    def is_new_line(self, line: Sequence[Token], token: Token, tokens: Sequence[Token]) -> bool:
+        """Return whether a token after the end of a line starts another claim."""
+        if line[-1].text in ("+", "-", "*", "/", "^", "**", "·", "×", *SIGNS) or token.kind == "end":
+            return False
+        if token.text in SIGNS or token.text in ("+", "*", "/", "^", "**", "·", "×", ")", "]", ","):
+            return False
+        if not any(piece.text in SIGNS for piece in line):
+            return False
+        if token.text == "-":
+            following = tokens[list(tokens).index(token) + 1 :]
+            rest = next((n for n, piece in enumerate(following) if piece.breaks), len(following))
+            return any(piece.text in SIGNS for piece in following[:rest])
+        return True
+
+    @staticmethod
+    def ended(line: list[Token]) -> list[Token]:
+        """Return the tokens of a line with a token for its end, without a comma or a full stop there."""
+        while len(line) > 1 and line[-1].kind == "mark" and line[-1].text in (",", "."):
+            line = line[:-1]
+        return [*line, Token("end", "", line[-1].end, line[-1].end)]
+
+
+def _alone(tokens: Sequence[Token]) -> Iterator[str]:
+    """Yield the names that stand by themselves: not before a bracket, and not a letter x that is a product sign."""
+    for before, token, after in zip((None, *tokens), tokens, tokens[1:], strict=False):
+        if token.kind == "name" and after.text != "(" and not _is_cross(before, token, after):
+            yield token.text
+
+
+def _is_cross(before: Token | None, token: Token, after: Token) -> bool:
+    """Return whether a letter x has blanks and names of vectors on both sides."""
+    if token.text != "x" or not token.spaced or not after.spaced or before is None:
+        return False
+    return is_cross_letter(before, after)
+
+
+def _crossed(tokens: Sequence[Token], flips: Collection[tuple[str, int]]) -> Iterator[str]:
+    """Yield the names on either side of a cross."""
+    alone = set(_alone(tokens))
+    for before, sign, after in zip(tokens, tokens[1:], tokens[2:], strict=False):
+        if (sign.kind == "mark" and sign.text == "×") or (
+            "x" not in alone and _is_cross(before, sign, after) and ("cross", sign.start) not in flips
+        ):
+            numbers = "number" in (before.kind, after.kind)
+            yield from (token.text for token in (before, after) if token.kind == "name" and not numbers)
+
+
+def _in_words(pieces: Sequence[str]) -> str:
+    if pieces[0] in ("sin", "cos", "tan", "cot", "sec", "csc") or pieces[0].startswith(("asin", "acos", "atan", "arc")):
+        return f"{pieces[0]} {''.join(pieces[1:])}"
+    return f"the product {'*'.join(pieces)}"
+
+
+def _listed(words: Sequence[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def _finished(node: Node, timed: Collection[str], vectors: Collection[str], parent: str = "") -> Node:
+    """Return a tree in which names that depend on time are written ``f(t)``, and vectors and tables are matrices."""
+    if node.kind == "name" and node.value in timed:
+        return Node("call", node.value, (TIME,), node.span)
+    if node.kind == "name" and node.value in vectors:
+        parts = tuple(Node("name", f"{node.value}_{axis}", (), node.span) for axis in "xyz")
+        return Node("call", "Matrix", (Node("list", ("[", "]"), parts, node.span),), node.span)
+    if node.kind == "call" and node.value in timed:
         return node
-
-    def atom(self) -> Node:
-        kind, token, position = self.next()
-        if kind == "number":
-            return Node("number", self.number(token, position), (), self.span(position))
-        if kind == "name":
-            if not self.take("("):
-                return Node("name", token, (), self.span(position))
-            arguments = self.members(")")
-            return Node("call", token, tuple(arguments), self.span(position))
-        if token == "(":
-            inner = self.members(")")
-            if len(inner) == 1:
-                return inner[0]
-            return Node("list", ("(", ")"), tuple(inner), self.span(position))
-        if token == "[":
-            return Node("list", ("[", "]"), tuple(self.members("]")), self.span(position))
-        raise self.fail("a number, a name or a bracket", position)
-
-    def members(self, closing: str) -> list[Node]:
-        members = [self.expression()]
-        while self.take(","):
-            members.append(self.expression())
-        self.expect(closing)
-        return members
-
-    def number(self, token: str, position: int) -> Fraction:
-        exponent = re.split("[eE]", token)[1:]
-        if len(token) > LONGEST_NUMBER:
-            raise self.fail(f"a number of at most {LONGEST_NUMBER} characters", position)
-        if exponent and abs(int(exponent[0])) > LONGEST_NUMBER:
-            raise self.fail(f"a power of ten within {LONGEST_NUMBER}", position)
-        return Fraction(token)
+    if node.kind == "list" and parent not in ("call", "list", "transpose", "index"):
+        if len(node.args) == 1:
+            return _finished(node.args[0], timed, vectors, parent)
+        inside = replace(node, value=("[", "]"), args=tuple(_finished(a, timed, vectors, "list") for a in node.args))
+        return Node("call", "Matrix", (inside,), node.span)
+    if not node.args:
+        return node
+    return replace(node, args=tuple(_finished(child, timed, vectors, node.kind) for child in node.args))
 
 
-def read_expression(source: str, where: str = "") -> Node:
-    """Return the tree of a formula.
+def with_time(node: Node, names: Collection[str]) -> Node:
+    """Return a tree in which names that depend on time are written ``f(t)``."""
+    if node.kind == "name" and node.value in names:
+        return Node("call", node.value, (TIME,))
+    if node.kind == "call" and node.value in names:
+        return node
+    return Node(node.kind, node.value, tuple(with_time(child, names) for child in node.args), node.span)
 
-    Parameters
-    ----------
-    source : str
-        At most 20 000 characters, nested at most 60 deep.
-    where : str
-        The place of the text, which begins every error message.
+
+def readings_of(source: str, where: str = "", declared: Declared | None = None) -> list[Reading]:
+    """Return the readings of a claim, the usual one first.
 
     Raises
     ------
@@ -223,13 +374,107 @@ def read_expression(source: str, where: str = "") -> Node:
     Examples
     --------
     >>> from symrot.checker.claim.tree import text
-    >>> text(read_expression("a - (b*(c))/d"))
-    'a - b*c/d'
+    >>> [text(reading.relation[2]) for reading in readings_of("T = 1/2m v^2")]
+    ['1/2*m*v**2', '1/(2*m)*v**2']
     """
-    return _Reader(source, where).whole()
+    return list(_readings(_Text(source, where, declared or Declared()), False))
 
 
-def read_relation(source: str, where: str = "") -> Relation:
+def _readings(text: _Text, one_side: bool) -> Iterable[Reading]:
+    strict, refusal = None, None
+    try:
+        strict = text.read(whole=True, as_sympy=True, one_side=one_side)
+    except InputError as reason:
+        refusal = reason
+    if strict is not None and not strict.plain:
+        others = (
+            replace(r, flipped=r.flipped or tuple(d.excerpt for d in r.doubts)) for r in _typed(text, one_side, False)
+        )
+        return _distinct([strict, *others])
+    try:
+        return _distinct(_typed(text, one_side, True))
+    except InputError as reason:
+        raise (refusal or reason) from None
+
+
+def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
+    """Yield the readings of a text as people type: the usual one, then those with other readings of some places."""
+    try:
+        usual = text.read(False, False, (), one_side)
+    except InputError:
+        if required:
+            raise
+        return
+    yield usual
+    keys = list(dict.fromkeys(doubt.key for doubt in usual.doubts))[:MOST_DOUBTS]
+    kinds = dict.fromkeys(kind for kind, _ in keys)
+    choices = [{key for key in keys if key[0] == kind} for kind in kinds]  # a writer is consistent
+    choices += [{key} for key in keys if key[0] not in ("word", "name")]
+    for flips in choices:
+        try:
+            yield text.read(False, False, flips, one_side)
+        except InputError:
+            continue
+
+
+def _distinct(readings: Iterable[Reading]) -> list[Reading]:
+    """Return readings with different trees; if there are more than are tried, the first one has a note about it."""
+    by_trees: dict[Any, Reading] = {}
+    for reading in readings:
+        by_trees.setdefault(reading.lines, reading)
+    usual, *others = by_trees.values()
+    if len(others) >= MOST_READINGS:
+        note = f"the text has more readings than the {MOST_READINGS} that are decided here; brackets leave fewer"
+        usual = replace(usual, notes=(*usual.notes, note))
+    return [usual, *others[: MOST_READINGS - 1]]
+
+
+def _only(readings: Sequence[Reading], source: str, where: str) -> Reading:
+    """Return the reading of a text that has one; refuse a text as people type it with several."""
+    usual = readings[0]
+    if usual.plain and len(readings) > 1:
+        doubt = usual.doubts[0]
+        raise complaint(
+            source, where, doubt.key[1], f"brackets or product signs, since {doubt.excerpt!r} has two readings,"
+        )
+    return usual
+
+
+def read_expression(source: str, where: str = "", declared: Declared | None = None) -> Node:
+    """Return the tree of a formula.
+
+    Parameters
+    ----------
+    source : str
+        At most 20 000 characters, nested at most 60 deep.
+    where : str
+        The place of the text, which begins every error message.
+    declared : Declared, optional
+        The names that have a meaning.
+
+    Raises
+    ------
+    InputError
+        Naming the first position that cannot be read, or that has two readings.
+
+    Examples
+    --------
+    >>> from symrot.checker.claim.tree import text
+    >>> text(read_expression("a - (b*(c))/d")), text(read_expression("2x sin^2(y)"))
+    ('a - b*c/d', '2*x*sin(y)**2')
+    """
+    text = _Text(source, where, declared or Declared())
+    strict, refusal = _strict(text, True)
+    if strict is not None:
+        return strict.lines[0].sides[0]
+    try:
+        readings = _distinct(_typed(text, True, True))
+    except InputError as reason:
+        raise (refusal or reason) from None
+    return _only(readings, source, where).lines[0].sides[0]
+
+
+def read_relation(source: str, where: str = "", declared: Declared | None = None) -> Relation:
     """Return (sign, left, right) of ``left == right``; the signs ``!= > >= < <=`` are read for hypotheses.
 
     Raises
@@ -237,4 +482,23 @@ def read_relation(source: str, where: str = "") -> Relation:
     InputError
         As :func:`read_expression`, and if there is no relation sign or more than one.
     """
-    return _Reader(source, where).relation()
+    text = _Text(source, where, declared or Declared())
+    strict, refusal = _strict(text, False)
+    if strict is None:
+        try:
+            strict = _only(_distinct(_typed(text, False, True)), source, where)
+        except InputError as reason:
+            raise (refusal or reason) from None
+    if len(strict.lines) > 1 or len(strict.lines[0].signs) > 1:
+        second = strict.lines[1].sides[0] if len(strict.lines) > 1 else strict.lines[0].sides[2]
+        raise complaint(source, where, second.span[0], "one '==', not a chain of them,")
+    return strict.relation
+
+
+def _strict(text: _Text, one_side: bool) -> tuple[Reading | None, InputError | None]:
+    """Return the reading of SymPy's text, None for any other text; and the refusal of a text that cannot be read."""
+    try:
+        strict = text.read(whole=True, as_sympy=True, one_side=one_side)
+    except InputError as reason:
+        return None, reason
+    return (None if strict.plain else strict), None

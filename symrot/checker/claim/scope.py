@@ -97,7 +97,9 @@ class Scope(ABC):
         if not fits:
             expected = "matrix" if shape == (None, None) else f"{rows or 'n'} x {columns or 'n'} matrix"
             actual = "a list" if isinstance(value, tuple) else described(value)
-            raise self.fail(node, f"a {expected} {of} instead of {actual}")
+            defined = node.kind == "name" and self.implied and actual == "a scalar"
+            hint = f" (write its entries on a line before, {node.value} = [[a, b], [c, d]])" if defined else ""
+            raise self.fail(node, f"a {expected} {of} instead of {actual}{hint}")
         return value
 
     def shape(self, value: Any, node: Node) -> tuple[int, int] | None:

@@ -18,7 +18,7 @@ CLOSING = {"(": ")", "[": "]", "\\{": "\\}"}
 TIME = Node("name", "t")
 UPRIGHT = ("\\mathrm", "\\mathit", "\\mathsf", "\\textrm")
 MATRIX_CALLS = ("Matrix", "cross", "skew", "vee", "Rx", "Ry", "Rz", "inverse", "transpose", "eye", "diag", "qmul",
-                "dcm_of", "hstack")  # fmt: skip
+                "dcm_of", "hstack", "adjugate")  # fmt: skip
 MARKS = frozenset("-+*/=()[]{}&|,−·×⋅")
 WRAPPERS = (
     ("", ""), ("$$", "$$"), ("$", "$"), (r"\[", r"\]"), (r"\(", r"\)"),

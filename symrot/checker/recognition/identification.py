@@ -17,8 +17,9 @@ from sympy.matrices import MatrixBase
 from symrot import symbols
 from symrot.checker.claim.claims import Claim, claim_of_text, named_formula
 from symrot.checker.claim.interpreter import Interpreter, time
+from symrot.checker.claim.quantities import has_natural_base, letters_of_quantities, with_natural_base
 from symrot.checker.claim.reader import read_expression
-from symrot.checker.claim.tree import walk
+from symrot.checker.claim.tree import Node, walk
 from symrot.checker.latex.reader import read_latex_formula
 from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, Values, fingerprint, values_at
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
@@ -104,11 +105,18 @@ def _value(formula: Any) -> Any:
         raise InputError(f"expected a formula as text or a SymPy value to identify, got {type(formula).__name__}")
     latex = "\\" in formula or "$" in formula
     if "=" in formula and (named := named_formula(claim_of_text(formula))) is not None:
-        return Interpreter(implied=True).read(named.formula, formula)
+        return _in_new_names(named.formula, formula)
     if not latex and "=" in formula:
         raise complaint(formula, "", formula.index("="), "one formula without '=' to identify")
     text = read_latex_formula(formula) if latex else formula
-    return Interpreter(implied=True).read(read_expression(text), text)
+    return _in_new_names(read_expression(text), text)
+
+
+def _in_new_names(tree: Node, source: str) -> Any:
+    """Return the value of a tree whose names are declared by their use."""
+    tree = with_natural_base(tree) if has_natural_base([tree]) else tree
+    quantities = {letter: Symbol(letter, real=True) for letter in letters_of_quantities([tree])}
+    return Interpreter(implied=True, values=quantities).read(tree, source)
 
 
 def named_parts(claim: Claim) -> tuple[str, ...]:

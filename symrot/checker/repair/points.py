@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from symrot.checker.claim.tree import Node
+from symrot.checker.claim.tree import Node, walk
 from symrot.checker.repair.dual import (
     Dual,
     UndefinedValue,
@@ -183,6 +183,8 @@ def _product(point: Point, node: Node) -> Any:
 
 def _raised(point: Point, node: Node) -> Any:
     base, exponent = (point._value(part) for part in node.args)
+    if not is_matrix(base) and any(part.kind in ("name", "call") for _, part in walk(node.args[1])):
+        return exponential(exponent * logarithm(base))
     if not is_matrix(base):
         return power(base, plain(exponent))
     result = base = inverted(base) if exponent < 0 else base
@@ -302,6 +304,7 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "vee": lambda rows: column([needed(rows, (3, 3))[2][1], rows[0][2], rows[1][0]]),
     "dot": lambda a, b: dot([row[0] for row in needed(a, (None, 1))], [row[0] for row in needed(b, (None, 1))]),
     "det": lambda rows: determinant(needed(rows)), "inverse": lambda rows: inverted(needed(rows)),
+    "adjugate": lambda rows: times(determinant(needed(rows)), inverted(needed(rows))),
     "transpose": transposed, "trace": lambda rows: sum((row[i] for i, row in enumerate(needed(rows))), 0.0),
     "eye": lambda n: tuple(tuple(float(i == j) for j in range(int(n))) for i in range(int(n))),
     "diag": lambda *d: tuple(tuple(d[i] if i == j else 0.0 for j in range(len(d))) for i in range(len(d))),

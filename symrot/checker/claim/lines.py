@@ -1,0 +1,58 @@
+"""The claims of a text with several lines, or with a chain of equals signs."""
+
+from collections.abc import Mapping, Sequence
+
+from symrot.checker.claim.claims import Claim, check_units, claim_of_relation
+from symrot.checker.claim.reader import Reading
+from symrot.checker.claim.tree import Node, walk
+from symrot.errors import InputError
+
+__all__ = ["claims_of_reading"]
+
+MOST_EQUATIONS = 30
+"""The most equations in one text, lines and links of chains."""
+
+
+def claims_of_reading(
+    reading: Reading, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None
+) -> list[list[Claim]]:
+    """Return the claims of a text, line by line, and link by link of a chain ``a = b = c``.
+
+    A line that only gives a name to a formula is a definition for the lines after it.
+    """
+    define: list[tuple[str, Node]] = []
+    lines = []
+    if sum(len(chain.links) for chain in reading.lines) > MOST_EQUATIONS:
+        raise InputError(f"expected at most {MOST_EQUATIONS} equations in one text; a file of claims may have more")
+    names = {str(n.value) for chain in reading.lines for side in chain.sides for _, n in walk(side)}
+    check_units(dict(units or {}), names, "claim")
+    context = [side for chain in reading.lines for side in chain.sides]
+    for chain in reading.lines:
+        links = chain.links
+        if len(links) > 1 and set(chain.signs) != {"=="}:
+            raise InputError(f"expected a chain of equals signs, got {' '.join(chain.signs)!r} in {source[:60]!r}")
+        used = {str(n.value) for side in chain.sides for _, n in walk(side) if n.kind in ("name", "call")}
+        known = _needed(define, used)
+        claims = []
+        for link in links:
+            in_link = {str(n.value) for side in link[1:] for _, n in walk(side)}
+            own = {name: unit for name, unit in (units or {}).items() if name in in_link}
+            claims.append(claim_of_relation(link, source, assume, own, known, reading.notes, context))
+        lines.append(claims)
+        first = chain.sides[0]
+        reserved = ("pi", "t", *(name for name, _ in define))
+        is_name = first.kind == "name" and chain.signs[0] == "==" and first.value not in reserved
+        if is_name and first not in [node for _, node in walk(chain.sides[1])]:
+            define.append((str(first.value), chain.sides[1]))
+    return lines
+
+
+def _needed(define: Sequence[tuple[str, Node]], used: set[str]) -> list[tuple[str, Node]]:
+    """Return the definitions that names need, and those that these need, in order."""
+    needed: list[tuple[str, Node]] = []
+    names = set(used)
+    for name, tree in reversed(define):
+        if name in names:
+            needed.insert(0, (name, tree))
+            names |= {str(node.value) for _, node in walk(tree) if node.kind == "name"}
+    return needed

@@ -1,0 +1,115 @@
+"""Formulas written as the person who typed them writes: SymPy's text, or plain text with ``^``, ``=`` and primes."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from decimal import Decimal
+from fractions import Fraction
+
+from symrot.checker.claim.reader import Reading, Relation, read_relation
+from symrot.checker.claim.tree import Node, text
+from symrot.errors import InputError
+
+__all__ = ["Notation", "notation_of"]
+
+
+@dataclass(frozen=True)
+class Notation:
+    """The way in which a text is typed.
+
+    Attributes
+    ----------
+    plain : bool
+        Whether powers are ``^`` and equations ``=``; if not, formulas are SymPy's text.
+    spelling : mapping
+        Name here -> name as it is typed.
+    timed : frozenset of str
+        Functions of time that are typed without ``(t)``.
+    """
+
+    plain: bool = False
+    spelling: Mapping[str, str] = field(default_factory=dict)
+    timed: frozenset[str] = frozenset()
+
+    def formula(self, node: Node) -> str:
+        """Return the text of a tree in this notation."""
+        if not self.plain:
+            return text(node)
+        return text(self._spelled(node)).replace("**", "^")
+
+    def _spelled(self, node: Node, parent: str = "") -> Node:
+        """Return a tree whose names are spelled as they were typed, with primes for rates and ``[..]`` for matrices."""
+        if node.kind == "call" and node.value == "diff":
+            name = str(node.args[0].value)
+            if name not in self.timed or not _is_rate(node):
+                return replace(node, args=tuple(self._in_full(child) for child in node.args))
+            return Node("name", self.spelling.get(name, name) + "'" * (len(node.args) - 1))
+        if node.kind == "call" and node.value in self.timed:
+            return Node("name", self.spelling.get(str(node.value), node.value))
+        if node.kind == "call" and node.value == "Matrix" and parent not in ("call", "power", "index"):
+            return self._spelled(node.args[0], "list")
+        if node.kind == "number":
+            return Node("name", decimal(node.value))
+        if node.kind == "name" and node.value in self.spelling:
+            return Node("name", self.spelling[str(node.value)])
+        args = [self._spelled(child, node.kind) for child in node.args]
+        if node.kind == "product":
+            args = [
+                Node("name", f"({text(factor)})") if _is_number_power(factor) and _is_over_digit(after) else factor
+                for factor, after in zip(args, [*args[1:], END], strict=True)
+            ]
+        return replace(node, args=tuple(args))
+
+    def _in_full(self, node: Node) -> Node:
+        """Return the tree of a formula that is differentiated, in which functions of time keep their ``(t)``."""
+        name = self.spelling.get(str(node.value), node.value) if node.kind in ("name", "call") else node.value
+        return replace(node, value=name, args=tuple(map(self._in_full, node.args)))
+
+    def relation(self, relation: Relation) -> str:
+        """Return the text of a relation in this notation."""
+        sign, left, right = relation
+        return f"{self.formula(left)} {'=' if self.plain and sign == '==' else sign} {self.formula(right)}"
+
+    def rewritten(self, source: str) -> str:
+        """Return SymPy's text of a relation in this notation; words after it, such as ``with w == ..``, are kept."""
+        if not self.plain:
+            return source
+        claim, joint, rest = source.partition(" with ")
+        try:
+            return self.relation(read_relation(claim)) + joint + rest
+        except InputError:
+            return source
+
+
+def decimal(value: Fraction) -> str:
+    """Return a number as a decimal number if that is exact and short, else as a quotient in brackets."""
+    if value.denominator == 1:
+        return str(value)
+    written = format(Decimal(value.numerator) / Decimal(value.denominator), "f")
+    return written if Fraction(written) == value else f"({value})"
+
+
+def notation_of(reading: Reading) -> Notation:
+    """Return the notation in which a text is typed."""
+    return Notation(reading.plain, dict(reading.spelling), reading.timed)
+
+
+END = Node("name", "")
+"""No factor, after the last one."""
+
+
+def _is_number_power(node: Node) -> bool:
+    """Return whether a tree is a power like x^3, which before a slash might be read as x^(3/2)."""
+    return node.kind == "power" and node.args[1].kind == "name" and str(node.args[1].value) in ("1", "3", "5", "7", "9")
+
+
+def _is_over_digit(node: Node) -> bool:
+    return node.kind == "inv" and str(node.args[0].value).isdigit()
+
+
+def _is_rate(node: Node) -> bool:
+    inside = node.args[0]
+    return (
+        inside.kind == "call"
+        and [a.value for a in inside.args] == ["t"]
+        and all((a.kind, a.value) == ("name", "t") for a in node.args[1:])
+    )

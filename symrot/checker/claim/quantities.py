@@ -1,0 +1,90 @@
+"""The letters I, E, e and i, each of which means a quantity in some books and a number in others."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+from symrot.checker.claim.functions import BUILT_IN
+from symrot.checker.claim.tree import Node, walk
+
+__all__ = [
+    "OTHER_MEANINGS", "has_natural_base", "imaginary_letter", "letters_of_quantities", "with_natural_base",
+]  # fmt: skip
+
+OTHER_MEANINGS = {"I": "the imaginary unit", "E": "the number e = 2.718.."}
+"""Letters that name a quantity in books on mechanics, and a number in SymPy -> the number in words."""
+
+USUAL_QUANTITIES = frozenset("mMgGhlLrRvFkTVUKJHNpqsabdcw")
+
+
+def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
+    """Return the letters I and E of trees in which they are quantities, an inertia and an energy.
+
+    They are, next to another name that books on mechanics use, unless they are where only a number makes sense: inside
+    of exp, log or a trigonometric function, or as the factor of nothing but a sine.
+    """
+    nodes = [node for tree in trees for _, node in walk(tree)]
+    names = {
+        str(node.value) for node in nodes if node.kind == "name" or (node.kind == "call" and node.value not in BUILT_IN)
+    }
+    others = names - set(OTHER_MEANINGS)
+    if not any(
+        name in USUAL_QUANTITIES or (len(name) > 1 and name not in ("pi", "theta", "phi", "psi")) for name in others
+    ):
+        return ()
+    letters = []
+    for letter in OTHER_MEANINGS:
+        used = [node for node in nodes if (node.kind, node.value) == ("name", letter)]
+        inside = [node for call in nodes if call.kind == "call" and call.value in BUILT_IN and call.value not in
+                  ("sqrt", "abs", "diff", "integrate", "Matrix", "diag") for _, node in walk(call)]  # fmt: skip
+        waves = [node for node in nodes if _is_exponential(node, letter)]
+        waves += [node for node in nodes if node.kind == "product" and _is_imaginary(node, letter)]
+        if used and not waves and not any((node.kind, node.value) == ("name", letter) for node in inside):
+            letters.append(letter)
+    return tuple(letters)
+
+
+def _is_imaginary(product: Node, letter: str) -> bool:
+    """Return whether a product has only the letter, numbers, and sines: I*sin(theta)."""
+    others = [factor for factor in product.args if (factor.kind, factor.value) != ("name", letter)]
+    pure = all(
+        factor.kind == "number" or (factor.kind == "call" and factor.value in ("sin", "cos", "sinh"))
+        for factor in others
+    )
+    return len(others) < len(product.args) and pure and any(factor.kind == "call" for factor in others)
+
+
+IMAGINARY = ("i", "j")
+
+
+def has_natural_base(trees: Sequence[Node]) -> bool:
+    """Return whether the letter e is the base of the exponential function: it has an exponent that is no number."""
+    return any(_is_exponential(node, "e") for tree in trees for _, node in walk(tree))
+
+
+def _is_exponential(node: Node, base: str) -> bool:
+    if node.kind != "power" or (node.args[0].kind, node.args[0].value) != ("name", base):
+        return False
+    return any(part.kind in ("name", "call") for _, part in walk(node.args[1]))
+
+
+def with_natural_base(node: Node) -> Node:
+    """Return a tree in which e is the base of the exponential function, exp(x) for e**x."""
+    if node.kind == "power" and (node.args[0].kind, node.args[0].value) == ("name", "e"):
+        return Node("call", "exp", (with_natural_base(node.args[1]),), node.span)
+    if (node.kind, node.value) == ("name", "e"):
+        return Node("call", "exp", (Node("number", Fraction(1)),), node.span)
+    return replace(node, args=tuple(map(with_natural_base, node.args)))
+
+
+def imaginary_letter(trees: Sequence[Node]) -> Node | None:
+    """Return the letter i or j in an exponent of e or in exp(..), where most readers mean the imaginary unit."""
+    exponents = [
+        node.args[-1]
+        for tree in trees
+        for _, node in walk(tree)
+        if _is_exponential(node, "e") or (node.kind == "call" and node.value == "exp" and node.args)
+    ]
+    return next(
+        (part for e in exponents for _, part in walk(e) if part.kind == "name" and part.value in IMAGINARY), None
+    )

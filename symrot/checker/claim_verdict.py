@@ -1,0 +1,160 @@
+"""The verdict on one claim: decided, or recognised by its name, and diagnosed if it is not true."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from time import perf_counter
+
+from symrot.checker.claim.claims import Claim, named_formula, relation_text
+from symrot.checker.claim.values import decide_value
+from symrot.checker.decide.decision import decide_equation
+from symrot.checker.time_limit import TimeUp, processor_seconds
+from symrot.checker.units.check import check_dimensions
+from symrot.checker.verdict import Diagnosis, Verdict
+from symrot.errors import InputError
+from symrot.exact.decision import Decision
+from symrot.exact.printing import as_text
+
+__all__ = ["MOST_SECONDS", "check_claim", "check_readings", "unfinished", "verdict_of_decision"]
+
+MOST_SECONDS = 20
+"""The most processor time for one claim. The slowest claim of the campaigns that is decided needs 10 s."""
+
+
+def check_claim(claim: Claim, repair: bool = True) -> Verdict:
+    """Return the verdict on a claim: on its first reading, or on another reading if only that one is true."""
+    try:
+        verdict, other = check_readings(claim, repair)
+    except RecursionError:
+        raise InputError(f"{claim.id or 'claim'}: expected formulas that are nested less deeply") from None
+    if other is None:
+        return verdict
+    note = f"this is another reading of the claim; the first, {verdict.text}, is {verdict.verdict}"
+    return replace(other, notes=(*other.notes, note), seconds=verdict.seconds + other.seconds)
+
+
+def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict | None]:
+    """Return the verdict on the first reading of a claim, and the verdict on the first other one that is true, or None.
+
+    A claim of which no reading is true is diagnosed.
+    """
+    start = perf_counter()
+    verdict: Verdict | None = None
+    try:
+        with processor_seconds(MOST_SECONDS):
+            decision, verdict = _on_name(claim, repair) or _decide(claim)
+            other_verdict = None if verdict else _of_another_reading(claim)
+            if other_verdict is None and repair and decision is not None:
+                verdict = _diagnosed(claim, decision, verdict)
+    except TimeUp:
+        other_verdict = None
+        if verdict is None:
+            late = verdict_of_decision(unfinished(), claim.text, start)
+            verdict = replace(late, id=claim.id, where=claim.where)
+        else:
+            note = f"the search for other readings and for repairs was ended after {MOST_SECONDS} s of processor time"
+            verdict = replace(verdict, notes=(*verdict.notes, note))
+    if other_verdict is not None:
+        return verdict, other_verdict
+    return replace(verdict, seconds=perf_counter() - start), None
+
+
+def unfinished() -> Decision:
+    """Return the decision on a claim that needs more processor time than it may have."""
+    reason = (
+        f"SymPy needs more than {MOST_SECONDS} s of processor time for these formulas; "
+        "check the claim with a letter in place of one of the inner functions"
+    )
+    return Decision("undecided", reason=reason)
+
+
+def _of_another_reading(claim: Claim) -> Verdict | None:
+    """Return the verdict on the first other reading of a claim that is true."""
+    for relation in claim.alternatives:
+        source = relation_text(relation)
+        other = claim.with_relation(relation, alternatives=(), sources={**claim.sources, "claim": source})
+        _, verdict = _decide(other)
+        if verdict:
+            return verdict
+    return None
+
+
+def _on_name(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
+    """Return the verdict on a claim that names a formula, for which there is no decision; None for any other claim."""
+    named = named_formula(claim) if claim.relation is not None else None
+    if named is None:
+        return None
+    from symrot.checker.recognition.naming import verdict_on_name
+
+    start = perf_counter()
+    with _place_of(claim):
+        verdict = verdict_on_name(claim, named, repair)
+    return None, _completed(claim, replace(verdict, text=claim.text), start)
+
+
+def _decide(claim: Claim) -> tuple[Decision, Verdict]:
+    start = perf_counter()
+    with _place_of(claim):
+        decision = decide_value(claim) if claim.relation is None else decide_equation(claim.equation)
+    return decision, _completed(claim, verdict_of_decision(decision, claim.text, start), start)
+
+
+@contextmanager
+def _place_of(claim: Claim) -> Iterator[None]:
+    """Run a block, and put the name of the claim in front of an InputError that the block raises."""
+    try:
+        yield
+    except InputError as reason:
+        if not claim.id or claim.id in str(reason):
+            raise
+        raise InputError(f"{claim.id}: {reason}") from None
+
+
+def _completed(claim: Claim, verdict: Verdict, start: float) -> Verdict:
+    """Return a verdict with the check of units, and with the name and place of the claim."""
+    if claim.relation is not None:
+        hypotheses = [relation[1:] for relation in claim.hypotheses]
+        dimensions = check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)
+        verdict = replace(verdict, dimension=dimensions)
+    return replace(verdict, id=claim.id, where=claim.where, seconds=perf_counter() - start)
+
+
+def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
+    """Return the verdict with a diagnosis: of the fault, or of the side that is not defined everywhere."""
+    if claim.relation is None:
+        return verdict
+    if decision.verdict not in ("false", "conditional"):
+        return replace(verdict, diagnosis=_domain(claim)) if verdict and verdict.conditions else verdict
+    from symrot.checker.recognition.identification import named_parts
+    from symrot.checker.repair.diagnose import diagnose
+
+    diagnosis, repairs = diagnose(claim, decision)
+    if diagnosis.code == "none" and verdict.dimension.status == "inconsistent":
+        diagnosis = Diagnosis("dimension", f"the units do not fit: {verdict.dimension.text}")
+    notes = (*verdict.notes, *named_parts(claim))
+    return replace(verdict, diagnosis=diagnosis, repairs=repairs, notes=notes)
+
+
+def _domain(claim: Claim) -> Diagnosis:
+    """Return the remark that one side of a true claim is not defined everywhere, while the other side is."""
+    assert claim.relation is not None
+    sides = [claim.with_relation(("==", side, side)) for side in claim.relation[1:]]
+    left, right = (decide_equation(side.equation).conditions for side in sides)
+    if bool(left) == bool(right):
+        return Diagnosis("none", "")
+    narrow, wide = ("left", "right") if left else ("right", "left")
+    where = ", ".join(map(as_text, left or right))
+    text = f"it holds only where it is defined: the {narrow} side needs {where}, the {wide} side needs nothing"
+    return Diagnosis("domain", text)
+
+
+def verdict_of_decision(decision: Decision, text: str, start: float) -> Verdict:
+    return Verdict(
+        verdict=decision.verdict,
+        conditions=tuple(map(as_text, decision.conditions)),
+        requires=tuple(requirement.text for requirement in decision.requires),
+        counterexample=decision.counterexample,
+        reason=decision.reason,
+        text=text,
+        seconds=perf_counter() - start,
+    )

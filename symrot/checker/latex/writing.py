@@ -1,0 +1,174 @@
+"""The LaTeX of claims: a tree as a book would print it, so that LaTeX is answered in LaTeX.
+
+A text is returned only if the reader reads the same equation from it.
+"""
+
+import re
+from collections.abc import Callable, Collection, Mapping
+from typing import ClassVar
+
+from symrot.checker.claim.reader import Relation, read_relation
+from symrot.checker.claim.tree import Node, text, walk
+from symrot.checker.latex.reader import Names, read_latex
+from symrot.errors import InputError
+from symrot.latex.tokens import GREEK
+
+__all__ = ["latex_of", "latex_of_text"]
+
+COMMANDS = {
+    **{name: f"\\{name}" for name in ("sin", "cos", "tan", "cot", "sec", "csc", "exp", "sinh", "cosh", "tanh", "det")},
+    "asin": "\\arcsin", "acos": "\\arccos", "atan": "\\arctan", "log": "\\ln", "trace": "\\operatorname{tr}",
+}  # fmt: skip
+"""Built-in function -> its command."""
+
+DOTS = {1: "\\dot", 2: "\\ddot", 3: "\\dddot"}
+SUM, PRODUCT, SIGN, ATOM = 10, 20, 30, 50
+
+
+def latex_of(relation: Relation, functions: Collection[str] = ()) -> str | None:
+    """Return the LaTeX of an equation, or None if the reader would not read the same equation from it.
+
+    Parameters
+    ----------
+    relation : Relation
+    functions : collection of str
+        The functions of time that are declared.
+
+    Examples
+    --------
+    >>> latex_of(read_relation("diff(theta(t), t, t) == -g/l*sin(theta(t))"))
+    '\\\\ddot{\\\\theta} = -\\\\frac{g}{l} \\\\sin(\\\\theta)'
+    """
+    if relation[0] != "==":
+        return None
+    timed = {str(n.args[0].value) for side in relation[1:] for _, n in walk(side) if _is_rate(n)} | {*functions}
+    try:
+        written = " = ".join(_Writer(timed).formula(side) for side in relation[1:])
+        same = read_latex(written, names=Names(functions=functions)).text
+    except (InputError, KeyError):
+        return None
+    return written if same == " == ".join(map(text, relation[1:])) else None
+
+
+def latex_of_text(source: str, functions: Collection[str] = ()) -> str:
+    """Return the LaTeX of an equation in SymPy's text, or the text itself; words after it, ``with ..``, are kept."""
+    claim, joint, rest = source.partition(" with ")
+    try:
+        written = latex_of(read_relation(claim), functions)
+    except InputError:
+        written = None
+    return source if written is None else written + joint + rest
+
+
+def _is_rate(node: Node) -> bool:
+    if node.kind != "call" or node.value != "diff" or len(node.args) > 4:
+        return False
+    inside, *variables = node.args
+    is_function = inside.kind == "call" and [a.value for a in inside.args] == ["t"]
+    return is_function and all((v.kind, v.value) == ("name", "t") for v in variables)
+
+
+class _Writer:
+    """The LaTeX of trees in which some names are functions of time, written without ``(t)``."""
+
+    def __init__(self, timed: Collection[str]) -> None:
+        self.timed = timed
+
+    def formula(self, node: Node, binding: int = 0) -> str:
+        own = {"sum": SUM, "neg": SUM, "product": PRODUCT, "inv": PRODUCT}.get(node.kind, ATOM)
+        written = self.writers[node.kind](self, node)
+        return f"({written})" if own < binding else written
+
+    def number(self, node: Node) -> str:
+        value = node.value
+        return str(value) if value.denominator == 1 else f"\\frac{{{value.numerator}}}{{{value.denominator}}}"
+
+    def name(self, node: Node) -> str:
+        if node.value == "pi":
+            return "\\pi"
+        base, _, subscript = str(node.value).partition("_")
+        words = [f"\\{word}" if word in GREEK else word for word in (base, subscript)]
+        if len(base) > 1 and base not in GREEK:
+            words[0] = f"\\mathrm{{{base}}}"
+        if not subscript:
+            return words[0]
+        short = len(subscript) == 1 or subscript in GREEK
+        pieces = re.sub("_", ",", words[1])
+        return f"{words[0]}_{pieces}" if short else f"{words[0]}_{{{pieces}}}"
+
+    def sum(self, node: Node) -> str:
+        written = self.formula(node.args[0], SUM)
+        for term in node.args[1:]:
+            negative = term.kind == "neg"
+            written += (" - " if negative else " + ") + self.formula(term.args[0] if negative else term, SUM + 1)
+        return written
+
+    def negative(self, node: Node) -> str:
+        return "-" + self.formula(node.args[0], PRODUCT)
+
+    def product(self, node: Node) -> str:
+        """Return factors side by side; a divisor makes a fraction with the factor before it."""
+        pieces: list[str] = []
+        last = None
+        for factor in node.args:
+            if factor.kind == "inv":
+                above = "1" if last is None else self.formula(last)
+                if last is not None:
+                    pieces.pop()
+                pieces.append(f"\\frac{{{above}}}{{{self.formula(factor.args[0])}}}")
+                last = None
+                continue
+            pieces.append(self.formula(factor, PRODUCT + 1))
+            last = factor
+        joined = pieces[0]
+        for piece in pieces[1:]:
+            joined += (" \\cdot " if piece[0].isdigit() else " ") + piece
+        return joined
+
+    def inverse(self, node: Node) -> str:
+        return f"\\frac{{1}}{{{self.formula(node.args[0])}}}"
+
+    def power(self, node: Node) -> str:
+        base, exponent = node.args
+        raised = self.formula(exponent)
+        raised = f"^{raised}" if len(raised) == 1 else f"^{{{raised}}}"
+        positive = exponent.kind == "number" and exponent.value.denominator == 1
+        if base.kind == "call" and base.value in COMMANDS and positive and base.value != "det":
+            return f"{COMMANDS[base.value]}{raised}{self.argument(base)}"
+        plain = base.kind in ("name", "number") or (base.kind == "call" and base.value in self.timed)
+        return (self.formula(base) if plain else f"({self.formula(base)})") + raised
+
+    def argument(self, call: Node) -> str:
+        return f"({', '.join(map(self.formula, call.args))})"
+
+    def call(self, node: Node) -> str:
+        name = str(node.value)
+        if _is_rate(node):
+            inner = Node("name", node.args[0].value)
+            base, subscript, rest = self.name(inner).partition("_")
+            return f"{DOTS[len(node.args) - 1]}{{{base}}}{subscript}{rest}"
+        if name in self.timed:
+            return self.name(Node("name", name))
+        if name == "diff" and [(v.kind, v.value) for v in node.args[1:]] == [("name", "t")]:
+            return f"\\frac{{d}}{{dt}}({self.formula(node.args[0])})"
+        if name == "sqrt":
+            return f"\\sqrt{{{self.formula(node.args[0])}}}"
+        if name == "abs":
+            return f"|{self.formula(node.args[0])}|"
+        if name == "Matrix":
+            rows = [row.args if row.kind == "list" else (row,) for row in node.args[0].args]
+            lines = " \\\\ ".join(" & ".join(map(self.formula, row)) for row in rows)
+            return f"\\begin{{bmatrix}} {lines} \\end{{bmatrix}}"
+        if [a.value for a in node.args] == ["t"] and name not in COMMANDS:
+            return f"{self.name(Node('name', name))}(t)"
+        command = COMMANDS.get(name, f"\\operatorname{{{name}}}")
+        return command + self.argument(node)
+
+    def transpose(self, node: Node) -> str:
+        return f"{self.formula(node.args[0], ATOM)}^T"
+
+    writers: ClassVar[Mapping[str, Callable[["_Writer", Node], str]]] = {
+        "number": number, "name": name, "sum": sum, "neg": negative, "product": product, "inv": inverse, "power": power,
+        "call": call, "transpose": transpose,
+    }  # fmt: skip
+    """Kind of a tree -> the function that writes it; index and list have no LaTeX here."""

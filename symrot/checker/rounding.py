@@ -1,0 +1,57 @@
+"""Claims with a rounded decimal number, ``1500*2*pi/60 == 157.08``: compared with what the value rounds to."""
+
+from dataclasses import replace
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.values import decide_value
+from symrot.checker.verdict import Diagnosis, Repair, Verdict
+from symrot.exact.intervals import enclosure
+
+__all__ = ["with_rounding"]
+
+
+def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return the verdict on a false claim that compares a value with a decimal number, as true to the digits given.
+
+    A value that does not round to the number gets a note with the digits to which it does. Every other verdict is
+    returned unchanged.
+    """
+    if verdict.verdict not in ("false", "undecided") or claim.relation is None or claim.hypotheses or claim.define:
+        return verdict
+    source = claim.sources.get("claim", "")
+    for number, value in (claim.relation[1:], claim.relation[:0:-1]):
+        digits = _decimal(number, source)
+        if digits and not _decimal(value, source) and _is_constant(value):
+            return _rounded(claim, verdict, value, digits, number.span)
+    return verdict
+
+
+def _decimal(node: Node, source: str) -> str:
+    """Return the digits of a tree that is a decimal number as they are typed, an empty text for any other tree."""
+    sign, inner = ("-", node.args[0]) if node.kind == "neg" else ("", node)
+    digits = source[inner.span[0] : inner.span[1]]
+    return sign + digits if inner.kind == "number" and "." in digits else ""
+
+
+def _is_constant(node: Node) -> bool:
+    return all(part.value == "pi" for _, part in walk(node) if part.kind == "name")
+
+
+def _rounded(claim: Claim, verdict: Verdict, value: Node, digits: str, place: tuple[int, int]) -> Verdict:
+    worked = replace(claim, relation=None, value=value, printed=digits)
+    decision = decide_value(worked)
+    if decision.verdict == "true":
+        note = f"to the digits given: the value rounds to {digits}"
+        return Verdict("true", dimension=verdict.dimension, notes=(*verdict.notes, note), seconds=verdict.seconds)
+    interval = enclosure(claim.interpreter().read(value))
+    places = len(digits.partition(".")[2])
+    if interval is None or "e" in digits.lower():
+        return verdict
+    right = f"{float(interval.mid):.{places}f}"
+    if decide_value(replace(worked, printed=right)).verdict != "true":
+        return verdict
+    source = claim.sources["claim"]
+    repair = Repair(source[: place[0]] + right + source[place[1] :], "digits", 1.0)
+    diagnosis = Diagnosis("digits", f"a decimal number has a wrong digit: the value rounds to {right}, not to {digits}")
+    return replace(verdict, diagnosis=diagnosis, repairs=(repair,))

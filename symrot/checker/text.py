@@ -1,0 +1,173 @@
+"""The verdict on a text as people type it: on its usual reading, with a sentence on each reading with another verdict.
+
+A chain ``a = b = c`` is decided link by link, and several lines one by one; lines that name a formula define it for the
+lines after them.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from symrot.checker.claim.claims import Claim, named_formula
+from symrot.checker.claim.lines import claims_of_reading
+from symrot.checker.claim.notation import Notation, notation_of
+from symrot.checker.claim.reader import Reading, readings_of
+from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
+from symrot.checker.rounding import with_rounding
+from symrot.checker.typed.cursor import TIME
+from symrot.checker.verdict import Verdict
+from symrot.errors import InputError
+
+__all__ = ["verdict_on_text"]
+
+WORST_FIRST = ("false", "doubtful", "undecided", "conditional", "definition", "recognised", "true")
+"""The order in which the verdicts on the parts of a text decide the verdict on the whole."""
+
+NAMING = ("definition", "recognised")
+
+OUTCOMES = {
+    "true": "true", "false": "false", "conditional": "true under a condition only", "undecided": "undecided",
+    "recognised": "a formula that symrot derives", "doubtful": "nearly a formula that symrot derives",
+    "definition": "a definition, about which nothing is known",
+}  # fmt: skip
+"""Verdict -> the words for it in a sentence."""
+
+
+def verdict_on_text(
+    source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None, repair: bool = True
+) -> Verdict:
+    """Return the verdict on the usual reading of a text, with a note on every other reading whose verdict differs.
+
+    Raises
+    ------
+    InputError
+        For text that cannot be read, with the place, and for a text of which no reading has a meaning.
+    """
+    readings = readings_of(source)
+    verdicts: list[tuple[Reading, Verdict]] = []
+    refusal: InputError | None = None
+    late = False
+    for reading in readings:
+        late = late or sum(verdict.seconds for _, verdict in verdicts) > MOST_SECONDS
+        if late:
+            break
+        try:
+            verdict = _verdict(reading, source, assume, units, repair and not verdicts)
+        except InputError as reason:
+            refusal = refusal or reason
+            continue
+        verdicts.append((reading, verdict))
+    if refusal is not None and not verdicts:
+        raise refusal
+    (usual, verdict), *others = verdicts
+    notes = list(verdict.notes)
+    if usual is not readings[0]:
+        notes.append(f"the usual reading has no meaning: {refusal}")
+    for reading, other in others:
+        if other.verdict != verdict.verdict:
+            notes.append(_on_reading(usual, reading, other))
+    if late:
+        notes.append(f"other readings were not decided, since this one took more than {MOST_SECONDS} s")
+    seconds = sum(other.seconds for _, other in verdicts)
+    return replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds)
+
+
+def _on_reading(usual: Reading, reading: Reading, verdict: Verdict) -> str:
+    """Return the sentence on a reading that is not the usual one."""
+    places = reading.flipped
+    changed = _text_of(reading, replace(notation_of(reading), plain=usual.plain or reading.plain))
+    excerpts = " and ".join(repr(place) for place in dict.fromkeys(places[:3]))
+    return f"{excerpts} can be read in two ways: read as {changed}, it is {OUTCOMES[verdict.verdict]}"
+
+
+def _text_of(reading: Reading, notation: Notation) -> str:
+    return "; ".join(
+        " = ".join(notation.formula(side) for side in chain.sides) if set(chain.signs) == {"=="}
+        else notation.relation(chain.links[0])
+        for chain in reading.lines
+    )  # fmt: skip
+
+
+def _verdict(
+    reading: Reading, source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool
+) -> Verdict:
+    """Return the verdict on one reading of a text: on its only equation, or on all of its links and lines."""
+    lines = claims_of_reading(reading, source, assume, units)
+    notation = notation_of(reading)
+    parts = [(claim, _on_claim(claim, notation, repair)) for line in lines for claim in line]
+    several = len(parts) > 1
+    verdict = _on_parts(lines, [part for _, part in parts], notation) if several else parts[0][1]
+    echo = _text_of(reading, notation)
+    return replace(verdict, text=source.strip(), reading=echo if _differs(echo, source) else "")
+
+
+def _differs(echo: str, source: str) -> bool:
+    """Return whether two texts differ in more than blanks."""
+    return "".join(echo.split()) != "".join(source.split()).replace("==", "=" if "==" not in echo else "==")
+
+
+def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
+    verdict = with_rounding(claim, check_claim(claim, repair))
+    repairs = tuple(replace(repair, text=notation.rewritten(repair.text)) for repair in verdict.repairs)
+    return replace(verdict, repairs=repairs, notes=(*claim.notes, *verdict.notes))
+
+
+def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], notation: Notation) -> Verdict:
+    """Return the verdict on a chain or on several lines: the worst of its parts, and what each part is."""
+    remaining = iter(verdicts)
+    counted, notes = [], []
+    total = sum(map(len, lines))
+    for number, line in enumerate(lines):
+        own = [next(remaining) for _ in line]
+        own = _as_named_chain(line, own, notation)
+        later = {name for other in lines[number + 1 :] for claim in other for name, _ in claim.define}
+        named = named_formula(line[0])
+        defines = named is not None and named.name in later
+        for claim, verdict in zip(line, own, strict=True):
+            assert claim.relation is not None
+            words = (
+                OUTCOMES[verdict.verdict]
+                if not (defines and verdict.verdict == "definition")
+                else "a definition for the lines after it"
+            )
+            formulas = f": the {verdict.recognised_as[0]}" if verdict.recognised_as else ""
+            notes.append(f"{notation.relation(claim.relation)} is {words}{formulas}")
+            notes += [note for note in verdict.notes if note not in claim.notes]
+            if not (defines and verdict.verdict in NAMING and total > 1):
+                counted.append(verdict)
+    counted = counted or list(verdicts)
+    worst = min(counted, key=lambda verdict: WORST_FIRST.index(verdict.verdict))
+    claim_notes = [note for line in lines for claim in line for note in claim.notes]
+    seconds = sum(verdict.seconds for verdict in verdicts)
+    return replace(worst, notes=tuple(dict.fromkeys([*claim_notes, *notes])), seconds=seconds)
+
+
+def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
+    """Return the verdicts on the links of a chain ``name = a = b``.
+
+    The formulas need not be identical if each has letters of its own: the energies I*omega^2/2 and L^2/(2*I) of one
+    body are equal by what L is. Such a link is decided as ``name = b``.
+    """
+    named = named_formula(line[0]) if len(line) > 1 else None
+    if named is None or line[0].relation is None or line[0].relation[1] != named.side:
+        return list(verdicts)
+    decided = [verdicts[0]]
+    for claim, verdict in zip(line[1:], verdicts[1:], strict=True):
+        assert claim.relation is not None
+        _, left, right = claim.relation
+        others = _names(right) - _names(left)
+        if verdict.verdict in ("false", "conditional") and others and _names(left) - _names(right):
+            under_name = check_claim(claim.with_relation(("==", named.side, right)), repair=False)
+            link = notation.relation(claim.relation)
+            note = f"{link} is no identity, since only one side has {', '.join(sorted(others))}"
+            verdict = replace(under_name, notes=(*under_name.notes, note))
+        decided.append(verdict)
+    return decided
+
+
+def _names(tree: Node) -> set[str]:
+    return {
+        str(node.value)
+        for _, node in walk(tree)
+        if node.kind == "name" or (node.kind == "call" and node.args == (TIME,))
+    }

@@ -1,0 +1,1 @@
+"""Read formulas as people type them: tokens, words that may be several names, and the grammar."""

@@ -1,0 +1,232 @@
+"""The cursor of the reader of claims: the place in the tokens of a formula, its vocabulary, and its places in doubt."""
+
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from symrot.checker.claim.functions import BUILT_IN
+from symrot.checker.claim.tree import Node
+from symrot.checker.typed.defined_functions import DEFINED
+from symrot.checker.typed.tokens import Token
+from symrot.checker.typed.words import ALIASES, ENGLISH
+from symrot.errors import InputError, complaint
+
+__all__ = ["ADDING", "DEEPEST_NESTING", "FACTOR_MARKS", "TIME", "Cursor", "Doubt", "Vocabulary", "is_cross_letter"]
+
+DEEPEST_NESTING = 60
+LONGEST_NUMBER = 200
+TIME = Node("name", "t")
+ADDING = ("+", "-")
+FACTOR_MARKS = ("(", "[", "√")
+"""Marks with which a factor without a sign before it may start."""
+
+VECTOR_FUNCTIONS = ("cross", "vee", "Matrix")
+USUAL_VECTORS = frozenset([*"abcdeuvwrpqnsFLHMNRT", "omega", "Omega", "alpha", "tau"])
+"""Names between which a letter x with blanks around it is a product sign, unless x is a name of the text."""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """A place of a text that has two readings.
+
+    Attributes
+    ----------
+    key : (str, int)
+        The kind of the place, and its position.
+    excerpt : str
+        The text of the place.
+    """
+
+    key: tuple[str, int]
+    excerpt: str
+
+
+@dataclass(frozen=True)
+class Vocabulary:
+    """The names with a meaning: declared symbols, functions of time and matrices; those that the text uses alone.
+
+    ``vectors`` are names on either side of a cross, which a text uses as vectors.
+    """
+
+    symbols: frozenset[str] = frozenset()
+    functions: frozenset[str] = frozenset()
+    alone: frozenset[str] = frozenset()
+    vectors: frozenset[str] = frozenset()
+
+    def function(self, name: str) -> str | None:
+        """Return the name of a built-in or declared function, None for any other name."""
+        if name in self.symbols:
+            return None
+        if name in BUILT_IN or name in self.functions or name in DEFINED:
+            return name
+        return ALIASES.get(name)
+
+
+class Cursor(ABC):
+    """A place in the tokens of a formula, with the functions that read a tree from there.
+
+    Attributes
+    ----------
+    plain : bool
+        Whether the formula uses anything that SymPy's text does not have.
+    doubts : list of Doubt
+    notes : list of str
+        Sentences about readings that a reader should know.
+    timed : set of str
+        Names with a prime or a dot, which are functions of time.
+    differentiated : set of str
+        Names in formulas after d/dt, which may be functions of time.
+    """
+
+    def __init__(
+        self, tokens: Sequence[Token], source: str, where: str = "", vocabulary: Vocabulary | None = None,
+        flips: Collection[tuple[str, int]] = (), as_sympy: bool = False,
+    ) -> None:  # fmt: skip
+        self.tokens, self.source, self.where = tokens, source, where
+        self.vocabulary, self.flips, self.as_sympy = vocabulary or Vocabulary(), flips, as_sympy
+        self.depth = self.index = self.bars = 0
+        self.plain = False
+        self.doubts: list[Doubt] = []
+        self.notes: list[str] = []
+        self.timed: set[str] = set()
+        self.differentiated: set[str] = set()
+
+    def fail(self, expected: str, position: int | None = None) -> InputError:
+        return complaint(self.source, self.where, self.start() if position is None else position, expected)
+
+    def token(self, ahead: int = 0) -> Token:
+        return self.tokens[min(self.index + ahead, len(self.tokens) - 1)]
+
+    def peek(self) -> str:
+        """Return the mark at the cursor, or an empty text."""
+        token = self.token()
+        return token.text if token.kind == "mark" else ""
+
+    def next(self) -> Token:
+        token = self.token()
+        self.index += token.kind != "end"
+        return token
+
+    def take(self, mark: str) -> bool:
+        """Step over a mark if it is the next token, and return whether it was."""
+        is_next = self.peek() == mark
+        self.index += is_next
+        return is_next
+
+    def expect(self, mark: str) -> None:
+        if not self.take(mark):
+            raise self.fail(f"'{mark}'")
+
+    def start(self) -> int:
+        return self.token().start
+
+    def span(self, start: int) -> tuple[int, int]:
+        return start, self.tokens[self.index - 1].end
+
+    def deeper(self) -> None:
+        self.depth += 1
+        if self.depth > DEEPEST_NESTING:
+            raise self.fail(f"at most {DEEPEST_NESTING} nested levels")
+
+    def other_reading(self, kind: str, at: int, start: int, stop: int) -> bool:
+        """Record a place with two readings, and the text around it; return whether its other reading is wanted."""
+        self.plain = True
+        doubt = Doubt((kind, at), self.source[start:stop].strip())
+        if doubt.key not in [known.key for known in self.doubts]:
+            self.doubts.append(doubt)
+        return doubt.key in self.flips
+
+    def note(self, sentence: str) -> None:
+        if sentence not in self.notes:
+            self.notes.append(sentence)
+
+    @abstractmethod
+    def expression(self) -> Node:
+        """Read a sum."""
+
+    @abstractmethod
+    def factor(self) -> Node:
+        """Read a power with signs before it."""
+
+    @abstractmethod
+    def power(self) -> Node:
+        """Read a piece with its exponents."""
+
+    def row(self) -> list[Node]:
+        entries = [self.expression()]
+        while self.take(","):
+            entries.append(self.expression())
+        return entries
+
+    def members(self, closing: str) -> list[Node]:
+        bars, self.bars = self.bars, 0
+        members = self.row()
+        self.expect(closing)
+        self.bars = bars
+        return members
+
+    def called(self, function: str, token: Token) -> Node:
+        """Read the arguments of a function in brackets."""
+        self.expect("(")
+        arguments = self.members(")")
+        if function in DEFINED and function not in self.vocabulary.functions and len(arguments) == 1:
+            return DEFINED[function](arguments[0])
+        if function == "diff":  # SymPy writes Derivative(x(t), (t, 2))
+            pairs = [a.args if a.kind == "list" and len(a.args) == 2 else (a,) for a in arguments[1:]]
+            arguments = [arguments[0], *(variable for pair in pairs for variable in pair)]
+        return Node("call", function, tuple(arguments), self.span(token.start))
+
+    def numeral(self, token: Token) -> Node:
+        exponent = re.split("[eE]", token.text)[1:]
+        if len(token.text) > LONGEST_NUMBER:
+            raise self.fail(f"a number of at most {LONGEST_NUMBER} characters", token.start)
+        if exponent and abs(int(exponent[0])) > LONGEST_NUMBER:
+            raise self.fail(f"a power of ten within {LONGEST_NUMBER}", token.start)
+        if exponent and self.token().kind == "name" and self.token().tight:
+            raise self.fail(f"a product sign after the number {token.text}")
+        return Node("number", Fraction(token.text), (), self.span(token.start))
+
+    def starts_factor(self) -> bool:
+        """Return whether a factor without a sign before it starts at the cursor."""
+        token = self.token()
+        if token.kind in ("number", "fraction"):
+            raise self.fail("a product sign before a number" if token.kind == "number" else "an operator")
+        if token.text in ENGLISH:
+            raise self.fail(f"each claim on a line of its own, without the word {token.text!r},")
+        return token.kind == "name" or token.text in FACTOR_MARKS or (token.text == "|" and not self.bars)
+
+    def end_of_run(self) -> int:
+        """Return where the factor at the cursor ends, by its tokens."""
+        depth = 0
+        for token in self.tokens[self.index :]:
+            depth += (token.text in ("(", "[")) - (token.text in (")", "]"))
+            if depth <= 0:
+                return token.end
+        return len(self.source)
+
+    def is_vector(self, node: Node) -> bool:
+        """Return whether a tree is a vector: a list, a cross product, a name that the text uses as a vector."""
+        if node.kind == "name":
+            return node.value in self.vocabulary.vectors
+        if node.kind == "call":
+            return node.value in VECTOR_FUNCTIONS or (node.value == "diff" and self.is_vector(node.args[0]))
+        return node.kind == "list" or (node.kind in ("sum", "neg", "product") and any(map(self.is_vector, node.args)))
+
+    def is_cross_letter(self) -> bool:
+        """Return whether a letter x between the names of two vectors, with blanks around it, is a product sign."""
+        token, after, before = self.token(), self.token(1), self.tokens[self.index - 1]
+        if token.kind != "name" or token.text != "x" or not token.spaced or not after.spaced:
+            return False
+        if "x" in self.vocabulary.alone or not is_cross_letter(before, after):
+            return False
+        return not self.other_reading("cross", token.start, before.start, after.end)
+
+
+def is_cross_letter(before: Token, after: Token) -> bool:
+    """Return whether a letter x between two pieces may be a product of vectors, by their names."""
+    pieces = [(token.kind == "name", re.split("[_0-9]", token.text)[0], token.text) for token in (before, after)]
+    usual = [name and word in USUAL_VECTORS for name, word, _ in pieces]
+    brackets = [text in ("(", ")", "[", "]") for _, _, text in pieces]
+    return any(usual) and all(u or b for u, b in zip(usual, brackets, strict=True))

@@ -1,0 +1,199 @@
+"""The grammar of claims: from tokens to trees by precedence, with tables for operators, functions and methods.
+
+SymPy's text has one meaning. A formula as people type it has products without a sign (``2x``, ``m g l``), functions
+without brackets (``sin 2x``), powers (``x^2``, ``x²``), primes and dots, and it may have several readings. The parser
+takes the usual one and records each such place as a :class:`Doubt`; with the place among ``flips`` it takes the other.
+"""
+
+import re
+
+from symrot.checker.claim.tree import Node, negated, number, product, sum_of
+from symrot.checker.typed.cursor import ADDING
+from symrot.checker.typed.pieces import PiecesPart
+from symrot.checker.typed.tokens import SIGNS, Token
+
+__all__ = ["Parser"]
+
+TIMES = ("*", "/", "·", "×")
+BROKEN_EXPONENTS = frozenset([*(("1", n) for n in "23456789"), *((n, "2") for n in "13579"), ("2", "3"), ("4", "3")])
+"""Numbers around a slash after ``^`` that may be a broken exponent, x^(3/2); r^2/5 is (r^2)/5."""
+
+
+class Parser(PiecesPart):
+    """The whole parser: chains of sides, sums, products, vectors and powers."""
+
+    def whole(self) -> Node:
+        node = self.expression()
+        if self.token().kind != "end":
+            raise self.fail("an operator or the end")
+        return node
+
+    def relation(self) -> tuple[list[str], list[Node]]:
+        """Read a chain of sides; return the signs between them, and the sides."""
+        if self.token().text == "Eq" and self.token(1).text == "(":
+            self.index += 2
+            sides = self.members(")")
+            if len(sides) != 2:
+                raise self.fail("two sides in Eq(..)")
+            signs = ["=="]
+        else:
+            sides, signs = [self.expression()], []
+            while (sign := self.peek()) in SIGNS:
+                signs.append("==" if sign == "=" else sign)
+                self.plain |= sign == "="
+                self.next()
+                sides.append(self.expression())
+        if self.peek() == "," and signs:
+            raise self.fail("an operator, the end, or the next claim on a line of its own")
+        if self.token().kind != "end":
+            raise self.fail("an operator or the end" if signs else "an operator or '=='")
+        if not signs:
+            raise self.fail("'==' between two sides")
+        return signs, sides
+
+    def expression(self) -> Node:
+        self.deeper()
+        start = self.start()
+        terms = [self.term()]
+        while self.peek() in ADDING:
+            negative = self.next().text == "-"
+            term = self.term()
+            terms.append(negated(term) if negative else term)
+        self.depth -= 1
+        return sum_of(terms, self.span(start)) if len(terms) > 1 else terms[0]
+
+    def term(self) -> Node:
+        start = before = self.start()
+        factors = [self.factor()]
+        while True:
+            mark = self.peek()
+            if mark == "×" or self.is_cross_letter():
+                self.crossed(factors)
+            elif mark == "·" and self.is_vector(factors[-1]):
+                self.dotted(factors)
+            elif mark in TIMES:
+                at = self.start()
+                self.plain |= mark == "·"
+                if self.next().text == "/":
+                    factors.append(self.divisor(factors[-1], before, at))
+                else:
+                    before = self.start()
+                    factors.append(self.factor())
+            elif self.starts_factor():
+                self.plain = True
+                before = self.start()
+                factors.append(self.factor())
+            else:
+                return product(factors, self.span(start)) if len(factors) > 1 else factors[0]
+
+    def divisor(self, above: Node, start: int, slash: int) -> Node:
+        """Read the formula after a slash; without brackets it may be one factor, or the product that follows.
+
+        Usually ``1/2 m`` and ``a/b c`` are (1/2)*m and (a/b)*c, but ``p^2/2m`` and ``g/ωr``, without blanks, divide by
+        the product.
+        """
+        first = self.token()
+        below = [self.factor()]
+        while above.kind in ("neg", "inv"):
+            above = above.args[0]
+        coefficient = above.kind == below[0].kind == "number"  # 1/2 m
+        while first.text != "(" and self.token().kind not in ("number", "fraction") and self.starts_factor():
+            token = self.token()
+            if coefficient and token.spaced:
+                break
+            usual = token.tight and token.text not in ("(", "[")
+            if coefficient:  # 1/2π is 1/(2π), but 4/3πr³ is (4/3)πr³
+                after = self.token(1)
+                alone = not (after.kind == "name" and after.tight)
+                usual = token.text == "pi" and alone and (above, first.text) in ((number(1), "2"), (number(1), "4"))
+            if self.other_reading("divisor", token.start, start, self.end_of_run()) == usual:
+                break
+            below.append(self.factor())
+        node = product(below, self.span(first.start)) if len(below) > 1 else below[0]
+        return Node("inv", None, (node,), self.span(slash))
+
+    def factor(self) -> Node:
+        negative, start = False, self.start()
+        while self.peek() in ADDING:
+            negative ^= self.next().text == "-"
+        made = self.power()
+        return Node("neg", None, (made,), self.span(start)) if negative else made
+
+    def crossed(self, factors: list[Node]) -> None:
+        """Read a product with a cross: of vectors if one side is a vector, else of numbers."""
+        self.plain = True
+        closed = self.tokens[self.index - 1].text == ")"
+        sign = self.next()
+        right, left = self.factor(), factors[-1]
+        if not self.is_vector(left) and not self.is_vector(right):
+            factors.append(right)
+            return
+        if left.kind == "call" and left.value == "cross" and not closed:
+            raise self.fail("brackets that say which of the products comes first", sign.start)
+        if right.kind == "name" and self.token().kind == "name" and not self.is_cross_letter():
+            raise self.fail("brackets around the right side of the product of vectors")
+        factors[-1] = Node("call", "cross", (left, right), self.span(left.span[0]))
+
+    def dotted(self, factors: list[Node]) -> None:
+        """Read a product with a dot after a vector."""
+        self.plain = True
+        self.next()
+        right = self.factor()
+        if self.is_vector(right):
+            factors[-1] = Node("call", "dot", (factors[-1], right), self.span(factors[-1].span[0]))
+        else:
+            factors.append(right)
+
+    def power(self) -> Node:
+        start = self.start()
+        base = self.postfix()
+        while self.token().kind == "power":
+            base = self.raised(base, self.next(), start)
+        if self.take("**"):
+            self.deeper()
+            exponent = self.factor()
+            self.depth -= 1
+            return Node("power", None, (base, exponent), self.span(start))
+        if self.take("^"):
+            self.plain = True
+            return self.caret(base, start)
+        return base
+
+    def raised(self, base: Node, token: Token, start: int) -> Node:
+        """Return a power with raised digits, a transpose or an inverse."""
+        self.plain = True
+        digits, transposed = token.text.removesuffix("T"), token.text.endswith("T")
+        if transposed and digits in ("", "-"):
+            base = Node("transpose", None, (base,), self.span(start))
+            digits = "-1" if digits else ""
+        if not digits:
+            return base
+        if not re.fullmatch(r"[+-]?\d+", digits, re.ASCII):
+            raise self.fail("a whole number as a raised exponent", token.start)
+        return Node("power", None, (base, number(int(digits))), self.span(start))
+
+    def caret(self, base: Node, start: int) -> Node:
+        """Read the exponent after ``^``: a factor, or T for the transpose."""
+        if self.token().text == "T" and self.token(1).text != "(":
+            self.next()
+            return Node("transpose", None, (base,), self.span(start))
+        if self.peek() == "-" and self.token(1).text == "T":
+            self.index += 2
+            inverse = Node("power", None, (base, number(-1)), self.span(start))
+            return Node("transpose", None, (inverse,), self.span(start))
+        self.deeper()
+        first = self.token()
+        exponent = self.factor()
+        slash, below = self.token(), self.token(1)
+        if slash.text == "/" and slash.tight and below.tight and (first.text, below.text) in BROKEN_EXPONENTS:
+            usual = exponent == number(1)  # x^1/2 is a root, since a power of 1 would not be written
+            if self.other_reading("exponent", start, start, below.end) != usual:
+                self.index += 2
+                exponent = product([exponent, Node("inv", None, (self.numeral(below),), self.span(slash.start))])
+        is_e = base.kind == "name" and base.value == "e" and "e" not in self.vocabulary.symbols
+        while is_e and self.token().kind == "name" and self.token().tight:  # e^-kt
+            if self.other_reading("exponent of e", self.start(), start, self.token().end):
+                break
+            exponent = product([exponent, self.power()])
+        self.depth -= 1
+        return Node("power", None, (base, exponent), self.span(start))

@@ -1,0 +1,192 @@
+"""Functions without brackets, ``sin 2x`` and ``√x``, and derivatives as quotients, ``dx/dt``."""
+
+import re
+
+from symrot.checker.claim.tree import Node, negated, number, product, walk
+from symrot.checker.typed.cursor import ADDING, FACTOR_MARKS, TIME, Cursor
+from symrot.checker.typed.defined_functions import DEFINED
+from symrot.checker.typed.tokens import Token
+from symrot.checker.typed.words import SINGLE_ARGUMENT
+
+__all__ = ["OpenFunctionsPart"]
+
+
+class OpenFunctionsPart(Cursor):
+    """The part of the parser for functions whose argument has no brackets, and for derivatives as quotients."""
+
+    def applied(self, function: str, token: Token) -> Node:
+        """Read a function without brackets: ``sin 2x``, ``sin^2 x``, ``tan^-1 x``."""
+        exponent = self.function_exponent(token)
+        inverse = exponent == number(-1) and function in ("sin", "cos", "tan")
+        if inverse and not self.other_reading("inverse", token.start, token.start, self.end_of_run()):
+            function, exponent = f"a{function}", None
+        if self.peek() == "(":
+            call = self.called(function, token)
+        else:
+            call, exponent = self.open_call(function, token, exponent)
+        if exponent is None:
+            return call
+        return Node("power", None, (call, exponent), self.span(token.start))
+
+    def function_exponent(self, token: Token) -> Node | None:
+        """Read the power between a function and its argument."""
+        if self.token().kind == "power":
+            raised = self.next()
+            self.plain = True
+            if not re.fullmatch(r"[+-]?\d+", raised.text, re.ASCII):
+                raise self.fail("a whole number as the power of a function", raised.start)
+            return number(int(raised.text))
+        if self.peek() not in ("^", "**"):
+            return None
+        self.plain = True
+        self.next()
+        bracket = self.take("(")
+        negative = self.take("-")
+        digits = self.next()
+        if digits.kind != "number":
+            raise self.fail(f"a number as the power of {token.text}", digits.start)
+        if bracket:
+            self.expect(")")
+        value = self.numeral(digits)
+        return Node("neg", None, (value,), value.span) if negative else value
+
+    def open_call(self, function: str, token: Token, exponent: Node | None) -> tuple[Node, Node | None]:
+        """Read the argument of a function without brackets; return the call, and the power of the whole of it."""
+        self.plain = True
+        first = self.token()
+        if first.kind not in ("number", "name", "fraction") and first.text not in ("√", "-", "[", "|"):
+            raise self.fail(f"brackets after the function {token.text}")
+        self.deeper()
+        negative = self.take("-")
+        factors = [self.argument_factor(token)]
+        power = self.power_of_call(token, factors)
+        while power is None and self.absorbs(token, factors):
+            factors.append(self.argument_factor(token))
+            power = self.power_of_call(token, factors)
+        argument = product(factors, self.span(first.start))
+        if power is None and self.peek() == "/" and self.slash_belongs(token, factors):
+            slash = self.next()
+            divisor = Node("inv", None, (self.factor(),), self.span(slash.start))
+            argument = product([argument, divisor], self.span(first.start))
+        self.depth -= 1
+        if negative:
+            argument = negated(argument)
+        defined = DEFINED.get(function)
+        call = defined(argument) if defined else Node("call", function, (argument,), self.span(token.start))
+        if power is not None:
+            exponent = power if exponent is None else product([exponent, power])
+        return call, exponent
+
+    def argument_factor(self, token: Token) -> Node:
+        if self.peek() in ADDING:
+            raise self.fail(f"brackets around the argument of {token.text}")
+        return self.power()
+
+    def power_of_call(self, token: Token, factors: list[Node]) -> Node | None:
+        """Return the power at the end of an argument if it belongs to the function, (sin x)^2; usually it does not."""
+        last = factors[-1]
+        if last.kind != "power" or last.args[0].kind not in ("name", "call"):
+            return None
+        if not self.other_reading("power of argument", last.span[0], token.start, last.span[1]):
+            return None
+        factors[-1] = last.args[0]
+        return last.args[1]
+
+    def absorbs(self, function: Token, factors: list[Node]) -> bool:
+        """Return whether the next factor belongs to the argument of a function without brackets."""
+        token = self.token()
+        if token.text in ("*", "·") and token.kind == "mark":
+            if self.other_reading("product after argument", token.start, function.start, self.token(1).end):
+                self.next()
+                return True
+            return False
+        if token.kind != "name" and token.text not in FACTOR_MARKS:
+            return False
+        if self.vocabulary.function(token.text) is not None or token.text in SINGLE_ARGUMENT or self.is_cross_letter():
+            return False  # sin x cos y
+        if token.tight and token.kind == "name":
+            return True  # sin ωt
+        only_numbers = not any(node.kind in ("name", "call") for factor in factors for _, node in walk(factor))
+        if self.token(1).kind in ("prime", "dots") and not only_numbers:
+            return False  # sin θ φ'
+        usual = only_numbers or (token.text == "t" and TIME not in factors)
+        return self.other_reading("argument", token.start, function.start, self.end_of_run()) != usual
+
+    def slash_belongs(self, function: Token, factors: list[Node]) -> bool:
+        """Return whether a slash after the argument of a function without brackets belongs to the argument."""
+        slash, below = self.token(), self.token(1)
+        if below.kind == "name" and (self.vocabulary.function(below.text) or below.text in SINGLE_ARGUMENT):
+            return False
+        usual = (
+            below.kind == "number"
+            and slash.tight
+            and below.tight
+            and len(factors) == 1
+            and factors[0].kind in ("name", "call")
+        )  # cos θ/2
+        return self.other_reading("slash after argument", slash.start, function.start, below.end) != usual
+
+    def root(self, token: Token) -> Node:
+        """Read the formula under a root sign without a bar over it."""
+        self.plain = True
+        self.deeper()
+        first = self.token()
+        bracketed = first.text == "("
+        inside = [self.power()]
+        while not bracketed and self.token().tight and (self.token().kind == "name" or self.token().text == "("):
+            usual = inside[0].kind != "number"
+            if self.other_reading("root", self.start(), token.start, self.end_of_run()) == usual:
+                break
+            inside.append(self.power())
+        slash, below = self.token(), self.token(1)
+        open_end = not bracketed and slash.text == "/" and below.kind in ("name", "number") and first.kind == "name"
+        if open_end and self.other_reading("slash after root", token.start, token.start, below.end):
+            self.next()
+            inside.append(Node("inv", None, (self.power(),), self.span(slash.start)))
+        self.depth -= 1
+        return Node("call", "sqrt", (product(inside, self.span(first.start)),), self.span(token.start))
+
+    def leibniz(self, token: Token) -> Node | None:
+        """Read ``dx/dt``, ``d²x/dt²`` or ``d/dt x`` as a derivative; None for any other text."""
+        texts = [self.token(n).text for n in range(8)]
+        word = token.text
+        if word.startswith("d") and texts[:2] == ["/", "dt"] and not self.continues(1):
+            if word == "d":
+                return self.derivative_of_next(token)
+            return self.quotient_rate(token, word[1:], 1, 2)
+        if word == "d" and self.token().kind == "name" and self.token().tight and texts[1:3] == ["/", "dt"]:
+            return self.quotient_rate(token, texts[0], 1, 3)
+        if word == "d" and texts[0] == "^" and texts[1].isdigit() and texts[3:7] == ["/", "dt", "^", texts[1]]:
+            return self.quotient_rate(token, texts[2], int(texts[1]), 7)
+        if word == "d" and self.token().kind == "power" and texts[2:5] == ["/", "dt", texts[0]] and texts[0].isdigit():
+            return self.quotient_rate(token, texts[1], int(texts[0]), 5)
+        return None
+
+    def continues(self, ahead: int) -> bool:
+        """Return whether a power or a bracket follows a token."""
+        after = self.token(ahead + 1)
+        return after.text in ("^", "**") or after.kind == "power"
+
+    def quotient_rate(self, token: Token, name: str, order: int, length: int) -> Node | None:
+        if name in ("t", "pi") or name in self.vocabulary.symbols or token.text in self.vocabulary.symbols:
+            return None
+        if self.as_sympy and order == 1 and token.text != "d":
+            return None  # a quotient of two names
+        self.plain = True
+        self.index += length
+        self.timed.add(name)
+        return Node("call", "diff", (Node("call", name, (TIME,)), *[TIME] * order), self.span(token.start))
+
+    def derivative_of_next(self, token: Token) -> Node:
+        self.plain = True
+        self.index += 2
+        self.deeper()
+        operand = self.factor()
+        self.depth -= 1
+        for _, node in walk(operand):
+            varies = node.kind == "name" and node.value not in ("t", "pi", *self.vocabulary.symbols)
+            if varies or (node.kind == "call" and node.args == (TIME,)):
+                self.differentiated.add(str(node.value))
+        if self.peek() == "" and self.starts_factor():
+            raise self.fail("brackets around the formula after d/dt")
+        return Node("call", "diff", (operand, TIME), self.span(token.start))

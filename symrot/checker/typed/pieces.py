@@ -1,0 +1,233 @@
+"""Pieces of formulas: numbers, names, calls, brackets and matrices, with the indices, methods and primes after them."""
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any, ClassVar
+
+from symrot.checker.claim.functions import BUILT_IN
+from symrot.checker.claim.tree import Node, number, product
+from symrot.checker.typed.cursor import DEEPEST_NESTING, TIME
+from symrot.checker.typed.open_functions import OpenFunctionsPart
+from symrot.checker.typed.tokens import GREEK_WORDS, Token
+from symrot.checker.typed.words import SINGLE_ARGUMENT
+
+__all__ = ["PiecesPart"]
+
+METHODS = {
+    "T": ("transpose", 0), "inv": ("inverse", 0), "det": ("det", 0), "trace": ("trace", 0),
+    "transpose": ("transpose", 0), "adjugate": ("adjugate", 0),
+    "cross": ("cross", 1), "dot": ("dot", 1), "diff": ("diff", 8), "norm": ("norm", 0),
+}  # fmt: skip
+"""Method of SymPy's matrices -> the function, and the most arguments of the method; T is an attribute."""
+
+CONSTRUCTORS = {"hstack": "hstack", "eye": "eye", "diag": "diag"}
+"""Name after ``Matrix.`` -> the function."""
+
+
+MOST_DOTS = 4
+"""The highest order of a derivative that is written with primes or dots."""
+
+
+class PiecesPart(OpenFunctionsPart):
+    """The part of the parser for pieces without an operator."""
+
+    def postfix(self) -> Node:
+        start = self.start()
+        node = self.atom()
+        first = self.index
+        while True:
+            token = self.token()
+            if self.index - first > 5 * DEEPEST_NESTING:
+                raise self.fail("fewer methods and indices after each other")
+            if token.text == "." and token.kind == "mark":
+                self.next()
+                node = self.method(node, start)
+            elif token.text == "[" and token.tight and node.kind != "number" and self.is_index():
+                self.next()
+                node = Node("index", None, (node, *self.members("]")), self.span(start))
+            elif token.kind in ("prime", "dots"):
+                node = self.rate(node, self.next(), start)
+            elif token.text == "°":
+                if self.tokens[self.index - 1].text == "°":
+                    raise self.fail("one sign of degrees")
+                self.plain = True
+                self.next()
+                degrees = [node, Node("name", "pi"), Node("inv", None, (number(180),))]
+                node = product(degrees, self.span(start))
+            else:
+                return node
+
+    def is_index(self) -> bool:
+        """Return whether square brackets are an index, ``M[0, 1]``, and not brackets of a formula, ``m[a^2 + b^2]``."""
+        depth, inside = 0, self.tokens[self.index + 1 :]
+        names = False
+        for token in inside:
+            depth += (token.text in ("(", "[")) - (token.text in (")", "]"))
+            if depth < 0:
+                return not names
+            if token.text == "," and depth == 0:
+                return True
+            names |= token.kind != "number" and token.text not in ("+", "-", "*")
+        return True
+
+    def method(self, node: Node, start: int) -> Node:
+        """Read a method of a matrix after a dot."""
+        token = self.token()
+        if token.kind != "name" or token.text not in METHODS:
+            names = ", ".join(name if name == "T" else f"{name}()" for name in METHODS)
+            raise self.fail(f"T, the transpose, or another of {names} after '.'")
+        self.next()
+        name, most = METHODS[token.text]
+        if token.text == "T":
+            return Node("transpose", None, (node,), self.span(start))
+        self.expect("(")
+        arguments = [] if self.take(")") else self.members(")")
+        if len(arguments) > most or (most and not arguments):
+            raise self.fail(f"{'one argument' if most else 'no arguments'} of .{token.text}", token.start)
+        if name == "norm":
+            squares = Node("call", "dot", (node, node), self.span(start))
+            return Node("call", "sqrt", (squares,), self.span(start))
+        if name == "transpose":
+            return Node("transpose", None, (node,), self.span(start))
+        return Node("call", name, (node, *arguments), self.span(start))
+
+    def rate(self, node: Node, mark: Token, start: int) -> Node:
+        """Return the derivative with respect to time that primes or dots mean; x' may also be a name of its own."""
+        self.plain = True
+        order = int(mark.text) if mark.kind == "dots" else len(mark.text)
+        if order > MOST_DOTS:
+            raise self.fail(f"a rate of order {MOST_DOTS} at most", mark.start)
+        if node.kind == "name":
+            name = str(node.value)
+            doubtful = mark.kind == "prime" and name not in self.vocabulary.functions
+            if doubtful and self.other_reading("prime", start, start, mark.end):
+                return Node("name", name + "_prime" * order, (), self.span(start))
+            if name in ("t", "pi"):
+                raise self.fail(f"a name that may depend on t instead of {name}", start)
+            if name not in self.vocabulary.functions and name in self.vocabulary.symbols:
+                raise self.fail(f"{name} to be declared as a function of t", start)
+            if [self.token(n).text for n in range(3)] == ["(", "t", ")"]:
+                self.index += 3
+            self.timed.add(name)
+            node = Node("call", name, (TIME,), node.span)
+        elif node.kind == "call" and node.value == "diff" and node.args[-1] == TIME:
+            return Node("call", "diff", (*node.args, *[TIME] * order), self.span(start))
+        return Node("call", "diff", (node, *[TIME] * order), self.span(start))
+
+    def atom(self) -> Node:
+        token = self.next()
+        read = self.readers.get(token.text if token.kind == "mark" else token.kind)
+        if read is None:
+            raise self.fail("a number, a name or a bracket", token.start)
+        return read(self, token)
+
+    def fraction(self, token: Token) -> Node:
+        self.plain = True
+        value = Fraction(token.text)
+        below = Node("inv", None, (number(value.denominator),), self.span(token.start))
+        return product([number(value.numerator), below], self.span(token.start))
+
+    def name(self, token: Token) -> Node:
+        word = token.text
+        if (leibniz := self.leibniz(token)) is not None:
+            return leibniz
+        if word == "Matrix" and self.peek() == "." and self.token(1).text in CONSTRUCTORS:
+            self.index += 2
+            return self.called(CONSTRUCTORS[self.tokens[self.index - 1].text], token)
+        function = self.vocabulary.function(word)
+        if self.as_sympy and self.peek() != "(" and word not in BUILT_IN and word not in self.vocabulary.functions:
+            function = None  # a name in SymPy's text
+        elif function is None and word in SINGLE_ARGUMENT and word not in self.vocabulary.symbols:
+            function = word  # a function that is not built in, which the interpreter refuses
+        if word == "Rational" and self.peek() == "(":
+            return self.rational(token)
+        if function is None:
+            return self.symbol(token)
+        if self.peek() == "(" or function in self.vocabulary.functions:
+            return (
+                self.called(function, token) if self.peek() == "(" else Node("name", word, (), self.span(token.start))
+            )
+        if word not in SINGLE_ARGUMENT:
+            return Node("name", word, (), self.span(token.start))
+        return self.applied(function, token)
+
+    def rational(self, token: Token) -> Node:
+        call = self.called("Rational", token)
+        if len(call.args) != 2:
+            raise self.fail("two numbers in Rational(..)", token.start)
+        above, below = call.args
+        return product([above, Node("inv", None, (below,), below.span)], call.span)
+
+    def symbol(self, token: Token) -> Node:
+        """Read a name that is no built-in function: a function of time, or a symbol, perhaps before a bracket."""
+        word = token.text
+        inside = [self.token(n).text for n in range(1, 3)]
+        if self.peek() == "(" and (inside == ["t", ")"] or not self.is_factor(word)):
+            return self.called(word, token)
+        if self.peek() == "(":
+            self.plain = True
+            if self.token().tight and word not in self.vocabulary.alone and word not in self.vocabulary.vectors:
+                self.note(f"{word}(..) is read as the product of {word} and the bracket")
+        return Node("name", word, (), self.span(token.start))
+
+    def is_factor(self, word: str) -> bool:
+        """Return whether a name before a bracket is a symbol: used alone elsewhere, or a letter before a formula."""
+        if word in self.vocabulary.symbols or word in self.vocabulary.alone:
+            return True
+        depth = pieces = 0
+        for token in self.tokens[self.index :]:
+            depth += (token.text in ("(", "[")) - (token.text in (")", "]"))
+            if depth == 0:
+                break
+            if token.text == "," and depth == 1:
+                return False
+            pieces += token.text not in ("(", ")", "[", "]")
+        short = word[:1].isalpha() and (len(word.rstrip("0123456789")) == 1 or "_" in word or word in GREEK_WORDS)
+        return pieces > 1 and short and word != "f"
+
+    def bracket(self, token: Token) -> Node:
+        bars, self.bars = self.bars, 0
+        inner = self.members(")")
+        self.bars = bars
+        if len(inner) == 1:
+            return inner[0]
+        return Node("list", ("(", ")"), tuple(inner), self.span(token.start))
+
+    def square_bracket(self, token: Token) -> Node:
+        bars, self.bars = self.bars, 0
+        rows = [self.row()]
+        while self.take(";"):
+            self.plain = True
+            rows.append(self.row())
+        self.expect("]")
+        self.bars = bars
+        span = self.span(token.start)
+        if all(len(row) == 1 for row in rows) and all(self.has_blanks(row[0]) for row in rows):
+            raise self.fail("commas between the entries of a matrix, or * in a product,", token.start)
+        if len(rows) == 1:
+            return Node("list", ("[", "]"), tuple(rows[0]), span)
+        return Node("list", ("[", "]"), tuple(Node("list", ("[", "]"), tuple(row), span) for row in rows), span)
+
+    def has_blanks(self, entry: Node) -> bool:
+        """Return whether an entry is a product with nothing but blanks between two names: perhaps two entries."""
+        inner = entry.args[0] if entry.kind == "neg" else entry
+        pairs = pairwise(inner.args if inner.kind == "product" else ())
+        gaps = [self.source[a.span[1] : b.span[0]] for a, b in pairs if a.kind in ("name", "call", "number")]
+        return bool(gaps) and all(gap.isspace() for gap in gaps)
+
+    def absolute(self, token: Token) -> Node:
+        self.plain = True
+        self.bars += 1
+        inner = self.expression()
+        self.expect("|")
+        self.bars -= 1
+        if self.is_vector(inner):
+            return Node("call", "sqrt", (Node("call", "dot", (inner, inner), self.span(token.start)),))
+        return Node("call", "abs", (inner,), self.span(token.start))
+
+    readers: ClassVar[Mapping[str, Callable[[Any, Token], Node]]] = {
+        "number": OpenFunctionsPart.numeral, "name": name, "fraction": fraction, "(": bracket, "[": square_bracket,
+        "|": absolute, "√": OpenFunctionsPart.root,
+    }  # fmt: skip
+    """Kind of a token, or the mark -> the function that reads a piece that starts with it."""

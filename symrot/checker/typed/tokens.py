@@ -1,0 +1,207 @@
+"""The tokens of claims as people type them: ASCII and Unicode, each with its place in the text.
+
+Greek letters become their names, dots over letters and primes become derivatives, raised digits become powers. A
+character that means nothing in a formula is refused with its place.
+"""
+
+import re
+import unicodedata
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+from typing import NamedTuple
+
+from symrot.errors import complaint
+from symrot.latex.tokens import GREEK
+
+__all__ = ["GREEK_WORDS", "SIGNS", "Token", "tokens_of", "without_dots"]
+
+SIGNS = ("==", "=", "!=", ">=", "<=", ">", "<")
+"""The signs of relations."""
+
+
+class Token(NamedTuple):
+    """A token of a claim.
+
+    Attributes
+    ----------
+    kind : str
+        ``number``, ``name``, ``mark``, ``power`` (raised digits), ``fraction`` (such as ½), ``dots`` (over the name
+        before), ``prime`` or ``end``.
+    text : str
+        The text in ASCII: ``omega_1`` for ω₁.
+    start, end : int
+        Its place in the source.
+    spaced, breaks : bool
+        Whether blanks, or the end of a line, are before it.
+    """
+
+    kind: str
+    text: str
+    start: int
+    end: int
+    spaced: bool = False
+    breaks: bool = False
+
+    @property
+    def tight(self) -> bool:
+        """Whether no blank is before it."""
+        return not self.spaced
+
+
+LETTERS: Mapping[str, str] = {
+    character: name.removeprefix("var") for name, character in GREEK.items() if name not in ("Sigma", "Pi")
+} | {"π": "pi"}
+"""Greek letter -> its name. Capital sigma and pi are left out, since they mean sums and products."""
+
+GREEK_WORDS = frozenset(LETTERS.values())
+_GREEK = "".join(LETTERS)
+_DOTS = {"\u0307": 1, "\u0308": 2, "\u20db": 3}
+_RAISED = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻ᵀ", "0123456789+-T", strict=True))
+_LOWERED = dict(zip("₀₁₂₃₄₅₆₇₈₉ₓₐₑₒₕₖₗₘₙₚₛₜᵢⱼᵣᵤᵥᵧ", "0123456789xaeohklmnpstijruvy", strict=True))
+_ALIKE = {
+    "−": "-", "–": "-", "∗": "*", "∙": "·", "⋅": "·", "•": "·", "÷": "/", "∕": "/", "⁄": "/", "≡": "==", "≠": "!=",
+    "≥": ">=", "≤": "<=", "⩾": ">=", "⩽": "<=",
+    "′": "'", "’": "'", "″": "''", "‴": "'''", "µ": "μ",
+    "\u2126": "Ω", "º": "°", "⨯": "×",
+}  # fmt: skip
+"""Character -> the characters that mean the same."""
+
+_FRACTIONS = frozenset("½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞⅒")
+
+_HINTS = {
+    "\\": "LaTeX goes into latex = ..", "∫": "write integrate(f, (x, from, to))",
+    "∬": "write integrate(f, (x, from, to))", "∭": "write integrate(f, (x, from, to))", "∂": "write diff(f, x)",
+    "∑": "write the terms of a sum with +", "Σ": "write the terms of a sum with +", "∏": "write the factors with *",
+    "Π": "write the factors of a product with *",
+    "{": "write ( ) or [ ] for brackets", "}": "write ( ) or [ ] for brackets", "∞": "a claim is about finite numbers",
+    "\u0302": "write n instead of a letter with a hat", "\u20d7": "write cross([ax, ay, az], [bx, by, bz]) for vectors",
+    "%": "write /100", "∇": "write diff(f, x)", "±": "write two claims, with + and with -", "∓": "write two claims",
+    "&": "write two claims, each on a line", "≈": "write = with the digits that you know",
+    "→": "write =", "⇒": "write two claims, each on a line",
+}  # fmt: skip
+"""Character that is refused -> what to write instead."""
+
+_NUMBER = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*", re.ASCII)
+_MARK = re.compile(r"\*\*|==|!=|>=|<=|:=|[-+*/(),\[\].=<>^;|√×·°]")
+_SUBSCRIPT = re.compile(rf"_(?:[A-Za-z0-9]+|[{_GREEK}])|[{''.join(_LOWERED)}]+")
+_COMPONENT = re.compile(r"[0-9]+|(?:xx|yy|zz|xy|yz|zx|xz|yx|zy|[xyz])(?![A-Za-z0-9])", re.ASCII)
+_DIGITS = re.compile(r"[0-9]+", re.ASCII)
+
+
+def tokens_of(source: str, where: str = "") -> Iterator[Token]:
+    """Yield the tokens of a text; the last one is of kind ``end``.
+
+    Raises
+    ------
+    InputError
+        For a character that means nothing in a formula, with its place and with a character to write instead.
+    """
+    text, places = _written_out(source.rstrip())
+    places.append(len(source.rstrip()))
+    at, last = 0, len(text)
+    blank = line = False
+    while at < last:
+        if text[at].isspace():
+            blank, line = True, line or text[at] == "\n"
+            at += 1
+            continue
+        begin = at
+        for kind, word, stop in _pieces(text, at):
+            yield Token(kind, word, places[at], places[stop], blank, line)
+            blank = line = False
+            at = stop
+        if at == begin:
+            hint = _HINTS.get(text[at])
+            expected = "a number, a name, an operator or a bracket" + (f" ({hint})" if hint else "")
+            raise complaint(source, where, places[at], expected)
+    yield Token("end", "", places[last], places[last], blank, line)
+
+
+def without_dots(name: str) -> str:
+    """Return a name as it is typed, without the dots over it."""
+    return "".join(part for part in unicodedata.normalize("NFD", name) if part not in _DOTS)
+
+
+def _written_out(source: str) -> tuple[str, list[int]]:
+    """Return the text with characters that mean the same as others replaced, and the place of each in the source."""
+    written: list[str] = []
+    places: list[int] = []
+    for place, character in enumerate(source):
+        alike = _alike(character)
+        written.append(alike)
+        places.extend([place] * len(alike))
+    return "".join(written), places
+
+
+def _alike(character: str) -> str:
+    if character.isascii():
+        return character
+    if "\U0001d400" <= character <= "\U0001d7ff" or character in "ℎ":  # slanted and bold letters of a typeset text
+        character = unicodedata.normalize("NFKC", character)
+    parts = unicodedata.normalize("NFD", character)
+    if len(parts) > 1 and parts[0].isascii() and all(part in _DOTS for part in parts[1:]):
+        return parts  # a letter with dots over it
+    return _ALIKE.get(character, character)
+
+
+def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
+    """Yield kind, text and end of the tokens that start together at a place: one, or a name and the dots over it."""
+    character = text[at]
+    if number := _NUMBER.match(text, at):
+        yield "number", number[0], number.end()
+    elif character in LETTERS:
+        yield from _letter(text, at, LETTERS[character])
+    elif name := _NAME.match(text, at):
+        yield from _name(text, at, name)
+    elif mark := _MARK.match(text, at):
+        yield "mark", {":=": "=", "·": "·"}.get(mark[0], mark[0]), mark.end()
+    elif character == "'":
+        stop = at + 1
+        while text[stop : stop + 1] == "'":
+            stop += 1
+        yield "prime", text[at:stop], stop
+    elif character in _RAISED:
+        stop = at
+        while text[stop : stop + 1] and text[stop] in _RAISED:
+            stop += 1
+        yield "power", "".join(_RAISED[c] for c in text[at:stop]), stop
+    elif character in _FRACTIONS:
+        yield "fraction", str(Fraction(unicodedata.numeric(character)).limit_denominator(10)), at + 1
+
+
+def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, int]]:
+    """Yield a name of Latin letters; dots are over its last letter only, so that ``mẍ`` has two names."""
+    word, stop = name[0], name.end()
+    if word == "d" and text[stop : stop + 1] and text[stop] in LETTERS:  # a differential, or the rate of an angle
+        yield from _letter(text, stop, f"d{LETTERS[text[stop]]}")
+        return
+    if text[stop : stop + 1] and text[stop] in _DOTS and word[-1].isalpha():
+        if len(word) > 1:
+            yield "name", word[:-1], stop - 1
+        yield from _letter(text, stop - 1, word[-1])
+        return
+    if word.endswith("_") and text[stop : stop + 1] and text[stop] in LETTERS:
+        word, stop = word + LETTERS[text[stop]], stop + 1
+    lowered = re.compile(f"[{''.join(_LOWERED)}]+").match(text, stop)
+    if lowered is not None:
+        word, stop = f"{word}_{''.join(_LOWERED[c] for c in lowered[0])}", lowered.end()
+    yield "name", word, stop
+
+
+def _letter(text: str, at: int, word: str) -> Iterator[tuple[str, str, int]]:
+    """Yield a single letter with its subscript, then the dots over it."""
+    stop = at + 1
+    dots = 0
+    while text[stop : stop + 1] and text[stop] in _DOTS:
+        dots, stop = dots + _DOTS[text[stop]], stop + 1
+    if subscript := _SUBSCRIPT.match(text, stop):
+        letters = (_LOWERED.get(c, LETTERS.get(c, c)) for c in subscript[0].removeprefix("_"))
+        word, stop = f"{word}_{''.join(letters)}", subscript.end()
+    elif word != "pi" and (component := (_COMPONENT if text[at] in LETTERS else _DIGITS).match(text, stop)):
+        word, stop = f"{word}_{component[0]}", component.end()
+    elif word == "Delta" and text[stop : stop + 1].isascii() and text[stop : stop + 1].isalpha():
+        word, stop = f"{word}_{text[stop]}", stop + 1
+    yield "name", word, stop
+    if dots:
+        yield "dots", str(dots), stop

@@ -1,0 +1,149 @@
+"""Words that may be several names: ``mgh`` is m*g*h and ``sinx`` is sin(x), unless the whole word is a name.
+
+A word is split only into names that the text uses by themselves, or that nearly every book on mechanics uses.
+"""
+
+import re
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from symrot.checker.typed.tokens import GREEK_WORDS, Token
+
+__all__ = [
+    "ALIASES",
+    "ENGLISH",
+    "SINGLE_ARGUMENT",
+    "UNITS",
+    "Shorthand",
+    "pieces_of_word",
+    "shorthands",
+    "split_tokens",
+]
+
+SINGLE_ARGUMENT = (
+    "sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "arcsin", "arccos", "arctan", "sinh", "cosh",
+    "tanh", "coth", "sech", "csch", "asinh", "acosh", "atanh", "arcsinh", "arccosh", "arctanh", "acoth", "asech",
+    "acsch", "tg", "ctg", "cosec",
+    "exp", "log", "ln", "sqrt", "abs", "det", "trace", "tr", "inverse", "transpose",
+)  # fmt: skip
+"""The functions that may be written without brackets, ``sin x``."""
+
+ALIASES = {
+    "ln": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "Abs": "abs", "Derivative": "diff",
+    "Integral": "integrate", "ImmutableMatrix": "Matrix", "ImmutableDenseMatrix": "Matrix",
+    "MutableDenseMatrix": "Matrix", "Determinant": "det", "Trace": "trace", "Transpose": "transpose",
+    "Inverse": "inverse", "arctan2": "atan2",
+    **{f"arc{name}": f"a{name}" for name in ("sinh", "cosh", "tanh", "coth", "sech", "csch")},
+    "tr": "trace", "tg": "tan", "ctg": "cot", "cosec": "csc",
+}  # fmt: skip
+"""Other names of built-in functions -> the name here. Names that SymPy's own text uses are among them."""
+
+_JOINED = re.compile(
+    rf"(a(?:rc)?(?:sin|cos|tan)|(?:sin|cos|tan|cot|sec|csc))(\d*)([A-Za-z]|{'|'.join(sorted(GREEK_WORDS))}|)(_?[0-9xyz])?",
+    re.ASCII,
+)
+_LETTER = re.compile(r"[A-Za-z][0-9]*", re.ASCII)
+
+USUAL_LETTERS = frozenset("mMghlLrRvatFIkwsuc")
+"""Letters that nearly every book on mechanics uses for a quantity."""
+
+UNITS = ("rpm", "deg", "rad", "kg", "mm", "cm", "km", "Hz", "ms", "rev", "min")
+
+ENGLISH = frozenset(["and", "or", "if", "for", "where", "then", "with", "when", "mod", "is", "are", "so", "but", "not"])
+"""Words between formulas, which are no factors."""
+
+SCALARS = frozenset("bckmn")
+VECTORS = frozenset("IJvwFLMHTRNPeuprfgst")
+"""Letters before x, y or z: of a product ``kx``, and of a component ``Fx``."""
+
+WHOLE_WORDS = frozenset([*GREEK_WORDS, *SINGLE_ARGUMENT, *ALIASES, "pi", "diff", "KE", "PE", "TE", "dt", "id", *UNITS])
+
+MOST_LETTERS = 3
+"""The most letters of a product that the text does not use by themselves."""
+
+
+def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], bool]:
+    """Return the names and numbers of which a word may be made, in order, and whether it usually is; () for a name.
+
+    Parameters
+    ----------
+    word : str
+        A name of Latin letters, digits and underscores.
+    alone : collection of str
+        The names that the text uses by themselves.
+
+    Examples
+    --------
+    >>> pieces_of_word("mgh", ()), pieces_of_word("ab", ("a", "b")), pieces_of_word("cos2theta", ())
+    ((('m', 'g', 'h'), True), (('a', 'b'), True), (('cos', '2', 'theta'), True))
+    >>> pieces_of_word("ab", ()), pieces_of_word("phi", ()), pieces_of_word("KE", ())
+    ((('a', 'b'), False), ((), False), ((), False))
+    """
+    if word in WHOLE_WORDS or len(word) < 2 or (word.startswith("d") and word[1:] in GREEK_WORDS):
+        return (), False
+    if joined := _JOINED.fullmatch(word):
+        function, number, name, index = joined.groups()
+        if (number or name) and not (index and not name):
+            return tuple(piece for piece in (function, number, name + (index or "")) if piece), True
+    letters = tuple(_LETTER.findall(word))
+    if "".join(letters) != word or len(letters) < 2:
+        return (), False
+    if all(letter in alone for letter in letters):
+        return letters, True
+    if len(word) == 2 and word[1] in "xyz":
+        return ((), False) if word[0] in VECTORS else (letters, word[0] in SCALARS or word[1] in alone)
+    if word[-1] in "xyz" or len(letters) > MOST_LETTERS or len(set(letters)) < len(letters):
+        return (), False
+    usual = all(
+        letter in alone or letter in USUAL_LETTERS or (place and letter == "d") for place, letter in enumerate(letters)
+    )
+    return letters, usual
+
+
+class Shorthand(NamedTuple):
+    """A short form of a cosine or a sine, ``cθ`` or ``c_theta``: its first token, the number of tokens, its formula."""
+
+    place: int
+    length: int
+    function: str
+    angle: str
+
+    def tokens(self, first: Token, last: Token) -> tuple[Token, ...]:
+        """Return the tokens of the formula in full, in the place of the short form."""
+        mark = Token("mark", "(", first.start, first.start)
+        start = last.start if self.length == 2 else first.start + 2
+        return (
+            first._replace(kind="name", text=self.function, end=first.start), mark,
+            Token("name", self.angle, start, last.end), Token("mark", ")", last.end, last.end),
+        )  # fmt: skip
+
+
+def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
+    """Return the pieces of a text that may be short for the cosine or sine of an angle."""
+    short = []
+    for place, token in enumerate(tokens[:-1]):
+        letter, _, angle = token.text.partition("_")
+        function = {"c": "cos", "s": "sin", "C": "cos", "S": "sin"}.get(letter)
+        if token.kind != "name" or function is None:
+            continue
+        after = tokens[place + 1]
+        if angle in GREEK_WORDS and angle != "pi" and after.text != "(":
+            short.append(Shorthand(place, 1, function, angle))
+        elif (
+            not angle and after.kind == "name" and after.tight and after.text.partition("_")[0] in GREEK_WORDS - {"pi"}
+        ):
+            short.append(Shorthand(place, 2, function, after.text))
+    return short
+
+
+def split_tokens(tokens: Sequence[Token], words: Mapping[str, Sequence[str]]) -> Iterator[Token]:
+    """Yield tokens, with those of words split into their pieces."""
+    for token in tokens:
+        pieces = words.get(token.text, ()) if token.kind == "name" else ()
+        if not pieces or token.end - token.start != len(token.text):
+            yield token
+            continue
+        at, spaced, breaks = token.start, token.spaced, token.breaks
+        for piece in pieces:
+            yield Token("number" if piece.isdigit() else "name", piece, at, at + len(piece), spaced, breaks)
+            at, spaced, breaks = at + len(piece), False, False

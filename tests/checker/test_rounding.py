@@ -1,0 +1,36 @@
+"""Decimal numbers in claims: right if the value rounds to them, wrong with the digits to which it does."""
+
+import pytest
+
+import symrot
+
+
+@pytest.mark.parametrize("claim", [
+    "1500*2*pi/60 == 157.08", "1500*2π/60 = 157.08", "157.08 == 50*pi", "√2 = 1.414", "1/3 = 0.33", "-pi == -3.14",
+    "2 sin 45° = 1.41421", "2/3 == 0.667", "exp(1) == 2.718",
+])  # fmt: skip
+def test_a_rounded_number_is_true_to_its_digits(claim):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "true"
+    assert verdict.notes[-1].startswith("to the digits given: the value rounds to ")
+    assert verdict.counterexample is None and not verdict.repairs
+
+
+@pytest.mark.parametrize(("claim", "right"), [
+    ("1500*2*pi/60 == 157.09", "1500*2*pi/60 == 157.08"), ("√2 = 1.415", "sqrt(2) = 1.414"), ("2/3 == 0.66", "2/3 == 0.67"),
+    ("3.15 == pi", "3.14 == pi"), ("-pi == -3.141", "-pi == -3.142"),
+])  # fmt: skip
+def test_a_wrong_digit_is_false_with_the_right_one(claim, right):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "false"
+    assert verdict.diagnosis.code == "digits"
+    assert [repair.text for repair in verdict.repairs] == [right]
+    assert symrot.check(right).verdict == "true"
+
+
+def test_a_number_without_a_point_and_a_formula_with_symbols_are_compared_exactly():
+    assert symrot.check("pi == 3").verdict == "false"
+    assert symrot.check("x/3 == 0.333*x").verdict == "false"
+    assert symrot.check("0.5*x == x/2").notes == ()
+    assert symrot.check("0.1 + 0.2 == 0.3").notes == ()
+    assert symrot.check("1.5 == 1.49").diagnosis.code != "digits"
