@@ -242,14 +242,12 @@ class _Text:
         return tokens
 
     def with_indices(self, tokens: list[Token], flips: Collection[tuple[str, int]], doubts: list[Doubt]) -> list[Token]:
-        """Return tokens with one name for ``ωp`` where it is a whole side of an equation; elsewhere it is a product."""
+        """Return tokens with one name for ``ωp`` where it is the whole left side of an equation; elsewhere it is a product."""
         padded = [None, *tokens]
         for place in range(len(tokens) - 3, -1, -1):
             before, first, second, after = padded[place], *tokens[place : place + 3]
             greek = first.kind == second.kind == "name" and first.text in GREEK_WORDS and first.end == first.start + 1
-            whole = (before is None or before.text in SIGNS or first.breaks) and (
-                after.text in SIGNS or after.kind == "end"
-            )
+            whole = (before is None or first.breaks) and after.text in SIGNS
             if not greek or not whole or not second.tight or len(second.text) > 1 or first.text == "pi":
                 continue
             doubt = Doubt(("index", first.start), self.source[first.start : second.end])

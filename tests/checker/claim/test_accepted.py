@@ -46,12 +46,16 @@ NAMED = (
     ("L_x = I_xx ω_x + I_xy ω_y + I_xz ω_z", "first component of the angular momentum I omega"),
     ("q̇₀ = −½(q₁ω₁ + q₂ω₂ + q₃ω₃)", "scalar component of the quaternion rates from omega in the body frame"),
     ("q0' = -(q1 w1 + q2 w2 + q3 w3)/2", "scalar component of the quaternion rates from omega in the body frame"),
+    ("E = ½ m v² + ½ I ω²", "kinetic energy of a body that moves and rotates"),
+    ("T = 1/2 I w^2", "kinetic energy of rotation about one axis"),
+    ("I_O = I_c + md^2", "moment of inertia about a parallel axis (parallel-axis theorem)"),
+    ("P = M ω", "power of a torque about one axis"),
     ("φ̇ = (ω₁ sin ψ + ω₂ cos ψ)/sin θ", "first component of the angle rates of ZXZ from omega in the body frame"),
 )  # fmt: skip
 
 DEFINITIONS = (
-    "E = ½ m v² + ½ I ω²", "T = 1/2 I w^2", "F = ma", "θ'' = −(g/l) sin θ", "V = mgh", "T = p²/2m", "q0 = cos θ/2",
-    "f = 1/2π √(k/m)", "T = ½ I ω² = L²/(2I)", "I_O = I_c + md^2", "α = dω/dt", "P = M ω",
+    "F = ma", "θ'' = −(g/l) sin θ", "V = mgh", "T = p²/2m", "q0 = cos θ/2",
+    "f = 1/2π √(k/m)", "T = ½ I ω² = L²/(2I)", "α = dω/dt",
 )  # fmt: skip
 
 

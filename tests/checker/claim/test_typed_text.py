@@ -261,11 +261,12 @@ def test_the_table_of_two_readings_holds():
         assert others, typed
 
 
-def test_a_greek_letter_with_an_index_is_a_name_where_it_is_a_whole_side():
+def test_a_greek_letter_with_an_index_is_a_name_where_it_is_the_whole_left_side():
     verdict = symrot.check("ωp = m g r/(I_3 ω)")
     assert verdict.reading == "ωp = m*g*r/(I_3*ω)"
     assert any("read as ω*p = " in note for note in verdict.notes)
-    assert symrot.check("v = ωr").reading == "v = ω*r"
+    verdict = symrot.check("v = ωr")
+    assert (verdict.verdict, verdict.reading) == ("definition", "v = ω*r")
 
 
 def test_tr_is_the_trace():
