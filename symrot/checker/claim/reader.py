@@ -242,7 +242,7 @@ class _Text:
         return tokens
 
     def with_indices(self, tokens: list[Token], flips: Collection[tuple[str, int]], doubts: list[Doubt]) -> list[Token]:
-        """Return tokens with one name for ``ωp`` where it is the whole left side of an equation; elsewhere it is a product."""
+        """Return tokens with one name for ``ωp`` as the left side of an equation; anywhere else ``ωp`` is a product."""
         padded = [None, *tokens]
         for place in range(len(tokens) - 3, -1, -1):
             before, first, second, after = padded[place], *tokens[place : place + 3]
