@@ -36,6 +36,8 @@ PERTURBATION, PARALLEL = 1e-6, 1e-6  # of time and states, for slopes; relative 
 SHORT = 1e-9  # part of the span: how far formulas are looked at beyond an instant without rates
 CHATTERING = 1e-9  # part of the span: CHATTER switches within it count as endlessly many
 Consumer = Callable[["Chunk"], None]
+SwitchState = tuple[frozenset[tuple[str, int]], frozenset[str]]
+"""The values (modes) of all switching functions that are not held, and the modes that are held."""
 
 
 class Chunk(NamedTuple):
@@ -80,6 +82,7 @@ class SwitchedRun(RunState):
         self.order: list[str] = []  # the modes that changed at the present time, in the order of the changes
         self.rested: set[str] = set()  # modes that were held at the present time and needed no holding
         self.left: set[tuple[str, int]] = set()  # the values of all modes before the changes at the present time
+        self.visited: dict[SwitchState, int] = {}  # at the present time, with the number of changes before them
         self.settled, self.hopped = 0, False
 
     def follow(self, consume: Consumer) -> None:
@@ -171,7 +174,7 @@ class SwitchedRun(RunState):
                     left.append(True)
                     if passed[-1] != start:
                         self.t, self.y = passed[-1], states(np.array(passed[-1:]))[0]
-                        self.flipped, self.order, self.left, self.released, self.rested = {}, [], set(), set(), set()
+                        self._forget_changes()
                     return
                 current[:] = [(piece, states)]
                 yield piece
@@ -179,7 +182,7 @@ class SwitchedRun(RunState):
                     violated.extend(last)
                     if passed[-1] != start:
                         self.t, self.y = passed[-1], states(np.array(passed[-1:]))[0]
-                        self.flipped, self.order, self.left, self.released = {}, [], set(), set()
+                        self._forget_changes()
                     return
                 consume(self._chunk(passed[-1], float(piece.edges[-1]), states, piece))
                 passed.append(float(piece.edges[-1]))
@@ -216,8 +219,8 @@ class SwitchedRun(RunState):
         finally:
             watching.close()
             self.cost += source.cost()
-        if violated:
-            return violated[0]
+        if violated:  # an argument that jumped with another function is corrected before others cross zero
+            return min(violated, key=lambda guard: not self._inside(guard.mode) & set(self.order))
         if left:
             return None
         if stop is None:
@@ -258,8 +261,13 @@ class SwitchedRun(RunState):
         """
         if self.t != self.end:
             self._move_clock(instant)
-        self.flipped, self.order, self.left, self.released, self.hopped = {}, [], set(), set(), False
-        self.rested = set()
+        self._forget_changes()
+        self.hopped = False
+
+    def _forget_changes(self) -> None:
+        """Forget which functions switched: the motion has left the time at which they did."""
+        self.flipped, self.order = {}, []
+        self.left, self.visited, self.released, self.rested = set(), {}, set(), set()
 
     def _hop(
         self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: IntegrationStopped
@@ -414,13 +422,14 @@ class SwitchedRun(RunState):
                 settled[mode] = sign
             elif not sign and self._guard_value(mode) == 0.0 == self._guard_value(mode, later):
                 settled[mode] = switch.at_zero
-        changed = settled != self.modes
+        changed = [mode for mode, value in settled.items() if value != self.modes[mode]]
         if changed:
+            self.order += changed
             self.settled += 1
             if self.settled > MOST_SWITCHES:
                 raise IntegrationStopped(self.t, "its switches settle endlessly", self.end)
         self.modes = settled
-        return changed
+        return bool(changed)
 
     def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
         """Return how far the argument of a switching function is from the switch, now or at another time with states.
@@ -449,24 +458,24 @@ class SwitchedRun(RunState):
         """
         mode, kind = guard.mode, self.by_name[guard.mode].kind
         self.left.add((mode, self.modes[mode]))
+        self.visited.setdefault(self._state(), len(self.order))
         again = self.flipped.get(mode, 0)
         if again and self._jumped(mode):  # a mode inside its guard changed too, so that the motion does not return
             again = 0
+        slides = kind == "sign" and again > 0 and mode not in self.held and self._returns(mode)
         self.order.append(mode)
-        if len(self.order) > MOST_AT_ONCE:
+        if len(self.order) > MOST_AT_ONCE or (slides and self._state(hold=mode) in self.visited):
             raise IntegrationStopped(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
         if again == 0:
             self._count()
         self.flipped[mode] = again + 1
-        if again > 2 and kind == "sign":
-            raise IntegrationStopped(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
         self.changes[self.now, self._name(mode)] = "released" if mode in self.held else "passed"
         asleep = self._asleep()
         if mode in self.held:
             self.held -= {mode}
             self.modes |= {twin: guard.change * sign for twin, sign in self.system.twins[mode]}
             self.released.update(twin for twin, _ in self.system.twins[mode])
-        elif again and kind == "sign":
+        elif slides:
             self._hold(regime, mode)
         elif kind == "sign":
             self.modes[mode] = -self.modes[mode]
@@ -481,13 +490,33 @@ class SwitchedRun(RunState):
         for other in asleep - self._asleep():
             self._wake(other)
 
+    def _returns(self, mode: str) -> bool:
+        """Return whether a change of a sign brings back a state of all functions, so that this sign has to be held.
+
+        Where a jump is among the changes since that state, the jump is held and not the function that only bends.
+        """
+        first = self.visited.get(self._state(flip=mode))
+        if first is None:
+            return False
+        jumps = any(not is_continuous(self.by_name[other]) for other in self.order[first:])
+        return not (jumps and is_continuous(self.by_name[mode]))
+
+    def _state(self, flip: str = "", hold: str = "") -> SwitchState:
+        """Return the present state of all switching functions, or that after a change of one of them."""
+        modes = {**self.modes, flip: -self.modes[flip]} if flip else self.modes
+        held = self.held | {self.system.twins[hold][0][0]} if hold else self.held
+        return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
+
     def _jumped(self, mode: str) -> bool:
         """Return whether, since a function last switched at the present time, a function inside its argument has
         switched too.
         """
-        inside = names(self.by_name[mode].guard)
         last = len(self.order) - self.order[::-1].index(mode)
-        return any(other in inside for other in self.order[last:])
+        return bool(self._inside(mode) & set(self.order[last:]))
+
+    def _inside(self, mode: str) -> set[str]:
+        """Return the names in the argument of a switching function."""
+        return set(names(self.by_name[mode].guard))
 
     def _asleep(self) -> set[str]:
         """Return the modes of those switching functions that do not matter in the present regime."""
