@@ -33,10 +33,12 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Leave most cases of functions marked ``thinned(n)`` to ``pytest -m campaign``.
+    """Leave most cases of functions marked ``thinned(n)`` to ``pytest -m campaign``; put modules marked ``first`` first.
 
-    Every n-th case stays, and as many more as it takes that each value of each axis of parameters stays.
+    Every n-th case stays, and as many more as it takes that each value of each axis of parameters stays. A module
+    at the end may be divided between two processes, and each would then make its fixtures.
     """
+    items.sort(key=lambda item: item.get_closest_marker("first") is None)
     functions: dict[str, list[Any]] = {}
     for item in items:
         if item.get_closest_marker("thinned") and not item.get_closest_marker("campaign"):

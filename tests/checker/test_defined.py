@@ -153,6 +153,7 @@ def test_an_inverse_function_undoes_its_function_for_principal_values(claim, con
     assert "under its condition" in fault(claim, wider, Random(1))
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(("claim", "point"), [
     ("atan2(-y, x) == -atan2(y, x)", {"x": "-1", "y": "0"}), ("atan2(-x, y) + atan2(x, y) == 0", {"x": "0", "y": "-1"}),
     ("atan2(-x**2, -1) == -atan2(x**2, -1)", {"x": "0"}), ("atan2(1 - y, x) == -atan2(y - 1, x)", {"x": "-1", "y": "1"}),
@@ -215,6 +216,7 @@ LONG = (
 )
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("claim", LONG)
 def test_an_answer_comes_within_a_few_seconds_of_work(claim):
     """Sums of 16 angles were multiplied out, polynomials factored over fields of degree 4, and one pair found for ever."""

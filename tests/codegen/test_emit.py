@@ -274,6 +274,7 @@ NAMES = ("\\", "*\\ int x;", "a??", "??/", "http:", "caf\u00e9", "\u65e5\u672c",
          "int", "x" * 200, "#", "%s", "quaternion_dcm", "class", '"""')  # fmt: skip
 
 
+@pytest.mark.thinned(2)
 @needs_cc
 @pytest.mark.parametrize("name", NAMES, ids=ascii)
 def test_a_scene_of_any_name_is_emitted_and_certified(name, tmp_path, monkeypatch):

@@ -92,6 +92,7 @@ def exact_coefficients(rates, order):
     return [[Rational(v.numerator, v.denominator) for v in map(Fraction, one)] for one in series]
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_coefficients_are_derivatives_exactly(name):
     """Over the rational numbers, orders 1 to 5: no rounding anywhere."""
@@ -105,6 +106,7 @@ def in_digits(form, point):
     return sympy.lambdify(list(point), form, "mpmath", cse=True)(*point.values())
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("order", [3, *(pytest.param(order, marks=pytest.mark.campaign) for order in (4, 5))])
 @pytest.mark.parametrize("name", FUNCTION_SYSTEMS)
 def test_functions_are_differentiated(name, order):

@@ -255,6 +255,7 @@ def test_a_start_that_is_not_zero():
 # ------------------------------------------------------------------------------------------------ accuracy
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", bench.MOTIONS)
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-8, 1e-12])
 def test_errors_are_those_promised(name, tolerance):

@@ -120,6 +120,7 @@ LOOKED_UP = [
 ]  # fmt: skip
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("method", ["auto", "taylor", "dop853"])
 @pytest.mark.parametrize("name", SCENES)
 def test_a_second_start_of_a_structure_looks_nothing_up(name, method, monkeypatch):

@@ -116,6 +116,7 @@ TOUCHES = [  # formula of t, and its zeros in [0, 20] s
 ]  # fmt: skip
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("formula", "zeros"), TOUCHES)
 def test_a_touch_between_two_doubles_is_found(formula, zeros):
     """No double is a multiple of pi: a touch there is only zero up to the rounding of the time. A jump is no touch."""
@@ -279,6 +280,7 @@ def test_zeros_at_the_edge_of_a_domain_are_no_events_but_touches_by_a_kink_are()
     assert list(kink) == [7.25] and list(root) == [5.0]
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("method", EVERY_METHOD)
 @pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])
 def test_no_pulse_is_so_narrow_that_it_is_missed(method, width):

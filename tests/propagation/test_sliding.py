@@ -16,10 +16,13 @@ HOLDING = "1/5 - sign(omega_1)/2"
 ABOVE, BELOW = 0.7, 0.3
 
 
-def scene(*torque, omega=(0, 0, 0), stop=5):
+def scene(*torque, omega=(0, 0, 0), stop=5, frame="body"):
     return symrot.Scene.from_dict({
         "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": list(omega)}, "span": {"t": [0, stop]},
-        "torque": [{"kind": "expression", "torque": [*torque, *("0",) * (3 - len(torque))], "parameters": {"k": "3/2"}}],
+        "torque": [{
+            "kind": "expression", "frame": frame, "torque": [*torque, *("0",) * (3 - len(torque))],
+            "parameters": {"k": "3/2"},
+        }],
     })  # fmt: skip
 
 
@@ -31,6 +34,7 @@ FOLLOWING = [  # torque about the second axis, and its values on the sides omega
 ]  # fmt: skip
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
 @pytest.mark.parametrize(("torque", "above", "below"), FOLLOWING)
 def test_formulas_of_the_switch_have_the_mean_of_both_sides(torque, above, below, method):
@@ -101,3 +105,31 @@ def test_a_torque_too_small_for_a_double_is_no_rest(method):
     """The pulse is zero at no time, though exp(-250000) is no double: both sides are mixed all along."""
     made = scene("-sign(omega_1)/10 + exp(-((t - 5)/0.01)**2)/20", "sign(omega_1)**2", stop=10)
     assert abs(symrot.propagator(made, method, 1e-9)([0, 10]).omega[-1][1] - 10) < 20 * 1e-8
+
+
+SEVERAL_AT_ONCE = [  # torques of functions that are all at their switches at the start, and the same without them
+    ("space", ["abs(omega_2) - 1", "-sign(where(t > 10, q3, 0))", "0"], ["abs(omega_2) - 1", "0", "0"], (-1.47, 0, 1)),
+    (
+        "body", ["-omega_1/2 - step(t - 7/10)", "0", "mod(where(omega_1 < 0, 2.22, 0), 1) - 2*sign(omega_3) - 2/3"],
+        ["-omega_1/2 - step(t - 7/10)", "0", "0"], (0, 0, 0),
+    ),
+    (
+        "body", ["where(omega_3 > q2, abs(omega_2), 0)", "-2*abs(omega_3) - q2*sign(q0)", "-sign(omega_3) - q3*sign(q0)/2"],
+        ["0", "0", "0"], (-1.56, 0, 0),
+    ),
+    (
+        "space", ["min(2*omega_2 + q1, omega_1) - 2*sign(omega_1) + 1", "-sign(omega_2)/2 - max(q3, omega_2)", "-1"],
+        ["0", "0", "-1"], (0, 0, 0),
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("method", ["auto", "scipy:DOP853"])
+@pytest.mark.parametrize(("frame", "torque", "simpler", "omega"), SEVERAL_AT_ONCE)
+def test_functions_that_switch_together_settle_in_any_order(frame, torque, simpler, omega, method):
+    """While some have not changed yet, others may change and change back; that is no sliding."""
+    ends = [
+        symrot.propagator(scene(*each, omega=omega, frame=frame), method, 1e-10)([0, 2]).omega[-1]
+        for each in (torque, simpler)
+    ]
+    assert abs(ends[0] - ends[1]).max() < 20 * 1e-10

@@ -106,6 +106,7 @@ def error(omega, quaternion, reference):
     return np.abs(np.concatenate([omega, quaternion], axis=-1) - reference).max()
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("t0", STARTS)
@@ -142,6 +143,7 @@ def test_taylor_steps_keep_phases_over_a_long_span():
     assert abs(found.omega[0, 2] - expected[0][2]) < 2e-14
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("t0, end", [(0, 10_000), (0, -10_000), (-400, 9_000), (10_000, 20_000)])
 def test_dormand_prince_steps_keep_phases_over_a_long_span(t0, end):
     """Samples, motion between them and events, within what the tolerance promises; on clocks of either kind."""

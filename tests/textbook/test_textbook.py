@@ -11,6 +11,7 @@ from symrot.report import errata
 from symrot.textbook import DOCUMENTS, document
 
 TESTS = Path(__file__).parents[1]
+pytestmark = pytest.mark.first  # the survey takes seconds
 REVIEWED = tomllib.loads((TESTS / "reference" / "textbook.toml").read_text(encoding="utf-8"))
 
 
