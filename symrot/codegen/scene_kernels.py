@@ -65,6 +65,7 @@ def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
         outputs += [(f"momentum_{axis}", "kg m^2/s", value) for axis, value in zip("xyz", momentum_s, strict=True)]
     outputs += [(name, "", value) for name, value in conserved.items()]
     outputs += [(f"{mode} of t", "1", value) for mode, value in equations.modes]
+    outputs += [(f"attraction {k} of t", "", value) for k, value in enumerate(equations.attraction)]
     results = Argument("out", "out", tuple((name, unit, "") for name, unit, _ in outputs))
     signature = Signature("quantities", (TIME, _state_argument(equations), results))
     return lower(signature, [(name, value) for name, _, value in outputs])

@@ -50,6 +50,7 @@ class Equations:
     momentum_b: Matrix  # I omega + h, kg m^2/s, body components
     relations: tuple[Expr, ...]  # expressions that are always zero: the squared norms of unit vectors minus 1
     modes: tuple[tuple[Symbol, Expr], ...] = ()  # modes of the guards that the motion slides along, see sliding()
+    attraction: tuple[Expr, ...] = ()  # positive while motions near these guards return to them
 
     @property
     def explicit_rates(self) -> tuple[Expr, ...]:
@@ -215,7 +216,8 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
 
     The modes take the values that keep them there: with rates linear in the modes s, ``dg/dt = a + B s = 0`` gives
     ``s = -B^-1 a`` (V. I. Utkin's equivalent control; for one guard, A. F. Filippov's convex combination). They are
-    definitions that the rates use.
+    definitions that the rates use. Motions near the guards return to them while all eigenvalues of B have negative real
+    parts; A. Hurwitz's determinants of B say when they do.
 
     Raises
     ------
@@ -237,4 +239,31 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
         raise InputError("torque: expected jumps along which the motion can slide in exactly one way")
     modes = tuple(zip(names, -(matrix.adjugate() * rest) / determinant, strict=True))
     still = [S.Zero if state in guards else rate for state, rate in zip(equations.states, equations.rates, strict=True)]
-    return replace(equations, rates=tuple(still), definitions=(*modes, *equations.definitions), modes=modes)
+    return replace(equations, rates=tuple(still), definitions=(*modes, *equations.definitions), modes=modes,
+                   attraction=hurwitz_determinants(matrix))  # fmt: skip
+
+
+def hurwitz_determinants(matrix: Matrix) -> tuple[Expr, ...]:
+    """Return numbers that are all positive if and only if all eigenvalues of a matrix have negative real parts.
+
+    They are the leading minors of Hurwitz's matrix of the characteristic polynomial (F. R. Gantmacher, The Theory of
+    Matrices, vol. 2, ch. XV).
+
+    Examples
+    --------
+    >>> from sympy import Matrix
+    >>> hurwitz_determinants(Matrix([[-1, 2], [-2, -1]]))
+    (2, 10)
+    """
+    size = matrix.rows
+    power, coefficients = matrix, [S.One, -matrix.trace()]
+    for k in range(2, size + 1):  # D. K. Faddeev's and U. J. J. Le Verrier's recurrence
+        power = matrix * (power + coefficients[-1] * eye(size))
+        coefficients.append(-power.trace() / k)
+
+    def entry(i: int, j: int) -> Expr:
+        k = 2 * j - i + 1
+        return coefficients[k] if 0 <= k <= size else S.Zero
+
+    hurwitz = Matrix(size, size, entry)
+    return tuple(hurwitz[:k, :k].det() for k in range(1, size + 1))

@@ -4,11 +4,16 @@
 formula of the same switch then has the mean of its values on both sides, with these shares.
 """
 
-from math import sqrt
+import re
+from math import pi, sqrt
 
+import numpy as np
 import pytest
+from sympy import Matrix
 
 import symrot
+from symrot.dynamics.equations import hurwitz_determinants
+from symrot.errors import PropagationError
 from tests.needs import needs_compiler
 
 pytestmark = [needs_compiler, pytest.mark.usefixtures("quick_compiler")]
@@ -118,7 +123,7 @@ SEVERAL_AT_ONCE = [  # torques of functions that are all at their switches at th
         ["0", "0", "0"], (-1.56, 0, 0),
     ),
     (
-        "space", ["min(2*omega_2 + q1, omega_1) - 2*sign(omega_1) + 1", "-sign(omega_2)/2 - max(q3, omega_2)", "-1"],
+        "body", ["min(2*omega_2 + q1, omega_1) - 2*sign(omega_1) + 1", "-sign(omega_2)/2 - max(q3, omega_2)", "-1"],
         ["0", "0", "-1"], (0, 0, 0),
     ),
 ]  # fmt: skip
@@ -133,3 +138,35 @@ def test_functions_that_switch_together_settle_in_any_order(frame, torque, simpl
         for each in (torque, simpler)
     ]
     assert abs(ends[0] - ends[1]).max() < 20 * 1e-10
+
+
+AWAY = [  # torque, angular velocity at the start, and when motions beside the switch begin to lead away from it
+    (("-sign(omega_1)*where(t < 5, 1, -1)",), "body", (1, 0, 0), 5.0),
+    (("1/2 - sign(omega_1)*where(t < 5, 1, -1)",), "body", (1, 0, 0), 5.0),
+    (("-sign(omega_1)", "0", "-sign(omega_3)"), "space", (0, 1, 0), pi / 2),  # by axes fixed in space, after 90 degrees
+    (("-sign(omega_1)", "1/5"), "space", (0, 0, 0), sqrt(5 * pi)),
+]
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
+@pytest.mark.parametrize(("torque", "frame", "omega", "end"), AWAY)
+def test_a_motion_does_not_slide_where_others_lead_away(torque, frame, omega, end, method):
+    """There the least error decides to which side the body goes."""
+    with pytest.raises(PropagationError, match=r"lead away|as it does before a singularity") as ended:
+        symrot.propagator(scene(*torque, omega=omega, frame=frame, stop=10), method, 1e-9)([0, 10])
+    at = float(re.search(r"beyond t = ([0-9.]+) s", str(ended.value))[1])
+    assert abs(at - end) < 1e-6
+
+
+def test_hurwitz_determinants_tell_whether_all_eigenvalues_are_left():
+    chance = np.random.default_rng(5)
+    verdicts = set()
+    for size in (1, 2, 3, 4):
+        for _ in range(40):
+            entries = chance.integers(-5, 3, (size, size))
+            last = np.linalg.eigvals(entries.astype(float)).real.max()
+            if abs(last) > 1e-9:
+                left = all(number > 0 for number in hurwitz_determinants(Matrix(entries.tolist())))
+                assert left == (last < 0), entries
+                verdicts.add((size, left))
+    assert len(verdicts) == 8

@@ -14,6 +14,7 @@ from typing import NamedTuple
 from symrot.build import cache as library
 from symrot.codegen.taylor.time_shift import moved, moved_formulas
 from symrot.formula.exact_functions import exact_value
+from symrot.formula.float_functions import FLOAT_FUNCTIONS
 from symrot.formula.program import Argument, Program
 from symrot.formula.switches import Conditions, Switch, hold
 from symrot.formula.tree import Node, names, parse, rename, text
@@ -40,6 +41,7 @@ class Guard(NamedTuple):
     mode: str
     formula: str
     change: int  # 0: the mode changes to the opposite sign; 1 or -1: it changes to that sign, or by that number
+    # a held mode with the change 0: motions near the held guards no longer return to them
     where: Conditions
 
 
@@ -83,15 +85,19 @@ class Regime:
         known = {"t", "pi", *(name for name, _ in self.parameters)}
         self.of_time = {mode for mode, formula in self.formulas.items() if names(formula) <= known}
         self.guards = [guard for switch in switches for guard in self._guards(switch)]
+        mode, always = min(held, default=""), ()
+        self.guards += [Guard(mode, f"attraction_{k}_of_t", 0, always) for k in range(len(held))]
         nodes = [parse(guard.formula) for guard in self.guards]
         known = {name for name, _ in self.parameters} | set(modes)
         self.more = sorted(known & set().union(*map(names, nodes)))
         self.events = [Event(guard.formula, terminal=True, direction=-1) for guard in self.guards]
         columns = {name: f"{name} of the scene" for name in self.more}  # kernels use other names for constants
         columns |= {f"{mode}_of_t": f"{mode} of t" for mode in held}
+        columns |= {f"attraction_{k}_of_t": f"attraction {k} of t" for k in range(len(held))}
         quantities, self.quantity_parameters = motion.kernel.quantities, motion.kernel.quantity_parameters
         if quantities.uses("t"):  # for example the value of a mode that holds its guard at zero
             quantities, self.quantity_parameters = moved(quantities, self.quantity_parameters)
+        self.quantities = quantities
         program = _with_parameters(quantities, [columns[name] for name in self.more])
         source = guard_library_source(
             program, [rename(node, columns) for node in nodes], self.plan.states, *error_blocks(self.plan)
@@ -158,10 +164,20 @@ class Regime:
 
     def zeros(self, modes: Modes, zero: Instant, y: Floats) -> set[str]:
         """Return the states and the parameters of the quantities that are zero, by name."""
+        return {name for name, value in self._inputs(modes, zero, y).items() if value == 0.0}
+
+    def attraction(self, modes: Modes, zero: Instant, t: float, y: Floats) -> list[float]:
+        """Return the numbers that are positive while motions near the held guards return to them."""
+        names = [f"attraction {k} of t" for k in range(len(self.held))]
+        values = {**self._inputs(modes, zero, y), "t": t}
+        quantities = self.quantities.evaluate(values, FLOAT_FUNCTIONS, float, names)
+        return [float(quantities[name]) for name in names]
+
+    def _inputs(self, modes: Modes, zero: Instant, y: Floats) -> dict[str, float]:
+        """Return the values of the states and of the parameters of the quantities, by name."""
         numbers = self._parameters_under(modes).quantities.parameters(zero.exact)
         values = zip((name for name, _ in self.quantity_parameters), numbers, strict=True)
-        states = zip(self.plan.states, y.tolist(), strict=True)
-        return {name for name, value in (*values, *states) if value == 0.0}
+        return dict((*values, *zip(self.plan.states, y.tolist(), strict=True)))
 
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
         """Return a function from an epoch, s, to the parameters of rates that count time from the epoch.

@@ -33,6 +33,7 @@ LEAST_TURN = 1e-3  # rad over the whole span: errors of slower rotations are rel
 AWAY = range(50, 400, 10)  # a hop away from a switch is the span divided by 2 to this power
 NEARBY, MOST_ULPS = 1e-6, 64.0  # part of the way since the last switch; units in the last place of a located time
 PERTURBATION, PARALLEL = 1e-6, 1e-6  # of time and states, for slopes; relative difference of parallel slopes
+ERRORS = 100.0  # tolerances that the errors of a motion may have
 SHORT = 1e-9  # part of the span: how far formulas are looked at beyond an instant without rates
 CHATTERING = 1e-9  # part of the span: CHATTER switches within it count as endlessly many
 Consumer = Callable[["Chunk"], None]
@@ -83,6 +84,7 @@ class SwitchedRun(RunState):
         self.rested: set[str] = set()  # modes that were held at the present time and needed no holding
         self.left: set[tuple[str, int]] = set()  # the values of all modes before the changes at the present time
         self.visited: dict[SwitchState, int] = {}  # at the present time, with the number of changes before them
+        self.attraction: tuple[frozenset[str], list[float]] = frozenset(), []  # of the held modes, since they are held
         self.settled, self.hopped = 0, False
 
     def follow(self, consume: Consumer) -> None:
@@ -150,6 +152,8 @@ class SwitchedRun(RunState):
         active = regime.active(self.modes)
         if self.held:
             self._check_held_alone()
+            if self.attraction[0] != self.held:
+                self.attraction = self.held, regime.attraction(self.modes, self.zero, self.t, self.y)
         if not all(map(math.isfinite, rates)):
             if (guard := self._coincident(regime, active, values, 0)) is None:
                 raise IntegrationStopped(self.t, NOT_FINITE_SENTENCE, self.end)
@@ -457,6 +461,10 @@ class SwitchedRun(RunState):
         Where the rates on both sides send the motion back, the argument is held at zero: the motion slides.
         """
         mode, kind = guard.mode, self.by_name[guard.mode].kind
+        if mode in self.held and (guard.change == 0 or not self._still_attracts(regime)):
+            raise IntegrationStopped(
+                self.t, f"the motion would slide along {self._names_of_held()} beside motions that lead away", self.end
+            )
         self.left.add((mode, self.modes[mode]))
         self.visited.setdefault(self._state(), len(self.order))
         again = self.flipped.get(mode, 0)
@@ -561,6 +569,14 @@ class SwitchedRun(RunState):
         for mode in resting:
             self.modes |= {twin: self.by_name[twin].at_zero for twin, _ in self.system.twins[mode]}
         return bool(resting)
+
+    def _still_attracts(self, regime: Regime) -> bool:
+        """Return whether motions near the held guards return to them by more than the errors of the motion.
+
+        If they do not, these errors decide to which side the motion goes.
+        """
+        now, least = regime.attraction(self.modes, self.zero, self.t, self.y), ERRORS * regime.motion.tolerance
+        return all(value > least * first for value, first in zip(now, self.attraction[1], strict=True))
 
     def _leaves_zero(self, regime: Regime, active: list[bool], piece: Piece) -> bool:
         """Give signs of formulas that are zero, and no longer so at the end of a piece, the values of that side.
