@@ -1,11 +1,12 @@
 """The verdict on one claim: decided, or recognised by its name, and diagnosed if it is not true."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from time import perf_counter
 
-from symrot.checker.claim.claims import Claim, named_formula, relation_text
+from symrot.checker.claim.claims import Claim, relation_text
+from symrot.checker.claim.named_formula import NamedFormula, named_formula, related_formula
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.time_limit import TimeUp, processor_seconds
@@ -42,8 +43,11 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
     verdict: Verdict | None = None
     try:
         with processor_seconds(MOST_SECONDS):
-            decision, verdict = _on_name(claim, repair) or _decide(claim)
+            decision, verdict = _on_name(claim, repair, named_formula) or _decide(claim)
             other_verdict = None if verdict else _of_another_reading(claim)
+            is_false = decision is not None and decision.verdict == "false"
+            if other_verdict is None and is_false and verdict.dimension.status != "inconsistent":
+                decision, verdict = _on_name(claim, repair, related_formula) or (decision, verdict)
             if other_verdict is None and repair and decision is not None:
                 verdict = _diagnosed(claim, decision, verdict)
     except TimeUp:
@@ -79,9 +83,14 @@ def _of_another_reading(claim: Claim) -> Verdict | None:
     return None
 
 
-def _on_name(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
-    """Return the verdict on a claim that names a formula, for which there is no decision; None for any other claim."""
-    named = named_formula(claim) if claim.relation is not None else None
+def _on_name(
+    claim: Claim, repair: bool, formula_of: Callable[[Claim], NamedFormula | None]
+) -> tuple[None, Verdict] | None:
+    """Return the verdict on a claim about a quantity that nothing defines; None for any other claim.
+
+    The function ``formula_of`` returns the quantity and its formula. There is no decision on such a claim.
+    """
+    named = formula_of(claim) if claim.relation is not None else None
     if named is None:
         return None
     from symrot.checker.recognition.naming import verdict_on_name

@@ -7,8 +7,9 @@ lines after them.
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from symrot.checker.claim.claims import Claim, named_formula
+from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.lines import claims_of_reading
+from symrot.checker.claim.named_formula import named_formula
 from symrot.checker.claim.notation import Notation, notation_of
 from symrot.checker.claim.reader import Reading, readings_of
 from symrot.checker.claim.tree import Node, walk
@@ -156,7 +157,7 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation
         assert claim.relation is not None
         _, left, right = claim.relation
         others = _names(right) - _names(left)
-        if verdict.verdict in ("false", "conditional") and others and _names(left) - _names(right):
+        if verdict.verdict in ("false", "conditional", "definition") and others and _names(left) - _names(right):
             under_name = check_claim(claim.with_relation(("==", named.side, right)), repair=False)
             link = notation.relation(claim.relation)
             note = f"{link} is no identity, since only one side has {', '.join(sorted(others))}"

@@ -135,3 +135,41 @@ def test_json_has_the_readings(capsys):
 
 def test_without_repairs_a_formula_with_a_fault_is_not_searched_for():
     assert symrot.check("I_zz == m/12*(a**2 - b**2)", repair=False).verdict == "definition"
+
+
+@pytest.mark.parametrize(("claim", "name"), [
+    ("k^2 = I/m", "radius of gyration"), ("omega_0^2 = m*g*l/I", "frequency of a physical pendulum"),
+    ("2T = I_1 w_1^2 + I_2 w_2^2 + I_3 w_3^2", "kinetic energy of rotation"),
+    ("I_1 ω_1' + (I_3 - I_2) ω_2 ω_3 = 0", "first component of the Euler's equations"),
+    ("I_1 dω_1/dt = (I_2 - I_3) ω_2 ω_3", "first component of the Euler's equations"),
+])  # fmt: skip
+def test_a_formula_for_a_square_a_multiple_or_a_rate_is_recognised(claim, name):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "recognised" and name in verdict.recognised_as[0].name
+
+
+@pytest.mark.parametrize(("claim", "repaired"), [
+    ("2T = I_1 w_1^2 + I_2 w_2^2 - I_3 w_3^2", "2*T = I_1*w_1^2 + I_2*w_2^2 + I_3*w_3^2"),
+    ("I_1 ω_1' + (I_3 + I_2) ω_2 ω_3 = 0", "ω_1' = -(I_3 - I_2)"),
+])  # fmt: skip
+def test_a_fault_in_a_formula_for_a_multiple_or_a_rate_is_named(claim, repaired):
+    verdict = symrot.check(claim)
+    assert (verdict.verdict, verdict.diagnosis.code) == ("doubtful", "sign_of_term")
+    assert verdict.repairs[0].text.startswith(repaired)
+
+
+@pytest.mark.parametrize("claim", [
+    "tan(theta) = a*b/c", "cos(phi) = (R_11 + R_22 + R_33 - 1)/2", "1/2 m v^2 = m g h", "m x'' + c x' + k x = F_0",
+    "M dt = I dω", "tan(beta) = cos(theta)*tan(alpha)",
+])  # fmt: skip
+def test_a_relation_of_quantities_is_not_called_false(claim):
+    """It holds by what its letters mean, or not; nothing here says what they mean."""
+    assert symrot.check(claim).verdict == "definition"
+
+
+@pytest.mark.parametrize("claim", [
+    "d/dt(x^2) = x x'", "diff(x(t)*y(t), t) = diff(x(t), t)*y(t) - x(t)*diff(y(t), t)", "sin(a + b) = sin a cos b + cos a sin c",
+    "sin(x)^2 = 2", "(a + b)^2 = a^2 + b^2", "2*x' = 3*x'", "x = y",
+])  # fmt: skip
+def test_a_wrong_identity_stays_false(claim):
+    assert symrot.check(claim).verdict == "false"

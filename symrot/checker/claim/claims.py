@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from sympy import Expr, Symbol
 
@@ -33,13 +33,11 @@ from symrot.exact.decision import ShapeMismatch, matched_sides
 __all__ = [
     "Claim",
     "Definitions",
-    "NamedFormula",
     "Refusal",
     "check_units",
     "claim_of_relation",
     "claim_of_text",
     "is_latex",
-    "named_formula",
     "read_claims",
     "read_entries",
     "relation_text",
@@ -299,36 +297,6 @@ def claim_of_relation(
 def _with_natural_base(relation: Relation) -> Relation:
     sign, left, right = relation
     return sign, with_natural_base(left), with_natural_base(right)
-
-
-class NamedFormula(NamedTuple):
-    """A formula with a name that nothing defines: the name, the side on which it stands, and the formula."""
-
-    name: str
-    side: Node
-    formula: Node
-
-
-def named_formula(claim: Claim) -> NamedFormula | None:
-    """Return the name and the formula of a claim that only gives a formula a name; None for any other claim.
-
-    The name is a symbol, a function of time or its derivative, and occurs nowhere else in the claim.
-    """
-    assert claim.relation is not None
-    _, left, right = claim.relation
-    others = [side for relation in claim.hypotheses for side in relation[1:]] + [tree for _, tree in claim.define]
-    known = {"pi", "t", *(name for name, _ in claim.define)}
-    for side, formula in ((left, right), (right, left)):
-        inner = side.args[0] if side.kind == "call" and side.value == "diff" else side
-        if _is_name(inner) and inner.value not in known and not _is_name(formula):
-            elsewhere = [node for tree in (formula, *others) for _, node in walk(tree)]
-            if side not in elsewhere and not (inner is side and inner.value in [n.value for n in elsewhere]):
-                return NamedFormula(str(inner.value), side, formula)
-    return None
-
-
-def _is_name(tree: Node) -> bool:
-    return tree.kind == "name" or (tree.kind == "call" and [a.value for a in tree.args] == ["t"])
 
 
 # -- TOML -------------------------------------------------------------------------------------------------------------

@@ -15,8 +15,9 @@ from sympy import Expr, Function, ImmutableMatrix, Rational, Symbol
 from sympy.matrices import MatrixBase
 
 from symrot import symbols
-from symrot.checker.claim.claims import Claim, claim_of_text, named_formula
+from symrot.checker.claim.claims import Claim, claim_of_text
 from symrot.checker.claim.interpreter import Interpreter, time
+from symrot.checker.claim.named_formula import named_formula
 from symrot.checker.claim.quantities import has_natural_base, letters_of_quantities, with_natural_base
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, walk

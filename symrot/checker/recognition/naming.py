@@ -13,8 +13,9 @@ from itertools import islice, pairwise
 
 from sympy import Function, Mul, Rational, Symbol
 
-from symrot.checker.claim.claims import Claim, NamedFormula
+from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.interpreter import time
+from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, text, walk
 from symrot.checker.recognition.identification import identified, unit_of
@@ -93,10 +94,13 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     edited = _nearest(claim, named) if repair else None
     if edited is not None:
         return edited
-    reason = (
-        f"nothing here says what {named.name} is, and symrot derives no formula like the other side: "
-        "it may be a definition"
-    )
+    if named.solve is None:
+        reason = "its sides have no letter in common, and nothing here says what these quantities are"
+    else:
+        reason = (
+            f"nothing here says what {named.name} is, and symrot derives no formula like the other side: "
+            "it may be a definition"
+        )
     return Verdict("definition", reason=reason)
 
 
@@ -137,8 +141,10 @@ def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
 
 def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int) -> tuple[Identification, ...]:
     """Return the known formulas to which a formula is equal and which fit the names in use, the likeliest first."""
+    if named.solve is None:
+        return ()
     try:
-        value = claim.interpreter().read(tree)
+        value = claim.interpreter().read(named.solve(tree))
     except InputError:
         return ()
     if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < least_symbols:
@@ -176,7 +182,7 @@ def _words(named: NamedFormula) -> tuple[str, ...] | None:
 
 def _plain(named: NamedFormula) -> str:
     """Return the name of a quantity, with ``d`` in front of it for its time derivative."""
-    return f"d{named.name}" if named.side.kind == "call" and named.side.value == "diff" else named.name
+    return f"d{named.name}" if named.is_rate else named.name
 
 
 def _strangeness(named: NamedFormula, known: Identification) -> tuple[int, int, int]:

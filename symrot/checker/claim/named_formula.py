@@ -1,0 +1,199 @@
+"""Claims that relate quantities which nothing defines, such as ``k^2 = I/m``: a quantity, and the formula for it.
+
+No such claim is an identity: it holds by what its letters mean, or not.
+"""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from functools import partial, reduce
+from typing import NamedTuple
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk
+
+__all__ = ["NamedFormula", "named_formula", "related_formula"]
+
+Solve = Callable[[Node], Node]
+INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log"}
+"""Function of a quantity -> the function that solves for the quantity."""
+
+
+class NamedFormula(NamedTuple):
+    """The formula for a quantity that nothing defines.
+
+    ``side`` is the side of the claim with the quantity, and ``formula`` the other side. ``name`` is the name of the
+    quantity, and ``is_rate`` says that its derivative is meant. ``solve`` turns any formula of the other side into that
+    of the quantity: k = sqrt(I/m) for k^2 = I/m. It is None if ``side`` is not the formula of one quantity.
+    """
+
+    name: str
+    side: Node
+    formula: Node
+    is_rate: bool = False
+    solve: Solve | None = lambda formula: formula
+
+
+def named_formula(claim: Claim) -> NamedFormula | None:
+    """Return the name and the formula of a claim that only gives a formula a name; None for any other claim.
+
+    The name is a symbol, a function of time or its derivative, and occurs nowhere else in the claim.
+    """
+    assert claim.relation is not None
+    _, left, right = claim.relation
+    others = [side for relation in claim.hypotheses for side in relation[1:]] + [tree for _, tree in claim.define]
+    known = _known(claim)
+    for side, formula in ((left, right), (right, left)):
+        inner = side.args[0] if _is_rate(side) else side
+        if _is_name(inner) and inner.value not in known and not _is_name(formula):
+            elsewhere = [node for tree in (formula, *others) for _, node in walk(tree)]
+            if side not in elsewhere and not (inner is side and inner.value in [n.value for n in elsewhere]):
+                return NamedFormula(str(inner.value), side, formula, _is_rate(side))
+    return None
+
+
+def related_formula(claim: Claim) -> NamedFormula | None:
+    """Return a quantity, and the formula for it, of a claim that is no identity but may hold by what its letters mean.
+
+    The sides of such a claim have no letter in common, as in ``2*T = I*omega^2``, or the claim is a differential
+    equation, as in ``I*diff(theta(t), t, t) + k*theta(t) = 0``. Return None for any other claim.
+    """
+    assert claim.relation is not None
+    left, right = _without_common_factors(*claim.relation[1:])
+    if claim.hypotheses or any(
+        node.kind in ("list", "index", "transpose") for tree in (left, right) for _, node in walk(tree)
+    ):
+        return None
+    known = _known(claim)
+    letters = [_quantities(side) for side in (left, right)]
+    if any(quantity[0] in known for quantity in (*letters[0], *letters[1])):
+        return None
+    if all(_is_name(side) or _is_rate(side) for side in (left, right)):
+        return None
+    if all(letters) and not letters[0] & letters[1]:
+        for side, formula in ((left, right), (right, left)):
+            if (solution := _solution(side)) is not None:
+                (name, is_rate), solve = solution
+                return NamedFormula(name, side, formula, is_rate, solve)
+        return NamedFormula(text(left), left, right, solve=None)
+    return _equation_of_motion(left, right)
+
+
+def _known(claim: Claim) -> set[str]:
+    """Return the names that have a value or a definition."""
+    return {"pi", "t", *(name for name, _ in claim.define)}
+
+
+def _is_name(tree: Node) -> bool:
+    return tree.kind == "name" or (tree.kind == "call" and [a.value for a in tree.args] == ["t"])
+
+
+def _is_rate(tree: Node) -> bool:
+    """Return whether a tree is a derivative of a name with respect to time."""
+    times = [argument.value for argument in tree.args[1:]]
+    return tree.kind == "call" and tree.value == "diff" and _is_name(tree.args[0]) and {*times} == {"t"}
+
+
+def _quantities(tree: Node) -> set[tuple[str, bool]]:
+    """Return the names in a tree, each with whether it is a rate; a derivative is a quantity of its own."""
+    if _is_rate(tree):
+        return {(str(tree.args[0].value), True)}
+    if _is_name(tree):
+        return set() if tree.value == "pi" else {(str(tree.value), False)}
+    return {quantity for part in tree.args for quantity in _quantities(part)}
+
+
+def _solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
+    """Return the quantity of a side, which has constant factors alone beside it, and how to solve for it; or None."""
+    steps: list[Solve] = []
+    while not (_is_name(side) or _is_rate(side)):
+        if side.kind == "neg":
+            steps.append(negated)
+            side = side.args[0]
+        elif side.kind == "product":
+            factors = [factor for factor in side.args if _quantities(factor)]
+            rates = [factor for factor in factors if any(is_rate for _, is_rate in _quantities(factor))]
+            own = rates if len(rates) == 1 else factors
+            if len(own) != 1:
+                return None
+            rest = product([factor for factor in side.args if factor is not own[0]])
+            steps.append(partial(_over, rest))
+            side = own[0]
+        elif side.kind == "power" and side.args[1].kind == "number" and side.args[1].value:
+            steps.append(partial(_to_power, 1 / side.args[1].value))
+            side = side.args[0]
+        elif side.kind == "call" and side.value == "sqrt":
+            steps.append(partial(_to_power, Fraction(2)))
+            side = side.args[0]
+        elif side.kind == "call" and side.value in INVERSES and len(side.args) == 1:
+            steps.append(partial(_called, INVERSES[side.value]))
+            side = side.args[0]
+        else:
+            return None
+    (quantity,) = _quantities(side)
+    return quantity, partial(_after, steps)
+
+
+def _over(divisor: Node, tree: Node) -> Node:
+    return product([tree, Node("inv", None, (divisor,))])
+
+
+def _to_power(exponent: Fraction, tree: Node) -> Node:
+    return Node("power", None, (tree, number(exponent)))
+
+
+def _called(function: str, tree: Node) -> Node:
+    return Node("call", function, (tree,))
+
+
+def _after(steps: Sequence[Solve], tree: Node) -> Node:
+    """Return a tree after several changes, one after the other."""
+    return reduce(lambda made, step: step(made), steps, tree)
+
+
+def _without_common_factors(left: Node, right: Node) -> tuple[Node, Node]:
+    """Return two sides without the factors, other than numbers, that both have."""
+    factors = [list(side.args) if side.kind == "product" else [side] for side in (left, right)]
+    for factor in [*factors[0]]:
+        if factor in factors[1] and _quantities(factor):
+            factors[0].remove(factor)
+            factors[1].remove(factor)
+    return product(factors[0]), product(factors[1])
+
+
+def _equation_of_motion(left: Node, right: Node) -> NamedFormula | None:
+    """Return a rate and the formula for it of a differential equation that is linear in its highest rate, or None.
+
+    A claim with the derivative of a product, sum or function may be a rule for derivatives, and is not taken.
+    """
+    terms = [*_terms(left), *map(negated, _terms(right))]
+    derivatives = {node for term in terms for _, node in walk(term) if node.kind == "call" and node.value == "diff"}
+    order = max((len(node.args) for node in derivatives), default=0)
+    highest = [node for node in derivatives if len(node.args) == order]
+    if len(highest) != 1 or not all(map(_is_rate, derivatives)):
+        return None
+    (rate,) = highest
+    coefficients: list[Node] = []
+    rest: list[Node] = []
+    for term in terms:
+        bare = term.args[0] if term.kind == "neg" else term
+        factors = list(bare.args) if bare.kind == "product" else [bare]
+        if rate not in [node for _, node in walk(term)]:
+            rest.append(negated(term))
+        elif factors.count(rate) == 1:
+            factors.remove(rate)
+            if rate in [node for factor in factors for _, node in walk(factor)]:
+                return None
+            coefficient = product(factors)
+            coefficients.append(negated(coefficient) if term.kind == "neg" else coefficient)
+        else:
+            return None
+    if not any(_quantities(term) for term in rest):
+        return None
+    formula = product([sum_of(rest), Node("inv", None, (sum_of(coefficients),))])
+    return NamedFormula(str(rate.args[0].value), rate, formula, True)
+
+
+def _terms(tree: Node) -> list[Node]:
+    if tree.kind == "sum":
+        return list(tree.args)
+    return [] if tree.kind == "number" and not tree.value else [tree]
