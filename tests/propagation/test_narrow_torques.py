@@ -221,6 +221,7 @@ def test_an_ensemble_meets_the_pulse(method):
 
 
 @pytest.mark.long_motion
+@pytest.mark.thinned(2)
 @pytest.mark.long_motion
 @pytest.mark.parametrize("method", STEPPED[1:])
 @pytest.mark.parametrize("torque", ["exp(t**3)", "exp(exp(t))", "cosh(100*t)", "1/(t-1/3)**3"])

@@ -54,6 +54,7 @@ def test_what_polynomials_cannot_follow_is_refused():
 
 
 @pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="needs the timers of POSIX")
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # from a finaliser
 @pytest.mark.parametrize("method", ["exact", "taylor"])
 def test_an_interrupt_ends_a_search(method):
     """It is seen between calls of the library, none of which is long; the search would end in a sentence."""
