@@ -1,4 +1,4 @@
-"""Free bodies and tops as kernels by hand, and their motions by a Taylor series in 50 digits that shares nothing else."""
+"""Free bodies and tops as kernels by hand, and their motions by a Taylor series in 30 digits that shares nothing else."""
 
 import math
 from functools import cache
@@ -71,13 +71,13 @@ def cross(u, v):
 
 @cache
 def taylor(name):
-    """Return the states at TIMES, from Taylor series in 50 digits; gravity is carried as a vector of the body."""
+    """Return the states at TIMES, from Taylor series in 30 digits; gravity is carried as a vector of the body."""
     moments, arm, start = MOTIONS[name]
-    with mpmath.workdps(50):
+    with mpmath.workdps(30):
         a, b, c = map(mpmath.mpf, moments)
         m = [mpmath.mpf(x) for x in arm]
         y = [mpmath.mpf(float(x)) for x in start]
-        now, order, rows = mpmath.mpf(0), 40, []
+        now, order, rows = mpmath.mpf(0), 26, []
         for time in TIMES:
             while True:
                 w, q = [[x] for x in y[:3]], [[x] for x in y[3:]]
@@ -100,7 +100,7 @@ def taylor(name):
                             one.append(rate / (n + 1))
                 series = [one[::-1] for one in (*w, *q)]
                 last = max(abs(one[0]) + abs(one[1]) for one in series)
-                step = (mpmath.mpf(10) ** -35 / last) ** (mpmath.mpf(1) / order)
+                step = (mpmath.mpf(10) ** -24 / last) ** (mpmath.mpf(1) / order)
                 left = mpmath.mpf(float(time)) - now
                 if left <= step:
                     break
