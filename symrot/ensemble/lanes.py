@@ -66,6 +66,7 @@ def translation_unit(
     program: Program, blocks: Sequence[int], scales: Sequence[float], order: int, width: int | None = None
 ) -> str:
     """Return the C source of a library that steps many motions in SIMD lanes, including the series of the rates.
+
     Parameters
     ----------
     program, blocks, scales, order
