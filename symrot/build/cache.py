@@ -125,8 +125,8 @@ def build(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path:
     ----------
     source : str
         A complete C translation unit; it is compiled from standard input.
-    Letters, digits and underscores, with which the file's name begins.
-        Letters, digits and underscores; the beginning of the file's name, for people.
+    name : str
+        Letters, digits and underscores, with which the file's name begins.
     flags : tuple of str
         Flags of the compiler. If it rejects ``-march=native``, it is run again without this flag.
 

@@ -61,9 +61,9 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
     ----------
     batch : Batch
     times : array, shape (m,) or (n, m)
-            Times from the start, s.
-        omega, quaternion : arrays, shapes (n, m, 3) and (n, m, 4), or None
-            The arrays to fill, contiguous for each motion; None skips a quantity.
+        Times from the start, s.
+    omega, quaternion : arrays, shapes (n, m, 3) and (n, m, 4), or None
+        The arrays to fill, contiguous for each motion; None skips a quantity.
     workers : int
         Number of threads; each computes a part of the motions.
     """

@@ -51,9 +51,9 @@ class Ensemble:
     t : array, shape (m,) or (n, m)
         Sample times, s, as they were passed.
     omega : array, shape (n, m, 3)
-            Angular velocity, body components, rad/s; NaN at times that a motion did not reach.
-        status : array, shape (n,)
-            0 for a motion that reached its last time, -1 for one that stopped early (as in SciPy's solve_ivp).
+        Angular velocity, body components, rad/s; NaN at times that a motion did not reach.
+    status : array, shape (n,)
+        0 for a motion that reached its last time, -1 for one that stopped early (as in SciPy's solve_ivp).
     messages : n texts
         The reason why a motion stopped early, with its time; empty for the others.
     methods : n texts
@@ -129,16 +129,16 @@ def propagate_ensemble(
         Constants of the scene, in SI units: ``principal`` (n, 3), the moments along given principal axes, or
         ``I_xx`` to ``I_yz`` (n,); fields of a torque by their names in the scene, such as ``weight`` (n,) or
         ``center_of_mass`` (n, 3), or one component, ``center_of_mass_3`` (n,); parameters of an expression (n,).
-            If two torques have a name in common, the constant of the second torque is called ``torque2_weight``.
-        t : array, shape (m,) or (n, m), optional
-            Sample times, s, for all motions or for each, in any order, before or after the initial time; default: the
-            scene's own.
-        method : str
-            ``auto``, or one of :data:`symrot.propagation.method.METHODS` for all.
-        tolerance : float, optional
-            Error of each trajectory to aim for; default: the scene's own.
-        workers : int
-            Number of threads that step motions.
+        If two torques have a name in common, the constant of the second torque is called ``torque2_weight``.
+    t : array, shape (m,) or (n, m), optional
+        Sample times, s, for all motions or for each, in any order, before or after the initial time; default: the
+        scene's own.
+    method : str
+        ``auto``, or one of :data:`symrot.propagation.method.METHODS` for all.
+    tolerance : float, optional
+        Error of each trajectory to aim for; default: the scene's own.
+    workers : int
+        Number of threads that step motions.
         Threads that step.
 
     Returns

@@ -210,9 +210,9 @@ class LaneIntegration:
     max_steps : int
         Largest number of steps of one motion.
     workers : int
-            Number of threads; each steps a part of the motions in its own lanes.
-        epoch : float
-            Time of the scene, s, at which the clock of ``t0`` and ``times`` shows 0; messages add it to times.
+        Number of threads; each steps a part of the motions in its own lanes.
+    epoch : float
+        Time of the scene, s, at which the clock of ``t0`` and ``times`` shows 0; messages add it to times.
     """
 
     def __init__(

@@ -43,11 +43,11 @@ class Decision:
     Attributes
     ----------
     verdict : str
-            ``"true"``: proven wherever both sides are defined, and a point is known where they are. ``"false"``: there
-            is a ``counterexample``. ``"conditional"``: true under any one of ``requires``. ``"undecided"``.
-        conditions : tuple
-            Relations that hold where both sides are defined: divisors are not zero, radicands are not negative. For a
-            conditional claim, its requirements come first.
+        ``"true"``: proven wherever both sides are defined, and a point is known where they are. ``"false"``: there
+        is a ``counterexample``. ``"conditional"``: true under any one of ``requires``. ``"undecided"``.
+    conditions : tuple
+        Relations that hold where both sides are defined: divisors are not zero, radicands are not negative. For a
+        conditional claim, its requirements come first.
     requires : tuple of Requirement
     counterexample : Counterexample or None
     reason : str

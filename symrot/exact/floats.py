@@ -42,9 +42,9 @@ def float_at(formula: Expr, values: Mapping[Expr, float], known: dict[Expr, floa
     ----------
     formula : Expr
     values : mapping
-            Values of symbols, functions of time and derivatives.
-        known : dict
-            Values of subexpressions at the same point; the function adds to it.
+        Values of symbols, functions of time and derivatives.
+    known : dict
+        Values of subexpressions at the same point; the function adds to it.
 
     Raises
     ------

@@ -25,9 +25,9 @@ def _transcendental(name: str, *arguments: Fraction) -> Fraction:
     Raises
     ------
     ValueError
-            If the function has no real value, such as the logarithm of a negative number.
-        OverflowError
-            If the value exceeds the range of a double.
+        If the function has no real value, such as the logarithm of a negative number.
+    OverflowError
+        If the value exceeds the range of a double.
     """
     import mpmath
 

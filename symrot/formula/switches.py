@@ -65,15 +65,15 @@ class Switch(NamedTuple):
     mode : str
         Name of the mode in the smooth formulas.
     kind : str
-            ``"sign"``: the mode is the sign of the guard; ``"floor"``: the mode is the largest integer below the guard.
-        guard : Node
-            A smooth formula, which may contain modes.
-        where : Conditions
-            The switch matters only while these conditions hold.
-        label : str
-            The function that jumps, as the user wrote it.
-        at_zero : int
-            Value of the mode while the guard is exactly zero: sign(0) = 0, step(0) = 0, 0 < 0 is false.
+        ``"sign"``: the mode is the sign of the guard; ``"floor"``: the mode is the largest integer below the guard.
+    guard : Node
+        A smooth formula, which may contain modes.
+    where : Conditions
+        The switch matters only while these conditions hold.
+    label : str
+        The function that jumps, as the user wrote it.
+    at_zero : int
+        Value of the mode while the guard is exactly zero: sign(0) = 0, step(0) = 0, 0 < 0 is false.
     """
 
     mode: str

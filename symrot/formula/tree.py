@@ -185,11 +185,11 @@ def parse(source: str, where: str = "", switching: bool = False) -> Node:
     source : str
         Numbers, names, ``+ - * / **`` (whole exponents), brackets and the functions of :data:`FUNCTIONS`.
     where : str
-            The place of the text (file and key), put in front of every error message.
-        switching : bool
-            Whether to allow the functions of :data:`SWITCHING` too, and comparisons, ``and``, ``or`` and ``not`` in the
-            condition of ``where``; these become calls of ``less``, ``and``, ``or``, ``not``. See
-            :mod:`symrot.formula.switches`.
+        The place of the text (file and key), put in front of every error message.
+    switching : bool
+        Whether to allow the functions of :data:`SWITCHING` too, and comparisons, ``and``, ``or`` and ``not`` in the
+        condition of ``where``; these become calls of ``less``, ``and``, ``or``, ``not``. See
+        :mod:`symrot.formula.switches`.
 
     Raises
     ------
@@ -290,9 +290,9 @@ def evaluate(
     values : mapping of str to number
         A value for each symbol.
     functions : mapping of str to callable, optional
-            Implementations of the functions by name, for that kind of number.
-        number : callable
-            Converts the exact constants of the formula to that kind of number; ``float`` for arrays.
+        Implementations of the functions by name, for that kind of number.
+    number : callable
+        Converts the exact constants of the formula to that kind of number; ``float`` for arrays.
 
     Raises
     ------

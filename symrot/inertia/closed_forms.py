@@ -58,7 +58,7 @@ def uniform(
     Raises
     ------
     InputError
-            If the corners of a tetrahedron lie in a plane.
+        If the corners of a tetrahedron lie in a plane.
     """
     forms = closed_form(shape.name)
     values = scalars(shape, dimensions) | {"pi": PI}

@@ -122,19 +122,19 @@ def mass_properties(parts: Sequence[Part], where: str = "") -> MassProperties:
     parts : sequence of Part
         At least one that is not subtracted.
     where : str
-            Place of the parts in the scene, put in front of every error message, with the number of the part if
-            several.
+        Place of the parts in the scene, put in front of every error message, with the number of the part if
+        several.
 
     Returns
     -------
     MassProperties
-            Exact for rational dimensions, except for pi (2^-320) and the rounding errors of given rotations.
+        Exact for rational dimensions, except for pi (2^-320) and the rounding errors of given rotations.
 
     Raises
     ------
     InputError
-            If a part is not a valid body, if the total mass is not positive, or if no body can have the resulting
-            moments, for example because a hole is larger than the part that it is cut from.
+        If a part is not a valid body, if the total mass is not positive, or if no body can have the resulting
+        moments, for example because a hole is larger than the part that it is cut from.
     """
     if not parts:
         raise InputError(f"{_prefix(where)}expected at least one part, got none")

@@ -173,7 +173,7 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: 
     Raises
     ------
     InputError
-            If the density is no polynomial in x, y, z, has a degree above LARGEST_DEGREE, or uses another name.
+        If the density is no polynomial in x, y, z, has a degree above LARGEST_DEGREE, or uses another name.
     """
     prefix = f"{where}: " if where else ""
     expected = f"{prefix}expected a density that is a polynomial in x, y, z, got {show(source)}"

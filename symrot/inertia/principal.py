@@ -148,15 +148,15 @@ def principal_axes(inertia: Any, where: str = "") -> Principal:
     Parameters
     ----------
     inertia : 3x3 numbers or texts, kg m^2
-            Symmetric, products with the minus sign. A tensor that no body can have is accepted.
-        where : str
-            Place of the tensor in the scene, put in front of an error message.
+        Symmetric, products with the minus sign. A tensor that no body can have is accepted.
+    where : str
+        Place of the tensor in the scene, put in front of an error message.
 
     Returns
     -------
     Principal
-            The double nearest to each moment and to each component of the axes is correctly rounded, even if moments
-            are nearly equal.
+        The double nearest to each moment and to each component of the axes is correctly rounded, even if moments
+        are nearly equal.
 
     Raises
     ------

@@ -258,9 +258,9 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
     shape : Shape
         An entry of :data:`SHAPES`.
     dimensions : mapping of str to number, text, or list of them
-            Values that :func:`symrot.formula.exact_numbers.read` accepts, in m (masses in kg).
-        where : str
-            Place of the dimensions in the scene, put in front of every error message.
+        Values that :func:`symrot.formula.exact_numbers.read` accepts, in m (masses in kg).
+    where : str
+        Place of the dimensions in the scene, put in front of every error message.
 
     Returns
     -------

@@ -71,7 +71,7 @@ class Solid:
     Parameters
     ----------
     name : str
-            Name of the shape.
+        Name of the shape.
     dimensions : mapping of str to Expr
         Lengths in m, by the names that the map uses.
     measure : Expr
@@ -313,12 +313,12 @@ def solid(name: str, *, mass: Any = None, density: Any = None, **dimensions: Any
     name : str
         A key of :data:`symrot.inertia.shapes.SHAPES`.
     mass : number, str or Expr, kg, optional
-            Mass of a uniform body; the symbol ``m`` if neither mass nor density is given.
-        density : number, str or Expr, optional
-            Given instead of the mass, in kg per m^3, m^2 or m: a polynomial in x, y, z (m, axes of the shape). A text
-            may use the names of the dimensions: ``"1 + z/height"``.
-        **dimensions : number, str or Expr, m
-            Dimensions by the names in the table of shapes; an omitted dimension is the symbol in that table.
+        Mass of a uniform body; the symbol ``m`` if neither mass nor density is given.
+    density : number, str or Expr, optional
+        Given instead of the mass, in kg per m^3, m^2 or m: a polynomial in x, y, z (m, axes of the shape). A text
+        may use the names of the dimensions: ``"1 + z/height"``.
+    **dimensions : number, str or Expr, m
+        Dimensions by the names in the table of shapes; an omitted dimension is the symbol in that table.
 
     Returns
     -------

@@ -31,11 +31,11 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
     Parameters
     ----------
     angles : array, shape (n, ..., 3)
-            rad, in order of application, sampled so closely that no angle changes by pi/2 between samples.
-        sequence : str
-        locked : bool array, shape (n, ...), optional
-            True at samples in gimbal lock, as returned together with the angles. Such a sample gets the third angle of
-            the last sample that is not locked, and the first angle that gives the same attitude.
+        rad, in order of application, sampled so closely that no angle changes by pi/2 between samples.
+    sequence : str
+    locked : bool array, shape (n, ...), optional
+        True at samples in gimbal lock, as returned together with the angles. Such a sample gets the third angle of
+        the last sample that is not locked, and the first angle that gives the same attitude.
 
     Notes
     -----

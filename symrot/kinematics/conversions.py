@@ -355,8 +355,8 @@ def quaternion_to_mrp(q: Any, shadow: bool = True) -> Array:
     ----------
     q : array, shape (..., 4)
     shadow : bool
-            Each attitude has two sets, one from q and one from -q. True: return the shorter set, of length at most 1.
-            False: return the set of q itself, which grows without bound toward q = (-1, 0, 0, 0), and is NaN there.
+        Each attitude has two sets, one from q and one from -q. True: return the shorter set, of length at most 1.
+        False: return the set of q itself, which grows without bound toward q = (-1, 0, 0, 0), and is NaN there.
     """
     return _by_components(_mrp_short if shadow else _mrp_of_sign, array_of(q, 4, what="a quaternion"), 3)
 
@@ -438,9 +438,9 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
     angles : array, shape (..., 3)
         The middle angle in [0, pi] (proper) or [-pi/2, pi/2] (Tait-Bryan), the others in [-pi, pi].
     locked : bool array, shape (...)
-            True where only the sum or the difference of first and third angle is determined. There the third angle (in
-            order of application) is set to zero, as SciPy does, and the middle angle to its value at lock, which
-            changes the attitude by at most ``lock``.
+        True where only the sum or the difference of first and third angle is determined. There the third angle (in
+        order of application) is set to zero, as SciPy does, and the middle angle to its value at lock, which
+        changes the attitude by at most ``lock``.
 
     Notes
     -----

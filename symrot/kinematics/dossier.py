@@ -26,9 +26,9 @@ class LockedPoint:
     middle : Expr
         The angle, rad.
     silent_rates : ImmutableMatrix, shape (3, 1)
-            Angle rates that do not rotate the body: the null vector of B. First and third angle cancel each other.
+        Angle rates that do not rotate the body: the null vector of B. First and third angle cancel each other.
     lost_axis_b : ImmutableMatrix, shape (3, 1)
-            The unit direction (body components) about which no angle rates can rotate the body: ``lost^T B = 0``.
+        The unit direction (body components) about which no angle rates can rotate the body: ``lost^T B = 0``.
 
     Examples
     --------
@@ -58,12 +58,12 @@ class SingularityDossier:
     jacobian_b, jacobian_s : EulerRateMatrix
         B of ``omega = B dq/dt`` in body and space components.
     locked : tuple of LockedPoint
-            The singular points in one period of the middle angle.
+        The singular points in one period of the middle angle.
     regular_sequences : tuple of str
         Sequences regular at every attitude where this one locks.
     partly_regular : dict of str to Set
-            Sequences that lock at some of those attitudes only. The set holds the values of phi (intrinsic) or psi
-            (extrinsic) at which they lock, with the other outer angle zero.
+        Sequences that lock at some of those attitudes only. The set holds the values of phi (intrinsic) or psi
+        (extrinsic) at which they lock, with the other outer angle zero.
     singular_sequences : tuple of str
         Sequences that lock wherever this one does.
 
@@ -195,7 +195,7 @@ def singularity_dossier(sequence: str) -> SingularityDossier:
     Returns
     -------
     SingularityDossier
-            Angles in rad; rate matrices in body and in space components. ``print`` shows all its entries.
+        Angles in rad; rate matrices in body and in space components. ``print`` shows all its entries.
 
     Raises
     ------

@@ -130,7 +130,7 @@ def function_of_skew(function: Callable[[Expr], Expr], at_zero: Expr, size: Expr
     function : callable of one Expr
         e.g. ``exp``.
     at_zero : Expr
-            Value (limit) of ``function`` at zero.
+        Value (limit) of ``function`` at zero.
     size : Expr
         Length of the vector, positive.
     """

@@ -23,9 +23,9 @@ class Cursor:
     source, where : str
         The whole formula, and its place for error messages.
     synonyms : mapping
-            Text of a token -> the text under which the interpreter knows it.
-        after_space : set of int
-            Positions of the items that follow a LaTeX command for space.
+        Text of a token -> the text under which the interpreter knows it.
+    after_space : set of int
+        Positions of the items that follow a LaTeX command for space.
     """
 
     synonyms: ClassVar[Mapping[str, str]] = {}

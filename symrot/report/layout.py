@@ -92,14 +92,14 @@ def columns(
     Parameters
     ----------
     rows : sequence of rows of text
-            The first row may be the head.
-        width : int, optional
-            Width of a line. Columns of text are wrapped to fit; a table of numbers that is too wide continues in a
-            second part below the first. Default: the width that :func:`room` returns.
-        wrap : int
-            Index of the column that is wrapped first; other columns are wrapped only if that is not enough.
-        right : sequence of int
-            Indices of right-aligned columns: numbers, which are never wrapped.
+        The first row may be the head.
+    width : int, optional
+        Width of a line. Columns of text are wrapped to fit; a table of numbers that is too wide continues in a
+        second part below the first. Default: the width that :func:`room` returns.
+    wrap : int
+        Index of the column that is wrapped first; other columns are wrapped only if that is not enough.
+    right : sequence of int
+        Indices of right-aligned columns: numbers, which are never wrapped.
     """
     if not rows:
         return []

@@ -110,15 +110,15 @@ class OutputError:
     Attributes
     ----------
     output : str
-            Index of the output, such as ``"dq[0]"``.
-        bound : float
-            Largest possible difference between the computed and the exact value on the box, in the unit of the output.
-        pointwise : float
-            The largest bound found at a single point of the box. The method cannot give a ``bound`` below this number.
-        converged : bool
-            Whether ``bound`` is about as small as this method can make it.
-        modulo_turns : bool
-            Whether the error is measured modulo multiples of 2 pi.
+        Index of the output, such as ``"dq[0]"``.
+    bound : float
+        Largest possible difference between the computed and the exact value on the box, in the unit of the output.
+    pointwise : float
+        The largest bound found at a single point of the box. The method cannot give a ``bound`` below this number.
+    converged : bool
+        Whether ``bound`` is about as small as this method can make it.
+    modulo_turns : bool
+        Whether the error is measured modulo multiples of 2 pi.
 
     Examples
     --------
@@ -189,11 +189,11 @@ class LargestBox:
     size : float
         Width of the box relative to the box that the search started from.
     box : mapping of str to (float, float)
-            Index of each input -> its range, in the unit of the input.
-        error : float
-            The largest bound of an output on that box.
-        data : mapping
-            The same results as plain data.
+        Index of each input -> its range, in the unit of the input.
+    error : float
+        The largest bound of an output on that box.
+    data : mapping
+        The same results as plain data.
 
     Examples
     --------
@@ -285,9 +285,9 @@ def audit(
     Parameters
     ----------
     *paths : str or Path
-            Certificates NAME.cert.json, each in the folder with the files that it names.
-        object_file : str or Path, optional
-            NAME.o as your compiler made it; the audit compares each of its roundings with the C text.
+        Certificates NAME.cert.json, each in the folder with the files that it names.
+    object_file : str or Path, optional
+        NAME.o as your compiler made it; the audit compares each of its roundings with the C text.
     flags : str, optional
         Compiler and flags, ``"gcc -O3 -mfma"``: the audit fails if they void the certificate.
     rerun_bounds : bool

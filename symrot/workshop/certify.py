@@ -83,9 +83,9 @@ def audit_file(
     Parameters
     ----------
     path : Path
-            NAME.cert.json, in the folder with the files that it names.
-        object_file : Path, optional
-            The compiled NAME.c; each of its roundings is compared with the C text.
+        NAME.cert.json, in the folder with the files that it names.
+    object_file : Path, optional
+        The compiled NAME.c; each of its roundings is compared with the C text.
     rerun : bool
         Whether bounds of rounding errors are computed again; otherwise they are compared with the stored ones.
     coq : bool

@@ -36,10 +36,10 @@ def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
     texts : mapping of str to str
         File name -> text: the kernel and the headers that it includes.
     source : str
-            The name of the C file in ``texts``.
-        programs : str
-            The digest of symrot's sources. The section comes from the cache if the digest, the texts and the versions
-            of the compilers are unchanged.
+        The name of the C file in ``texts``.
+    programs : str
+        The digest of symrot's sources. The section comes from the cache if the digest, the texts and the versions
+        of the compilers are unchanged.
     """
     versions = [compiler_version(compiler) for compiler in COMPILERS]
     key = f"objects of {json.dumps([source, dict(texts), versions])} by {programs}"

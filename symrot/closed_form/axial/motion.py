@@ -147,15 +147,15 @@ def motion(
         Principal moments, kg m^2, positive.
     axis : 0, 1 or 2
     torque : number
-            Torque about the axis, N m, fixed in the body.
-        omega0 : 3 numbers
-            rad/s; nonzero across the axis only if the body is symmetric about it.
-        quaternion0 : 4 numbers
-            Body to space, scalar first.
-        damping : number
-            Coefficient of the torque ``-damping*omega`` about the axis, N m s.
-        damping_across : number
-            The same for every axis across the driven axis, N m s.
+        Torque about the axis, N m, fixed in the body.
+    omega0 : 3 numbers
+        rad/s; nonzero across the axis only if the body is symmetric about it.
+    quaternion0 : 4 numbers
+        Body to space, scalar first.
+    damping : number
+        Coefficient of the torque ``-damping*omega`` about the axis, N m s.
+    damping_across : number
+        The same for every axis across the driven axis, N m s.
 
     Raises
     ------

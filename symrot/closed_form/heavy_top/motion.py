@@ -51,9 +51,9 @@ def motion(
         Moments about the fixed point along the body's axes, kg m^2; the two across the axis of the centre of mass are
         equal. Fractions, ints and floats are taken at their exact values.
     weight : number
-            Weight, N.
-        center_of_mass : 3 numbers
-            From the fixed point, body axes, m; it must lie on one of the axes.
+        Weight, N.
+    center_of_mass : 3 numbers
+        From the fixed point, body axes, m; it must lie on one of the axes.
     omega0 : 3 numbers
         Angular velocity in body axes, rad/s.
     quaternion0 : 4 numbers

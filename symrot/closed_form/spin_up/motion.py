@@ -112,10 +112,10 @@ def motion(
         Principal moments, kg m^2, positive; the two across the axis are equal.
     axis : 0, 1 or 2
     torque : number
-            Torque about the axis, N m, fixed in the body.
-        omega0, quaternion0 : 3 and 4 numbers
-            Angular velocity along the principal axes, rad/s, not parallel to the axis; attitude, body to space, scalar
-            first.
+        Torque about the axis, N m, fixed in the body.
+    omega0, quaternion0 : 3 and 4 numbers
+        Angular velocity along the principal axes, rad/s, not parallel to the axis; attitude, body to space, scalar
+        first.
 
     Raises
     ------

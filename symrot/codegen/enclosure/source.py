@@ -35,11 +35,11 @@ def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequen
     enclosure : Enclosure or None
         None for a right-hand side that needs no enclosure.
     order : int
-            Order N of the polynomials that approximate the states; the table of radii depends on it. If the rates
-            deviate by at most D on a disc of ``reach`` steps, a step of size h has an error of at most ``h D
-            reach^-N/((N + 1)(1 - 1/reach))``.
-        edges : sequence of int
-            Edges of the blocks of states whose errors are judged separately, from 0 to the number of states.
+        Order N of the polynomials that approximate the states; the table of radii depends on it. If the rates
+        deviate by at most D on a disc of ``reach`` steps, a step of size h has an error of at most ``h D
+        reach^-N/((N + 1)(1 - 1/reach))``.
+    edges : sequence of int
+        Edges of the blocks of states whose errors are judged separately, from 0 to the number of states.
     """
     if enclosure is None:
         return "#define SYMROT_ENCLOSED 0\n#define SYMROT_DEPENDS 0\n"

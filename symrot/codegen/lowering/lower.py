@@ -119,14 +119,14 @@ def lower(
     Parameters
     ----------
     signature : Signature
-            The variables are the components of its input arguments; every other symbol is a physical constant. It must
-            not contain the parameter argument, which is appended here once its size is known.
-        outputs : sequence of (component name, Expr)
-            Component names and expressions, in the order of the output arguments.
+        The variables are the components of its input arguments; every other symbol is a physical constant. It must
+        not contain the parameter argument, which is appended here once its size is known.
+    outputs : sequence of (component name, Expr)
+        Component names and expressions, in the order of the output arguments.
     definitions : sequence of (Symbol, Expr)
-            Quantities with a physical name; later definitions and the outputs use this symbol.
-        parameter_argument : str
-            Name of the array argument for the constants that are computed once.
+        Quantities with a physical name; later definitions and the outputs use this symbol.
+    parameter_argument : str
+        Name of the array argument for the constants that are computed once.
 
     Returns
     -------

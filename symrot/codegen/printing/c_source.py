@@ -233,9 +233,9 @@ def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> st
     Parameters
     ----------
     program : Program
-            The program to print. Its outputs must not overlap its inputs.
-        qualifier : str
-            Text in front of the definition, e.g. ``"static inline "``.
+        The program to print. Its outputs must not overlap its inputs.
+    qualifier : str
+        Text in front of the definition, e.g. ``"static inline "``.
     real : Real
         ``DOUBLE`` or ``FLOAT``; the name of the function for floats ends in ``f``.
     """

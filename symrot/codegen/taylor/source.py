@@ -31,12 +31,12 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
     program : Program
         The right-hand side ``dy = f(t, y, p)``.
     edges : sequence of int
-            Edges of the blocks of states whose errors are judged separately, from 0 to the number of states.
-        scales : sequence of float
-            One per block: with 0 its error is relative to the block's own size, otherwise relative to this positive
-            number.
-        order : int
-            Order of the series: even, at least 4.
+        Edges of the blocks of states whose errors are judged separately, from 0 to the number of states.
+    scales : sequence of float
+        One per block: with 0 its error is relative to the block's own size, otherwise relative to this positive
+        number.
+    order : int
+        Order of the series: even, at least 4.
 
     Raises
     ------

@@ -48,9 +48,9 @@ def moved(program: Program, parameters: Parameters) -> tuple[Program, Parameters
     Parameters
     ----------
     program : Program
-            ``dy = f(t, y, p)``, with the arguments t, y, p (optional) and dy; the time occurs in it.
-        parameters : tuple of (name, Node)
-            The components of p as formulas of constants. Those of the result also contain the symbol ``epoch``, in s.
+        ``dy = f(t, y, p)``, with the arguments t, y, p (optional) and dy; the time occurs in it.
+    parameters : tuple of (name, Node)
+        The components of p as formulas of constants. Those of the result also contain the symbol ``epoch``, in s.
     """
     return _Mover(program, parameters).result()
 
@@ -61,9 +61,9 @@ def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tupl
     Parameters
     ----------
     formulas : sequence of Node
-            Formulas of the time, of constants, and of states with any names.
-        constants : collection of str
-            The names of constants; all other names are states.
+        Formulas of the time, of constants, and of states with any names.
+    constants : collection of str
+        The names of constants; all other names are states.
     """
     used = sorted(set().union(*map(names, formulas)) - {TIME})
     shared = tuple((name, ("symbol", name)) for name in used if name in constants)

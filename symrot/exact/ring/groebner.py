@@ -34,11 +34,11 @@ def groebner_basis(
     polynomials : sequence of PolyElement
         The generators of the ideal, in ``ring``.
     ring : PolyRing
-            Ring over a field, with any order of monomials.
-        most_products : int
-            The budget.
-        spent : list of one int, optional
-            The part of the budget used so far; several calls may share it.
+        Ring over a field, with any order of monomials.
+    most_products : int
+        The budget.
+    spent : list of one int, optional
+        The part of the budget used so far; several calls may share it.
 
     Raises
     ------

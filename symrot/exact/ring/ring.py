@@ -81,11 +81,11 @@ class FormulaRing:
     Parameters
     ----------
     expressions : sequence of Expr
-            All expressions that will be read into the ring.
-        relations : sequence of Expr
-            Hypotheses, each an expression that is zero.
-        domain : sequence of Expr
-            Formulas that are nonnegative wherever the expressions are defined, such as radicands that SymPy cancelled.
+        All expressions that will be read into the ring.
+    relations : sequence of Expr
+        Hypotheses, each an expression that is zero.
+    domain : sequence of Expr
+        Formulas that are nonnegative wherever the expressions are defined, such as radicands that SymPy cancelled.
 
     Raises
     ------
