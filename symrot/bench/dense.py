@@ -75,7 +75,7 @@ def _symrot(problem: Problem, method: str, tolerance: float, times: Floats) -> C
 
 
 def measure(name: str, samples: int, rounds: int) -> list[Sampled]:
-    """Return the runs of all contestants on one motion."""
+    """Time all contestants on one motion, and return their runs with times and errors."""
     problem, exact = Problem(scene(name)), reference(name)
     times = np.linspace(problem.start, problem.stop, samples)
     runs = {("taylor", tolerance): _symrot(problem, "taylor", tolerance, times) for tolerance in OURS}

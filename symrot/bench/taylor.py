@@ -269,7 +269,7 @@ def _contestants(problem: _Problem, settings: bool) -> list[tuple[str, float, Ti
 
 
 def measure(name: str, rounds: int = 9, settings: bool = False, scale: float = 1.0) -> list[Run]:
-    """Return the runs of all contestants on one motion; ``scale`` shortens its span."""
+    """Time all contestants on one motion, and return their runs; ``scale`` shortens its span."""
     problem, exact = _Problem(name, scale), reference(name, scale)
     return raced(_contestants(problem, settings), partial(problem.error, exact=exact), rounds)
 

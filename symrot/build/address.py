@@ -1,4 +1,4 @@
-"""Memory addresses of arrays, which compiled functions are called with."""
+"""The memory address of an array, for calls of compiled functions."""
 
 import ctypes
 from typing import Any, overload

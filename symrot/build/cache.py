@@ -93,7 +93,7 @@ def compiler() -> Compiler:
         if path is not None:
             return Compiler((path, *command[1:]), _identity(path, command[1:]))
     reason = f"CC={chosen!r} names no program" if chosen else f"none of {', '.join(COMPILERS)} is on the path"
-    raise CompilerError(f"expected a C compiler: {reason}; set the environment variable CC to one")
+    raise CompilerError(f"expected a C compiler: {reason}; set CC to one")
 
 
 def missing() -> str:

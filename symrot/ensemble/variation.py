@@ -223,7 +223,7 @@ def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
 
 
 def _representative(column: Floats) -> Fraction:
-    """Return one value for a whole column: zero if all values are zero, else a value that no rule treats specially."""
+    """Return one value for a whole column: zero if all values are zero, else a value without effect on the plan."""
     return Fraction(float(column[np.argmax(column != 0)]))
 
 
@@ -254,7 +254,7 @@ def read_variation(
         own_columns = _columns(scene, places, name, values)
         twice = next((other for other in own_columns if other in columns), None)
         if twice is not None:
-            raise InputError(f"parameters: expected each constant only once, got {twice} again in {name!r}")
+            raise InputError(f"parameters: expected each constant once, got {twice} a second time, in {name!r}")
         columns |= own_columns
         arrays[name] = next(iter(own_columns.values()))
     counts = {name: len(array) for name, array in arrays.items()}

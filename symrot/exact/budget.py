@@ -21,7 +21,7 @@ MOST_RINGS = 2000
 
 @dataclass
 class _Budget:
-    """The number of readings that one decision may still do, and the stored results of earlier readings."""
+    """How often one decision may still read a formula into a ring, and the stored results of earlier readings."""
 
     left: int = MOST_RINGS
     results: dict[Hashable, Any] = field(default_factory=dict)

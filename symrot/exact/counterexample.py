@@ -260,7 +260,7 @@ def _shortest(number: Expr) -> Expr:
 
 
 def _occurring(poly: PolyElement) -> set[int]:
-    """Return the indices of the generators that occur in a polynomial."""
+    """Return the indices of the variables (generators of the ring) that occur in a polynomial."""
     return {number for mono in poly for number, power in enumerate(mono) if power}
 
 

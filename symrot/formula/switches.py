@@ -236,7 +236,7 @@ def _degree(node: Node) -> int:
 
 @lru_cache(maxsize=256)
 def smooth(sources: tuple[str, ...]) -> Smooth:
-    """Return formulas given as text as smooth formulas with modes and switches."""
+    """Return formulas, given as text, as smooth formulas with the switches that replace their jumps and kinks."""
     nodes = [parse(source, switching=True) for source in sources]
     used_names = set().union(*map(names, nodes))
     prefix = MODES

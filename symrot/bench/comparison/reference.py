@@ -293,7 +293,7 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
             before = path
         steps = int(steps * 1.5)
     if finest is None:
-        raise _Unavailable("the fixed steps needed are more than allowed")
+        raise _Unavailable("the motion needs more fixed steps than allowed")
     return [_long_state(general, state, end) for state, end in zip(finest, general.ends, strict=True)]
 
 

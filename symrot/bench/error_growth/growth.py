@@ -179,7 +179,7 @@ METHODS = (
 
 
 def growth(track: Track, long: bool = False, say: Callable[[str], object] = lambda text: None) -> list[Curve]:
-    """Return the curves of all methods that can follow this motion."""
+    """Return the error curves of all methods that can compute this motion."""
     curves = []
     for method in METHODS:
         say(f"{track.scene.name}: {method.name} ..")

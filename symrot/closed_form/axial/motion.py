@@ -64,8 +64,8 @@ class AxialMotion:
         """
         if quaternion and not self.has_attitude:
             raise InputError(
-                "the attitude of a body that is driven about its axis and rotates across it has another closed form, "
-                "that of symrot.closed_form.spin_up.motion, and none with damping"
+                "expected no request for the attitude of a body that also rotates across the driven axis; use "
+                "symrot.closed_form.spin_up.motion, or steps if the body is damped"
             )
         times = times_of(t)
         if self._loops is None:

@@ -83,7 +83,7 @@ def _constant(node: Node, places: Mapping[str, str]) -> str:
 
 
 def _disc(system: Recurrences, number: int, places: Mapping[str, str]) -> str:
-    """Return the C expression for the disc of series ``number``; ``places`` names the values that it uses."""
+    """Return the C expression for the disc around the values of series ``number``; ``places`` names its operands."""
     series = system.series[number]
     own = [f"d{operand}" for operand in value_operands(series)]
     if series.rule == "state":

@@ -181,7 +181,10 @@ class _Placer:
         return {operand for operand, uses in count.items() if uses <= most_uses}
 
     def level(self, i: int) -> int:
-        """Return in which round of an order a series can be computed; states are known before the first round."""
+        """Return the round, within one order of the Taylor series, in which a series can be computed.
+
+        States are round 0.
+        """
         if i not in self.levels:
             s = self.series[i]
             older = {"driven": (1,), "primitive": (1,), "clock": (0,)}.get(s.rule, ())  # used below n only

@@ -136,7 +136,7 @@ class _Builder:
         return _READERS[kind](self, node, parts)
 
     def series_of(self, form: _Linear) -> int:
-        """Return the index of a series that equals a linear form; a new series is added if necessary."""
+        """Return the index of the Taylor series that equals a linear form; it is added if it is new."""
         if form.constant is None and list(form.terms.values()) == [ONE]:
             return next(iter(form.terms))
         return self.add(self.sum_of(form))

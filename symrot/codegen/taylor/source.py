@@ -162,7 +162,10 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- rows
 
     def sum(self, row: Row, phase: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
-        """Return the C expression of a row of sums times a factor; terms that are computed last are added last."""
+        """Return the C expression for four weighted sums of series, one per lane of a row, times a factor.
+
+        Terms that are computed last are added last.
+        """
         value = ""
         parts = [(self.picked(term.pack), term.weights) for term in row.terms]
         parts += [(self.slot(slot.columns, phase, sums), slot.weights) for slot in reversed(row.slots)]

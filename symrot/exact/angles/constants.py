@@ -24,7 +24,7 @@ Monomial = tuple[int, ...]
 
 @dataclass(frozen=True)
 class Number:
-    """An algebraic number that is a generator of the ring: a root, or ``2 cos(pi/order)``.
+    """An algebraic number that is a variable (generator) of the ring: a root, or ``2 cos(pi/order)``.
 
     ``multiplier * number`` is an algebraic integer whose conjugates are at most ``2^bound`` in size. A root has
     ``index`` and ``inside`` (its radicand), a cosine has ``order``; ``needs`` are the generators in the radicand.
@@ -45,12 +45,12 @@ class NotReal(ArithmeticError):
 
 
 def cosine_number(place: int, degree: int, order: int) -> Number:
-    """Return ``2 cos(pi/order)`` as the algebraic number of a generator."""
+    """Return the description of ``2 cos(pi/order)`` as an algebraic number; ``place`` is its variable in the ring."""
     return Number(place, degree, 1, 1, order)
 
 
 def root_number(place: int, index: int, inside: PolyElement, known: Mapping[int, Number]) -> Number:
-    """Return the root of a polynomial in known algebraic numbers as the algebraic number of a generator."""
+    """Return the description of a root of a polynomial in known numbers; ``place`` is its variable in the ring."""
     needs = _places(inside)
     needs = needs.union(*(known[n].needs for n in needs)) if needs else needs
     multiplier, bound = _integral(inside.items(), known)

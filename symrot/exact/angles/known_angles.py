@@ -20,7 +20,7 @@ def is_bound(atom: Expr, coefficient: Fraction) -> bool:
 
 
 def unbound(form: LinearForm) -> LinearForm:
-    """Return an angle without its multiples of inverse functions, whose sine and cosine can be computed."""
+    """Return an angle without its multiples of inverse trigonometric functions (see :func:`is_bound`)."""
     return LinearForm(tuple(term for term in form.terms if not is_bound(*term)), form.half_turns)
 
 

@@ -67,7 +67,7 @@ def _irreducible(poly: PolyElement) -> list[tuple[PolyElement, int]]:
 
 @dataclass(frozen=True)
 class Dependence:
-    """A root expressed by others: ``sqrt(number) * product(roots) / product(factor^n)``; factors are as in Radical."""
+    """A square root as a product of others: ``sqrt(number) * product(roots) / product(factor^n)``."""
 
     number: Rational
     roots: tuple[Root, ...]
