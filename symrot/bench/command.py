@@ -185,7 +185,7 @@ def run(options: Namespace, say: Progress) -> ModeReport:
     for name in ("scene", "methods", "tolerances", "rounds", "quick", "long", "plot", "out", "directory"):
         if getattr(options, name) not in (None, False) and name not in mode.takes:
             option = OPTION_TEXTS.get(name, f"--{name}")
-            raise InputError(f"bench: {mode.option or 'a SCENE'} takes no {option} (see `symrot bench --help`)")
+            raise InputError(f"bench: {mode.option or 'a SCENE'} does not accept {option} (see `symrot bench --help`)")
     if options.methods is not None or options.tolerances is not None:
         from symrot.bench.comparison.contestants import chosen, tolerances_from
 

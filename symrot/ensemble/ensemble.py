@@ -87,7 +87,7 @@ class Ensemble:
         """Attitude, unit, scalar first, body to space, shape (n, m, 4)."""
         if self._quaternion is None:
             raise InputError(
-                "the attitude was not computed, since neither a torque nor the output of the scene needs it: "
+                "the attitude was not computed, because neither a torque nor the output of the scene needs it; "
                 'add "quaternion" to output.quantities'
             )
         return self._quaternion

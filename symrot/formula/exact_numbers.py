@@ -96,7 +96,7 @@ PI: Fraction = _pi(BITS)
 def sqrt(value: Fraction) -> Fraction:
     """Return the square root of ``value`` >= 0, exactly if it is rational, else with a relative error below 2^-320."""
     if value < 0:
-        raise ValueError(f"the square root of a negative number ({show(value)})")
+        raise ValueError(f"the square root of the negative number {show(value)} is not real")
     numerator, denominator = isqrt(value.numerator), isqrt(value.denominator)
     if numerator * numerator == value.numerator and denominator * denominator == value.denominator:
         return Fraction(numerator, denominator)

@@ -39,7 +39,7 @@ def chart(name: str) -> Chart:
         return CHARTS[name]()
     if name in SEQUENCES:
         return euler.chart(name)
-    raise InputError(f"an attitude description is one of {', '.join(CHARTS)} or an Euler sequence; got {name!r}")
+    raise InputError(f"expected an attitude description ({', '.join(CHARTS)}) or an Euler sequence, got {name!r}")
 
 
 def convert(source: str, target: str, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:

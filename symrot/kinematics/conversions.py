@@ -66,9 +66,11 @@ def array_of(values: Any, *shape: int, what: str) -> Array:
     except ValueError:  # rows of different lengths
         real = False
     if not real:
-        raise InputError(f"{what} is an array of real numbers, last dimensions {shape}; got {type(values).__name__}")
+        raise InputError(
+            f"expected {what}, an array of real numbers with last dimensions {shape}, got {type(values).__name__}"
+        )
     if array.ndim < len(shape) or array.shape[array.ndim - len(shape) :] != shape:
-        raise InputError(f"{what} has last dimensions {shape}; got an array of shape {array.shape}")
+        raise InputError(f"expected {what} with last dimensions {shape}, got an array of shape {array.shape}")
     return array.astype(np.float64, copy=False)
 
 

@@ -171,7 +171,7 @@ def quaternion_to_dcm(q: Sequence[Any] | Matrix = symbols.quaternion, form: str 
     -2*q1**2 - 2*q2**2 + 1
     """
     if form not in FORMS:
-        raise InputError(f"the form of a dcm is one of {', '.join(map(repr, FORMS))}; got {form!r}")
+        raise InputError(f"form: expected one of {', '.join(map(repr, FORMS))}, got {form!r}")
     return _dcm(tuple(expressions(q, 4, "a quaternion")), form)
 
 
@@ -195,9 +195,9 @@ def quaternion_of_dcm(dcm_sb: Matrix, pivot: int = 0) -> ImmutableMatrix:
     the largest divisor (at least 1/2) loses no digits (:func:`symrot.kinematics.conversions.dcm_to_quaternion`).
     """
     if dcm_sb.shape != (3, 3):
-        raise InputError(f"a dcm is a 3 x 3 matrix, got shape {dcm_sb.shape}")
+        raise InputError(f"expected a dcm of shape (3, 3), got shape {dcm_sb.shape}")
     if pivot not in range(4):
-        raise InputError(f"pivot is 0, 1, 2 or 3, the component divided by; got {pivot!r}")
+        raise InputError(f"pivot: expected 0, 1, 2 or 3, the index of the component to divide by; got {pivot!r}")
     squares = _four_q_q(dcm_sb)
     return ImmutableMatrix(squares[pivot, :].T / (2 * squares[pivot, pivot] ** Rational(1, 2)))
 

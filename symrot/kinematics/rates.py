@@ -16,7 +16,7 @@ __all__ = ["angular_velocity", "euler_angular_velocity", "euler_rates", "quatern
 
 def _is_body(frame: str) -> bool:
     if frame not in ("body", "space"):
-        raise InputError(f"frame is 'body' or 'space', the frame whose components omega has; got {frame!r}")
+        raise InputError(f"frame: expected 'body' or 'space', the frame of the components of omega; got {frame!r}")
     return frame == "body"
 
 

@@ -140,7 +140,7 @@ def projection(name: str) -> Projection:
     for which in (CLASSICAL, MODIFIED):
         if which.name == name:
             return which
-    raise InputError(f"a set of Rodrigues parameters is 'rodrigues' or 'mrp'; got {name!r}")
+    raise InputError(f"expected 'rodrigues' (classical) or 'mrp' (modified Rodrigues parameters), got {name!r}")
 
 
 def chart(name: str) -> Chart:

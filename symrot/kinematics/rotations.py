@@ -33,7 +33,7 @@ FRAMES = ("body", "space")
 def check_frame(frame: str) -> str:
     """Return ``frame``; raise ``InputError`` if it is neither ``"body"`` nor ``"space"``."""
     if frame not in FRAMES:
-        raise InputError(f"frame is 'body' or 'space', the frame whose components omega has; got {frame!r}")
+        raise InputError(f"frame: expected 'body' or 'space', the frame of the components of omega; got {frame!r}")
     return frame
 
 
@@ -41,7 +41,7 @@ def expressions(values: Any, size: int, what: str) -> tuple[Expr, ...]:
     """Return ``values`` as a tuple of SymPy expressions; raise ``InputError`` unless there are exactly ``size``."""
     formulas = tuple(sympify(value) for value in values)
     if len(formulas) != size:
-        raise InputError(f"{what} takes {size} values, got {len(formulas)}: {formulas}")
+        raise InputError(f"expected {size} values for {what}, got {len(formulas)}: {formulas}")
     return formulas
 
 
@@ -51,7 +51,7 @@ def axis_number(axis: int | str) -> int:
         return AXES.index(axis.upper())
     if isinstance(axis, int) and not isinstance(axis, bool) and 0 <= axis < 3:
         return axis
-    raise InputError(f"an axis is 0, 1, 2 or one of the letters X, Y, Z; got {axis!r}")
+    raise InputError(f"expected an axis: 0, 1, 2 or one of the letters X, Y, Z; got {axis!r}")
 
 
 def unit_vector(axis: int | str) -> ImmutableMatrix:
@@ -77,7 +77,7 @@ def vee(matrix: Matrix) -> ImmutableMatrix:
     Only the entries (3,2), (1,3), (2,1) are read; the caller must ensure that the matrix is skew.
     """
     if matrix.shape != (3, 3):
-        raise InputError(f"vee takes a 3 x 3 matrix, got shape {matrix.shape}")
+        raise InputError(f"vee: expected a 3 x 3 matrix, got shape {matrix.shape}")
     return ImmutableMatrix([matrix[2, 1], matrix[0, 2], matrix[1, 0]])
 
 

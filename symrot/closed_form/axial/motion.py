@@ -209,7 +209,7 @@ class Driven:
             raise InputError(f"expected a quaternion that is not zero, got {list(quaternion0)}")
         if (rates[axis - 2] or rates[axis - 1]) and not self._symmetric:
             raise InputError(
-                "a body that rotates across the driven axis must be symmetric about it, got moments "
+                "expected a body that is symmetric about the driven axis if it rotates across it, got moments "
                 f"{[float(x) for x in self._moments]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
             )
         return self.moving(rates, [float(x) for x in number.unit([Fraction(x) for x in components])])

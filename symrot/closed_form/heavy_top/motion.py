@@ -100,8 +100,8 @@ class Top:
             raise InputError("direction: expected a direction of gravity that is not the zero vector, got zero")
         if len(along) > 1 or (along and not same(moments[along[0] - 2], moments[along[0] - 1])):
             raise InputError(
-                "a symmetric heavy top has its centre of mass on one axis of the body and equal moments about the two "
-                f"others, got the centre {[float(x) for x in center]} m and moments {[float(x) for x in moments]} "
+                "expected a centre of mass on one axis of the body and equal moments about the two other axes, "
+                f"got the centre {[float(x) for x in center]} m and moments {[float(x) for x in moments]} "
                 "kg m^2"
             )
         self.free = not along or not force
