@@ -23,7 +23,7 @@ class Exact(Protocol):
     ) -> tuple[Floats | None, Floats | None]:
         """Return angular velocity (n, 3), body axes, and attitude (n, 4) at the times.
 
-        None for a quantity switched off.
+        A quantity that is switched off is None.
         """
 
 

@@ -203,7 +203,7 @@ class ShapeMismatch(InputError):
 
 
 def matched_sides(left: Any, right: Any) -> tuple[list[Expr], list[Expr], Shape]:
-    """Return the entries of both sides of an equation and their common shape; 0 stands for a zero matrix of any shape.
+    """Return the entries of both sides of an equation and their common shape; 0 means a zero matrix of any shape.
 
     Raises
     ------

@@ -170,7 +170,7 @@ class Limit:
 
 @dataclass(frozen=True)
 class RateFacts:
-    """The data that a :class:`RateMatrix` holds besides its entries: frame, parameters, determinant, inverse.
+    """The data of a :class:`RateMatrix` in addition to its entries: frame, parameters, determinant, inverse.
 
     The determinant depends on the parameters only through ``variable`` (an angle or a length). ``along(x)`` returns
     the determinant and the inverse with ``variable`` set to x, for x in ``domain``; their limits at the singular values
@@ -193,8 +193,8 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     """The rate matrix B(p) of ``omega = B(p) dp/dt``: an immutable SymPy matrix with its inverse and singular set.
 
     Arithmetic with a rate matrix gives plain SymPy matrices. A chart with four parameters and one constraint (unit
-    norm) has a 3 x 4 rate matrix. Its inverse is then 4 x 3 and its rates preserve the constraint; its determinant is
-    that of B with the gradient of the constraint as a fourth row.
+    norm) has a 3 x 4 rate matrix. The inverse is then 4 x 3, and the rates that it gives preserve the constraint; its
+    determinant is that of B with the gradient of the constraint as a fourth row.
 
     Attributes
     ----------

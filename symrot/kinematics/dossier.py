@@ -185,7 +185,7 @@ def _locked_point(sequence: str, middle: Expr) -> LockedPoint:
 
 @cache
 def singularity_dossier(sequence: str) -> SingularityDossier:
-    """Return where an Euler sequence is singular, what happens there, and which sequences are regular there.
+    """Return the singular points of an Euler sequence, its lost rates, and the sequences that are regular there.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """Writing of trajectories to NPZ or CSV files with labels, units, conventions and source.
 
-Equal motions, equal bytes.
+Equal motions give equal bytes.
 """
 
 import json

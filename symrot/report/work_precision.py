@@ -75,7 +75,7 @@ def _against(study: Mapping[str, Any]) -> list[str]:
 def lines(study: Mapping[str, Any]) -> list[str]:
     """Return a study of :func:`symrot.bench.comparison.work_precision.study` as lines of text.
 
-    The first is the title.
+    The first line is the title.
     """
     scene, reference, machine = study["scene"], study["reference"], study["machine"]
     others = [f"{other['name']} within {max(other['difference'], ROUNDING):.0e}" for other in reference["others"]]

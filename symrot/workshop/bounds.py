@@ -88,7 +88,7 @@ def _of_library(kernel: str, precision: str) -> tuple[Operations, RoundingProble
 def require_known(kernel: str) -> None:
     """Raise InputError unless a name is a kernel of the library, a scene or a file.
 
-    The message suggests a similar name.
+    The message suggests a similar name, if there is one.
     """
     path = Path(kernel)
     if kernel in kernel_names() or kernel in shipped_names() or (path.exists() and path.suffix not in EMITTED):

@@ -30,7 +30,7 @@ def kernel_of(name: str) -> str | None:
 def difference(certificate: Path) -> str:
     """Return ": " and the first difference of the files next to a certificate from the emitted files.
 
-    Empty if equal.
+    The text is empty if the files are equal.
     """
     name = certificate.name.removesuffix(".cert.json")
     kernel = kernel_of(name)

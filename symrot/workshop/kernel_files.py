@@ -168,9 +168,9 @@ def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
 
 
 def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[Path]:
-    """Write the library and the kernels of all shipped scenes, delete files of other kernels.
+    """Write the library and the kernels of all shipped scenes, and return the paths of the changed files.
 
-    Return the changed paths.
+    Files of kernels that no longer exist are deleted.
     """
     files = _all_files(targets, directory, progress)
     changed = write_files(directory, files)

@@ -87,7 +87,7 @@ class Reference(NamedTuple):
     def doubt(self) -> float:
         """The smallest difference from another reference, below which errors are meaningless.
 
-        Nan if there is no other.
+        It is nan if there is no other reference.
         """
         return min((difference for _, difference in self.others), default=math.nan)
 

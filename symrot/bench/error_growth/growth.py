@@ -194,7 +194,7 @@ def growth(track: Track, long: bool = False, say: Callable[[str], object] = lamb
 def exponent(revolutions: Floats, errors: Floats) -> float:
     """Return the exponent k of errors that grow as t^k, fitted after :data:`FROM` revolutions.
 
-    Nan for too few points.
+    It is nan if there are too few points.
     """
     chosen = (revolutions >= FROM) & np.isfinite(errors) & (errors > 0.0) & (errors < 0.5)
     if int(chosen.sum()) < 4:

@@ -243,7 +243,7 @@ class _Closure:
     def seek_in(self, s: Series) -> None:
         """Replace the products of the attitude in a sum by auxiliary states, all together.
 
-        Then search its other operands.
+        The other operands of the sum are then searched too.
         """
         alone = {
             i for i in s.operands if self.series[i].rule == "product" and self.of_attitude(self.polynomial(i))

@@ -183,7 +183,7 @@ class _Placer:
     def level(self, i: int) -> int:
         """Return the round, within one order of the Taylor series, in which a series can be computed.
 
-        States are round 0.
+        Round 0 contains the states, which are known before.
         """
         if i not in self.levels:
             s = self.series[i]

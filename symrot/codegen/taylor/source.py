@@ -183,7 +183,7 @@ class _Jet:
     def _rest_of_time(self, row: Row) -> str:
         """Return the C weights of ``t_low``, the low part of the time, in a row of sums.
 
-        Empty if the row has no time.
+        The text is empty if the row does not contain the time.
         """
         weights: list[Node] = []
         for number in row.lanes:

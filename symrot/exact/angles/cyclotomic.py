@@ -73,7 +73,7 @@ def doubled_cosine(times: int, n: int) -> tuple[int, ...]:
 def multiples(turns: Fraction, n: int) -> tuple[int, int]:
     """Return (k, l) with ``cos(turns pi) = cos(k pi/n)`` and ``sin(turns pi) = cos(l pi/n)``.
 
-    N * turns must be whole.
+    The product ``n * turns`` must be a whole number.
     """
     k = int(turns * n)
     return k, n // 2 - k
