@@ -76,7 +76,7 @@ def general_plan(scene: Scene) -> Plan:
 
 
 def measure(name: str | None = None, quick: bool = False, say: Progress = lambda text: None) -> dict[str, Any]:
-    """Return the savings by specialisation for the ladder, or for one scene, as data for JSON.
+    """Measure the savings by specialised kernels, for several scenes or for one, and return them as data for JSON.
 
     Raises
     ------

@@ -54,7 +54,7 @@ def remembered(key: Hashable, compute: Callable[[], Any]) -> Any:
 
 
 def spend_ring() -> None:
-    """Subtract one reading from the budget of the decision.
+    """Subtract one reading of a formula into a ring from the budget of the decision.
 
     Raises
     ------

@@ -41,7 +41,7 @@ class Cursor:
         return complaint(self.source, self.where, (item or self.peek()).start, expected)
 
     def enter(self, node: Node) -> None:
-        """Start to read a row, or a single item as a row."""
+        """Move the cursor to the beginning of a row, or of a single item as a row."""
         self.items: list[Node] = []
         self.index = 0
         self.flatten(node.items if isinstance(node, Row) else (node,))

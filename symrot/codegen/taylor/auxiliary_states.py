@@ -100,7 +100,7 @@ class _Closure:
         return parts[0] + (parts[1] if node[0] == "+" else _times(parts[1], constant(-1)))
 
     def polynomial(self, i: int) -> Polynomial | None:
-        """Return a series as a polynomial of states, functions of time and constants, or None if it is not one."""
+        """Return a series as a polynomial in states, functions of time and constants, or None if it is not one."""
         if i not in self.polynomials:
             s = self.series[i]
             result: Polynomial | None = None

@@ -63,14 +63,14 @@ def leaves_of(formulas: Iterable[Expr]) -> list[Expr]:
 
 
 def assumptions_of(leaf: Expr) -> list[Need]:
-    """Return the signs that a symbol is assumed to have."""
+    """Return the conditions that SymPy's assumptions on a symbol state, such as ``x > 0``."""
     known = ((leaf, "> 0", leaf.is_positive), (-leaf, "> 0", leaf.is_negative), (leaf, ">= 0", leaf.is_nonnegative),
              (-leaf, ">= 0", leaf.is_nonpositive), (leaf, "!= 0", leaf.is_nonzero))  # fmt: skip
     return [Need(formula, sign) for formula, sign, assumed in known if assumed]
 
 
 def needs_of(formulas: Iterable[Expr]) -> list[Need]:
-    """Return the needs of formulas and the needs of these needs, except those that hold because of their form."""
+    """Return the conditions under which formulas, and these conditions, are real; obvious ones are left out."""
     needs: dict[Need, None] = {}
     for node in _pieces(formulas):
         for need in _needs(node):

@@ -220,7 +220,7 @@ class FormulaRing:
         return accepted
 
     def _take_fine_constants(self) -> int:
-        """Return N of the generator 2 cos(pi/N) for constant angles that are no multiples of pi/24; 0 without any."""
+        """Return N of the number 2 cos(pi/N) that expresses constant angles, or 0 if multiples of pi/24 suffice."""
         if pi not in self.bases or not cyclotomic.needs_cyclotomic_field(self.bases[pi].denominator):
             return 0
         return cyclotomic.order(self.bases.pop(pi).denominator)
