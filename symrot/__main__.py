@@ -4,7 +4,10 @@ __all__ = ["main"]
 
 
 def main() -> int:
-    """Run the command line and return its exit code; Ctrl-C ends it quietly, even while modules are imported."""
+    """Run the command line and return its exit code.
+
+    Ctrl-C ends the program without a traceback, even while modules are still being imported.
+    """
     try:
         from symrot.cli.interrupt import repeat_lost_interrupts
 

@@ -17,8 +17,8 @@ Inertia tensor
     ``I_xy = -integral of x y dm``: products carry the minus sign. About the centre of mass, or about the
     fixed point of a body that has one.
 State
-    ``omega_b`` (3), quaternion (4), then further states. A plan leaves out the states that a scene does not need
-    (:mod:`symrot.planning.plan`).
+    The propagated numbers: ``omega_b`` (3), quaternion (4), then further states such as a clock. symrot leaves out
+    the numbers that a scene does not need (:mod:`symrot.planning.plan`).
 Units
     SI; angles in rad unless a label says deg.
 """

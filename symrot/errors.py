@@ -1,8 +1,8 @@
-"""The exceptions of symrot. Each message is one sentence: where, what was expected, what arrived instead.
+"""The exceptions of symrot. Each message is one sentence: the place, the expected value and the value that arrived.
 
 The command line prints the message and exits with code 2, or with code 1 if an audit fails. :class:`InputError` is also
-a ``ValueError``, since an argument has an unusable value. The others are not: they report the outcome of a computation,
-and an ``except ValueError`` must not hide it.
+a ``ValueError``, because an argument has an unusable value. The other exceptions are not: they report the outcome of a
+computation, and an ``except ValueError`` must not hide it.
 """
 
 __all__ = ["CertificateError", "CompilerError", "InputError", "PropagationError", "SymrotError", "complaint"]
@@ -23,7 +23,7 @@ class SymrotError(Exception):
 
 
 class InputError(SymrotError, ValueError):
-    """A scene, formula, mesh, option or other argument that cannot be used.
+    """An error in the user's input: a scene, formula, mesh, option or other argument cannot be used.
 
     Examples
     --------
@@ -36,7 +36,7 @@ class InputError(SymrotError, ValueError):
 
 
 class CompilerError(SymrotError):
-    """There is no C compiler, or it rejects the emitted kernel.
+    """The error raised if no C compiler is installed, or if the compiler rejects the emitted kernel.
 
     Examples
     --------
@@ -47,7 +47,7 @@ class CompilerError(SymrotError):
 
 
 class PropagationError(SymrotError):
-    """A motion cannot be propagated to its last time.
+    """The error raised if a motion cannot be propagated to its last time.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class PropagationError(SymrotError):
 
 
 class CertificateError(SymrotError):
-    """A kernel, an object file or a certificate does not hold what it claims.
+    """The error raised if a kernel, an object file or a certificate fails a check of its claims.
 
     Examples
     --------
@@ -76,7 +76,7 @@ class CertificateError(SymrotError):
 
 
 def complaint(source: str, where: str, position: int, expected: str) -> InputError:
-    """Return the error that names the expected text and the position, with an excerpt of the source around it."""
+    """Return an InputError that names the expected text and its position, with an excerpt of the source around it."""
     start = max(0, position - 25)
     excerpt = ("..." if start else "") + source[start : start + 50] + ("..." if len(source) > start + 50 else "")
     prefix = f"{where}: " if where else ""

@@ -86,15 +86,15 @@ impulse = J_x, J_y, J_z = _make("J_x J_y J_z", "N s")
 (W,) = _make("W", "N", positive=True)  # weight
 (n,) = _make("n", "rad/s", positive=True)  # mean motion
 (Omega,) = _make("Omega", "rad/s", positive=True)
-excess = delta_1, delta_2 = _make("delta_1 delta_2", "kg m^2", positive=True)  # of one moment over another
+excess = delta_1, delta_2 = _make("delta_1 delta_2", "kg m^2", positive=True)  # differences of principal moments
 (epsilon,) = _make("epsilon", "1")
 (D,) = _make("D", "1", positive=True)  # number of dimensions
 (E,) = _make("E", "J")  # energy
 (H,) = _make("H", "kg m^2/s", positive=True)  # length of the angular momentum
 momenta = p_phi, p_theta, p_psi = _make("p_phi p_theta p_psi", "kg m^2/s")  # conjugate to the Euler angles
 (g,) = _make("g", "m/s^2", positive=True)
-elliptic = sn, cn, dn = _make("sn cn dn", "1")  # of Jacobi, at the argument p t
-(mu,) = _make("mu", "1")  # their parameter, the square of the modulus
+elliptic = sn, cn, dn = _make("sn cn dn", "1")  # Jacobi's elliptic functions at the argument p t
+(mu,) = _make("mu", "1")  # parameter of the elliptic functions, the square of their modulus
 (p,) = _make("p", "rad/s", positive=True)
 amplitudes = a_1, a_3 = _make("a_1 a_3", "rad/s", positive=True)
 (mu_f,) = _make("mu_f", "1", positive=True)  # coefficient of friction
@@ -112,5 +112,5 @@ heights = u_1, u_2, u_3 = _make("u_1 u_2 u_3", "1")  # zeros of the cubic of a h
 # outputs of kernels
 jacobian_entries = _make(" ".join(f"B_{i}{j}" for i in "123" for j in "123"), "1")
 product_quaternion = _make("pq0 pq1 pq2 pq3", "1")
-vector = _make("vector_1 vector_2 vector_3", "")  # any vector: its unit is that of what it stands for
+vector = _make("vector_1 vector_2 vector_3", "")  # any vector, with the unit of the quantity that it represents
 turned_vector = _make("turned_1 turned_2 turned_3", "")

@@ -1,1 +1,1 @@
-"""Measurements of speed and accuracy, each a module run as ``python -m symrot.bench.NAME``."""
+"""Benchmarks of speed and accuracy; each module runs as ``python -m symrot.bench.NAME``."""

@@ -2,8 +2,8 @@
 
     python -m symrot.bench.closed_form [--rounds 300]
 
-The minimum over interleaved rounds counts, since other work on the machine only adds time. Errors are tested by
-``pytest tests/test_closed_form_*.py``.
+The result is the minimum over interleaved rounds, because other work on the machine only adds time. Errors are tested
+by ``pytest tests/closed_form``.
 """
 
 import argparse
@@ -58,7 +58,7 @@ def _seconds(run: Callable[[], Any]) -> float:
 
 
 def measure(rounds: int) -> list[tuple[str, str, list[float]]]:
-    """Return for each motion its name, its regime, and the least times, s.
+    """Return for each motion its name, its regime, and the smallest times measured, s.
 
     The times are: set-up, both quantities, omega alone, attitude alone, one sample, set-up with both quantities.
     """

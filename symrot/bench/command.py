@@ -1,4 +1,4 @@
-"""Modes of ``symrot bench`` as a table; each mode is an option of the command line.
+"""The modes of ``symrot bench`` as a table; each mode is an option of the command line.
 
 A mode takes the parsed options and a callback for progress messages; it returns a :class:`ModeReport`. The modules of a
 mode are imported only when it runs. To add a mode, write a function here or in its own module and add a row to
@@ -18,7 +18,7 @@ Progress = Callable[[str], object]
 
 
 class ModeReport(NamedTuple):
-    """Result of a mode: data for JSON, lines of text (the first is the title), and whether the mode succeeded."""
+    """The result of a mode: data for JSON, lines of text (the first is the title), and whether the mode succeeded."""
 
     data: Any
     lines: Sequence[str]
@@ -26,14 +26,14 @@ class ModeReport(NamedTuple):
 
 
 class Mode(NamedTuple):
-    """One mode of ``symrot bench``: its option, help text, accepted options, and function.
+    """A mode of ``symrot bench``: its option, help text, accepted options, and function.
 
-    The option of the study of a scene is "".
+    The mode that studies one scene has no option; its option is "".
     """
 
     option: str
     about: str
-    takes: frozenset[str]  # names of options
+    takes: frozenset[str]  # names of the accepted options
     run: Callable[[Namespace, Progress], ModeReport]
     more: Mapping[str, Any] | None = None  # further arguments of argparse's add_argument
 
@@ -115,7 +115,7 @@ STUDIES: dict[str, str] = {
     "start": "`symrot run` from a cold and from a warm start",
     "derive": "how long deriving takes",
 }
-"""Studies of a single question: module of :mod:`symrot.bench` -> the question."""
+"""Studies of a single question: name of a module of :mod:`symrot.bench` -> the question."""
 
 
 def _list(options: Namespace, say: Progress) -> ModeReport:
@@ -147,7 +147,7 @@ MODES: tuple[Mode, ...] = (
 )  # fmt: skip
 """All modes of ``symrot bench``."""
 
-OPTION_TEXTS = {"scene": "SCENE", "directory": "-o"}  # where a message does not name it --NAME
+OPTION_TEXTS = {"scene": "SCENE", "directory": "-o"}  # names of options in messages, if not --NAME
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -185,7 +185,7 @@ def run(options: Namespace, say: Progress) -> ModeReport:
     for name in ("scene", "methods", "tolerances", "rounds", "quick", "long", "plot", "out", "directory"):
         if getattr(options, name) not in (None, False) and name not in mode.takes:
             option = OPTION_TEXTS.get(name, f"--{name}")
-            raise InputError(f"bench: {mode.option or 'a SCENE'} takes no {option} (see `symrot bench --help`)")
+            raise InputError(f"bench: {mode.option or 'a SCENE'} does not accept {option} (see `symrot bench --help`)")
     if options.methods is not None or options.tolerances is not None:
         from symrot.bench.comparison.contestants import chosen, tolerances_from
 

@@ -6,8 +6,8 @@ The motions are those of :mod:`symrot.bench.taylor`. symrot is called as a user 
 ``propagate_grid``, and by ``propagate_until`` with ``c_output``, whose continuous output is then evaluated at all times
 at once. The array of times is made before the clock starts. Both run at several tolerances. The error of a run is that
 of its last sample against a series in 40 digits; the table also has the largest distance of its samples from those of
-symrot's tightest run. Each run of heyoka is compared with the fastest run of symrot whose error is not larger. Runs
-alternate; the median of the processor time counts.
+symrot's run with the tightest tolerance. Each run of heyoka is compared with the fastest run of symrot whose error is
+not larger. Runs alternate; the result is the median of the processor time.
 
 heyoka is optional: ``pip install heyoka``.
 """
@@ -27,15 +27,13 @@ from symrot.propagation.propagate import propagator
 
 __all__ = ["Sampled", "main", "measure"]
 
-OURS = tuple(10.0**-k for k in range(4, 15))  # from a tolerance whose errors are as large as the loosest peer's
+OURS = tuple(10.0**-k for k in range(4, 15))  # symrot's tolerances; the errors of the first match heyoka's largest
 WHOLE = 7  # states: angular velocity and attitude
 PEERS = (1e-9, 1e-12, 2.0**-52)
 
 
 class Sampled(NamedTuple):
-    """One contestant at one tolerance: seconds, error of the last sample, largest distance from the most accurate
-    run.
-    """
+    """One contestant at one tolerance: seconds, error of the last sample, distance of samples from the best run."""
 
     measured: Measured
     apart: float
@@ -77,7 +75,7 @@ def _symrot(problem: Problem, method: str, tolerance: float, times: Floats) -> C
 
 
 def measure(name: str, samples: int, rounds: int) -> list[Sampled]:
-    """Return the runs of all contestants on one motion."""
+    """Time all contestants on one motion, and return their runs with times and errors."""
     problem, exact = Problem(scene(name)), reference(name)
     times = np.linspace(problem.start, problem.stop, samples)
     runs = {("taylor", tolerance): _symrot(problem, "taylor", tolerance, times) for tolerance in OURS}

@@ -28,8 +28,8 @@ from symrot.ensemble import lanes
 
 __all__ = ["main", "measure"]
 
-SPREAD = 0.1  # relative spread of the initial states about those of the motion
-SHORTER = 20  # the span of the many is so much shorter
+SPREAD = 0.1  # relative spread of the initial states about the initial state of the motion
+SHORTER = 20  # factor by which the span of the large ensemble is shorter
 COMPARED = 16  # number of trajectories that are compared with the reference
 TIGHTEST = 1e-19  # tolerance of the reference in long double
 ORDERS = (8, 10, 12, 14, 16, 18, 20)
@@ -38,9 +38,7 @@ ENSEMBLE_TOLERANCES = (1e-6, 1e-12)  # few: each of its trajectories takes a cop
 
 
 class Start(NamedTuple):
-    """An ensemble to measure: its motion, initial states (n, N), end time, and reference end states of its first
-    members.
-    """
+    """An ensemble to measure: motion, initial states (n, N), end time, reference end states of its first members."""
 
     problem: Any
     y: Floats
@@ -174,7 +172,7 @@ def _heyoka(start: Start, tolerances: Sequence[float], many: bool) -> list[Batch
 
 
 def measure(start: Start, rounds: int, many: bool = False) -> list[Run]:
-    """Return the runs of all contestants on an ensemble, with their times and errors."""
+    """Time all contestants on an ensemble, and return their runs with times and errors."""
     ours, theirs = [10.0 ** (-k / 4) for k in range(4, 57)], [10.0 ** (-k / 2) for k in range(6, 33)]
     return raced([*_ours(start, ours), *_heyoka(start, theirs, many)], start.error, rounds, process_time)
 

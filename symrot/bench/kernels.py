@@ -1,14 +1,14 @@
-"""Kernels against those of other tools: operations, and ns for one sample, in a batch in cache, in one of 10^6.
+"""Comparison of kernels with those of other tools: operations, and ns for one sample and in batches of two sizes.
 
     python -m symrot.bench.kernels [--rounds 63] [--many 1000000] [--kernels NAME ..]
 
 All contestants alternate in one run, on one thread, on the same memory, and their results are compared. For batches of
-10^6, the rounds alternate between several blocks of memory: where the pages of a block lie in the processor's caches is
-chance, and changes the time of the same machine code by up to 8 %. Tools that emit C are compiled with the same
+10^6, the rounds alternate between several blocks of memory: the place of a block's pages in the processor's caches is
+random, and changes the time of the same machine code by up to 8 %. Tools that emit C are compiled with the same
 compiler and flags; heyoka's machine code, with its sines of 3.5 ulp, is linked to the same loops. CasADi's own
 evaluation is called from Python. "moves only" reads each input and writes each output of a batch with only a sum in
-between: roughly the time that memory access alone takes for a batch of 10^6. A kernel with a longer loop, which has
-fewer samples in flight at once, can be a few percent faster.
+between: roughly the time that memory access alone takes for a batch of 10^6. A kernel with a longer loop, which
+processes fewer samples at once, can be a few percent faster.
 """
 
 import argparse
@@ -43,9 +43,9 @@ CACHED, MANY = 1000, 1_000_000  # no power of two, at which all arrays would sha
 PROPER = ("zxz", "zyz", "xyx", "xzx", "yxy", "yzy")
 TAIT_BRYAN = ("zyx", "zxy", "xyz", "xzy", "yxz", "yzx")
 PAGE = 4096  # bytes
-PLACES = {"one": 1, "cached": 1, "many": 7}  # pieces of memory that rounds take in turn
-SHORTEST = 1e-3  # s, one measurement
-BAR = 1.05  # largest accepted ratio to the least time of the other tools
+PLACES = {"one": 1, "cached": 1, "many": 7}  # numbers of memory blocks between which rounds alternate
+SHORTEST = 1e-3  # s, least duration of one measurement
+BAR = 1.05  # largest accepted ratio of symrot's time to the least time of the other tools
 FLOOR = "moves only"
 
 Floats = NDArray[np.float64]
@@ -83,8 +83,8 @@ def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Float
     """Return inputs and outputs in memory that all contestants share; a sample is a row, or in a batch a column.
 
     The outputs follow the inputs in one block, which begins on a page boundary and has been written completely. With
-    ordinary allocation, their distance modulo a page would differ in each run, as would the kind of pages, and every
-    second vector would lie across two cache lines. ``place`` numbers the blocks, which hold the same values.
+    ordinary allocation, their distance modulo a page and the kind of pages would differ in each run, and every second
+    vector would lie across two cache lines. ``place`` is the number of the block; all blocks hold the same values.
     """
     samples = np.concatenate(_samples(name, count))
     size = sum(a.size for a in kernel_program(name).signature.arguments if a.role == "out")
@@ -330,7 +330,7 @@ def _casadi_text(name: str, function: Any) -> str:
 
 
 def measure(contestants: Sequence[Contestant], rounds: int) -> None:
-    """Measure all contestants in rounds, each in another order, since the caches depend on the previous contestant."""
+    """Measure all contestants in rounds, each in another order, because the previous contestant fills the caches."""
     draw = Random(5)
     for number in range(rounds):
         for contestant in draw.sample(contestants, len(contestants)):
@@ -351,7 +351,7 @@ def _line(contestant: Contestant) -> str:
 
 
 def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
-    """Return the operation count of symrot and the least count of the other tools."""
+    """Return the operation count of symrot and the smallest count of the other tools."""
     mine, *others = (sum(c.operations.values()) for c in contestants if c.operations)
     return mine, min(others)
 
@@ -359,8 +359,8 @@ def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
 def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
     """Return the ratio of symrot's time to that of the best other tool, for each shape.
 
-    The least times are compared, except for batches limited by memory, which other processes use too: there the ratio
-    is taken round by round, and the median counts, the largest over the other tools.
+    The least times are compared, except for batches limited by memory, which other processes use too. There the ratio
+    is computed for each round and each other tool; the result is the largest median.
     """
     own, others = contestants[0], [c for c in contestants[1:] if c.name != FLOOR]
     ratios = {}
@@ -394,9 +394,7 @@ def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
 
 
 def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return the cases in which symrot misses its goal: more operations than the best tool, or over 1.05 of its
-    time.
-    """
+    """Return the cases in which symrot misses its goal: more operations than the best tool, or 1.05 of its time."""
     mine, best = _operations(contestants)
     over = [f"{name} {shape} {ratio:.3f}" for shape, ratio in _ratios(contestants).items() if ratio > BAR]
     return [f"{name} operations {mine} to {best}"] * (mine > best) + over

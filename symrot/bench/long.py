@@ -1,11 +1,11 @@
-"""Free asymmetric body over many revolutions by stepping, compared with its exact motion and with heyoka.
+"""Comparison over many revolutions of a free asymmetric body: steppers against its exact motion and heyoka.
 
     python -m symrot.bench.long [--revolutions 1e6] [--states 4]
 
 The contestants are the Taylor stepper with and without projection onto the conserved quantities, and heyoka, if it is
 installed, at its tightest tolerance. The table has the errors at the end against the exact motion: relative error of
 the kinetic energy, and error of the attitude in rad; medians over the initial states. All contestants run from one
-initial state before the next, so that they run under the same conditions.
+initial state before any runs from the next, so that they run under the same conditions.
 
 heyoka is optional: ``pip install heyoka``.
 """

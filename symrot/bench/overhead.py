@@ -3,7 +3,7 @@
     python -m symrot.bench.overhead [--rounds 25] [SCENE ...]
 
 For the bare call, all addresses are prepared, and one copy of bytes resets the state of the run; only the call itself
-is Python. Runs alternate; the medians of processor time count.
+is Python. Runs alternate; the results are medians of processor time.
 """
 
 import argparse
@@ -41,7 +41,7 @@ def _bare_stepper(propagate: Propagator, times: "np.ndarray[tuple[int], np.dtype
     arguments = (ctypes.addressof(task.p), times.ctypes.data, len(times), states.ctypes.data, None, 0, 10**9)
     call, reset = stepper.run, ctypes.memmove
 
-    def bare(alive: object = (states, ready, run, task)) -> None:  # whose memory is used
+    def bare(alive: object = (states, ready, run, task)) -> None:  # keeps the memory that C uses alive
         reset(place, source, size)
         call(place, *arguments)
 
@@ -59,7 +59,7 @@ def _bare_exact(propagate: Propagator, times: "np.ndarray[tuple[int], np.dtype[n
     call, constants = (loops.evaluate, loops.place) if loops else (exact._evaluate, exact._address)
     omega, quaternion = np.empty((len(times), 3)), np.empty((len(times), 4))
     arguments = (constants, len(times), times.ctypes.data, omega.ctypes.data, quaternion.ctypes.data)
-    return lambda alive=(omega, quaternion): call(*arguments)  # type: ignore[misc]  # whose memory is used
+    return lambda alive=(omega, quaternion): call(*arguments)  # type: ignore[misc]  # keeps the arrays alive
 
 
 def measure(name: str, method: str, samples: int, rounds: int) -> tuple[float, float] | None:

@@ -1,8 +1,8 @@
 """Savings by specialisation: each motion with the most general kernel and with the scene's own kernel.
 
-The general kernel has a full tensor, the full attitude and all kinds of torque that can act together, each with free
-constants, which are zero for a torque that the motion lacks. Both kernels follow the same motion by Taylor series at
-the same tolerance. Their final states must agree; otherwise the table says so and the command fails. Nanoseconds are
+The general kernel has a full tensor, the full attitude and all kinds of torque that can act together, each with
+arbitrary constants, which are zero for a torque that the motion lacks. Both kernels compute the same motion by Taylor
+series at the same tolerance. Their final states must agree; otherwise the table says so and the command fails.
 per evaluation of the rates in C, in a loop over many states; microseconds are for the whole motion. The last column is
 the time of `auto`, which uses a closed form where there is one.
 """
@@ -31,9 +31,9 @@ from symrot.scene.scene import Scene, Torque, load_scene
 __all__ = ["LADDER", "general_plan", "lines", "measure", "rungs"]
 
 LADDER = Path(__file__).with_name("skip.toml")
-TOLERANCE, AGREEMENT = 1e-12, 1e-10  # tolerance of the motions, and of the difference of their ends
+TOLERANCE, AGREEMENT = 1e-12, 1e-10  # tolerance of the motions, and allowed difference of their final states
 STATES, TURNS = 64, 400  # evaluations in one call
-ABOUT_CENTRE = ("gravity_gradient",)  # needs the centre of mass at rest, gravity a fixed point: one of them acts
+ABOUT_CENTRE = ("gravity_gradient",)  # excludes gravity: it needs the centre of mass at rest, not a fixed point
 ABOUT_POINT = ("gravity",)
 LOOP = """
 void many(long turns, const double *y, const double *p, double *dy)
@@ -76,12 +76,12 @@ def general_plan(scene: Scene) -> Plan:
 
 
 def measure(name: str | None = None, quick: bool = False, say: Progress = lambda text: None) -> dict[str, Any]:
-    """Return the savings by specialisation for the ladder, or for one scene, as data for JSON.
+    """Measure the savings by specialised kernels, for several scenes or for one, and return them as data for JSON.
 
     Raises
     ------
     InputError
-        For a scene that cannot be used, or where there is no C compiler.
+        For a scene that cannot be used, or if there is no C compiler.
     """
     if cache.missing():
         raise InputError(f"--skip: expected a C compiler to compile the compared kernels; {cache.missing()}")

@@ -3,13 +3,15 @@
     python -m symrot.bench.starts [--rounds 300] [SCENE ...]
     python -m symrot.bench.starts --ensembles [--most 100000] [--rounds 5] [SCENE ...]
 
-The first table has a row for each scene and method, in microseconds. Its columns: reading the initial state; planning
-it (the structure is known); binding parameters; setting up the motion (constants of a closed form, or the task of a
-stepper); the motion itself (the work in C and the call of it, for a start with both changed); then whole calls at 101
-times with another angular velocity, with another attitude, and with both; the overhead (the time of a call minus that
-of its own motion) of the more expensive of the first two calls, and of the third; last, the most expensive call of a
-stepper while nothing is done in C. On a loaded machine Python is slower after a long motion; the last column is free of
-that.
+The first table has a row for each scene and method, in microseconds. The columns are:
+
+- reading the initial state; planning (with known structure); binding parameters; setting up the motion (constants of a
+  closed form, or the task of a stepper);
+- the motion itself: the work in C and the call of it, for a start with both angular velocity and attitude changed;
+- whole calls at 101 times with another angular velocity, with another attitude, and with both;
+- overhead, the time of a call minus that of its motion: of the more expensive of the first two calls, and of the third;
+- the most expensive call of a stepper while nothing is done in C. On a loaded machine Python is slower after a long
+  motion; this column is free of that effect.
 
 The second table has microseconds per trajectory of 101 samples, in closed form and by steps, for ensembles that vary
 only initial states or initial states and constants, and the method that ``auto`` chooses. Medians of processor time.
@@ -98,7 +100,7 @@ def _scene(name: str) -> Scene:
 
 
 VARIED = (("weight", "weight", None), ("torque_3", "torque", 2), ("angular_momentum_3", "angular_momentum", 2))
-"""Constants that vary, where the first torque has them."""
+"""Constants that vary, if the first torque has them."""
 
 
 def _median(run: Callable[[], object], rounds: int) -> float:
@@ -112,7 +114,7 @@ def _median(run: Callable[[], object], rounds: int) -> float:
 
 
 def _start(scene: Scene) -> tuple[Floats, Floats]:
-    """Return an angular velocity and attitude near the initial state of a scene, with no component zero."""
+    """Return an angular velocity and attitude near the initial state of a scene, without zero components."""
     omega, quaternion = (np.array([float(x) for x in vector]) for vector in scene.initial)
     return omega * (1 + SPREAD) + SPREAD * abs(omega).max(), quaternion + SPREAD
 
@@ -135,7 +137,7 @@ def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int
 
 
 class _Row(NamedTuple):
-    """Microseconds of a scene and method; calls with another omega, with another attitude, with both."""
+    """Microseconds of a scene and method, for calls with another omega, with another attitude, and with both."""
 
     parts: tuple[float, ...]  # read, plan, bind, set up
     motion: float  # with both
@@ -193,9 +195,7 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
 
 
 def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
-    """Return the microseconds that C takes for the constants of a closed form; zero for a stepper, which has no
-    constants.
-    """
+    """Return the microseconds that C takes for the constants of a closed form; zero for a stepper, which has none."""
     if motion.choice.method != "exact":
         return 0.0
     if motion.form.library == "spin_up":
@@ -214,13 +214,13 @@ def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
         alive = motion.from_start(initial).exact
     finally:
         forms._bound[motion.form.library] = functions
-    return _median(lambda alive=alive: functions[0](*calls[0]), rounds)  # type: ignore[misc]  # whose memory is written
+    return _median(lambda alive=alive: functions[0](*calls[0]), rounds)  # type: ignore[misc]  # keeps the memory alive
 
 
 def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
     """Return the microseconds that C takes for the constants of a spin-up.
 
-    The table of polynomials counts only if samples need it.
+    The table of polynomials counts only if the samples need it.
     """
     functions, total = spin_up_compiled.functions(), 0.0
     record, table = functions.record(), np.empty(spin_up_compiled.TABLE)
@@ -231,7 +231,7 @@ def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
     for room in (None, table) if lacking else (None,):
         place = address(room), ctypes.addressof(record)
         total += _median(lambda place=place: functions.prepare(source._axis, *arguments, *place), rounds)  # type: ignore[misc]
-        if lacking and room is None:  # samples are asked for before it is known
+        if lacking and room is None:  # the table is made only after samples have shown that they need it
             total += _median(lambda: functions.evaluate(ctypes.addressof(record), None, *samples), rounds)
     return total
 
@@ -255,7 +255,7 @@ def changed_starts(scenes: list[str], rounds: int) -> None:
 def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tuple[str, dict[str, Any]]]:
     omega, quaternion = _start(scene)
     if sum(w == 0 for w in scene.initial.omega_b) == 2 and scene.torques:
-        omega = omega * [w != 0 for w in scene.initial.omega_b]  # about one axis it stays
+        omega = omega * [w != 0 for w in scene.initial.omega_b]  # a rotation about one axis stays about that axis
     variations: dict[str, Any] = {
         "omega": omega * (1 + SPREAD * random.standard_normal((n, 3))),
         "quaternion": quaternion + SPREAD * random.standard_normal((n, 4)),

@@ -1,4 +1,4 @@
-"""Times of DOP853: symrot's, one written by hand in C, and SciPy's, interleaved on the free asymmetric body.
+"""Times of three DOP853 steppers: symrot's, a handwritten one in C, and SciPy's, on the free asymmetric body.
 
     python -m symrot.bench.stepper [--tolerance 1e-9] [--stop 1000] [--rounds 15]
 
@@ -33,7 +33,7 @@ Floats = NDArray[np.float64]
 
 
 class Measurement(NamedTuple):
-    """One contestant: evaluations of the right-hand side, seconds of each round, largest error of the end state."""
+    """One contestant: evaluations of the right-hand side, seconds of each round, largest error of the final state."""
 
     name: str
     evaluations: int

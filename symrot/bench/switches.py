@@ -1,4 +1,4 @@
-"""Switched torques against closed forms: error, steps, switches and time at tolerances 1e-6 to 1e-12.
+"""Comparison of switched torques with closed forms: error, steps, switches and time at tolerances 1e-6 to 1e-12.
 
 Dry friction stops a wheel and lets it go again, a relay swings a body in parabolas, a thruster fires 10 ms in each of
 1000 seconds. Run it as ``python -m symrot.bench.switches``.
@@ -26,7 +26,7 @@ ROUNDS = 3
 
 
 class Problem(NamedTuple):
-    """A torque about axis 3, N m, its span, s, a start, rad/s, and omega_3 as a function of time."""
+    """A test problem: a torque about axis 3, N m, its span, s, a start, rad/s, and omega_3 as a function of time."""
 
     torque: str
     parameters: dict[str, float]
@@ -47,8 +47,9 @@ def _friction(times: Floats) -> Floats:
 
 
 def _relay(times: Floats) -> Floats:
-    """Return omega_3 under the torque -sign(angle) at the times: the period is 12 s, with four arcs of constant
-    torque.
+    """Return omega_3 under the torque -sign(angle) at the times.
+
+    The period is 12 s, with four arcs of constant torque.
     """
     phase = np.mod(times, 4.0 * MOMENT)
     swing: Floats = np.where(phase < 2 * MOMENT, 1.0 - phase / MOMENT, -1.0 + (phase - 2 * MOMENT) / MOMENT)

@@ -5,9 +5,9 @@
 Each contestant runs over a range of tolerances (handwritten RK4 and DOP853 with a fixed step: over a range of step
 counts). Runs are interleaved and the least time of each counts; the error is that of the last state against a Taylor
 series in 40 digits. For each decade of the error, the table has the fastest run with at most that error, so no curve is
-smoothed or extended. ``best heyoka`` is its fastest setting at each decade: default, fast math, high accuracy, compact;
-``--quick`` runs only the default. Handwritten loops are compared with the faster of symrot's two methods, in the
-decades where low order is at its best. ``--orders`` compares orders of symrot's own series instead.
+smoothed or extended. ``best heyoka`` is heyoka's fastest setting at each decade: default, fast math, high accuracy,
+compact; ``--quick`` runs only the default. Handwritten loops are compared with the faster of symrot's two methods, in
+the decades where low order is at its best. ``--orders`` compares orders of symrot's own series instead.
 
 heyoka is optional: ``pip install heyoka``.
 """
@@ -269,7 +269,7 @@ def _contestants(problem: _Problem, settings: bool) -> list[tuple[str, float, Ti
 
 
 def measure(name: str, rounds: int = 9, settings: bool = False, scale: float = 1.0) -> list[Run]:
-    """Return the runs of all contestants on one motion; ``scale`` shortens its span."""
+    """Time all contestants on one motion, and return their runs; ``scale`` shortens its span."""
     problem, exact = _Problem(name, scale), reference(name, scale)
     return raced(_contestants(problem, settings), partial(problem.error, exact=exact), rounds)
 
@@ -289,7 +289,7 @@ def raced(
     gc.disable()
     for _ in range(rounds):
         for (_, _, task), run in zip(tasks, runs, strict=True):
-            task()  # not counted: the previous contestant decides what is in the caches
+            task()  # not counted, because the previous contestant determines the content of the caches
             began = clock()
             task()
             run.seconds.append(clock() - began)

@@ -5,14 +5,14 @@
 These are the functions with a removable singularity, and the sines, cosines and arc tangents of batches. Each function
 is taken from emitted C and compiled with and without fused operations, in double and in float. It is measured in the
 form for one sample (``one``, with the C library) and in the form for batches (``batch``, without a branch; angles
-within the range of ``symrot_math.h``, all numbers for arc tangents). The reference is mpmath at 60 digits. Points:
-every scale from the least normal number to the reach, both sides of the threshold where a series is used, neighbours of
-multiples of pi/2.
+within the range of ``symrot_math.h``, all numbers for arc tangents). The reference is mpmath at 60 digits. Test points
+are taken at all scales from the smallest normal number to the reach, on both sides of the threshold below which a
+series is used, and next to multiples of pi/2.
 
-Reach: for one sample, every finite number; for a batch, the range of ``symrot_math.h``, outside which it calls the form
-for one sample. tangent_gap is measured in ulp up to pi, before its first zero, and beyond it in units of 2^-53/x^2
-(float: 2^-24): it falls as cos(x)/x^2, and near its zeros, which no floating-point number hits, the relative error has
-no bound.
+The reach is every finite number for one sample, and the range of ``symrot_math.h`` for a batch, outside which it calls
+the form for one sample. tangent_gap is measured in ulp up to pi, before its first zero, and for larger x in units of
+2^-53/x^2 (float: 2^-24): it decreases as cos(x)/x^2, and its relative error has no bound near its zeros, which are no
+floating-point numbers.
 """
 
 import argparse
@@ -52,7 +52,7 @@ class Function:
     kernel: str  # kernel whose C text contains the function
     forms: tuple[tuple[str, str], ...] = (("one", "symrot_"), ("batch", "symrot_near_"))
     reach: float = inf  # largest |x|
-    beyond: float = 0.0  # if not 0: the least |x|, and the unit of errors is the roundoff over x^2
+    beyond: float = 0.0  # if not 0: the smallest |x|; the unit of errors is then the roundoff over x^2
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Measured:
 
 
 def _series(name: str, x: Any) -> Any:
-    """Return a function with a removable singularity: by its exact series near zero, by its quotient elsewhere."""
+    """Return the value of a function with a removable singularity: its series near zero, its quotient elsewhere."""
     import mpmath
 
     which = REMOVABLE[name]

@@ -1,1 +1,1 @@
-"""Compilation of C, and the cache that stores the shared libraries for the user."""
+"""Compilation of C into shared libraries, and the cache that stores them for the user."""

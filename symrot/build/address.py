@@ -1,4 +1,4 @@
-"""Addresses of arrays, for calls of compiled functions."""
+"""The memory address of an array, for calls of compiled functions."""
 
 import ctypes
 from typing import Any, overload
@@ -13,14 +13,14 @@ def address(array: NDArray[Any]) -> int: ...
 @overload
 def address(array: None) -> None: ...
 def address(array: Any) -> int | None:
-    """Return the memory address of an array's data, or None if there is no array.
+    """Return the memory address of an array's data, or None if the argument is None.
 
-    NumPy's `ctypes` attribute takes eight times as long.
+    This takes an eighth of the time of NumPy's attribute `ctypes`.
     """
     if array is None:
         return None
     try:
         return ctypes.addressof(ctypes.c_char.from_buffer(array))
-    except (TypeError, ValueError):  # it is read-only or empty
+    except (TypeError, ValueError):  # the array is read-only or empty
         place: int = array.__array_interface__["data"][0]
         return place

@@ -1,4 +1,4 @@
-"""Cache of compiled C: a library is compiled once, stored for the user, and loaded later without a compiler.
+"""The cache of compiled C: a library is compiled once, stored for the user, and later loaded without a compiler.
 
 An entry is keyed by the source, the identity of the compiler (resolved path, size, modification time), the flags and
 the processor. A library is named by its own checksum, so a truncated or altered file is detected and rebuilt instead of
@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 from symrot.errors import CompilerError
 
 try:
-    from _sha256 import sha256  # type: ignore[import-not-found]  # hashlib loads OpenSSL for its own: 2 ms of a start
+    from _sha256 import sha256  # type: ignore[import-not-found]  # hashlib would load OpenSSL, 2 ms at each start
 except ImportError:  # another version of Python
     from hashlib import sha256
 
@@ -53,9 +53,9 @@ FLAGS = (
     "-fPIC",
     "-shared",
 )
-SCHEDULED = ("-fschedule-insns", "-fsched-pressure")  # order sums to suit the number of registers
-TUNING = (*SCHEDULED, "-fno-tree-pre", "-fno-gcse", "-fno-ivopts")  # numbers in memory rather than in registers
-"""Flags of gcc that make long sums faster, by measurement; they are dropped for a compiler that does not know them."""
+SCHEDULED = ("-fschedule-insns", "-fsched-pressure")  # reorder sums to fit the number of registers
+TUNING = (*SCHEDULED, "-fno-tree-pre", "-fno-gcse", "-fno-ivopts")  # keep numbers in memory, not in registers
+"""Flags of gcc that make long sums faster, as measured; they are dropped for a compiler that does not accept them."""
 
 COMPILERS = ("cc", "gcc", "clang")
 SECONDS_TO_COMPILE = 300  # a compiler that takes longer is stopped
@@ -65,14 +65,14 @@ OWN_FILE = re.compile(r"(\w+-[0-9a-f]{32}\.(so|dll|dylib|index|text)|\.symrot-\w
 
 
 class Compiler(NamedTuple):
-    """C compiler: its command line, and the identity of its program for cache keys."""
+    """A C compiler: its command line, and the identity of its program for cache keys."""
 
     command: tuple[str, ...]
     identity: str
 
 
 class Cache(NamedTuple):
-    """Directory of compiled kernels; ``reason`` says why it is not the user's cache, or is empty."""
+    """A directory of compiled kernels; ``reason`` says why it is not the user's cache, or is empty."""
 
     directory: Path
     reason: str
@@ -93,7 +93,7 @@ def compiler() -> Compiler:
         if path is not None:
             return Compiler((path, *command[1:]), _identity(path, command[1:]))
     reason = f"CC={chosen!r} names no program" if chosen else f"none of {', '.join(COMPILERS)} is on the path"
-    raise CompilerError(f"a C compiler is needed: {reason}; set CC to one")
+    raise CompilerError(f"expected a C compiler: {reason}; set CC to one")
 
 
 def missing() -> str:
@@ -126,9 +126,9 @@ def build(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path:
     source : str
         A complete C translation unit; it is compiled from standard input.
     name : str
-        Letters, digits and underscores; the beginning of the file's name, for people.
+        Letters, digits and underscores, with which the file's name begins.
     flags : tuple of str
-        Flags of the compiler. If it does not accept ``-march=native``, it runs again without this flag.
+        Flags of the compiler. If it rejects ``-march=native``, it is run again without this flag.
 
     Raises
     ------
@@ -141,7 +141,7 @@ def build(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path:
 
 
 def built(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path | None:
-    """Return the library from the cache that :func:`build` would return, or None if it would have to compile."""
+    """Return the library that :func:`build` would return, if the cache contains it, else None."""
     entry = _entry(compiler(), source, name, flags)
     for directory in _directories():
         if (library := _sound_library(directory, entry, name)) is not None:
@@ -150,7 +150,7 @@ def built(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path | None
 
 
 class Building:
-    """Library that is compiled in another thread; arguments as for :func:`build`."""
+    """A library that is being compiled in another thread; arguments as for :func:`build`."""
 
     def __init__(self, source: str, name: str, flags: tuple[str, ...] = FLAGS) -> None:
         self._path: Path | None = built(source, name, flags)
@@ -193,8 +193,8 @@ class Building:
 def _thread(work: Callable[..., None], *arguments: object) -> Any:
     """Return a thread that runs ``work`` to compile; all modules that the work needs are imported here first.
 
-    A thread that imports waits for Python's import lock, and Ctrl-C during an import of the main thread can leave this
-    lock held for good: neither the thread nor the process, which waits for its threads, would ever end.
+    A thread that imports a module waits for Python's import lock. Ctrl-C during an import of the main thread can leave
+    this lock locked for good: then neither the thread nor the process, which waits for its threads, would ever end.
     """
     import atexit  # noqa: F401
     import shutil  # noqa: F401
@@ -231,7 +231,7 @@ def store(key: str, text: str) -> None:
 
 
 def fetch(key: str) -> str | None:
-    """Return the text that is stored in the cache under a key, or None if it is missing or damaged."""
+    """Return the text stored in the cache under a key, or None if it is missing or damaged."""
     for directory in _directories():
         content = _read(directory / _text_name(key))
         if content is not None:
@@ -242,7 +242,7 @@ def fetch(key: str) -> str | None:
 
 
 def clear() -> tuple[Path, ...]:
-    """Remove every file that symrot wrote from the cache and return their paths; other files stay."""
+    """Remove every file that symrot wrote into the cache, and return their paths; other files stay."""
     removed = []
     for directory in _directories():
         for path in sorted(directory.iterdir()):
@@ -280,7 +280,7 @@ def _identity(path: str, arguments: tuple[str, ...]) -> str:
 
 @cache_once
 def _processor() -> str:
-    """Return the identity of the processor for ``-march=native``: family, model and features of the first one."""
+    """Return the identity of the processor for ``-march=native``: family, model and features of its first core."""
     try:
         with Path("/proc/cpuinfo").open(encoding="ascii", errors="replace") as stream:
             first = stream.read(16384).split("\n\n")[0]
@@ -312,7 +312,7 @@ class _Temporary:
                 self.path = Path(tempfile.mkdtemp(prefix="symrot-"))
             except OSError as error:
                 raise CompilerError(
-                    f"compiled kernels need a directory: {reason}, and no temporary one can be made: {error}"
+                    f"compiled kernels need a directory: {reason}, and a temporary directory cannot be created: {error}"
                 ) from error
             atexit.register(shutil.rmtree, self.path, ignore_errors=True)
             self.reason = reason
@@ -348,8 +348,8 @@ def _foreign(path: Path) -> str:
 def _exposed(directory: Path) -> str:
     """Return the reason why another user could replace the cache directory, or an empty text.
 
-    A user who may write to a directory may rename its entries, even those of other users. In a sticky directory such as
-    ``/tmp``, only the owner of the entry, the owner of the directory and root may. Therefore every parent directory,
+    A user who may write to a directory may rename its entries, even entries of other users. In a sticky directory such
+    as ``/tmp``, only the owner of the entry, the owner of the directory and root may. Therefore every parent directory,
     with symbolic links followed and not followed, must belong to the user or to root, and must be sticky if others may
     write to it.
     """
@@ -405,7 +405,7 @@ def _directories() -> list[Path]:
 
 
 def _read(path: Path) -> bytes | None:
-    """Return a file's bytes, or None if it is missing, unreadable or not the user's own."""
+    """Return a file's bytes, or None if it is missing or unreadable, or belongs to another user."""
     try:
         return None if _foreign(path) else path.read_bytes()
     except OSError:
@@ -450,7 +450,7 @@ def _library_name(name: str, content: bytes) -> str:
 
 
 def _sound_library(directory: Path, entry: str, name: str) -> Path | None:
-    """Return the library that an entry of the index names, if its content still has the checksum in its name."""
+    """Return the library that an index entry names, if its content still has the checksum in its name, else None."""
     pointer = _read(directory / entry)
     if pointer is None:
         return None
@@ -486,4 +486,4 @@ def _compile(tool: Compiler, source: str, name: str, entry: str, flags: tuple[st
     library = _keep(_library_name(name, content), content)
     if _keep(entry, library.name.encode()).parent == library.parent:
         return library
-    return _keep(library.name, content)  # the disk filled up between the two files
+    return _keep(library.name, content)  # the disk became full between the two writes

@@ -1,6 +1,6 @@
-"""Runs of a C compiler for a bounded time; it is killed with all its children when this process is stopped.
+"""Runs of a C compiler with a time limit; it is killed with all its child processes if this process is stopped.
 
-This module is imported only when something has to be compiled; most runs find their libraries in the cache.
+This module is imported only if something has to be compiled; most runs find their libraries in the cache.
 """
 
 import os
@@ -30,7 +30,7 @@ def run_compiler(command: Sequence[str], flags: Sequence[str], source: str, outp
     Raises
     ------
     CompilerError
-        If the compiler takes longer than ``seconds`` or is killed; other flags would not help then.
+        If the compiler takes longer than ``seconds`` or is killed; then a second try with other flags is useless.
     """
     words = [*command, *flags, "-x", "c", "-", "-o", str(output), "-lm"]
     environment = {**os.environ, "LC_ALL": "C"}
@@ -62,7 +62,7 @@ def run_compiler(command: Sequence[str], flags: Sequence[str], source: str, outp
 
 
 def stop_all() -> None:
-    """Kill all running compilers, also those that waiting threads start later."""
+    """Kill all running compilers, including those that waiting threads are about to start."""
     for thread in enumerate_threads():
         if thread.name == WAITING:
             thread.name = STOPPED
@@ -71,7 +71,7 @@ def stop_all() -> None:
 
 
 def _kill(process: Popen[bytes]) -> None:
-    """Kill a compiler and the programs that it started, which form one process group."""
+    """Kill a compiler and the programs that it started, which belong to the same process group."""
     if process.poll() is None:
         with suppress(ProcessLookupError):
             os.killpg(process.pid, SIGKILL) if hasattr(os, "killpg") else process.kill()

@@ -1,1 +1,1 @@
-"""The command line."""
+"""The command line of symrot: parsing of arguments, the commands, their output and exit codes."""

@@ -1,4 +1,4 @@
-"""Define the commands of certification: prove, certify, audit, bound, selftest."""
+"""The commands of certification: prove, certify, audit, bound, selftest."""
 
 import sys
 from argparse import ArgumentParser, Namespace

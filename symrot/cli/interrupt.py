@@ -1,8 +1,8 @@
-"""Make Ctrl-C reach the command even if Python discards it.
+"""A hook that lets Ctrl-C end the command even if Python discards the KeyboardInterrupt.
 
-Python discards an exception that is raised inside a weak reference's callback, a ``__del__`` method or a callback from
-C; it passes the exception to ``sys.unraisablehook`` and goes on. A KeyboardInterrupt that is raised at such a moment
-(during an import, for example) would leave the command running. The hook installed here raises it again a moment later.
+Python discards an exception raised inside a weak reference's callback, a ``__del__`` method or a callback from C: it
+passes the exception to ``sys.unraisablehook`` and continues. A KeyboardInterrupt at such a moment, for example during
+an import, would leave the command running. The hook raises the interrupt again a moment later.
 """
 
 import signal
@@ -12,11 +12,11 @@ from typing import Any
 
 __all__ = ["repeat_lost_interrupts"]
 
-SECONDS = 0.02  # enough for the callback that lost the interrupt to return
+SECONDS = 0.02  # enough time for the interrupted callback to return
 
 
 def repeat_lost_interrupts() -> None:
-    """Install the hook; other discarded exceptions go on to the hook that was installed before."""
+    """Install the hook; it passes other discarded exceptions to the hook that was installed before."""
     previous = sys.unraisablehook
 
     def hook(discarded: Any, /) -> None:

@@ -1,6 +1,7 @@
-"""Run the command line: parse, call, print. Texts come from :mod:`symrot.report`; stdout is data, stderr is progress.
+"""The command line: parses arguments, calls the command, prints its result to stdout and its progress to stderr.
 
-Exit codes: 0 success, 1 a check failed, 2 bad usage or input, 130 interrupted, 141 the reader of the output is gone.
+Texts come from :mod:`symrot.report`. Exit codes: 0 success, 1 a check failed, 2 bad usage or input, 130 interrupted,
+141 the program that read the output has ended.
 """
 
 import os
@@ -39,7 +40,7 @@ PAGES: dict[str, Callable[[Any], str]] = {
 
 
 class _Formatter(HelpFormatter):
-    """Format help to the width of the terminal without shutil, which argparse uses and which is slow to import."""
+    """A help formatter that measures the terminal without shutil, which argparse uses and which is slow to import."""
 
     def __init__(self, prog: str) -> None:
         super().__init__(prog, width=_columns() - 2)
@@ -58,7 +59,7 @@ def _columns() -> int:
 
 
 class _Parser(ArgumentParser):
-    """A parser that raises InputError, with one sentence, instead of printing its usage and exiting."""
+    """An argument parser that raises InputError with one sentence, instead of printing its usage and exiting."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options, formatter_class=_Formatter)
@@ -111,7 +112,7 @@ def _run(options: Namespace) -> int:
 
 
 def _trajectory(propagator: Any, options: Namespace) -> Any:
-    """Return the trajectory, or None after Ctrl-C; if it ends early, write the samples so far to ``--out``."""
+    """Propagate and return the trajectory, or None after Ctrl-C; if it ends early, write the samples to ``--out``."""
     from symrot.propagation.progress import reporting
 
     start_time = last_update = perf_counter()
@@ -138,7 +139,7 @@ def _trajectory(propagator: Any, options: Namespace) -> Any:
 
 
 def _write_partial(error: BaseException, propagator: Any, options: Namespace) -> str:
-    """Write the samples before an error to ``--out``, and return the end of the error message about it."""
+    """Write the samples before an error to ``--out``; return the clause about them for the error message."""
     part = getattr(error, "trajectory", None)
     if not options.out or part is None or not len(part):
         return ""
@@ -435,16 +436,16 @@ COMMANDS: dict[str, Command] = {
     "scenes": ("list the scenes that come with symrot", _scenes, json_option),
     "doctor": ("check compiler, cache and installed versions", _doctor, _doctor_arguments),
 }
-"""Command -> its help text, the function that runs it, the function that declares its arguments."""
+"""For each command: its help text, the function that runs it, and the function that declares its arguments."""
 
 
 def _nowhere() -> TextIO:
-    """Return a null stream, for a process that was started with stdout or stderr closed."""
+    """Return a null stream, used if the process was started with stdout or stderr closed."""
     return Path(os.devnull).open("w", encoding="utf-8")
 
 
 def _parser(only: str = "") -> _Parser:
-    """Return the parser of all commands, or only of the named one, which saves the time of the others."""
+    """Return the parser of all commands, or, to save time, of the command named ``only``."""
     parser = _Parser(
         prog="symrot",
         description="Rigid-body rotation: derived, specialised, compiled, propagated.",
@@ -464,7 +465,7 @@ def _parser(only: str = "") -> _Parser:
 
 
 def _check_command(arguments: Sequence[str]) -> None:
-    """Raise InputError for an unknown command, with the nearest known one."""
+    """Raise InputError for an unknown command, suggesting the most similar one."""
     if arguments and not arguments[0].startswith("-") and arguments[0] not in COMMANDS:
         from symrot.scene.reader import nearest
 
@@ -474,19 +475,19 @@ def _check_command(arguments: Sequence[str]) -> None:
 
 
 def _silence(stream: Any) -> None:
-    """Redirect a stream whose reader is gone to the null device, so that Python can close it without an error."""
+    """Redirect a stream that nobody reads any more to the null device, so that Python can close it without an error."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _stop_compilers() -> None:
-    """Kill running compilers, if any: at exit, Python waits for the threads that wait for them."""
+    """Kill running compilers, if any, because Python waits at exit for the threads that started them."""
     cache = sys.modules.get("symrot.build.cache")
     if cache is not None:
         cache.stop_compilers()
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command and return its exit code.
+    """Run one command of symrot and return its exit code.
 
     Parameters
     ----------

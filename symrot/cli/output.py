@@ -1,4 +1,4 @@
-"""Print the output of commands (stdout is data, stderr is progress), and define their exit codes."""
+"""Output of commands: data on stdout, progress on stderr, and the exit codes."""
 
 import os
 import sys
@@ -21,16 +21,16 @@ __all__ = [
 
 OK, FAILED, USAGE_ERROR, INTERRUPTED, SIGPIPE = 0, 1, 2, 130, 141
 Command = tuple[str, Callable[[Namespace], int], Callable[[ArgumentParser], None]]
-"""The help text of a command, the function that runs it, the function that declares its arguments."""
+"""A command: its help text, the function that runs it, and the function that declares its arguments."""
 
 
 def say(lines: Iterable[str]) -> None:
-    """Print lines of text."""
+    """Print lines of text to standard output."""
     sys.stdout.write("".join(f"{line}\n" for line in lines))
 
 
 def say_json(data: Any) -> None:
-    """Print JSON."""
+    """Print data as JSON to standard output."""
     import json
 
     sys.stdout.write(json.dumps(data, indent=2, ensure_ascii=False) + "\n")
@@ -43,10 +43,10 @@ def progress(text: str) -> None:
             width = os.get_terminal_size(sys.stderr.fileno()).columns - 1 or len(text)
         except (OSError, ValueError, AttributeError):
             width = len(text)
-        sys.stderr.write(f"\r\x1b[K{text[:width]}")  # a wrapped line could not be cleared
+        sys.stderr.write(f"\r\x1b[K{text[:width]}")  # cut to one line: a wrapped line could not be cleared
         sys.stderr.flush()
 
 
 def json_option(parser: ArgumentParser) -> None:
-    """Declare ``--json``."""
+    """Declare the option ``--json`` of a command."""
     parser.add_argument("--json", action="store_true", help="print JSON")

@@ -1,5 +1,4 @@
-"""Constants of many motions in closed form, computed as arrays, equal bit by bit to the constants of each single
-motion.
+"""Constants of many motions in closed form, computed as arrays, bit by bit equal to those of single motions.
 
 Sums in which all digits may cancel are computed in integers, one motion after the other. Double-double arithmetic (sums
 of two doubles) computes the rest for all motions at once.
@@ -39,8 +38,8 @@ __all__ = [
 Column = Floats | Fraction
 """A constant: one value for each motion, shape (n,), or one value for all motions."""
 
-_SPREAD = 2.0**-300  # components of a quaternion farther apart are left to fractions
-_DOUBT = 2.0**-12  # part of a grid step: double-double numbers have errors of less than a quarter of it
+_SPREAD = 2.0**-300  # quaternions whose components differ by a larger factor are computed in fractions
+_DOUBT = 2.0**-12  # part of a grid step; the errors of double-double numbers are less than a quarter of it
 _TIE = 2.0**-40  # part of the last bit
 _TURNED = 2.0**-99  # error of products of unit quaternions: 2^-100 of the units, 2^-102 of each product
 
@@ -48,8 +47,8 @@ _TURNED = 2.0**-99  # error of products of unit quaternions: 2^-100 of the units
 def attitudes(quaternions: Floats) -> Floats:
     """Return unit quaternions as sums of two doubles, shape (n, 8): hi and lo of each component.
 
-    The numbers equal those of :func:`symrot.closed_form.arithmetic.pairs.attitude`. Where double-double arithmetic
-    leaves the last bit in doubt, for about one quaternion in a thousand, exact numbers decide it.
+    The numbers equal those of :func:`symrot.closed_form.arithmetic.pairs.attitude`. If double-double arithmetic leaves
+    the last bit in doubt, as for about one quaternion in a thousand, exact numbers decide it.
     """
     high, low = _units(quaternions)
     return _on_grid(high, low, 0.0, lambda i: attitude(_unit(quaternions[i])))
@@ -98,9 +97,9 @@ def _sign(i: int, j: int) -> float:
 
 
 def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
-    """Return the products of one constant unit quaternion with many, shape (n, 4), to 2^-102.
+    """Return the products of one constant unit quaternion with many others, shape (n, 4), to 2^-102.
 
-    ``before`` says that the constant quaternion is the left factor.
+    If ``before`` is true, the constant quaternion is the left factor.
     """
     product: dd.Pair | None = None
     for i, (high, low) in enumerate(map(pair, constant)):
@@ -113,7 +112,7 @@ def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
 
 
 def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], Sequence[float]]) -> Floats:
-    """Return double-double numbers rounded as :func:`symrot.closed_form.arithmetic.pairs.on_grid` rounds exact ones.
+    """Return double-double numbers rounded as :func:`symrot.closed_form.arithmetic.pairs.on_grid` rounds exact numbers.
 
     Rows whose rounding is in doubt are replaced by ``exactly(row)``. The error of the numbers is at most a quarter of
     :data:`_DOUBT` of a grid step of each component, plus ``error``.
@@ -132,7 +131,7 @@ def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], S
 
 
 def _pairs(values: Floats) -> Floats:
-    """Return doubles as double-double numbers: each double is followed by a low part of zero."""
+    """Return doubles as double-double numbers, each followed by a low part of zero."""
     pairs = np.zeros((*values.shape[:-1], 2 * values.shape[-1]))
     pairs[..., ::2] = values
     return pairs
@@ -162,7 +161,7 @@ def usual(omega: Floats) -> NDArray[np.bool_]:
 
 
 def _noticed(omega: Floats) -> Floats:
-    """Return angular velocities in which components too small to affect a motion are set to zero."""
+    """Return angular velocities with components set to zero that are too small to affect a motion."""
     return np.where(abs(omega) < np.ldexp(abs(omega).max(axis=1), -number.NEGLIGIBLE_BITS)[:, None], 0.0, omega)
 
 
@@ -224,7 +223,7 @@ def free_bodies_of_tensors(
 
 
 def _integers(values: list[float]) -> list[int]:
-    """Return integers that are proportional to some doubles: each double times the same power of two."""
+    """Return integers proportional to some doubles: each double times the same power of two."""
     (a, over_a), (b, over_b), (c, over_c) = (value.as_integer_ratio() for value in values)
     if over_a == over_b == over_c:
         return [a, b, c]
@@ -269,10 +268,10 @@ def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floa
 
 
 def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
-    """Return the motions of bodies driven about one axis: one body with many initial states, or one body for each
-    state.
+    """Return the motions of bodies driven about one axis.
 
-    The constants are elementary functions and are computed in integers.
+    ``constants`` describe one body for all initial states, or one body for each state. They are elementary functions
+    and are computed in integers.
     """
     bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis

@@ -1,4 +1,4 @@
-"""Compilation of the closed forms, once per machine: all scenes share the code; only constants differ.
+"""Compilation of the closed forms, once per machine: all scenes share the code and differ only in constants.
 
 A closed form consists of two C files, compiled in parallel. ``name.c`` computes the constants of a motion, once per
 motion; it is compiled at -Og, which takes a third of the time of -O2 and costs 1 us per motion. ``name_at.c`` holds the
@@ -27,7 +27,7 @@ Floats = NDArray[np.float64]
 FLAGS = (
     "-std=c99",
     library.NATIVE,
-    "-ffp-contract=off",  # double-double arithmetic counts on every rounding
+    "-ffp-contract=off",  # double-double arithmetic relies on every rounding
     "-fno-math-errno",  # sqrt in one instruction
     "-fno-tree-slp-vectorize",  # it slows long straight-line code
     "-fno-trapping-math",  # loops with comparisons become SIMD code
@@ -69,7 +69,7 @@ def source(name: str) -> str:
 def begin(name: str) -> list[library.Building]:
     """Start to compile the libraries of a closed form and return them; a cached library is not compiled again.
 
-    There is one library for each of its :data:`PARTS`.
+    There is one library for each name in :data:`PARTS`.
 
     Raises
     ------
@@ -91,12 +91,12 @@ def loaded(name: str) -> bool:
 
 
 def load(name: str) -> tuple[Any, ...]:
-    """Return the loaded libraries of a closed form: first that of the constants, if it has one, then that of the loops.
+    """Return the loaded libraries of a closed form: of its constants, if it has such a library, then of its loops.
 
     Raises
     ------
     CompilerError
-        If there is no C compiler, it refuses them, or one cannot be loaded.
+        If there is no C compiler, if it rejects the source, or if a library cannot be loaded.
     """
     if name not in _loaded:
         for attempt in (1, 2, 3):
@@ -117,7 +117,7 @@ def times_of(t: ArrayLike) -> Floats:
     Raises
     ------
     InputError
-        If they are not finite numbers in a sequence.
+        If the times are not a sequence of finite numbers.
     """
     try:
         times = np.ascontiguousarray(t, dtype=np.float64)

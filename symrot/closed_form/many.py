@@ -1,7 +1,7 @@
 """Many motions of one closed form in one call of C: constants that differ are arrays, shared constants are passed once.
 
-The same compiled functions compute each motion from the same numbers as for a single motion, so that the results are
-equal bit by bit.
+The same compiled functions compute each motion from the same numbers as for a single motion, so the results are bit by
+bit equal.
 """
 
 import ctypes
@@ -17,11 +17,11 @@ from symrot.closed_form.motion import functions
 
 __all__ = ["Batch", "evaluate"]
 
-AT_ONCE = 1024  # motions per call of C: some 10 ms, after which Python can react to an interrupt
+AT_ONCE = 1024  # motions per call of C, about 10 ms, after which Python can react to an interrupt
 
 
 class Batch(NamedTuple):
-    """Motions of the closed form ``name``, given by the arguments of its C function `prepare`.
+    """A batch of motions of the closed form ``name``, given by the arguments of its C function `prepare`.
 
     Each argument is an array of shape (k,) that all motions share, an array of shape (n, k), or None. For ``axial`` the
     only argument is the complete record of constants. For ``spin_up`` there are two arguments: the numbers of each
@@ -32,7 +32,7 @@ class Batch(NamedTuple):
     arguments: tuple[Floats | None, ...]
 
     def of(self, chosen: NDArray[np.bool_]) -> "Batch":
-        """Return the batch of those motions whose entry in ``chosen`` is true."""
+        """Return the batch of the motions whose entry in ``chosen`` is true."""
         own = (values[chosen] if values is not None and values.ndim == 2 else values for values in self.arguments)
         return Batch(self.name, tuple(own))
 
@@ -53,17 +53,17 @@ def _place(function: Any) -> int:
 
 
 def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | None, workers: int = 1) -> list[int]:
-    """Write the samples of n motions into arrays; return the numbers of the motions that could not be computed.
+    """Write the samples of n motions into arrays; return the indices of the motions that could not be computed.
 
-    Those motions leave the range of the batch arithmetic and have to be evaluated one by one.
+    These motions exceed the range of this arithmetic and must be evaluated one by one.
 
     Parameters
     ----------
     batch : Batch
     times : array, shape (m,) or (n, m)
-        s, from the start.
+        Times from the start, s.
     omega, quaternion : arrays, shapes (n, m, 3) and (n, m, 4), or None
-        Written, one motion after the other in memory.
+        The arrays to fill, contiguous for each motion; None skips a quantity.
     workers : int
         Number of threads; each computes a part of the motions.
     """
@@ -96,7 +96,7 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
 
     odd = _shared(share, n, min(workers, max(1, n // AT_ONCE)))
     told = omega if quaternion is None else quaternion
-    ends = told[:, 0, 0] + told[:, -1, -1]  # a motion evaluated alone reports what overflows
+    ends = told[:, 0, 0] + told[:, -1, -1]  # not finite if a motion overflows; evaluated alone, it raises the error
     return sorted({*odd, *np.flatnonzero(np.isnan(ends)).tolist()})
 
 

@@ -1,4 +1,4 @@
-"""The base class of motions in closed form, which return angular velocity and attitude at any times."""
+"""The base class of motions in closed form, which return angular velocity and attitude at any time."""
 
 import ctypes
 from abc import ABC, abstractmethod
@@ -26,7 +26,7 @@ _bound: dict[str, _Functions] = {}
 
 
 class ExactMotion(ABC):
-    """Interface of a motion in closed form, which is evaluated at any time.
+    """The interface of a motion in closed form, which can be evaluated at any time.
 
     Times are counted from the initial state, s.
     """
@@ -40,12 +40,12 @@ class ExactMotion(ABC):
     def evaluate(
         self, t: ArrayLike, omega: bool = True, quaternion: bool = True
     ) -> tuple[Floats | None, Floats | None]:
-        """Return angular velocity and attitude at any times.
+        """Return angular velocity and attitude at any times, in any order.
 
         Parameters
         ----------
         t : number or sequence of n numbers
-            s, from the initial state, in any order, negative ones too.
+            Times from the initial state, s, in any order; negative times are allowed.
         omega, quaternion : bool
             Whether to compute them; a quantity that is not computed is None.
 
@@ -68,7 +68,7 @@ class ExactMotion(ABC):
         samples = rates if attitudes is None else attitudes
         if (
             samples is not None and len(times) and isnan(samples.item(0) + samples.item(-1))
-        ):  # the first and the last of sorted times suffice
+        ):  # times are sorted, so it is enough to test the first and the last
             raise InputError(
                 f"expected a motion within the range of doubles, got larger numbers at times {times.item(0)!r} to "
                 f"{times.item(-1)!r} s; use times nearer to the start, or other units"
@@ -77,7 +77,7 @@ class ExactMotion(ABC):
 
 
 class _Compiled(ExactMotion):
-    """Motion in closed form whose constants and samples are computed in C."""
+    """A motion in closed form whose constants and samples are computed in C."""
 
     def __init__(self, constants: Any, evaluate: Any) -> None:
         self._constants, self._evaluate = constants, evaluate
@@ -89,7 +89,7 @@ class _Compiled(ExactMotion):
 
 
 class _Portable(ExactMotion):
-    """Motion in closed form for use without a C compiler: mpmath computes the constants, NumPy the samples."""
+    """A motion in closed form for use without a C compiler: mpmath computes the constants, NumPy the samples."""
 
     def __init__(self, motion: Any) -> None:
         self.regime, self._motion = motion.regime, motion
@@ -99,9 +99,7 @@ class _Portable(ExactMotion):
 
 
 def functions(name: str, arguments: int) -> _Functions:
-    """Return the C functions of a closed form, `prepare` and the loop over samples, and the ctypes type of its
-    record.
-    """
+    """Return the C functions of a closed form: `prepare`, the loop over samples, and the type of their record."""
     if name not in _bound:
         constants, samples = load(name)
         prepare, length = (getattr(constants, f"symrot_{name}_{part}") for part in ("prepare", "length"))
@@ -124,7 +122,7 @@ def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Call
     InputError
         With the text of ``refusal`` if the numbers are outside the motion's domain.
     CompilerError
-        If the C compiler refuses the source, or breaks error-free arithmetic.
+        If the C compiler rejects the source, or breaks error-free arithmetic.
     """
     if name not in _bound and library.missing():
         from symrot.closed_form.portable import MOTIONS
@@ -148,5 +146,5 @@ _packing = {length: Struct(f"{length}d").pack for length in (2, 4, 6, 8, 26)}
 
 
 def _packed(values: list[float]) -> bytes:
-    """Return doubles as the bytes that C reads; an array of ctypes takes five times as long to make."""
+    """Return doubles as the bytes that C reads, which takes a fifth of the time of an array of ctypes."""
     return _packing[len(values)](*values)

@@ -1,4 +1,4 @@
-"""Table of closed forms, each with its condition on scenes and the function that makes the motion."""
+"""The table of closed forms, each with its condition on scenes and the function that makes its motions."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -16,13 +16,14 @@ __all__ = ["FORMS", "ClosedForm", "Exact", "exact_form", "torque_and_damping"]
 
 
 class Exact(Protocol):
-    """Interface of a motion in closed form; times are counted from the initial state, s."""
+    """The interface of a motion in closed form; times are counted from the initial state, s."""
 
     def evaluate(
         self, t: ArrayLike, omega: bool = True, quaternion: bool = True
     ) -> tuple[Floats | None, Floats | None]:
-        """Return angular velocity (n, 3), body axes, and attitude (n, 4) at the times; None for one that is switched
-        off.
+        """Return angular velocity (n, 3), body axes, and attitude (n, 4) at the times.
+
+        A quantity that is switched off is None.
         """
 
 
@@ -31,11 +32,11 @@ Starts = Callable[[Initial], Exact]
 
 
 class ClosedForm(NamedTuple):
-    """Class of motions in closed form: a description, a condition on scenes, and a constructor."""
+    """A closed form: its description, its condition on scenes, and the function that makes its motions."""
 
     name: str
     applies: Callable[[Scene], bool]
-    starts: Callable[[Scene], Starts]  # its motions share constants
+    starts: Callable[[Scene], Starts]  # makes motions of a scene from initial states; they share constants
     library: str  # name of its C files, see symrot.closed_form.build; "" if it has no C files
     derivation: str  # the derivation that proves it
     axis: Callable[[Scene], int | None] = lambda scene: None  # body axis of the motion, if any
@@ -128,7 +129,8 @@ def _is_driven(scene: Scene) -> bool:
 def _driven_axis(scene: Scene) -> int | None:
     """Return the principal axis about which the whole motion takes place, 0 for a body at rest, or None.
 
-    The scene has constant torques and linear damping only, and its torque and angular velocity lie along that axis.
+    This requires that the scene has only constant torques and linear damping, and that torque and angular velocity lie
+    along the axis.
     """
     if not _is_driven(scene):
         return None
@@ -176,7 +178,7 @@ def _axial(scene: Scene) -> Starts:
 
 
 def _field_axis(name: str) -> Callable[[Scene], int | None]:
-    """Return a condition on scenes: it returns the body axis along which the only torque's vector lies, or None.
+    """Return a function from scenes to the body axis along which the only torque's vector lies, or to None.
 
     ``name`` is the field of the torque that holds the vector.
     """
@@ -243,6 +245,6 @@ FORMS = (
 
 def exact_form(scene: Scene) -> ClosedForm | None:
     """Return the closed form of a scene's motion, or None if no form of the table applies."""
-    if scene.table is not None:  # a torque by samples acts in addition to the torques that the conditions look at
+    if scene.table is not None:  # the conditions do not know of a torque given by samples
         return None
     return next((form for form in FORMS if form.applies(scene)), None)

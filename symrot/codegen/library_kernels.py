@@ -31,7 +31,7 @@ def kernel_program(name: str) -> Program:
 
 
 def _with(node: Node, values: Mapping[str, Node]) -> Node:
-    """Return a formula with some of its symbols replaced by other formulas."""
+    """Return a formula with some of its symbols replaced by formulas."""
     if not children(node):
         return values.get(node[1], node) if node[0] == "symbol" else node
     if node[0] == "call":
@@ -42,9 +42,9 @@ def _with(node: Node, values: Mapping[str, Node]) -> Node:
 
 
 def kernel_description(kernel: Definition, target: str, errors: str = "") -> Description:
-    """Return the text in the head of a library kernel's file.
+    """Return the texts in the head comment of a library kernel's file.
 
-    In C it includes the ranges of the inputs (the box) and the bounds ``errors`` of rounding errors on them.
+    In C they include the ranges of the inputs (the box) and the bounds ``errors`` of rounding errors on them.
     """
     known = (("Box", _box(kernel.box)), *((("Errors", errors),) if errors else ()))
     return Description(

@@ -1,4 +1,4 @@
-"""Loading of emitted NumPy kernels: the text is written as a module and imported, as a user would do."""
+"""Loading of emitted NumPy kernels: the text is written to a module and imported, as a user would do."""
 
 from collections.abc import Callable
 from importlib.util import module_from_spec, spec_from_file_location

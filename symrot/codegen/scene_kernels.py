@@ -1,4 +1,4 @@
-"""Kernels of a plan: programs and C text, derived from the structure of the plan."""
+"""Kernels of a scene: programs and C text, derived from the structure of its plan."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -74,10 +74,10 @@ def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
 def derive_scene_kernel(
     structure: Structure, on_rates: Callable[[Program, str], object] = lambda rates, source: None
 ) -> SceneKernel:
-    """Return the kernels of a plan's structure, with its conserved quantities proven.
+    """Return the kernels for the structure of a plan, and prove its conserved quantities.
 
-    ``on_rates`` is called with the rates and their C text as soon as they are derived, so that a compiler can work
-    while the rest is derived.
+    ``on_rates`` is called with the rates and their C text as soon as they are derived, so that a compiler can run while
+    the rest is derived.
     """
     equations = equations_of_motion(structure)
     rates = rates_program(equations, RATES)
@@ -94,9 +94,7 @@ def derive_scene_kernel(
 
 
 def rates_source(rates: Lowered) -> str:
-    """Return the C text of the rates as a function with the arguments ``(t, y, p, dy)``, whether or not it has
-    parameters.
-    """
+    """Return the C text of the rates as a function of ``(t, y, p, dy)``, even if they have no parameters p."""
     source = c_function(rates.program, "static inline ")
     if rates.parameters:
         return source
@@ -107,7 +105,7 @@ def rates_source(rates: Lowered) -> str:
 
 
 def with_values(program: Program, parameters: Parameters, constants: Mapping[str, Fraction]) -> Program:
-    """Return the program with formula and value of each parameter as its meaning, for the head of the emitted file."""
+    """Return a program in which the meaning of each parameter is its formula and value, for the head of its file."""
     values = bind(parameters, constants)
     described = tuple(
         (name, "", f"{text(formula)} = {value!r}") for (name, formula), value in zip(parameters, values, strict=True)
@@ -117,9 +115,9 @@ def with_values(program: Program, parameters: Parameters, constants: Mapping[str
 
 
 def scene_description(title: str, name: str, target: str, bounds: tuple[tuple[str, str], ...] = ()) -> Description:
-    """Return the text in the head of the emitted file of a scene's kernel.
+    """Return the texts in the head comment of the emitted file of a scene's kernel.
 
-    In C it includes ``bounds``, pairs of heading and text.
+    In C they include ``bounds``, pairs of heading and text.
     """
     return Description(
         title=f"equations of motion of the scene {name!r} ({title})",

@@ -22,12 +22,12 @@ MOST_WORKERS = 1024
 
 
 class EnsembleStats(NamedTuple):
-    """Cost of the motions of an ensemble.
+    """The cost of the motions of an ensemble.
 
     Attributes
     ----------
     steps, evaluations : array, shape (n,)
-        The number of each motion; one evaluation of a series computes all its coefficients.
+        Numbers of steps and evaluations of each motion; one evaluation of a series computes all its coefficients.
     seconds : float
         Time of the whole ensemble.
 
@@ -44,18 +44,18 @@ class EnsembleStats(NamedTuple):
 
 
 class Ensemble:
-    """Result of :func:`propagate_ensemble`: n motions of one scene. Conventions: :mod:`symrot.conventions`.
+    """The result of :func:`propagate_ensemble`: n motions of one scene. Conventions: :mod:`symrot.conventions`.
 
     Attributes
     ----------
     t : array, shape (m,) or (n, m)
         Sample times, s, as they were passed.
     omega : array, shape (n, m, 3)
-        Angular velocity, body components, rad/s; not-a-number at times that a motion did not reach.
+        Angular velocity, body components, rad/s; NaN at times that a motion did not reach.
     status : array, shape (n,)
-        0 for a motion that reached its last time, -1 for one that broke off (as in SciPy's solve_ivp).
+        0 for a motion that reached its last time, -1 for one that stopped early (as in SciPy's solve_ivp).
     messages : n texts
-        The reason why a motion broke off, with its time; empty for the others.
+        The reason why a motion stopped early, with its time; empty for the others.
     methods : n texts
         The method by which each motion was propagated.
     stats : EnsembleStats
@@ -87,7 +87,7 @@ class Ensemble:
         """Attitude, unit, scalar first, body to space, shape (n, m, 4)."""
         if self._quaternion is None:
             raise InputError(
-                "the attitude was not computed, since neither a torque nor the output of the scene needs it: "
+                "the attitude was not computed, because neither a torque nor the output of the scene needs it; "
                 'add "quaternion" to output.quantities'
             )
         return self._quaternion
@@ -111,32 +111,34 @@ def propagate_ensemble(
 ) -> Ensemble:
     """Return n motions of a scene that differ in their initial states and in constants of the scene.
 
-    The samples of each motion are the same to the last bit whatever the other motions, their number, their order and
-    the number of threads are. ``auto`` takes the faster method for each: a closed form if there is one, with the same
-    bits that :func:`symrot.propagate` returns; else, or where steps were measured to be faster
-    (:func:`symrot.ensemble.exact.choose`), Taylor series with one trajectory in each SIMD lane. A motion that does not
-    reach its last time does not disturb the others: its ``status`` and message tell.
+    The samples of each motion are the same to the last bit, whatever the other motions, their number, their order and
+    the number of threads are. ``auto`` uses the faster method for each motion. This is a closed form if there is one,
+    with the same bits that :func:`symrot.propagate` returns; otherwise, or where steps were measured to be faster
+    (:func:`symrot.ensemble.exact.choose`), it is Taylor series with one trajectory in each SIMD lane. A motion that
+    does not reach its last time does not affect the others; its ``status`` and message say why.
 
     Parameters
     ----------
     scene : Scene, Propagator, str or Path
-        A scene, the name of a shipped one, the path of a scene file, or a propagator (whose tolerance is taken).
+        A scene, the name of a shipped scene, the path of a scene file, or a propagator, whose tolerance is then used.
     omega : array, shape (n, 3), optional
-        Initial angular velocities, body components, rad/s; default: the scene's own for all.
+        Initial angular velocities, body components, rad/s; default: the scene's value for all.
     quaternion : array, shape (n, 4), optional
         Initial attitudes, scalar first; they are normalised.
     parameters : dict of arrays, optional
         Constants of the scene, in SI units: ``principal`` (n, 3), the moments along given principal axes, or
         ``I_xx`` to ``I_yz`` (n,); fields of a torque by their names in the scene, such as ``weight`` (n,) or
         ``center_of_mass`` (n, 3), or one component, ``center_of_mass_3`` (n,); parameters of an expression (n,).
-        Where two torques have a name in common, those of the second are called ``torque2_weight``.
+        If two torques have a name in common, the constant of the second torque is called ``torque2_weight``.
     t : array, shape (m,) or (n, m), optional
-        Sample times, s, of all or of each, in any order, before or after the initial time; default: the scene's own.
+        Sample times, s, for all motions or for each, in any order, before or after the initial time; default: the
+        scene's own.
     method : str
         ``auto``, or one of :data:`symrot.propagation.method.METHODS` for all.
     tolerance : float, optional
         Error of each trajectory to aim for; default: the scene's own.
     workers : int
+        Number of threads that step motions.
         Threads that step.
 
     Returns

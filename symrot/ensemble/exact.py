@@ -1,4 +1,4 @@
-"""Ensembles in closed form: one closed form is chosen for each trajectory, and all trajectories of a form are one call.
+"""Ensembles in closed form: a closed form is chosen for each trajectory; one call computes all trajectories of a form.
 
 Trajectories with unusual numbers (beyond 1e205, or varying products of inertia close to zero) are evaluated one by one,
 each as a single motion. If no constant varies, these motions share the constants of the body and its torques.
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["ALONE_LOSES_BELOW", "ARRAYS_LOSE_BELOW", "Solved", "choose", "follow_exact", "forms_of"]
 
 Rows = NDArray[np.intp]
-MOST_BITS = 59  # initial values in a pattern, in addition to those of angular velocity
+MOST_BITS = 59  # largest number of initial values in a pattern of zeros, without the three of angular velocity
 
 
 class Kind(NamedTuple):
@@ -39,9 +39,9 @@ class Kind(NamedTuple):
 
 
 def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
-    """Return the closed forms of an ensemble, each with the numbers of its trajectories.
+    """Return the closed forms of an ensemble, each with the indices of its trajectories.
 
-    The form depends only on which components are zero and which moments and coefficients are equal, so that one scene
+    The form depends only on which components are zero and which moments and coefficients are equal. So only one scene
     is examined for each such pattern.
     """
     chosen: dict[Kind, list[Rows]] = {}
@@ -59,9 +59,7 @@ def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
 
 
 def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
-    """Return the trajectories in groups that have the same zeros and the same equal constants, each with its
-    pattern.
-    """
+    """Return the trajectories in groups with the same zeros and the same equal constants, each with its pattern."""
     columns, n = variation.columns, len(variation)
     code = (variation.omega != 0) @ np.array([1, 2, 4])
     if not columns:
@@ -75,7 +73,7 @@ def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
     kinds = [torque.kind for torque in variation.scene.torques]
     varied = [kinds[place] for name in columns if (place := variation.places[name].torque) >= 0]
     summed = any(kinds.count(kind) > 1 for kind in varied)
-    if summed or len(bits) > MOST_BITS:  # sums of constants may vanish too
+    if summed or len(bits) > MOST_BITS:  # sums of constants may be zero too
         return [(None, np.array([i])) for i in range(n)]
     code = code + np.array(bits).T @ (8 << np.arange(len(bits)))
     order = np.argsort(code, kind="stable")
@@ -85,14 +83,14 @@ def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
 
 
 ARRAYS_LOSE_BELOW = {"symmetric body driven about its axis, angular velocity alone": 1e4}
-"""Up to which angle, rad, steps are faster than arrays of a form whose constants do not vary; see :func:`choose`."""
+"""Angle, rad, below which steps are faster than arrays of a form whose constants do not vary; see :func:`choose`."""
 
 ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
-"""Up to which angle, rad, steps are faster than motions in closed form that are made one by one; by library."""
+"""Angle, rad, below which steps are faster than motions in closed form computed one by one; by library."""
 
 
 class Solved(NamedTuple):
-    """Trajectories of one closed form, as a batch of arrays if the form has one."""
+    """Trajectories of one closed form, computed as a batch of arrays if the form allows it."""
 
     form: ClosedForm
     rows: Rows
@@ -103,28 +101,28 @@ class Solved(NamedTuple):
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
     """Return the trajectories to evaluate in closed form.
 
-    With ``faster``, only those trajectories are returned for which steps would take longer.
+    With ``faster``, only trajectories for which the closed form is faster than steps are returned.
 
     Measured for 0.01 to 10^4 rad, tolerances of 1e-6 and 1e-12 and 400 trajectories of 101 samples (``python -m
     symrot.bench.starts --ensembles`` prints the same for the scenes' own spans), in microseconds per trajectory:
 
-    - Arrays of closed forms take 4 to 18 where only initial states vary and 4 to 29 where constants vary; steps take
-      13 to 46 and 33 to 75 up to 10 rad, and more beyond; with products of inertia that vary 23 and 280.
+    - Arrays of closed forms take 4 to 18 if only initial states vary and 4 to 29 if constants vary. Steps take 13 to 46
+      and 33 to 75 for up to 10 rad, and more for larger angles; with products of inertia that vary, 23 and 280.
     - One exception is the angular velocity of a symmetric damped body without its attitude, if only initial states
-      vary: 12 as an array, 6 to 9 by steps, which are few since the motion ends.
-    - Motions made one by one take 1100 with products of inertia that vary and nearly vanish, or with nearly equal
-      moments, since their principal axes are computed in fractions; they take 40 to 80 about one axis or spun up, with
-      constants so large or small that arrays are not made. Steps take as long at the angles of
+      vary: 12 as an array, 6 to 9 by steps, which are few because the motion ends.
+    - Motions computed one by one take 1100 with products of inertia that vary and are nearly zero, or with nearly equal
+      moments, because their principal axes are computed in fractions. They take 40 to 80 for rotation about one axis or
+      spin-up with constants so large or small that arrays cannot be used. Steps take as long at the angles of
       :data:`ALONE_LOSES_BELOW`.
 
-    The angle is that of the trajectory itself, so that its method does not depend on the others.
+    The angle is that of the trajectory itself, so that its method does not depend on other trajectories.
     """
     solved: list[Solved] = []
     for kind, rows in forms_of(variation):
         if kind.form is None:
             continue
         without_compiler = not loaded(kind.form.library) and library.missing()
-        if without_compiler and faster:  # steps are followed by SciPy then
+        if without_compiler and faster:  # without a compiler, SciPy makes the steps
             continue
         least = ARRAYS_LOSE_BELOW.get(kind.form.name) if faster and not variation.columns else None
         if least is not None:
@@ -210,7 +208,7 @@ def _put_starts(
 
 
 class _Alone:
-    """Motions in closed form made one by one; constants that do not depend on the initial state are shared."""
+    """Motions in closed form computed one by one; constants that do not depend on the initial state are shared."""
 
     def __init__(self, variation: Variation, form: ClosedForm) -> None:
         self._variation, self._form = variation, form
@@ -228,7 +226,7 @@ class _Alone:
 
 # ------------------------------------------------------------------------------------------------ arrays of each form
 
-_FAR = 1e100  # moments, torques and damping up to it, and moments down to its inverse, have quotients within bounds
+_FAR = 1e100  # moments, torques and damping between its inverse and this number have quotients within bounds
 Usual = NDArray[np.bool_] | bool
 
 
@@ -259,15 +257,15 @@ class _Part(NamedTuple):
         return value if isinstance(value, Fraction) else value[self.rows]
 
     def moments(self) -> tuple[Any, Any]:
-        """Return the moments of inertia across the symmetry axis and about it, each one number or an array."""
+        """Return the moments of inertia across and about the symmetry axis, each as one number or as an array."""
         assert self.axis is not None
         return self.constant(PRINCIPAL[self.axis - 2]), self.constant(PRINCIPAL[self.axis])
 
 
 def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
-    """Yield the trajectories of one closed form in groups: row numbers, a batch, and the rows for which it is exact.
+    """Yield the trajectories of one closed form in groups: row indices, a batch, and the rows for which it is exact.
 
-    The batch is None if the motions of a group have to be evaluated one by one.
+    The batch is None if the motions of a group must be evaluated one by one.
     """
     make = BATCHES.get(kind.form.library) if kind.form else None
     if make is None:
@@ -371,7 +369,7 @@ def _gyrostat(part: _Part) -> tuple["Batch | None", Usual]:
 
 
 def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
-    """Return the sum over all torques of a kind of one component; None if it varies and is one of several."""
+    """Return the sum of one component over all torques of a kind; None if it varies and there are several torques."""
     variation = part.variation
     components = [
         part.constant(f"{variation.prefix(k)}{field}_{axis % 3 + 1}")
@@ -429,4 +427,4 @@ BATCHES: dict[str, Callable[[_Part], tuple["Batch | None", Usual]]] = {
     "axial": _driven,
     "spin_up": _spin_up,
 }
-"""How the trajectories of a form become arrays."""
+"""Function for each closed form that computes its trajectories as arrays."""

@@ -40,9 +40,9 @@ Integers = NDArray[np.int64]
 
 FLAGS = (*library.FLAGS, *library.TUNING)
 MAX_STEPS = 1_000_000_000
-STEPS_PER_CALL = 20_000  # steps of all lanes in some 20 ms, after which Python can react to an interrupt
+STEPS_PER_CALL = 20_000  # steps of all lanes, about 20 ms, after which Python can react to an interrupt
 TOO_MANY = 5
-MEASURED = ("reached", "steps", "evaluations")  # of each part of a motion to one side of the start (a leg)
+MEASURED = ("reached", "steps", "evaluations")  # results for each leg, the part of a motion on one side of the start
 REASONS = {
     NOT_FINITE: "its derivatives are not finite there",
     UNDERFLOW: "the step shrank to nothing, as it does before a singularity",
@@ -54,19 +54,18 @@ ORDERS = (
     (3e-6, 14),
     (3e-9, 16),
     (0.0, 20),
-)  # least tolerance, and the fastest order from there on, see order_for
+)  # (smallest tolerance, fastest order for it and larger ones), see order_for
 
 
 def order_for(tolerance: float) -> int:
-    """Return the fastest order of the series for a tolerance, by ``python -m symrot.bench.ensemble --orders``."""
+    """Return the fastest order of the series for a tolerance (``python -m symrot.bench.ensemble --orders``)."""
     return next(order for least, order in ORDERS if tolerance >= least)
 
 
 def translation_unit(
     program: Program, blocks: Sequence[int], scales: Sequence[float], order: int, width: int | None = None
 ) -> str:
-    """Return the C source of a library: the jet of a right-hand side, and the stepper for many motions in lanes around
-    it.
+    """Return the C source of a library that steps many motions in SIMD lanes, including the series of the rates.
 
     Parameters
     ----------
@@ -78,7 +77,7 @@ def translation_unit(
     Raises
     ------
     InputError
-        For a right-hand side that is not smooth (abs).
+        For a right-hand side that is not smooth, such as one with abs.
     """
     from symrot.codegen.taylor.ensemble_source import lane_definitions
 
@@ -110,7 +109,7 @@ class _Job(ctypes.Structure):
 
 
 class Outcome(NamedTuple):
-    """The states of n motions at their m times, shape (n, m, N); not-a-number at times that a motion did not reach.
+    """The states of n motions at their m times, shape (n, m, N); NaN at times that a motion did not reach.
 
     ``messages`` holds for each motion the reason why it stopped early, or an empty text.
     """
@@ -122,7 +121,7 @@ class Outcome(NamedTuple):
 
 
 class Lanes:
-    """A loaded library of :func:`translation_unit`: jet and stepper for many motions in lanes."""
+    """A loaded library of :func:`translation_unit`: the Taylor series and the stepper for many motions in lanes."""
 
     def __init__(self, path: str) -> None:
         self.path = path
@@ -152,7 +151,7 @@ class Lanes:
         return coefficients
 
     def work(self, job: _Job, interrupted: Callable[[], bool] = bool) -> None:
-        """Follow all motions of a job to their ends, or until ``interrupted`` returns true."""
+        """Step all motions of a job to their ends, or until ``interrupted`` returns true."""
         memory = ctypes.create_string_buffer(self._memory)
         self._library.symrot_lanes_clear(memory)
         while not interrupted() and self._run(memory, ctypes.addressof(job), STEPS_PER_CALL) != DONE:
@@ -166,14 +165,14 @@ def lanes(path: str) -> Lanes:
 
 
 class _Legs(NamedTuple):
-    """All motions cut at t0 into legs, which lead to one side of it; the sample times of a leg are sorted away from t0.
+    """All motions, each split at t0 into legs: the parts before and after t0, with times sorted away from t0.
 
     See ``symrot_job`` in lanes.c.
     """
 
     table: Floats
-    rows: Integers  # (4, legs): motion, first of its times, how many, row of the first sample
-    order: Integers | None  # (m,) or (n, m): the sample that each sorted one is; None if they are sorted already
+    rows: Integers  # (4, legs): motion, index of its first time, number of times, row of the first sample
+    order: Integers | None  # (m,) or (n, m): sample index of each sorted time; None if the times are already sorted
 
 
 def _legs(t0: float, times: Floats, n: int) -> _Legs:
@@ -194,7 +193,7 @@ def _legs(t0: float, times: Floats, n: int) -> _Legs:
 
 
 class LaneIntegration:
-    """Many motions bound to numbers and sample times: prepared once, run any number of times.
+    """Many motions with given parameters, initial states and sample times: prepared once, run any number of times.
 
     Parameters
     ----------
@@ -205,15 +204,15 @@ class LaneIntegration:
     t0 : float
         Initial time, s.
     times : array, shape (m,) or (n, m)
-        Sample times, s, of all or of each; in any order, on both sides of t0.
+        Sample times, s, for all motions or for each; in any order, on both sides of t0.
     tolerance : float
         Error of each trajectory to aim for, see :func:`symrot.propagation.steppers.taylor.step_tail`.
     max_steps : int
         Largest number of steps of one motion.
     workers : int
-        Threads; each steps its share in lanes of its own.
+        Number of threads; each steps a part of the motions in its own lanes.
     epoch : float
-        Time, s, that messages add to times: the time of the scene at which the clock of t0 and the times shows 0.
+        Time of the scene, s, at which the clock of ``t0`` and ``times`` shows 0; messages add it to times.
     """
 
     def __init__(
@@ -237,7 +236,7 @@ class LaneIntegration:
         return {name: place + 8 * self.total * k for k, name in enumerate(names)}
 
     def run(self) -> Outcome:
-        """Follow the motions through their sample times."""
+        """Step the motions through their sample times and return their states."""
         n, total, legs = len(self.y), self.total, self.legs
         states = np.full((n * self.samples, self.library.states), np.nan)
         measured, status = np.zeros((len(MEASURED), total)), np.full((1, total), TOO_MANY)
@@ -249,7 +248,7 @@ class LaneIntegration:
             jobs.append(_Job(legs=stop - start, states=address(states), **self._arguments, **own))
         _share(self.library, jobs)
         counted = np.zeros((2, n), dtype=np.int64)
-        if total == n:  # one leg each
+        if total == n:  # each motion has one leg
             counted[:, legs.rows[0]] = measured[1:]
         else:
             counted[:] = [np.bincount(legs.rows[0], weights, n) for weights in measured[1:]]
@@ -274,12 +273,12 @@ class LaneIntegration:
 
 
 def follow(*arguments: Any, **options: Any) -> Outcome:
-    """Return the states of n motions at their sample times; arguments as :class:`LaneIntegration` takes them."""
+    """Return the states of n motions at their sample times; the arguments are those of :class:`LaneIntegration`."""
     return LaneIntegration(*arguments, **options).run()
 
 
 def _share(library: Lanes, jobs: list[Any]) -> None:
-    """Run each job in its own thread; an interrupt stops them all."""
+    """Run each job in its own thread; an interrupt stops all of them."""
     if len(jobs) == 1:
         library.work(jobs[0])
         return

@@ -1,4 +1,4 @@
-"""The motions of an ensemble, each followed by the fastest method: closed form, SIMD lanes, or one after the other."""
+"""The motions of an ensemble, each computed by the fastest method: closed form, SIMD lanes, or one after the other."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
@@ -44,18 +44,18 @@ QUATERNION = tuple(f"q{i} of t" for i in range(4))
 
 
 class Followed(NamedTuple):
-    """The samples of n motions at m times each; not-a-number at times that a motion did not reach."""
+    """The samples of n motions at m times each; NaN at times that a motion did not reach."""
 
     omega: Floats  # (n, m, 3)
     quaternion: Floats | None  # (n, m, 4)
     methods: tuple[str, ...]
-    messages: tuple[str, ...]  # why a motion stopped early, or empty
+    messages: tuple[str, ...]  # reason why a motion stopped early, or empty
     steps: Integers
     evaluations: Integers
 
 
 class Problem(NamedTuple):
-    """The trajectories to follow, with their times, the tolerance and the number of threads."""
+    """The trajectories to compute, with their times, the tolerance and the number of threads."""
 
     variation: Variation
     plan: Plan
@@ -71,13 +71,13 @@ class Problem(NamedTuple):
 
 
 def follow(problem: Problem, method: str) -> Followed:
-    """Return the samples of all motions of a problem, each followed by the given or the fastest method.
+    """Return the samples of all motions of a problem, each computed by the given or the fastest method.
 
     Parameters
     ----------
     method : str
-        ``auto`` (for each the faster of closed form and lanes, see :func:`symrot.ensemble.exact.choose`), ``exact``,
-        ``taylor``, ``dop853`` or ``scipy:NAME``.
+        ``auto`` (for each motion the faster of closed form and lanes, see :func:`symrot.ensemble.exact.choose`),
+        ``exact``, ``taylor``, ``dop853`` or ``scipy:NAME``.
     """
     count = len(problem.variation)
     name = method.partition(":")[0]
@@ -90,8 +90,8 @@ def follow(problem: Problem, method: str) -> Followed:
     stepped = np.flatnonzero(by_steps).tolist()
     if method == "exact" and stepped:
         raise InputError(
-            f"method: expected motions with a closed form for 'exact', got another one for trajectory {stepped[0]} of "
-            f"the scene {problem.variation.scene.name!r}"
+            f"method: expected motions with a closed form for 'exact', but trajectory {stepped[0]} of the scene "
+            f"{problem.variation.scene.name!r} has none; use 'auto'"
         )
     samples = problem.times.shape[-1]
     attitude = problem.plan.structure.attitude
@@ -119,7 +119,7 @@ def follow(problem: Problem, method: str) -> Followed:
 def _switched(
     problem: Problem, method: str, stepped: Sequence[int], omega: Floats, quaternion: Floats | None
 ) -> Followed:
-    """Return the samples of motions under torques with switches (sign, abs, ..), each followed as a single motion."""
+    """Return the samples of motions under torques with switches (sign, abs, ..), each computed as a single motion."""
     from symrot.propagation.propagate import propagator
 
     count, messages, methods = len(stepped), list[str](), list[str]()
@@ -153,19 +153,19 @@ def _solved(problem: Problem, method: str) -> list[Solved]:
 
 
 def _stepping_method(problem: Problem) -> str:
-    """Return the name of the method by which motions without a closed form are followed."""
+    """Return the name of the method that steps motions without a closed form."""
     if not problem.plan.states:
         return "constant"
     if missing_compiler():
         return "scipy"
-    rough = has_formulas(problem.plan) and non_smooth_torque(problem.plan)  # lanes can step drag, which bends at rest
+    rough = has_formulas(problem.plan) and non_smooth_torque(
+        problem.plan
+    )  # lanes can step drag, which has a kink at rest
     return "dop853" if rough or taylor.refusal(scene_kernel(problem.plan).rates) else "taylor"
 
 
 def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
-    """Return the compiled library that steps many motions of a plan in lanes; the order of its series suits the
-    tolerance.
-    """
+    """Return the compiled library that steps many motions of a plan in lanes, with a series order for the tolerance."""
     order = lanes.order_for(tolerance)
     key = f"lanes {order}\n{kernel_key(plan)}"
     system = library.fetch(key)
@@ -178,7 +178,7 @@ def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
 
 
 class _Stepped:
-    """The trajectories of an ensemble that are stepped, bound to numbers."""
+    """The trajectories of an ensemble that are stepped, with their parameters and initial states."""
 
     def __init__(self, problem: Problem, chosen: Sequence[int]) -> None:
         self.problem, self.plan, self.chosen = problem, problem.plan, chosen
@@ -197,13 +197,13 @@ class _Stepped:
             raise IntegrationStopped(self.epoch, NOT_FINITE_SENTENCE) from None
 
     def on_clock(self, times: Floats) -> Floats:
-        """Return times of the scene on the clock of the steppers, which shows 0 at the epoch."""
+        """Return times of the scene on the steppers' clock, which shows 0 at the epoch."""
         return times - self.epoch if self.epoch else times
 
     def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = epoch.compiled) -> Any:
-        """Return, for motion k, a function from an epoch to its rates on a moved clock, and their parameters.
+        """Return, for motion k, a function from an epoch to its rates on a clock starting there, and their parameters.
 
-        Arguments are those of :func:`symrot.propagation.time_shift.clock`.
+        See :func:`symrot.propagation.time_shift.clock`.
         """
         if not self.kernel.rates.uses("t"):
             return None
@@ -232,7 +232,7 @@ class _Stepped:
             quaternion[chosen] /= size
 
     def _parameters_of(self, outputs: Sequence[str]) -> Any:
-        """Return those parameters of quantities that the named outputs depend on."""
+        """Return the parameters on which the named outputs depend."""
         program, parameters = self.kernel.quantities, self.kernel.quantity_parameters
         needed = set().union(*(names(node) for name, node in program.outputs if name in outputs))
         for name, node in reversed(program.temporaries):
@@ -240,7 +240,7 @@ class _Stepped:
         return tuple([(name, node) for name, node in parameters if name in needed])
 
     def one_by_one(self, integrate: Callable[[int, Floats], tuple[Floats, Any]]) -> lanes.Outcome:
-        """Return the states of all trajectories, each followed by ``integrate``, the stepper for a single motion."""
+        """Return the states of all trajectories; ``integrate``, the stepper for a single motion, computes each."""
         samples = self.times.shape[-1]
         states = np.full((len(self.chosen), samples, len(self.plan.states)), np.nan)
         steps, evaluations = (np.zeros(len(self.chosen), dtype=np.int64) for _ in range(2))
@@ -269,9 +269,9 @@ def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
 
 
 def _enclosed(stepped: _Stepped) -> lanes.Outcome:
-    """Return the states of motions whose steps need an enclosure or a check, followed one after the other.
+    """Return the states of motions whose steps need an enclosure or a check, computed one after the other.
 
-    Lanes support neither.
+    Lanes support neither enclosures nor checks.
     """
     problem, (plan, kernel) = stepped.problem, stepped.moved
     path = taylor_library(plan, kernel, problem.tolerance, projected=False)
@@ -323,4 +323,4 @@ STEPPERS: dict[str, Callable[[_Stepped, str], lanes.Outcome]] = {
     "scipy": _scipy,
     "constant": _constant,
 }
-"""Function that follows motions without a closed form, by the name of the method."""
+"""Function that computes motions without a closed form, by the name of the method."""

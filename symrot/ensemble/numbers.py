@@ -28,7 +28,7 @@ class Numbers:
     plan : Plan
         A plan that covers all trajectories.
     chosen : whole numbers
-        The numbers of the trajectories.
+        The indices of the trajectories.
     """
 
     def __init__(self, variation: Variation, plan: Plan, chosen: Sequence[int]) -> None:
@@ -42,7 +42,7 @@ class Numbers:
         self._columns = {name: varying[name][self._chosen] for name in plan.constants if name in varying}
 
     def constants(self, k: int) -> dict[str, Fraction]:
-        """Return all constants of one of the trajectories (the k-th), as exact fractions by name."""
+        """Return all constants of trajectory k of these trajectories, as exact fractions by name."""
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
     def bound(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
@@ -51,7 +51,7 @@ class Numbers:
         Raises
         ------
         OverflowError
-            If a parameter exceeds all doubles.
+            If a parameter exceeds the range of a double.
         """
         scene = Plan(self._variation.scene, self._plan.structure, ()).constants
         known = {"pi": number.PI, EPOCH: Fraction(epoch), **scene}

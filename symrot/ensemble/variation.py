@@ -1,4 +1,4 @@
-"""Variations: the arrays that describe an ensemble, read and checked, and the plan that covers all trajectories."""
+"""Variations: the arrays that describe an ensemble, read and checked, and a plan that is valid for all trajectories."""
 
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, replace
@@ -25,24 +25,24 @@ __all__ = ["PLACES", "Variation", "read_times", "read_variation"]
 PLACES = {"I_xx": (0, 0), "I_yy": (1, 1), "I_zz": (2, 2), "I_xy": (0, 1), "I_xz": (0, 2), "I_yz": (1, 2)}
 PRINCIPAL = ("I_xx", "I_yy", "I_zz")
 PRODUCTS = ("I_xy", "I_xz", "I_yz")
-CLEARLY = 1e-12  # relative to the largest moment: doubles resolve such a difference
+CLEARLY = 1e-12  # difference, relative to the largest moment, that doubles resolve
 FIXED = {"direction": "rotate the initial quaternions instead", "attitude": "rotate the initial quaternions instead"}
-SIGNS = {  # what a field's sign asks of its values, of each trajectory: shape (n, k) -> (n,)
+SIGNS = {  # test of the sign that a field requires, for each trajectory: shape (n, k) -> (n,)
     "positive": lambda values: (values > 0).all(axis=1),
     "nonnegative": lambda values: (values >= 0).all(axis=1),
     "nonzero": lambda values: (values != 0).any(axis=1),
 }
-GENERAL_START = Initial(  # no component has a value that a rule of the planner could use
+GENERAL_START = Initial(  # initial state without special values, so that no rule of the planner applies to it
     (Fraction(3, 7), Fraction(5, 11), Fraction(7, 13)),
     (Fraction(1, 5), Fraction(2, 5), Fraction(4, 5), Fraction(2, 5)),
 )
 BY_ZEROS = {"gravity", "rotor", "constant_body", "damping"}
 """Kinds of torques whose constants affect the plan only by being zero or not."""
 
-DISTINCT = (Fraction(4), Fraction(5), Fraction(6))  # admissible moments of a body of any class
+DISTINCT = (Fraction(4), Fraction(5), Fraction(6))  # moments that a body can have, all different
 
 
-_rooms: dict[int, dict[Hashable, Any]] = {}  # data of scenes by their ids, as long as the scenes live
+_rooms: dict[int, dict[Hashable, Any]] = {}  # cached values of scenes by their ids, deleted with the scene
 
 
 class _Place(NamedTuple):
@@ -55,7 +55,7 @@ class _Place(NamedTuple):
 
 @dataclass(frozen=True)
 class Variation:
-    """n trajectories of one scene: their initial states, and a column of values for each constant that varies.
+    """The variation of a scene: initial states of n trajectories, and a column of values for each constant that varies.
 
     Constants have the names that plans use.
     """
@@ -81,8 +81,9 @@ class Variation:
         return Initial((x, y, z), _unit(self.quaternion[i].tolist()))
 
     def cached(self, key: Hashable, make: Callable[[], Any]) -> Any:
-        """Return a value that depends on the scene alone; ``make`` is called once for all ensembles of the same
-        scene.
+        """Return a value that depends only on the scene.
+
+        ``make`` is called once for all ensembles of the same scene.
         """
         place = id(self.scene)
         room = _rooms.get(place)
@@ -95,9 +96,7 @@ class Variation:
 
     @cached_property
     def attitudes(self) -> Floats | None:
-        """The initial unit quaternions as sums of two doubles, shape (n, 8); None if all have the attitude of the
-        scene.
-        """
+        """The initial unit quaternions as sums of two doubles, shape (n, 8); None if all have the scene's attitude."""
         from symrot.closed_form.batches import attitudes
 
         return None if self.quaternion is None else attitudes(self.quaternion)
@@ -133,9 +132,7 @@ class Variation:
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
-        """Return the other constants of the same field that do not vary, as doubles; a column may contain equal
-        values.
-        """
+        """Return the other constants of the same field that have no column, as doubles."""
         place = self.places[name]
         same = [key for key, other in self.places.items() if other[:2] == place[:2] and key not in self.columns]
         values = {self.constant(key) for key in same if not isinstance(self.places[key].entry, str)}
@@ -143,7 +140,7 @@ class Variation:
 
     @property
     def negligible(self) -> Floats:
-        """The largest products of inertia, kg m^2, for which the given axes count as principal, shape (n,)."""
+        """The products of inertia, kg m^2, below which the given axes count as principal, shape (n,)."""
         bounds: Floats = np.ldexp(abs(self.moments).max(axis=1), -number.NEGLIGIBLE_BITS)
         return bounds
 
@@ -174,7 +171,7 @@ class Variation:
         return replace(self.scene, initial=start, body=body, torques=tuple(torques))
 
     def plan(self) -> Plan:
-        """Return a plan that covers all trajectories: it relies on a special value only if every trajectory has it."""
+        """Return a plan that is valid for all trajectories: it uses a special value only if every trajectory has it."""
         values = {name: _representative(column) for name, column in self.columns.items()}
         if not PLACES.keys().isdisjoint(values):
             values |= self._representative_inertia()
@@ -193,7 +190,7 @@ class Variation:
         return make_plan(self._with(GENERAL_START, values), switched=switched(self.scene))
 
     def _representative_inertia(self) -> dict[str, Fraction]:
-        """Return an inertia tensor with those equalities and zeros that hold in every trajectory, and no others."""
+        """Return an inertia tensor with exactly the equalities and zeros that hold in every trajectory."""
         inertia = self.scene.body.inertia
         tensor: dict[str, Fraction] = {}
         for k, name in enumerate(PRINCIPAL):
@@ -206,7 +203,7 @@ class Variation:
         return tensor
 
     def _agree(self, one: str, other: str) -> bool:
-        """Return whether two moments are equal to each other in every trajectory."""
+        """Return whether two moments equal each other in every trajectory."""
         own = [self.scene.body.inertia[PLACES[name][0]][PLACES[name][1]] for name in (one, other)]
         if one not in self.columns and other not in self.columns:
             return number.equal(*own)
@@ -226,7 +223,7 @@ def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
 
 
 def _representative(column: Floats) -> Fraction:
-    """Return one value for a whole column: zero if all values are zero, otherwise a value that is not special."""
+    """Return one value for a whole column: zero if all values are zero, else a value without effect on the plan."""
     return Fraction(float(column[np.argmax(column != 0)]))
 
 
@@ -236,13 +233,13 @@ def _representative(column: Floats) -> Fraction:
 def read_variation(
     scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None, parameters: Mapping[str, ArrayLike] | None
 ) -> Variation:
-    """Return the variation that the arguments of an ensemble describe; None keeps the numbers of the scene.
+    """Return the variation that the arguments of an ensemble describe; None means the scene's values.
 
     Raises
     ------
     InputError
-        For arrays of other shapes, values that are not finite, quaternions of zero, names that the scene does not
-        have, bodies that cannot exist.
+        For arrays of wrong shape, values that are not finite, zero quaternions, names that the scene does not have, or
+        moments that no body can have.
     """
     if parameters is not None and not isinstance(parameters, Mapping):
         raise InputError(f"parameters: expected a dict of arrays by name, got {number.show(parameters)}")
@@ -281,7 +278,8 @@ def read_variation(
 def _check_bodies(variation: Variation) -> None:
     """Raise InputError if a trajectory has moments of inertia that no body has, or that do not determine its motion.
 
-    Doubles suffice where principal moments clearly satisfy the triangle inequalities; other bodies are checked exactly.
+    Doubles suffice if the principal moments clearly satisfy the triangle inequalities; other bodies are checked
+    exactly.
     """
     moments: Any = variation.moments
     if not variation.in_principal_axes:
@@ -289,7 +287,7 @@ def _check_bodies(variation: Variation) -> None:
         for name, (i, j) in PLACES.items():
             value = variation.constant(name)
             tensors[:, i, j] = tensors[:, j, i] = float(value) if isinstance(value, Fraction) else value
-        moments = np.linalg.eigvalsh(tensors)  # errors of some 1e-15 of the largest
+        moments = np.linalg.eigvalsh(tensors)  # with errors of about 1e-15 of the largest
     small, middle, large = np.sort(moments, axis=1).T
     doubtful = ~((small > CLEARLY * large) & (small + middle > (1 + CLEARLY) * large))
     for i in np.flatnonzero(doubtful).tolist():
@@ -328,7 +326,7 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
 
 
 def _places(scene: Scene) -> dict[str, _Place]:
-    """Return the places of all constants of a scene that may vary, by their names in the plan."""
+    """Return the places in a scene of all constants that may vary, by their names in the plan."""
     places = {name: _Place(-1, "inertia", None) for name in PLACES}
     for index, torque in enumerate(general_structure(scene).torques):
         if isinstance(torque, FormulaTorque):

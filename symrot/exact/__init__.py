@@ -1,4 +1,4 @@
-"""Exact decision of equality of formulas.
+"""Exact decision whether two formulas are equal.
 
 ``normal_form``, ``is_zero`` and ``Decision`` are imported here on first use; ``decide`` is in
 :mod:`symrot.exact.decide`.

@@ -1,9 +1,8 @@
-"""A counted budget for one decision: the number of times that formulas are read into rings.
+"""A counted budget for one decision: how often formulas may be read into rings of polynomials.
 
-Each root under a root and each inverse function inside another one is read in a ring of its own, and the proofs about
-them read both sides again, so that nested functions need many readings. The result of a reading is remembered until the
-decision ends, no longer: so the count, and with it the verdict, is the same on every machine and in any order of
-decisions.
+Each root inside a root and each inverse function inside another one is read into a ring of its own, and proofs about
+them read both sides again, so nested functions need many readings. The result of a reading is stored only until the
+decision ends. So the count, and with it the verdict, is the same on every machine and for any order of decisions.
 """
 
 from collections.abc import Callable, Hashable, Iterator
@@ -17,12 +16,12 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["MOST_RINGS", "one_decision", "remembered", "spend_ring"]
 
 MOST_RINGS = 2000
-"""Readings that one decision may need, which is seconds of work; claims of the campaigns need 400 at most."""
+"""Most readings in one decision, which take seconds; the claims of the random tests need at most 400."""
 
 
 @dataclass
 class _Budget:
-    """The readings that one decision may still do, and the results of those that it has done."""
+    """How often one decision may still read a formula into a ring, and the stored results of earlier readings."""
 
     left: int = MOST_RINGS
     results: dict[Hashable, Any] = field(default_factory=dict)
@@ -45,7 +44,7 @@ def one_decision() -> Iterator[None]:
 
 
 def remembered(key: Hashable, compute: Callable[[], Any]) -> Any:
-    """Return a result that depends on the key alone: computed once in a decision, outside of one at every call."""
+    """Return ``compute()``, computed only once for each key in one decision; outside a decision, at every call."""
     budget = _current.get()
     if budget is None:
         return compute()
@@ -55,16 +54,16 @@ def remembered(key: Hashable, compute: Callable[[], Any]) -> Any:
 
 
 def spend_ring() -> None:
-    """Count one reading.
+    """Subtract one reading of a formula into a ring from the budget of the decision.
 
     Raises
     ------
     TooLarge
-        When the budget of the decision is spent.
+        If the budget is exhausted.
     """
     budget = _current.get()
     if budget is None:
         return
     budget.left -= 1
     if budget.left < 0:
-        raise TooLarge(f"the functions inside each other take more than {MOST_RINGS} readings of parts of the formula")
+        raise TooLarge(f"nested functions need more than {MOST_RINGS} readings of parts of the formula; split it")

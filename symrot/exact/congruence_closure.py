@@ -1,8 +1,8 @@
-"""Congruence closure: inverse functions and logarithms that are proven equal are replaced by one of them.
+"""Congruence closure: of inverse functions or logarithms that are proven equal, one replaces the others.
 
-To the ring, ``sqrt(asin(x))`` and ``sqrt(atan2(x, sqrt(1 - x^2)))`` contain two independent symbols, although the two
-inverse functions are equal. Where a pair is proven to satisfy ``f - g = 0`` or ``f + g = pi/2``, one is replaced by
-the other in the formula, which is then read again.
+The ring of ``sqrt(asin(x))`` and ``sqrt(atan2(x, sqrt(1 - x^2)))`` contains two independent symbols, although the two
+inverse functions are equal. If a pair is proven to satisfy ``f - g = 0`` or ``f + g = pi/2``, one is expressed by the
+other in the formula, which is then read again.
 """
 
 from collections.abc import Iterator, Sequence
@@ -36,7 +36,7 @@ def proof_by_congruence(
         names: list[Expr] = [leaf for leaf in ring.symbols if type(leaf) in _NAMES and leaf.free_symbols]
         for old, new, further in _equal_pairs(names, hypotheses, domain) if len(names) <= MOST_SYMBOLS else ():
             replaced = left.xreplace({old: new}), right.xreplace({old: new})
-            if replaced != (left, right):  # the ring may name what the sides do not show
+            if replaced != (left, right):  # the ring may contain functions that the sides do not
                 left, right = replaced
                 domain = [formula.xreplace({old: new}) for formula in domain]
                 rings += further

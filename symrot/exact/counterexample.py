@@ -1,8 +1,8 @@
 """Counterexamples: exact points at which two formulas differ, with numbers that are short enough to read.
 
-Two kinds. Where only symbols, free angles and unit vectors occur, the point is rational, ``cos x = 4/5, sin x = 3/5``
-or ``q = (1/2, 1/2, 1/2, 1/2)``, and both sides are rational numbers. Otherwise symbols get rational values, both sides
-become closed-form numbers, and 50-digit interval arithmetic proves that they differ.
+There are two kinds. If only symbols, free angles and unit vectors occur, the point is rational, such as
+``cos x = 4/5, sin x = 3/5`` or ``q = (1/2, 1/2, 1/2, 1/2)``, and both sides are rational numbers. Otherwise symbols get
+rational values, both sides become closed-form numbers, and 50-digit interval arithmetic proves that they differ.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -29,23 +29,23 @@ from symrot.exact.size import pieces
 __all__ = ["closed_form_witness", "rational_witness"]
 
 ATTEMPTS = 60
-"""Random points tried: a nonzero polynomial of degree d vanishes at one with a chance of about d/40."""
+"""Number of random points; a nonzero polynomial of degree d is zero at one of them with a probability of about d/40."""
 
 SIMPLER_TERMS = 200_000
 """Number of terms of the residual that may be evaluated in order to simplify a point."""
 
 UNMOVED = 20
-"""Number of random points that are tried as drawn; later points are first moved into the domain if they are outside."""
+"""Number of random points that are tried unchanged; later points are first moved into the domain if necessary."""
 
 MOST_ROOTS_SHORTENED = 6
-"""Largest number of roots in a number that is expanded to see whether it is rational: each root doubles its terms."""
+"""Largest number of roots in a number that is expanded to test whether it is rational; each root doubles its terms."""
 
 MOST_NESTED = 2
 """Largest depth of nested functions into which SymPy substitutes numbers."""
 
 _INVERSE = (asin, acos, atan, atan2)
 _TRIANGLES = [Rational(n, d) for n, d in ((3, 5), (-4, 5), (3, 4), (-4, 3), (1, 1), (-1, 1), (2, 1), (-2, 1), (1, 2))]
-"""Values at which sines and cosines of inverse functions are rational, for the most part."""
+"""Values at which sines and cosines of most inverse functions are rational."""
 
 _TURNS = [Rational(n, d) * pi for n, d in ((1, 1), (-1, 1), (2, 1), (1, 2), (-1, 2), (3, 1), (1, 3), (3, 2), (-2, 3))]
 """Values of angles at which sines and cosines are simple."""
@@ -53,18 +53,18 @@ _TURNS = [Rational(n, d) * pi for n, d in ((1, 1), (-1, 1), (2, 1), (1, 2), (-1,
 
 @dataclass(frozen=True)
 class FreeChoice:
-    """Generators whose values are chosen together, and the possible values, the simplest first."""
+    """Generators whose values are chosen together, with their possible values, simplest first."""
 
     generators: tuple[int, ...]
     simple: tuple[tuple[Fraction, ...], ...]
     random: Callable[[Random], tuple[Fraction, ...]]
-    atom: Expr | None = None  # of an angle
+    atom: Expr | None = None  # atom of the angle, if the generators are its cosine and sine
 
 
 def rational_witness(
     ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
 ) -> Counterexample | None:
-    """Return a rational point where left and right differ, or None if none was found or the point would not be real.
+    """Return a rational point where left and right differ, or None if none is found or if a side is not real there.
 
     Both formulas must be readable in the ring.
     """
@@ -75,7 +75,7 @@ def rational_witness(
     domain = [ring.ratio(formula) for formula in ring.domain]
 
     def point(choices: Sequence[tuple[Fraction, ...]]) -> dict[int, Fraction] | None:
-        """Return the value of every generator, or None where a side is undefined or the sides are equal."""
+        """Return the value of every generator, or None if a side is undefined or the sides are equal."""
         values: dict[int, Fraction] = {}
         for coordinate, choice in zip(coordinates, choices, strict=True):
             values.update(zip(coordinate.generators, choice, strict=True))
@@ -115,9 +115,9 @@ def rational_witness(
 
 
 def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[dict[int, Fraction]], bool], int]:
-    """Return a test whether the sides are defined and differ at values of the generators, and its cost in terms.
+    """Return a test whether both sides are defined and differ at given values of the generators, and its cost in terms.
 
-    It evaluates the polynomial of the difference, or the formulas as written where the polynomial is longer.
+    The test evaluates the polynomial of the difference or, if that is longer, the formulas as written.
     """
     written = pieces((left, right))
     try:
@@ -125,7 +125,7 @@ def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[d
         if len(residual) <= written:
             return lambda values: bool(_value(residual, values)), len(residual)
     except TooLarge:
-        ring.ratios.products = 0  # its symbols, sines and cosines are read on their own
+        ring.ratios.products = 0  # its symbols, sines and cosines are read with a budget of their own
 
     def differ(values: dict[int, Fraction]) -> bool:
         known: dict[Expr, Fraction] = {}
@@ -194,7 +194,7 @@ def closed_form_witness(
 def _move_within(
     formulas: Sequence[Expr], values: dict[Expr, Expr], movable: Sequence[Expr], simple: Sequence[Expr]
 ) -> None:
-    """For each negative formula, change the value of the first symbol by which it becomes nonnegative."""
+    """For each negative formula, change the value of the first symbol that can make it nonnegative."""
     for formula in formulas:
         if _seems_nonnegative(formula, values) and _nonnegative(formula, values):
             continue
@@ -205,7 +205,7 @@ def _move_within(
 
 
 def _pure_angles(ring: FormulaRing) -> set[Expr]:
-    """Return the symbols and functions of time that occur only in angles, each alone or times a number."""
+    """Return the symbols and functions of time that occur only as angles, alone or times a number."""
     inside = [atom for atom in ring.bases if atom.is_Symbol or isinstance(atom, AppliedUndef)]
     others = [*ring.symbols, *ring.exponent_bases, *(atom for atom in ring.bases if atom not in inside)]
     return {atom for atom in inside if not any(other.has(atom) for other in others)}
@@ -214,20 +214,20 @@ def _pure_angles(ring: FormulaRing) -> set[Expr]:
 def _enclosure(formula: Expr, values: dict[Expr, Expr]) -> Any:
     """Return an interval that contains the value of a formula at a point, or None.
 
-    Where intervals alone do not succeed, SymPy substitutes the point first.
+    If interval arithmetic alone fails, SymPy substitutes the point into the formula first.
     """
     held = enclosure(formula, values)
     return enclosure(formula.xreplace(values)) if held is None and _is_flat(formula) else held
 
 
 def _nonnegative(formula: Expr, values: dict[Expr, Expr]) -> bool:
-    """Return whether a formula is proven not to be negative; ``1 + cos(x)`` is exactly zero at pi."""
+    """Return whether a formula is proven to be nonnegative at a point; ``1 + cos(x)`` is exactly zero at pi."""
     is_proven = is_nonnegative_at(formula, values)
     return is_proven or (_is_flat(formula) and surely_nonnegative_number(formula.xreplace(values)))
 
 
 def _seems_nonnegative(formula: Expr, values: dict[Expr, Expr]) -> bool:
-    """Return whether a formula is not negative in double precision: a quick look before intervals prove it."""
+    """Return whether a formula is nonnegative in double precision: a fast test before the proof by intervals."""
     try:
         return float_at(formula, {leaf: float(value) for leaf, value in values.items()}, {}) > -1e-9
     except (NoValue, TypeError, OverflowError):
@@ -240,13 +240,13 @@ def _nonzero(formula: Expr, values: dict[Expr, Expr]) -> bool:
 
 
 def _is_flat(formula: Expr, deep: int = MOST_NESTED) -> bool:
-    """Return whether functions are nested so little that SymPy substitutes numbers fast enough."""
+    """Return whether functions are nested so little that SymPy substitutes numbers quickly."""
     inside = deep - formula.is_Function
     return inside >= 0 and all(_is_flat(part, inside) for part in formula.args if part.args)
 
 
 def _shortest(number: Expr) -> Expr:
-    """Return a number as a rational if it is rational and contains few roots, else unchanged."""
+    """Return a number as a rational if it is rational and contains few roots; otherwise return it unchanged."""
     if number.is_Rational or not number.is_number:
         return number
     try:
@@ -254,13 +254,13 @@ def _shortest(number: Expr) -> Expr:
         if len(own.roots) > MOST_ROOTS_SHORTENED:
             return number
         short = own.expression(own.ratio(number))
-    except InputError:  # beyond the budget
+    except InputError:  # the budget is exhausted
         return number
     return short if short.is_Rational else number
 
 
 def _occurring(poly: PolyElement) -> set[int]:
-    """Return the numbers of the generators that occur in a polynomial."""
+    """Return the indices of the variables (generators of the ring) that occur in a polynomial."""
     return {number for mono in poly for number, power in enumerate(mono) if power}
 
 
@@ -268,9 +268,9 @@ def _occurring(poly: PolyElement) -> set[int]:
 
 
 def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, PolyElement]]]:
-    """Return the coordinates that can be chosen freely, and the hypotheses that then fix one generator each.
+    """Return the coordinates that can be chosen freely, and the hypotheses that then determine one generator each.
 
-    Such a hypothesis is linear in its generator.
+    Each of these hypotheses is linear in the generator that it determines.
     """
     fixed: set[int] = set()
     coordinates: list[FreeChoice] = []
@@ -298,7 +298,7 @@ def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, P
 
 
 def _sphere(poly: PolyElement) -> tuple[int, ...] | None:
-    """Return the generators of ``sum of their squares = 1``, or None."""
+    """Return the generators if the hypothesis is ``sum of their squares = 1``, else None."""
     if not poly:
         return None
     constant = poly.coeff(1)
@@ -313,13 +313,13 @@ def _sphere(poly: PolyElement) -> tuple[int, ...] | None:
 
 
 def _simple_circle() -> tuple[tuple[Fraction, ...], ...]:
-    """Return (sine, cosine) of the quarter turns and of the 3-4-5 triangle."""
+    """Return (sine, cosine) of the multiples of pi/2 and of the angles of the 3-4-5 triangle."""
     points = ("0 1", "1 0", "0 -1", "-1 0", "3/5 4/5", "4/5 3/5")
     return tuple(tuple(map(Fraction, point.split())) for point in points)
 
 
 def _simple_sphere(size: int) -> tuple[tuple[Fraction, ...], ...]:
-    """Return axis points, (3/5, 4/5) points, (1, 2, 2)/3 and (1/2)^4 points."""
+    """Return simple rational points of a unit sphere: on the axes, (3/5, 4/5), (1, 2, 2)/3 and (1, 1, 1, 1)/2."""
     points = [tuple(Fraction(int(i == j)) for i in range(size)) for j in range(size)]
     for numbers in ("3/5 4/5", "1/3 2/3 2/3", "1/2 1/2 1/2 1/2"):
         seed = tuple(map(Fraction, numbers.split()))
@@ -333,7 +333,7 @@ def _simple_sphere(size: int) -> tuple[tuple[Fraction, ...], ...]:
 
 
 def _random_sphere(size: int) -> Callable[[Random], tuple[Fraction, ...]]:
-    """Return a source of rational points of the unit sphere, by stereographic projection."""
+    """Return a function that draws rational points of the unit sphere, by stereographic projection."""
 
     def draw(source: Random) -> tuple[Fraction, ...]:
         flat = [Fraction(source.randint(-9, 9), source.randint(1, 5)) for _ in range(size - 1)]
@@ -344,7 +344,7 @@ def _random_sphere(size: int) -> Callable[[Random], tuple[Fraction, ...]]:
 
 
 def _random_number(leaf: Expr) -> Callable[[Random], tuple[Fraction, ...]]:
-    """Return a source of rationals that obey the symbol's assumptions."""
+    """Return a function that draws rational numbers that satisfy the assumptions on a symbol."""
 
     def draw(source: Random) -> tuple[Fraction, ...]:
         for _ in range(20):
@@ -368,7 +368,7 @@ def _assumed(leaf: Expr, value: Any) -> bool:
 
 
 def _solve(hypothesis: PolyElement, generator: int, values: dict[int, Fraction]) -> bool:
-    """Solve a hypothesis that is linear in a generator for its value; False where that is impossible."""
+    """Solve a hypothesis that is linear in a generator for that generator; return False if this is impossible."""
     values[generator] = Fraction(0)
     if any(power and place not in values for mono in hypothesis for place, power in enumerate(mono)):
         return False
@@ -397,7 +397,7 @@ def _ratio_value(ring: FormulaRing, ratio: Ratio, values: dict[int, Fraction]) -
 
 
 def _formula_value(ring: FormulaRing, node: Expr, values: dict[int, Fraction], known: dict[Expr, Fraction]) -> Fraction:
-    """Return the value of a formula as it is written; raise ``ZeroDivisionError`` where a divisor is zero."""
+    """Return the value of a formula as it is written; raise ``ZeroDivisionError`` if a divisor is zero."""
     if node in ring.symbols:
         return values[ring.symbols[node]]
     if node not in known:
@@ -416,7 +416,7 @@ def _formula_value(ring: FormulaRing, node: Expr, values: dict[int, Fraction], k
 def _named(
     ring: FormulaRing, coordinates: list[FreeChoice], values: dict[int, Fraction], used: set[Expr]
 ) -> Iterator[tuple[Expr, Expr]]:
-    """Yield every symbol and angle in use with its value; quarter turns as angles, others as cosine and sine."""
+    """Yield each used symbol or angle with its value: multiples of pi/2 as angles, others as cosine and sine."""
     zero, one = Fraction(0), Fraction(1)
     quarter_turns = {(zero, one): 0, (one, zero): 1, (zero, -one): 2, (-one, zero): 3}
     for leaf, number in ring.symbols.items():
@@ -439,10 +439,10 @@ def _rational(value: Fraction) -> Rational:
 
 
 def _angles_are_free(ring: FormulaRing) -> bool:
-    """Return whether the angles can be given any values, whatever the symbols are.
+    """Return whether the angles can be given any values independently of the symbols.
 
-    They can if each is proportional to a symbol or function of time that occurs in no other angle. Time derivatives at
-    one instant can be given any values, whatever the value of the function is.
+    They can if each angle is proportional to a symbol or function of time that occurs in no other angle. Time
+    derivatives at one instant are independent of the value of the function.
     """
     holders = [*ring.bases, *(leaf for leaf in ring.symbols if not leaf.is_Derivative)]
     for atom in ring.bases:
@@ -459,7 +459,7 @@ def _angles_are_free(ring: FormulaRing) -> bool:
 
 
 def _variables(expression: Expr) -> list[Expr]:
-    """Return symbols, functions of time and their derivatives, outermost first, in an order free of hashing."""
+    """Return symbols, functions of time and their derivatives, outermost first, in an order that is always the same."""
     variables: list[Expr] = []
     stack = [expression]
     while stack:

@@ -1,14 +1,14 @@
-"""Decide whether two formulas are equal: the normal form of their difference, and a verdict with its evidence.
+"""Decision whether two formulas are equal: the normal form of their difference, and a verdict with its evidence.
 
-Scope, with its theorem (``docs/exact_decisions.md``, sections 1 to 3). For rational functions of sines and
-cosines of Q-linear combinations of angles (rational multiples of pi included), of exponentials, of parameters, of
-rates, and of unit-norm groups, the normal form is zero if and only if the identity holds at all real points where both
-sides are defined: circles and spheres are rational, irreducible over the complex numbers, and their real points are
-dense. The same holds when an angle or an exponent also occurs outside its function (Ax-Schanuel). Whether a number made
-of roots and cosines of rational angles is zero is proven (:mod:`symrot.exact.angles.constants`). With square roots,
-inverse functions or other hypotheses a zero normal form still proves the identity wherever all of them are real; a
-nonzero one proves nothing, and the verdict "false" needs a counterexample. An equation whose sides are real numbers
-nowhere is never "true".
+Scope, with its theorem (``docs/exact_decisions.md``, sections 1 to 3). The formulas may be rational functions of
+parameters, rates, exponentials, components of unit vectors or quaternions, and sines and cosines of rational
+combinations of angles. Their normal form is zero if and only if the identity holds at all real points where both sides
+are defined: circles and spheres are rational, irreducible over the complex numbers, and their real points are dense.
+The same holds if an angle or an exponent also occurs outside its function (Ax-Schanuel). Whether a number made of roots
+and cosines of rational angles is zero is proven (:mod:`symrot.exact.angles.constants`). With square roots, inverse
+functions or other hypotheses, a zero normal form still proves the identity wherever all of them are real; a nonzero
+normal form proves nothing, and the verdict "false" needs a counterexample. An equation whose sides are nowhere real is
+never "true".
 """
 
 from collections.abc import Sequence
@@ -44,14 +44,17 @@ __all__ = ["decide", "is_zero", "normal_form"]
 
 
 def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
-    """Return the normal form of a formula: exactly 0 if and only if it vanishes identically (in scope).
+    """Return the normal form of a formula: exactly 0 if the formula is zero wherever it is defined.
+
+    The result is nonzero only if the formula is not identically zero, provided that it is in the scope that
+    :mod:`symrot.exact.decide` states.
 
     Parameters
     ----------
     expression : Expr or Matrix
-        Exact: no floating point numbers.
+        Exact: without floating point numbers.
     relations : sequence of Expr or Eq
-        Hypotheses; an expression stands for "this is zero", e.g. ``q0**2 + q1**2 + q2**2 + q3**2 - 1``.
+        Hypotheses; an expression means that it is zero, e.g. ``q0**2 + q1**2 + q2**2 + q3**2 - 1``.
 
     Returns
     -------
@@ -62,12 +65,12 @@ def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
     Raises
     ------
     InputError
-        If the formula holds a float or an infinity, divides by something that is zero everywhere, or if the
-        hypotheses contradict each other.
+        If the formula contains a float or an infinity, if it divides by an expression that is zero everywhere, or if
+        the hypotheses contradict each other.
 
     Notes
     -----
-    Source: ``docs/exact_decisions.md`` says how the decision works and why it is sound.
+    Source: ``docs/exact_decisions.md`` explains how the decision works and why it is sound.
 
     Examples
     --------
@@ -90,12 +93,12 @@ def is_zero(expression: Any, relations: Sequence[Any] = ()) -> bool:
 
 
 def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Decision:
-    """Decide ``left = right`` under hypotheses.
+    """Decide whether ``left = right`` holds under hypotheses, and return the verdict with its evidence.
 
     Parameters
     ----------
     left, right : Expr or Matrix
-        Of equal shape; ``0`` stands for the zero matrix of any shape.
+        Of equal shape; ``0`` means the zero matrix of any shape.
     relations : sequence of Expr or Eq
         Hypotheses, as for :func:`normal_form`.
 
@@ -107,7 +110,7 @@ def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Decision:
     Raises
     ------
     InputError
-        If the shapes differ, if :func:`normal_form` raises it, or if a side is proven to be no real number anywhere.
+        If the shapes differ, if :func:`normal_form` raises it, or if a side is proven to be nowhere a real number.
     """
     lefts, rights, shape = matched_sides(left, right)
     with one_decision():
@@ -119,12 +122,12 @@ def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Decision:
 
 @dataclass
 class _FormulaCase(Case):
-    """An equation between formulas, complex ones included, under hypotheses that the caller vouches for."""
+    """An equation between formulas, possibly complex, under hypotheses that the caller knows to be satisfiable."""
 
     normal_forms: dict[int, Expr] = field(default_factory=dict)
 
     def residual(self) -> Any:
-        """Return the normal form of left - right, in which proven entries are zero."""
+        """Return the normal form of left - right; entries that are proven equal are zero."""
         forms = {place: self.normal_forms[place] for place in self.unproven}
         return _shaped([forms.get(place, Integer(0)) for place in range(len(self.lefts))], self.shape)
 
@@ -134,11 +137,11 @@ class _FormulaCase(Case):
         return tuple(sorted(unique, key=written))
 
     def confirmed(self) -> Decision:
-        """Return the verdict "true", or "undecided" if no point is known where the sides are defined.
+        """Return the verdict "true", or "undecided" if no point is known where both sides are defined.
 
-        Without roots, logarithms and inverse functions the sides are defined on a dense set; with them the search for
-        a point decides. The caller must know that the hypotheses can hold. Formulas with ``i`` are complex numbers,
-        which are defined wherever no divisor is zero.
+        Without roots, logarithms and inverse functions the sides are defined on a dense set; otherwise a search for
+        such a point decides. The caller must know that the hypotheses can be satisfied. Formulas with ``i`` are complex
+        and defined wherever no divisor is zero.
         """
         needs = [need for need in needs_of(self.sides) if not need.formula.has(I)]
         if not any(side.has(I) for side in self.sides):
@@ -170,7 +173,7 @@ def witness(case: _FormulaCase) -> None:
 
 
 def leave_open(case: _FormulaCase) -> Decision:
-    """Name the terms about which too little is known."""
+    """Return the verdict "undecided" with the terms about which too little is known."""
     ring = case.ring
     stopped_by = (*ring.outside_scope, *(root.expression for root in ring.roots), *ring.hypotheses)
     return Decision("undecided", case.conditions, stopped_by=stopped_by)

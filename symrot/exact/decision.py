@@ -1,7 +1,7 @@
 """The decision engine: an equation passes through named stages until one of them decides it.
 
-A stage is a function of the case. It returns a decision, or None to leave the case to the next stage, and it stores in
-the case whatever later stages need: proofs, a counterexample. :mod:`symrot.exact.decide` lists the stages for plain
+A stage is a function of a case. It returns a decision, or None to pass the case to the next stage, and it stores its
+proofs or its counterexample in the case for later stages. :mod:`symrot.exact.decide` lists the stages for plain
 formulas, :mod:`symrot.checker.decide.decision` the longer list for claims.
 """
 
@@ -27,7 +27,7 @@ __all__ = [
 ]  # fmt: skip
 
 MOST_SEARCHED = 4
-"""Unproven entries of a matrix in which a counterexample is sought."""
+"""Largest number of unproven matrix entries in which a counterexample is sought."""
 
 Shape = tuple[int, int] | None
 """(rows, columns) of a matrix; None for a scalar."""
@@ -43,11 +43,11 @@ class Decision:
     Attributes
     ----------
     verdict : str
-        ``"true"``: proven wherever both sides are defined, and a point is known where they are. ``"false"``:
-        ``counterexample`` shows it. ``"conditional"``: true under any one of ``requires``. ``"undecided"``.
+        ``"true"``: proven wherever both sides are defined, and a point is known where they are. ``"false"``: there
+        is a ``counterexample``. ``"conditional"``: true under any one of ``requires``. ``"undecided"``.
     conditions : tuple
-        Relations that hold where both sides are defined: divisors that must not vanish, radicands that must not be
-        negative; of a conditional claim first its requirements.
+        Relations that hold where both sides are defined: divisors are not zero, radicands are not negative. For a
+        conditional claim, its requirements come first.
     requires : tuple of Requirement
     counterexample : Counterexample or None
     reason : str
@@ -114,7 +114,7 @@ class Case(ABC):
         """Return the verdict "true" if a point is known where both sides are defined, else "undecided"."""
 
     def rely_on(self, rings: tuple[FormulaRing, ...]) -> None:
-        """Make further rings part of the evidence, and their divisors part of the conditions."""
+        """Add further rings to the evidence, and their divisors to the conditions."""
         self.rings, self.conditions = rings, self.conditions_of(rings)
 
     @cached_property
@@ -123,9 +123,9 @@ class Case(ABC):
         return (*self.lefts, *self.rights)
 
     def search(self, *searches: Search, places: Sequence[int] | None = None) -> Counterexample | None:
-        """Return the first counterexample that one of the searches finds, in unproven entries unless others are named.
+        """Return the first counterexample that a search finds, in the given entries (default: the unproven ones).
 
-        A point that provably breaks a hypothesis is passed over.
+        A point that provably violates a hypothesis is skipped.
         """
         for search in searches:
             for place in self.unproven[:MOST_SEARCHED] if places is None else places:
@@ -145,7 +145,7 @@ C = TypeVar("C", bound=Case)
 
 
 def first_decision(case: C, stages: Sequence[Callable[[C], Decision | None]]) -> Decision:
-    """Return the decision of the first stage that decides a case; the last stage decides every case."""
+    """Return the decision of the first stage that makes one; the last stage always makes one."""
     for stage in stages:
         decision = stage(case)
         if decision is not None:
@@ -157,7 +157,7 @@ def first_decision(case: C, stages: Sequence[Callable[[C], Decision | None]]) ->
 
 
 def subtract(case: Case) -> None:
-    """Form left - right of each entry and try to prove that it vanishes."""
+    """Form left - right of each entry and try to prove that it is zero."""
     ring = case.ring
     case.residuals = [ring.difference(a, b) for a, b in zip(case.lefts, case.rights, strict=True)]
     proofs = [proof(ring, residual.numerator) for residual in case.residuals]
@@ -166,7 +166,7 @@ def subtract(case: Case) -> None:
 
 
 def prove(case: Case) -> Decision | None:
-    """Decide a case all of whose entries are proven."""
+    """Decide a case if all its entries are proven, else return None."""
     if case.unproven:
         return None
     case.rely_on(case.proof_rings)
@@ -174,14 +174,14 @@ def prove(case: Case) -> Decision | None:
 
 
 def refute(case: Case) -> Decision | None:
-    """Decide a case that has a counterexample."""
+    """Decide a case if it has a counterexample, else return None."""
     if case.counterexample is None:
         return None
     return Decision("false", case.conditions, counterexample=case.counterexample)
 
 
 def congruence(case: Case) -> Decision | None:
-    """Decide a case whose unproven entries hold once inverse functions in them are proven equal to each other."""
+    """Decide a case if its unproven entries hold once inverse functions are proven equal, else return None."""
     ring = case.ring
     proofs = [proof_by_congruence(case.lefts[n], case.rights[n], ring.hypotheses, ring.domain) for n in case.unproven]
     if None in proofs:
@@ -195,15 +195,15 @@ def congruence(case: Case) -> Decision | None:
 
 
 class ShapeMismatch(InputError):
-    """Two sides of different shapes, ``shapes``: (rows, columns), or None for a scalar."""
+    """The error raised for two sides of different shapes; ``shapes`` are (rows, columns), or None for a scalar."""
 
     def __init__(self, left: Shape, right: Shape) -> None:
         self.shapes = (left, right)
-        super().__init__(f"two sides of an equation have one shape, got {shape_text(left)} = {shape_text(right)}")
+        super().__init__(f"expected two sides of the same shape, got {shape_text(left)} = {shape_text(right)}")
 
 
 def matched_sides(left: Any, right: Any) -> tuple[list[Expr], list[Expr], Shape]:
-    """Return the entries of both sides of an equation and their common shape; 0 stands for a zero matrix of any shape.
+    """Return the entries of both sides of an equation and their common shape; 0 means a zero matrix of any shape.
 
     Raises
     ------
@@ -228,7 +228,7 @@ def flatten(expression: Any) -> tuple[list[Expr], Shape]:
     Raises
     ------
     InputError
-        If it is neither a scalar formula nor a matrix of them.
+        If the formula is neither a scalar nor a matrix of scalars.
     """
     expression = sympify(expression)
     if isinstance(expression, MatrixExpr):
@@ -236,15 +236,15 @@ def flatten(expression: Any) -> tuple[list[Expr], Shape]:
     if isinstance(expression, MatrixBase):
         return list(expression), (int(expression.rows), int(expression.cols))
     if not isinstance(expression, Expr):
-        raise InputError(f"exact decision takes a formula or a matrix of formulas, got {expression!r}")
+        raise InputError(f"expected a formula or a matrix of formulas, got {expression!r}")
     return [expression], None
 
 
 def place_in_matrix(number: int, shape: Shape) -> tuple[int, int] | None:
-    """Return (row, column), from 1, of an entry counted row by row from 0; None in a scalar."""
+    """Return (row, column), from 1, of a matrix entry counted row by row from 0; None if the shape is a scalar's."""
     return None if shape is None else (number // shape[1] + 1, number % shape[1] + 1)
 
 
 def shape_text(shape: Shape) -> str:
-    """Return a shape in words."""
+    """Return the shape of a matrix or scalar in words."""
     return "a scalar" if shape is None else f"a {shape[0]} x {shape[1]} matrix"

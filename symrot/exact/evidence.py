@@ -22,7 +22,7 @@ class Counterexample:
     entry : (int, int) or None
         Row and column, from 1, of the entry of a matrix that differs.
     left, right : Expr or str
-        The exact values of the two sides; text where it says more, such as ``"1/3 = 0.333333333333.."``.
+        The exact values of the two sides, as text if that is clearer, such as ``"1/3 = 0.333333333333.."``.
 
     Examples
     --------
@@ -39,7 +39,7 @@ class Counterexample:
 
     @cached_property
     def values(self) -> dict[str, str]:
-        """The point as text: names with their values."""
+        """The point as text: names and their values."""
         return {as_text(name): as_text(value) for name, value in self.point}
 
     @cached_property
@@ -60,7 +60,7 @@ class Counterexample:
 
 @dataclass(frozen=True)
 class Requirement:
-    """A condition under which a claim holds: its code, its text, and formulas that are zero, or not negative, then."""
+    """A condition under which a claim holds: its code, its text, and the formulas that it makes zero or nonnegative."""
 
     code: str
     text: str

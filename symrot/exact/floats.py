@@ -1,4 +1,4 @@
-"""Formulas in double precision: a quick test at many points that guides searches and proves nothing."""
+"""Formulas in double precision: a fast test at many points that guides searches but proves nothing."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -12,13 +12,13 @@ __all__ = ["NoValue", "float_at", "seems_zero"]
 
 LOOKS = 40
 DIFFERENCES = 3
-"""Number of points with a clearly nonzero value after which no proof that the formula is zero is tried."""
+"""Number of points with a clearly nonzero value that suffice to skip the proof that the formula is zero."""
 CLEARLY = 1e-4
-"""Share of the size of its terms above which a value is clearly not zero: far above rounding and cancellation."""
+"""A value above this fraction of the size of its terms is clearly nonzero: far above rounding and cancellation."""
 
 
 class NoValue(ArithmeticError):
-    """A formula has no real value at a point, or contains an unknown function."""
+    """The error raised if a formula has no real value at a point, or contains an unknown function."""
 
 
 def _cosecant(function: Any) -> Any:
@@ -42,9 +42,9 @@ def float_at(formula: Expr, values: Mapping[Expr, float], known: dict[Expr, floa
     ----------
     formula : Expr
     values : mapping
-        Of symbols, functions of time and derivatives.
+        Values of symbols, functions of time and derivatives.
     known : dict
-        Values of pieces at the same point; filled.
+        Values of subexpressions at the same point; the function adds to it.
 
     Raises
     ------
@@ -79,9 +79,9 @@ def _computed(node: Expr, values: Mapping[Expr, float], known: dict[Expr, float]
 
 
 def seems_zero(formula: Expr, domain: Sequence[Expr] = ()) -> bool:
-    """Return whether a formula is near zero at a few points where the formulas of ``domain`` are not negative.
+    """Return whether a formula is nearly zero at a few points where the formulas of ``domain`` are nonnegative.
 
-    It spares proofs that cannot succeed: a wrong False can only lose a proof, a wrong True only costs time.
+    The test skips proofs that cannot succeed. A wrong False can only lose a proof; a wrong True only costs time.
     """
     source, differences = Random(11), 0
     leaves = sorted(formula.free_symbols.union(*(each.free_symbols for each in domain)), key=str)

@@ -1,4 +1,4 @@
-"""The functions that formulas are read through, and the leaves that are free."""
+"""Tables of the functions that exact decision can read, and the test for free quantities such as functions of time."""
 
 import sympy
 from sympy import Derivative, Expr, S, preorder_traversal
@@ -18,7 +18,7 @@ REWRITTEN = {
     sympy.acosh: lambda u: sympy.log(u + sympy.sqrt(u - 1) * sympy.sqrt(u + 1)),
     sympy.atanh: lambda u: (sympy.log(1 + u) - sympy.log(1 - u)) / 2,
 }
-"""Hyperbolic functions and their inverses, in exponentials and logarithms."""
+"""Hyperbolic functions and their inverses, expressed by exponentials and logarithms."""
 
 TRIGONOMETRIC = {
     sympy.sin: ("sin", None),
@@ -28,23 +28,23 @@ TRIGONOMETRIC = {
     sympy.sec: (None, "cos"),
     sympy.csc: (None, "sin"),
 }
-"""Function -> (numerator, denominator) in the sine and cosine of its argument; None stands for 1."""
+"""Function -> (numerator, denominator) in terms of the sine and cosine of its argument; None means 1."""
 
 
 def is_function_of_time(node: Expr) -> bool:
-    """Return whether a leaf is free: a function of time, a derivative of one, a matrix entry.
+    """Return whether a node is a free quantity: a function of time, its derivative, or a matrix entry.
 
     Raises
     ------
     InputError
-        If the leaf is not a finite exact scalar.
+        If the node is not a finite exact scalar.
     """
     if node.is_Float:
-        raise InputError(f"exact decision takes exact numbers, such as Rational(1, 2); got the float {node}")
+        raise InputError(f"expected exact numbers, such as Rational(1, 2), in a decision; got the float {node}")
     if not isinstance(node, Expr) or not node.is_commutative or node is S.NaN or node.is_infinite:
-        raise InputError(f"exact decision takes finite scalar formulas, got {node}")
+        raise InputError(f"expected finite scalar formulas in a decision, got {node}")
     if any(part.is_Float for part in preorder_traversal(node)):
-        raise InputError(f"exact decision takes exact numbers, such as Rational(1, 2); got a float in {node}")
+        raise InputError(f"expected exact numbers, such as Rational(1, 2), in a decision; got a float in {node}")
     if isinstance(node, Derivative):
         return isinstance(node.expr, AppliedUndef)
     return isinstance(node, (AppliedUndef, MatrixElement))

@@ -1,8 +1,9 @@
-"""Closed-form real numbers in intervals of 50 digits, by mpmath's interval arithmetic; formulas at real points.
+"""Intervals of 50 digits that contain closed-form real numbers, or the value of a formula at a real point.
 
-Rational numbers stay exact fractions, so that zero can be told from a small number. A value is returned only where the
-formula is proven to be a real number: radicands of even and odd roots are not negative, arguments of logarithms are
-positive, denominators are not zero. The work is bounded: a number beyond 2^1000 has no enclosure here.
+The arithmetic is mpmath's. Rational numbers stay exact fractions, so that zero is distinguished from a small number. A
+value is returned only if the formula is proven to be a real number: radicands of even and odd roots are not negative,
+arguments of logarithms are positive, denominators are not zero. The work is bounded: a number beyond 2^1000 gets no
+interval.
 """
 
 from collections.abc import Mapping
@@ -18,16 +19,16 @@ __all__ = ["DIGITS", "Undefined", "enclosure", "is_nonnegative_at", "surely_nonn
 DIGITS = 50
 
 MOST_BITS = 1000
-"""Largest number of bits of the integer part, for example of the argument of a sine: more need more digits."""
+"""Largest number of bits of the integer part of a number, such as the argument of a sine, at 50 digits."""
 
 MOST_BITS_EXACT = 4000
-"""Largest number of bits of a numerator or denominator that is kept exact."""
+"""Largest number of bits of the numerator or denominator of an exact number."""
 
 Value = Any  # Fraction or an interval of mpmath
 
 
 class Undefined(ValueError):
-    """A formula that is proven to be no real number at a point."""
+    """The error raised for a formula that is proven to be no real number at a point."""
 
 
 def _asin(x: Any) -> Any:
@@ -48,33 +49,33 @@ def _refuse(outside: bool) -> None:
 def _root(x: Any) -> Any:
     _refuse(x.b < 0)
     if not x.a >= 0:
-        raise ValueError("a root is taken of numbers that are not negative")
+        raise ValueError("expected a nonnegative number under a root")
     return iv.sqrt(x)
 
 
 def _log(x: Any) -> Any:
     _refuse(x.b <= 0)
     if not x.a > 0:
-        raise ValueError("a logarithm is taken of positive numbers")
+        raise ValueError("expected a positive number in a logarithm")
     return iv.log(x)
 
 
 def _atan2(y: Any, x: Any) -> Any:
     if 0 in y and 0 in x:
-        raise ValueError("atan2 has no value at the origin")
+        raise ValueError("atan2 is undefined at the origin")
     return iv.atan2(y, x)
 
 
 def _bounded(x: Any) -> Any:
     limit = iv.mpf(2) ** MOST_BITS
     if not (x.a >= -limit.a and x.b <= limit.a):
-        raise ValueError(f"a number of more than {MOST_BITS} bits")
+        raise ValueError(f"expected a number of at most {MOST_BITS} bits")
     return x
 
 
 def _sign(x: Any) -> Any:
     if 0 in x:
-        raise ValueError("a sign is taken of numbers that are not zero")
+        raise ValueError("expected a number that is not zero in a sign")
     return iv.mpf(1 if x.a > 0 else -1)
 
 
@@ -122,7 +123,7 @@ def is_nonnegative_at(formula: Expr, values: Mapping[Expr, Any]) -> bool:
 
 
 def enclosure(formula: Expr, values: Mapping[Expr, Any] | None = None) -> Any:
-    """Return a 50-digit interval that holds a closed-form real number, or a formula at a point, or None.
+    """Return a 50-digit interval that contains a closed-form real number, or a formula's value at a point, or None.
 
     Parameters
     ----------
@@ -133,8 +134,8 @@ def enclosure(formula: Expr, values: Mapping[Expr, Any] | None = None) -> Any:
     Returns
     -------
     interval or None
-        None where the formula is not proven to be real, where a function is unknown, or where the digits would be too
-        many. Terms that SymPy has cancelled are not checked.
+        None if the formula is not proven to be real, if a function is unknown, or if too many digits would be needed.
+        Terms that SymPy has cancelled are not checked.
     """
     iv.dps = DIGITS
     try:
@@ -191,7 +192,7 @@ def _power(base: Value, exponent: Expr, values: Mapping[Expr, Any], known: dict[
     if exponent.is_Rational and exponent.q == 2:
         return _whole_power(_root(held), int(exponent.p))
     if not held.a > 0:
-        raise ValueError("a fractional power is taken of positive numbers here")
+        raise ValueError("expected a positive number under a fractional power")
     return iv.exp(_bounded(_interval(_value(exponent, values, known)) * iv.log(held)))
 
 

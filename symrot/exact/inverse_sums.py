@@ -1,10 +1,10 @@
 """Proofs that sums of inverse trigonometric functions, or of logarithms, are zero.
 
-The proof takes the sine and cosine, or the exponential, of the sum, and bounds the range of its values.
+The proof takes the sine and cosine, or the exponential, of the sum, and bounds the range of the sum.
 
-``D = 0`` for a rational combination D of ``asin``, ``acos``, ``atan``, ``atan2`` and ``pi``, if ``sin D = 0``,
-``cos D = 1`` and D keeps strictly between -2 pi and 2 pi; or the same of D/2 and 4 pi. For real D with logarithms,
-``D = 0`` if and only if ``exp D = 1``.
+A rational combination D of ``asin``, ``acos``, ``atan``, ``atan2`` and ``pi`` is zero if ``sin D = 0``, ``cos D = 1``
+and D lies strictly between -2 pi and 2 pi; the same holds for D/2 and the bounds -4 pi and 4 pi of D. A real D with
+logarithms is zero if and only if ``exp D = 1``.
 """
 
 from collections.abc import Iterator, Sequence
@@ -40,7 +40,7 @@ class Lift:
 
 
 def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
-    """Return whether a numerator is proven to be zero, by the relations or by one of its factors."""
+    """Return whether a numerator is proven to be zero, by the relations of the ring or by one of its factors."""
     return proof(ring, numerator) is not None
 
 
@@ -60,9 +60,9 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
 
 
 def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) -> Iterator[Lift]:
-    """Yield sufficient conditions for the factors of a reduced numerator to vanish.
+    """Yield sufficient conditions for the factors of a reduced numerator to be zero.
 
-    With ``only_zero``, factors that are not zero at a few points in double precision are left out.
+    With ``only_zero``, factors that are clearly nonzero in double precision are skipped.
     """
     places = {number for leaf, number in ring.symbols.items() if isinstance(leaf, _NAMES)}
     if not places or len(numerator) > MOST_TERMS or not any(mono[n] for mono in numerator for n in places):
@@ -70,7 +70,7 @@ def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) ->
     for factor, _ in numerator.factor_list()[1]:
         used = {number for number in places if any(mono[number] for mono in factor)}
         if used and (not only_zero or seems_zero(factor.as_expr(*ring.generators), ring.domain)):
-            with suppress(InputError):  # a lift that cannot be read proves nothing
+            with suppress(InputError):  # a condition that cannot be read proves nothing
                 yield from _lifts_of(ring, factor, used)
 
 
@@ -91,7 +91,7 @@ def _lifts_of(ring: FormulaRing, factor: PolyElement, used: set[int]) -> Iterato
 
 @dataclass(frozen=True)
 class PrincipalValueProof:
-    """The proof by ``rings`` that a residual is zero wherever the formulas ``least`` and ``most`` are not negative."""
+    """A proof by ``rings`` that a residual is zero wherever the formulas ``least`` and ``most`` are nonnegative."""
 
     least: Expr
     most: Expr
@@ -99,9 +99,9 @@ class PrincipalValueProof:
 
 
 def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
-    """Return where a residual of the form ``asin(S) - w``, with ``S = sin w`` proven, is zero; also for acos and atan.
+    """Return where a residual ``asin(S) - w``, with ``S = sin w`` proven, is zero; also for acos and atan.
 
-    It is zero exactly where w is a principal value: between -pi/2 and pi/2 for asin and atan, 0 and pi for acos.
+    The residual is zero exactly where w is a principal value: in [-pi/2, pi/2] for asin and atan, in [0, pi] for acos.
     """
     names = {number: leaf for leaf, number in ring.symbols.items() if type(leaf) in _PRINCIPAL}
     if not names or len(numerator) > MOST_TERMS:
@@ -126,7 +126,7 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
 
 
 _PRINCIPAL = {asin: (sin, -pi / 2, pi / 2), acos: (cos, Integer(0), pi), atan: (tan, -pi / 2, pi / 2)}
-"""Inverse function -> (the function that it inverts, its least value or lower bound, its greatest or upper bound)."""
+"""Inverse function -> (the function that it inverts, lower bound of its values, upper bound)."""
 
 
 def _lifted(ring: FormulaRing, equations: Sequence[tuple[Expr, Expr]]) -> Lift:
@@ -148,7 +148,7 @@ def _combination(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr])
 
 
 def _keeps_within(terms: Sequence[tuple[Expr, Fraction]], period: int) -> bool:
-    """Return whether the value of a combination lies strictly between -period and period half-turns."""
+    """Return whether the value of a combination lies strictly between ``-period * pi`` and ``period * pi``."""
     low, high = Fraction(0), Fraction(0)
     low_taken = high_taken = True
     for leaf, coefficient in terms:
@@ -173,6 +173,6 @@ def _range(leaf: Expr) -> tuple[Fraction, Fraction, bool, bool]:
 
 
 def _fraction(end: Any) -> Fraction:
-    """Return the exact value of an end of an interval."""
+    """Return the exact value of an endpoint of an interval."""
     sign, mantissa, power, _ = end._mpi_[0]
     return (-1 if sign else 1) * int(mantissa) * Fraction(2) ** int(power)

@@ -1,4 +1,4 @@
-"""SymPy values as text in the language of claims."""
+"""Text of SymPy values in the language of claims."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ __all__ = ["as_text"]
 
 
 class _Printer(StrPrinter):  # type: ignore[misc]
-    """A printer whose text the reader of claims reads back: ``diff(phi(t), t)`` for a derivative."""
+    """A SymPy printer whose output the reader of claims can read: ``diff(phi(t), t)`` for a derivative."""
 
     def _print_Derivative(self, node: Derivative) -> str:
         variables = ", ".join(self._print(v) for v, times in node.variable_count for _ in range(int(times)))

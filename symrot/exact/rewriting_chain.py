@@ -1,8 +1,8 @@
-"""The chain of rewritings from one side of an equation to the other, in the steps of the decision itself.
+"""A chain of equal expressions from one side of an equation to the other, which shows the steps of the decision.
 
-Each side is rewritten to its normal form: angles in base angles, products multiplied out, each relation put in, common
-factors cancelled. Both sides have one normal form; the chain is the rewriting of the left side followed by the
-rewriting of the right side backwards, and every expression in it is equal to the next.
+Each side is rewritten to its normal form: angles become sums of base angles, products are expanded, relations are
+substituted, and common factors are cancelled. Both sides have the same normal form. So the chain is the rewriting of
+the left side followed by the reversed rewriting of the right side; each expression equals the next.
 """
 
 from collections.abc import Iterator, Sequence
@@ -24,9 +24,10 @@ __all__ = ["Chain", "Link", "chains"]
 
 @dataclass(frozen=True)
 class Link:
-    """One expression of a chain, and why it equals the expression before; ``rule`` is (left, right) of a relation.
+    """One expression of a chain, and the reason why it equals the expression before.
 
-    ``cofactors`` pairs polynomials with consequences of the hypotheses: the products were subtracted.
+    ``rule`` is (left, right) of the relation that was substituted, if any. ``cofactors`` pairs polynomials with
+    consequences of the hypotheses; the products of the pairs were subtracted.
     """
 
     expression: Expr
@@ -37,19 +38,19 @@ class Link:
 
 @dataclass(frozen=True)
 class Chain:
-    """The chain from left to right in one entry, which is (row, column) from 1, or None for a scalar."""
+    """The chain from left to right for one matrix entry, which is (row, column) from 1, or None for a scalar."""
 
     entry: tuple[int, int] | None
     links: tuple[Link, ...]
 
 
 def chains(left: Any, right: Any, relations: Sequence[Any] = ()) -> tuple[Chain, ...]:
-    """Return the chain from left to right of every entry whose two sides are different expressions.
+    """Return the chain from left to right for every entry whose two sides are different expressions.
 
     Parameters
     ----------
     left, right : Expr or Matrix
-        Two sides of a proven equation, of one shape.
+        Two sides of a proven equation, of the same shape.
     relations : sequence of Expr or Eq
         Its hypotheses.
 
@@ -58,7 +59,7 @@ def chains(left: Any, right: Any, relations: Sequence[Any] = ()) -> tuple[Chain,
     InputError
         If the sides cannot be read.
     ValueError
-        If they are not equal.
+        If the sides are not equal.
     """
     (lefts, shape), (rights, _) = flatten(left), flatten(right)
     hypotheses = [as_zero(relation) for relation in relations]
@@ -73,7 +74,7 @@ def chains(left: Any, right: Any, relations: Sequence[Any] = ()) -> tuple[Chain,
 def _chain(left: Expr, right: Expr, hypotheses: list[Expr]) -> tuple[Link, ...]:
     ring = FormulaRing([left, right], hypotheses)
     if ring.reduce(ring.difference(left, right).numerator):
-        raise ValueError(f"{left} and {right} are not proven equal")
+        raise ValueError(f"expected two sides that are proven equal, got {left} and {right}")
     forward, backward = list(_way(ring, left)), list(_way(ring, right))
     links = [Link(left, ""), *forward]
     if forward[-1].expression != backward[-1].expression:
@@ -82,14 +83,14 @@ def _chain(left: Expr, right: Expr, hypotheses: list[Expr]) -> tuple[Link, ...]:
 
 
 def _reversed(start: Expr, way: list[Link]) -> Iterator[Link]:
-    """Yield a chain from its end to its start; each reason stays with its pair of expressions."""
+    """Yield a chain from its end to its start; each reason stays between the same two expressions."""
     places = [start, *(link.expression for link in way)]
     for number in range(len(way) - 1, -1, -1):
         yield Link(places[number], way[number].reason, way[number].rule, way[number].cofactors)
 
 
 def _cleaned(links: list[Link]) -> tuple[Link, ...]:
-    """Return the links without those that repeat the expression before."""
+    """Return the links of a chain, except those that repeat the expression before."""
     distinct = links[:1]
     for link in links[1:]:
         if link.expression != distinct[-1].expression:
@@ -98,7 +99,7 @@ def _cleaned(links: list[Link]) -> tuple[Link, ...]:
 
 
 def _way(ring: FormulaRing, side: Expr) -> Iterator[Link]:
-    """Yield the expressions after a side, down to its normal form."""
+    """Yield the expressions that lead from a side, which is not included, to its normal form."""
     angles = {node: value for node, value in _angles(ring, side) if value != node}
     if angles:
         yield Link(side.xreplace(angles), "sums and multiples of angles")
@@ -123,7 +124,7 @@ def _way(ring: FormulaRing, side: Expr) -> Iterator[Link]:
 
 
 def _angles(ring: FormulaRing, side: Expr) -> Iterator[tuple[Expr, Expr]]:
-    """Yield every sine, cosine, ... with its value in sines and cosines of base angles."""
+    """Yield every trigonometric function of a side with its value in sines and cosines of base angles."""
     base = {base_angle(atom, coefficient) for atom, coefficient in ring.bases.items()}
     for node in sorted(side.atoms(*TRIGONOMETRIC), key=str):
         if not (isinstance(node, (sin, cos)) and node.args[0] in base):
@@ -137,7 +138,7 @@ def _plain(ring: FormulaRing, poly: PolyElement) -> Expr:
 
 
 def _fraction(ring: FormulaRing, numerator: PolyElement, value: Ratio) -> Expr:
-    """Return a numerator over the denominator of a fraction, factors of the denominator left as they are."""
+    """Return a numerator over the denominator of a fraction, with the denominator's factors not expanded."""
     below = [_plain(ring, ring.ratios.factors[number]) ** power for number, power in value.factors]
     return Mul(_plain(ring, numerator), Mul(*below, Integer(value.constant)) ** -1)
 

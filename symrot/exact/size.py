@@ -1,4 +1,4 @@
-"""How large a formula is as it is written."""
+"""The size of a formula as it is written."""
 
 from collections.abc import Iterable
 
@@ -8,7 +8,10 @@ __all__ = ["pieces"]
 
 
 def pieces(entries: Iterable[Expr]) -> int:
-    """Return the number of subexpressions when expressions are written out; common parts are visited once."""
+    """Return the number of subexpressions in formulas as they are written.
+
+    A repeated subexpression counts every time, but is visited only once.
+    """
     known: dict[Expr, int] = {}
 
     def count(node: Expr) -> int:

@@ -1,1 +1,1 @@
-"""Read files that may be anything, and write files whole or not at all."""
+"""Safe reading of files of unknown origin, and writing of files that are never left incomplete."""

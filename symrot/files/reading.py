@@ -1,6 +1,6 @@
-"""Read a file that somebody else may have made: a regular file, up to a size, so that no pipe or device blocks.
+"""Reading of files of unknown origin: only regular files up to a size limit, so that no pipe or device blocks.
 
-Every scene, claim file, table, certificate and study is opened here. Standard library only.
+symrot opens all scenes, claim files, tables, certificates and studies here. Standard library only.
 """
 
 import os
@@ -17,16 +17,17 @@ SPECIAL = (
     (stat.S_ISCHR, "a device"),
     (stat.S_ISBLK, "a device"),
 )
-"""Files that are not regular: how the mode of a file shows them, and what a sentence calls them."""
+"""Kinds of special files: a test of the file's mode, and the name for an error message."""
 
 
 def refuse_special(path: Path) -> os.stat_result:
-    """Return the status of a regular file, links followed.
+    """Return the status of a regular file, following links; raise OSError for a special or missing file.
 
     Raises
     ------
     OSError
-        For a folder, pipe, socket or device, and where there is no file; ``strerror`` continues "expected .., got".
+        For a folder, pipe, socket or device, or if the file does not exist. Its ``strerror`` completes a message
+        "expected .., got ..".
     """
     status = path.stat()
     _refuse_mode(status.st_mode)
@@ -41,18 +42,18 @@ def _refuse_mode(mode: int) -> None:
 def read_input(path: Path, largest: int) -> bytes:
     """Return the content of a regular file of at most ``largest`` bytes.
 
-    The kind of the file is asked for before it is opened, since opening alone starts some devices, and again of what
-    was opened, which may have been exchanged in between.
+    The function checks the kind of the file before opening it, because opening alone starts some devices. It checks
+    again after opening, because the file may have been replaced in between.
 
     Raises
     ------
     OSError
-        As :func:`refuse_special`, for a larger file, and for one that cannot be read.
+        For a special or missing file (see :func:`refuse_special`), a larger file, or a file that cannot be read.
     """
     try:
         refuse_special(path)
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-    except ValueError as reason:  # a NUL in the name
+    except ValueError as reason:  # the name contains a NUL character
         raise OSError(EINVAL, str(reason)) from None
     with open(descriptor, "rb", buffering=0) as stream:  # noqa: PTH123 - a descriptor has no path
         _refuse_mode(os.fstat(descriptor).st_mode)

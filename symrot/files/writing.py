@@ -1,4 +1,4 @@
-"""Write a file whole or not at all: to a temporary one beside it, renamed when it is complete."""
+"""Writing of files that are never left incomplete: a temporary file in the same folder is renamed when complete."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -11,12 +11,12 @@ __all__ = ["check_target", "write"]
 
 
 def check_target(path: Path, suffixes: Sequence[str], option: str) -> None:
-    """Refuse a file that cannot be written, before anything is computed for it.
+    """Raise InputError if a file cannot be written there; called before its content is computed.
 
     Raises
     ------
     InputError
-        One sentence: an unknown suffix, a folder that is not there, a folder where a file should go, no permission.
+        For an unknown suffix, a missing folder, a folder instead of a file, or a missing permission.
     """
     if path.suffix.lower() not in suffixes:
         raise InputError(f"{option}: expected a file name that ends in {', '.join(suffixes)}, got {str(path)!r}")
@@ -26,12 +26,12 @@ def check_target(path: Path, suffixes: Sequence[str], option: str) -> None:
         if path.exists() and not path.is_file():
             raise InputError(f"{option}: expected the name of a file, got the device or pipe {str(path)!r}")
         if not path.parent.is_dir():
-            raise InputError(f"{option}: expected a folder that is there, got {str(path)!r}")
+            raise InputError(f"{option}: expected an existing folder, got {str(path)!r}")
         if not os.access(path if path.exists() else path.parent, os.W_OK):
             raise InputError(f"{option}: expected a file that can be written, got {str(path)!r} (permission denied)")
     except InputError:
         raise
-    except (OSError, ValueError) as reason:  # a name too long, a NUL in it
+    except (OSError, ValueError) as reason:  # the name is too long or contains a NUL character
         raise _refusal(path, reason) from None
 
 
@@ -40,12 +40,12 @@ def _refusal(path: Path, reason: Exception) -> InputError:
 
 
 def write(path: Path, content: Callable[[BinaryIO], object]) -> None:
-    """Let ``content`` write to a file that takes the place of ``path`` once it is complete.
+    """Call ``content`` with a temporary file, and replace the file at ``path`` by it once it is complete.
 
     Raises
     ------
     InputError
-        If the disk refuses; what stood at ``path`` is untouched.
+        If writing fails; an existing file at ``path`` is then unchanged.
     """
     target = path.resolve()  # a link keeps pointing to its file
     passing = target.with_name(f".{target.name[:100]}.{os.getpid()}.part")

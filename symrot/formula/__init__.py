@@ -1,1 +1,1 @@
-"""Formula trees, exact numbers, programs and switches: standard library only."""
+"""Formulas as trees, exact numbers, straight-line programs, and functions that jump. Standard library only."""

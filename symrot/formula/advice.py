@@ -1,4 +1,4 @@
-"""Advice for formulas written as in other languages: the name or sign to write instead. Imported only on errors.
+"""Advice for formulas in the notation of other languages: what to write instead. Imported only on errors.
 
 Standard library only.
 """
@@ -7,14 +7,14 @@ from collections.abc import Collection
 
 __all__ = ["function_advice", "mark_advice", "name_advice"]
 
-SIGNATURES = {  # of functions of more than one argument
+SIGNATURES = {  # signatures of functions with more than one argument
     "atan2": "atan2(y, x)", "min": "min(a, b)", "max": "max(a, b)", "clip": "clip(u, low, high)", "mod": "mod(a, b)",
     "where": "where(condition, a, b)",
 }  # fmt: skip
 
 JUMPING = ("step", "sign", "min", "max", "clip", "floor", "mod", "where")
 
-_FUNCTIONS = {  # words, by what is written instead
+_FUNCTIONS = {  # for each formula to write: the names used for it elsewhere
     "step(u)": "heaviside unitstep unit_step theta u1",
     "sign(u)": "sgn signum copysign signbit",
     "abs(u)": "fabs absolute magnitude",
@@ -75,7 +75,7 @@ _NAMES = {
 }  # fmt: skip
 NAMES = {word: write for write, words in _NAMES.items() for word in words.split()}
 
-_EQUAL = "a formula that changes is equal to a number at single times only"
+_EQUAL = "a formula that varies equals a number only at single instants"
 MARKS = {
     "%": "mod(a, b) for a % b", "^": "** for a power", "&": "and between conditions",
     "|": "or between conditions, abs(u) for |u|", "!": f"not before a condition; {_EQUAL}",
@@ -89,7 +89,7 @@ MARKS = {
 
 
 def nearest(word: str, known: Collection[str]) -> str:
-    """Return the known word nearest to a mistyped one, or an empty text."""
+    """Return the known word that is most similar to a mistyped one, or an empty text."""
     from difflib import get_close_matches
 
     close = get_close_matches(word.lower(), list(known), 1, 0.5)
@@ -97,11 +97,11 @@ def nearest(word: str, known: Collection[str]) -> str:
 
 
 def function_advice(name: str, known: Collection[str]) -> str:
-    """Return advice for a call of an unknown function or with wrong arguments; an empty text without any."""
+    """Return advice for a call of an unknown function, or with wrong arguments; an empty text if there is no advice."""
     if name in known:
         return f"write {SIGNATURES.get(name, f'{name}(u)')}"
     if name in JUMPING:
-        return "functions that jump or bend stand in formulas of torques alone"
+        return "functions that jump or have a kink are allowed only in formulas of torques"
     if name in NAMES.values():
         return f"write * between {name} and a bracket"
     write = FUNCTIONS.get(name.lower(), "")
@@ -112,14 +112,14 @@ def function_advice(name: str, known: Collection[str]) -> str:
 
 
 def _called(text: str) -> list[str]:
-    """Return the names that a formula calls as functions."""
+    """Return the names of the functions that a formula calls."""
     import re
 
     return re.findall(r"([a-z]\w*)\(", text)
 
 
 def name_advice(name: str, known: Collection[str]) -> str:
-    """Return advice for an unknown name: what to write instead; an empty text without any."""
+    """Return advice for an unknown name (what to write instead); an empty text if there is no advice."""
     write = NAMES.get(name, "") or NAMES.get(name.lower(), "")
     if write and (write in known or "(" in write or " " in write):
         return f"write {write}"
@@ -128,7 +128,7 @@ def name_advice(name: str, known: Collection[str]) -> str:
 
 
 def mark_advice(source: str, position: int, known: Collection[str]) -> str:
-    """Return advice for a character that formulas lack, or two operands side by side; an empty text without any."""
+    """Return advice for a character that formulas do not use, or a missing operator; an empty text if there is none."""
     rest, before = source[position:], source[:position].rstrip()
     if rest[:1] in MARKS:
         return f"write {MARKS[rest[0]]}"

@@ -1,6 +1,6 @@
-"""Functions of formulas on exact numbers: rational values are exact, others are rounded once.
+"""Functions of formulas at exact numbers: rational values are exact, other values are rounded once.
 
-Roots, sines and cosines are those of :mod:`symrot.formula.exact_numbers`; mpmath computes the other functions, and is
+Roots, sines and cosines come from :mod:`symrot.formula.exact_numbers`. mpmath computes the other functions; it is
 imported by the first call that needs it.
 """
 
@@ -15,19 +15,19 @@ from symrot.formula.tree import FUNCTIONS, Node, evaluate
 
 __all__ = ["EXACT_FUNCTIONS", "exact_value"]
 
-GUARD_BITS = 64  # bits beyond those of the result that mpmath computes with
-MOST_BITS = 1 << 20  # of an argument or a result: an exponential of more than that is beyond all doubles, or zero
+GUARD_BITS = 64  # additional bits of mpmath's working precision
+MOST_BITS = 1 << 20  # largest size of an argument or a result; an exponential of a larger number overflows or is zero
 
 
 def _transcendental(name: str, *arguments: Fraction) -> Fraction:
-    """Return a function of mpmath at exact arguments, with a relative error below 2^-300.
+    """Return the value of a function at exact arguments, computed by mpmath with a relative error below 2^-300.
 
     Raises
     ------
     ValueError
-        Where the function has no real value, such as the logarithm of a negative number.
+        If the function has no real value, such as the logarithm of a negative number.
     OverflowError
-        If the value is beyond all doubles.
+        If the value exceeds the range of a double.
     """
     import mpmath
 
@@ -35,8 +35,8 @@ def _transcendental(name: str, *arguments: Fraction) -> Fraction:
     if name in ("exp", "sinh", "cosh") and abs(arguments[0]) > MOST_BITS:
         if name == "exp" and arguments[0] < 0:
             return Fraction(1, 1 << MOST_BITS)
-        raise OverflowError(f"{name} of {number.show(arguments[0])} is beyond all doubles")
-    with mpmath.workprec(number.BITS + GUARD_BITS + min(max(sizes), MOST_BITS)):  # so that 1 + tiny keeps its digits
+        raise OverflowError(f"{name} of {number.show(arguments[0])} exceeds the range of a double")
+    with mpmath.workprec(number.BITS + GUARD_BITS + min(max(sizes), MOST_BITS)):  # 1 + a tiny number keeps its digits
         values = [mpmath.mpf(x.numerator) / x.denominator for x in arguments]
         result: Any = None
         if not (name == "atan2" and not any(arguments)) and not (name == "log" and not arguments[0]):
@@ -60,12 +60,12 @@ EXACT_FUNCTIONS: dict[str, Callable[..., Fraction]] = {
 
 
 def exact_value(node: Node, values: Mapping[str, Fraction]) -> Fraction | float:
-    """Return the value of a formula of numbers and of named numbers; NaN where it has no real value.
+    """Return the value of a formula, given a value for each name in it; NaN if it has no real value.
 
     Raises
     ------
     OverflowError
-        If the value is beyond all doubles.
+        If the value exceeds the range of a double.
     """
     try:
         value: Fraction | float = evaluate(node, values, EXACT_FUNCTIONS)

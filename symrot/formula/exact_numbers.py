@@ -1,6 +1,6 @@
-"""Exact numbers from text: the scalars of a scene, as :class:`fractions.Fraction`.
+"""The exact numbers of a scene, read from text as :class:`fractions.Fraction`.
 
-A rational value is exact: ``"1/3"``, ``"0.6375"`` (51/80), ``1e-3`` (1/1000). What is not rational (``sqrt``, ``pi``
+A rational value is exact: ``"1/3"``, ``"0.6375"`` (51/80), ``1e-3`` (1/1000). An irrational value (``sqrt``, ``pi``
 and the circular functions) is rounded once, to a relative error below 2^-300. Standard library only.
 """
 
@@ -20,7 +20,7 @@ from symrot.errors import InputError
 from symrot.formula import tree as expression
 
 BITS = 320
-"""Working precision of what is not rational."""
+"""Working precision, in bits, of irrational numbers."""
 
 NEGLIGIBLE_BITS = 200
 """Number of bits: a value below 2^-200 of the values that it is compared with counts as zero."""
@@ -31,10 +31,10 @@ LARGEST_TEXT = 400
 """Longest text of one number, in characters."""
 
 LARGEST_BITS = 1 << 15
-"""Largest numerator or denominator on the way to a number, so that powers of powers end quickly."""
+"""Largest size, in bits, of an intermediate numerator or denominator; it stops powers of powers early."""
 
 LARGEST = Fraction(2) ** 1024
-"""Every number must be a double in the end."""
+"""Numbers of this size and above exceed the range of a double and are rejected."""
 
 SMALLEST = 1 / Fraction(2) ** 1022
 
@@ -42,7 +42,7 @@ EXPECTATION = 'a number, such as 2, 0.5, "1/3", "sqrt(2)" or "pi/6"'
 
 
 def show(value: object, limit: int = 60) -> str:
-    """Return ``value`` as an error message shows it: as the user wrote it, and never longer than a line."""
+    """Return ``value`` for an error message: as the user wrote it, cut to at most one line."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
@@ -51,7 +51,7 @@ def show(value: object, limit: int = 60) -> str:
         text = str(value) if value.denominator == 1 else f"{float(value):.15g}"
     elif isinstance(value, Decimal):
         text = str(value).lower().replace("infinity", "inf")
-    elif isinstance(value, list | tuple | dict) and limit < 2:  # deep inside: nobody reads on
+    elif isinstance(value, list | tuple | dict) and limit < 2:  # deeply nested: not worth showing
         text = ".."
     elif isinstance(value, list | tuple):
         text = "[" + ", ".join(show(item, limit // 2) for item in value[:12]) + (", ..]" if len(value) > 12 else "]")
@@ -94,9 +94,9 @@ PI: Fraction = _pi(BITS)
 
 
 def sqrt(value: Fraction) -> Fraction:
-    """Return the square root of ``value`` >= 0: exact when it is rational, else to 2^-320 relative."""
+    """Return the square root of ``value`` >= 0, exactly if it is rational, else with a relative error below 2^-320."""
     if value < 0:
-        raise ValueError(f"the square root of a negative number ({show(value)})")
+        raise ValueError(f"the square root of the negative number {show(value)} is not real")
     numerator, denominator = isqrt(value.numerator), isqrt(value.denominator)
     if numerator * numerator == value.numerator and denominator * denominator == value.denominator:
         return Fraction(numerator, denominator)
@@ -105,9 +105,10 @@ def sqrt(value: Fraction) -> Fraction:
 
 
 def unit(vector: Sequence[Fraction | float]) -> tuple[Fraction, ...]:
-    """Return a vector divided by its norm, which must not be zero: exact where the norm is rational, else to 2^-320.
+    """Return a nonzero vector divided by its norm: exact if the norm is rational, else to a relative error of 2^-320.
 
-    All in integers over one denominator: fractions would take a greatest common divisor for each sum and product.
+    The computation uses integers over one common denominator; fractions would need a greatest common divisor for each
+    sum and product.
     """
     ratios = [x.as_integer_ratio() for x in vector]
     shared = lcm(*[bottom for _, bottom in ratios])
@@ -138,7 +139,7 @@ _NIVEN = {Fraction(0): Fraction(0), Fraction(1, 6): Fraction(1, 2), Fraction(1, 
 
 
 def _sin_half_turns(half_turns: Fraction) -> Fraction:
-    """Return sin(half_turns * pi), exact where it is rational."""
+    """Return sin(half_turns * pi), exactly if it is rational."""
     reduced = half_turns % 2
     if reduced >= 1:
         return -_sin_half_turns(reduced - 1)
@@ -148,7 +149,7 @@ def _sin_half_turns(half_turns: Fraction) -> Fraction:
 
 
 def _bits_for(value: Fraction) -> int:
-    """Return the absolute precision that keeps a small ``value`` to BITS relative."""
+    """Return the number of bits after the binary point that give a small ``value`` a relative error of 2^-BITS."""
     return BITS + max(0, value.denominator.bit_length() - value.numerator.bit_length())
 
 
@@ -188,7 +189,7 @@ def tan(value: Fraction) -> Fraction:
 
 
 def equal(a: Fraction, b: Fraction) -> bool:
-    """Return whether two numbers differ by less than 2^-200 relative, which no scene can mean as a difference."""
+    """Return whether two numbers agree to 2^-200 relative, closer than different numbers of any scene."""
     return a == b or abs(a - b) * NEGLIGIBLE.denominator < max(abs(a), abs(b))
 
 
@@ -205,12 +206,12 @@ class Angle(NamedTuple):
 
     @property
     def sin(self) -> Fraction:
-        """The sine: exact where it is a rational number, else with an error below 2^-250."""
+        """The sine: exact if it is a rational number, else with an error below 2^-250."""
         return sin(self.radians) if self.rational else _sin_half_turns(self.half_turns)
 
     @property
     def cos(self) -> Fraction:
-        """The cosine: exact where it is a rational number, else with an error below 2^-250."""
+        """The cosine: exact if it is a rational number, else with an error below 2^-250."""
         return cos(self.radians) if self.rational else _sin_half_turns(self.half_turns + Fraction(1, 2))
 
     def scaled(self, factor: Fraction) -> "Angle":
@@ -281,13 +282,13 @@ def _walk(node: expression.Node) -> Angle:
             value = _OPERATORS[kind](_walk(rest[0]), _walk(rest[1]))
     for part in (value.rational, value.half_turns):
         if max(part.numerator.bit_length(), part.denominator.bit_length()) > LARGEST_BITS:
-            raise ValueError("it is too large")
+            raise ValueError("the number is too large")
     return value
 
 
 def _from_text(text: str) -> Angle:
     if len(text) > LARGEST_TEXT:
-        raise ValueError(f"text of {len(text)} characters, at most {LARGEST_TEXT} are read")
+        raise ValueError(f"the text has {len(text)} characters, more than the limit of {LARGEST_TEXT}")
     try:
         return _walk(expression.parse(text))
     except ZeroDivisionError:
@@ -309,7 +310,7 @@ def _from_float(value: float) -> Angle:
 
 
 def _from_scalar(value: SupportsFloat) -> Angle:
-    """Return a NumPy scalar or SymPy number as a Python number of the same value."""
+    """Return a NumPy scalar or SymPy number as the angle that its exact value gives in rad."""
     return _from_float(float(value))
 
 
@@ -328,7 +329,7 @@ def _in_range(value: Fraction) -> None:
 
 
 def _read(value: object, where: str, expect: str) -> Angle:
-    """Return a number as rational + half_turns * pi; raise InputError for text that is no number."""
+    """Return a number as an angle rational + half_turns * pi; raise InputError for a value that is not a number."""
     kind = type(value)
     if not isinstance(value, bool):
         reader = _READERS.get(kind) or next((r for k, r in _READERS.items() if isinstance(value, k)), None)
@@ -359,27 +360,28 @@ def _refuse(value: object, where: str, expect: str, reason: str) -> NoReturn:
 
 
 def read(value: object, where: str = "", expect: str = EXPECTATION) -> Fraction:
-    """Return the exact value of a number of a scene.
+    """Return the exact value of a number given in a scene.
 
     Parameters
     ----------
     value : int, float, Decimal, Fraction or str
-        A float stands for its exact binary value, text and Decimal for what they say: ``"0.1"`` is 1/10.
+        A float is its exact binary value; a text or Decimal is the number as written: ``"0.1"`` is 1/10.
         Text may use ``+ - * / **``, parentheses, ``pi``, ``sqrt``, ``sin``, ``cos``, ``tan``, ``abs``.
     where : str
-        File and key, put in front of an error.
+        File and key, put in front of an error message.
     expect : str
-        What an error says was expected.
+        The expected value, as an error message names it.
 
     Returns
     -------
     Fraction
-        Exact when rational, else with a relative error below 2^-300.
+        Exact if the value is rational, else with a relative error below 2^-300.
 
     Raises
     ------
     InputError
-        For NaN, infinities, what is outside the range of a double, booleans, units, anything but a number.
+        For NaN, an infinity, a value outside the range of a double, a boolean, a unit, or anything that is not a
+        number.
 
     Examples
     --------
@@ -390,9 +392,10 @@ def read(value: object, where: str = "", expect: str = EXPECTATION) -> Fraction:
 
 
 def read_angle(value: object, degrees: bool = False, where: str = "", expect: str = EXPECTATION) -> Angle:
-    """Return an angle given in rad, or in degrees; errors as :func:`read`.
+    """Return an angle given in rad or in degrees; raise InputError as :func:`read` does.
 
-    Rational multiples of pi (and every rational number of degrees) are kept as such, so ``cos("pi/2")`` is 0 exactly.
+    A rational multiple of pi, such as any rational number of degrees, stays exact, so that ``cos("pi/2")`` is exactly
+    0.
     """
     angle = _read(value, where, expect)
     if not degrees:

@@ -1,8 +1,8 @@
 """Sparse polynomials with exact coefficients. Standard library only.
 
-Generators are names or numbers, of one kind in each polynomial. The integrands of mapped solids are polynomials in the
-coordinates, in the cosine and sine of the angles, in the dimensions and in ``pi``, with the dimensions as generators
-(closed forms) or as numbers (scenes). Auxiliary states are polynomials in numbered variables.
+The variables of a polynomial are called generators; all are names, or all are numbers. Integrals over solids use as
+generators the coordinates, cosines and sines of the angles, ``pi``, and for closed forms the dimensions. The auxiliary
+states of Taylor steppers are polynomials in numbered generators.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -67,12 +67,12 @@ class Polynomial:
     __radd__, __rmul__ = __add__, __mul__
 
     def __truediv__(self, other: Operand) -> "Polynomial":
-        """Divide by a number; ``ValueError`` for a divisor that holds a generator, ``ZeroDivisionError`` for zero."""
+        """Divide by a number; raise ``ValueError`` for a divisor with generators, ``ZeroDivisionError`` for zero."""
         divisor = _lift(other)
         if not divisor:
             raise ZeroDivisionError("division by zero")
         if set(divisor.terms) != {()}:
-            raise ValueError("a polynomial is divided by numbers only")
+            raise ValueError("expected a number as the divisor of a polynomial, got a polynomial with generators")
         inverse = 1 / divisor.terms[()]
         return Polynomial({monomial: coefficient * inverse for monomial, coefficient in self.terms.items()})
 
@@ -85,7 +85,7 @@ class Polynomial:
         return power
 
     def collect(self, names: Iterable[str]) -> dict[tuple[int, ...], "Polynomial"]:
-        """Return the coefficients of the powers of some generators, keyed by the exponents in the order given."""
+        """Return the coefficients of the powers of some generators, keyed by exponents in the order of ``names``."""
         order = tuple(names)
         parts: dict[tuple[int, ...], dict[Monomial, Fraction]] = {}
         for monomial, coefficient in self.terms.items():
@@ -95,7 +95,7 @@ class Polynomial:
         return {exponents: Polynomial(part) for exponents, part in parts.items()}
 
     def derivative(self, name: str) -> "Polynomial":
-        """Return the partial derivative by a coordinate, with ``d cos = -sin``, ``d sin = cos`` of an angle."""
+        """Return the partial derivative by a coordinate; the cosine and sine of an angle are differentiated as such."""
         inner = ((generator(name), constant(1)), (cosine(name), -sine(name)), (sine(name), cosine(name)))
         total = constant(0)
         for argument, rate in inner:
@@ -106,7 +106,7 @@ class Polynomial:
         return total
 
     def value(self, values: Mapping[str, Fraction]) -> Fraction:
-        """Return the number it stands for; ``KeyError`` for a generator without a value."""
+        """Return the value of the polynomial; raise ``KeyError`` for a generator without a value."""
         total = Fraction(0)
         for monomial, coefficient in self.terms.items():
             for name, power in monomial:
@@ -115,7 +115,7 @@ class Polynomial:
         return total
 
     def symbol(self) -> str:
-        """Return the name of a polynomial that is one generator; ``ValueError`` otherwise."""
+        """Return the name of a polynomial that is a single generator; raise ``ValueError`` otherwise."""
         ((monomial, coefficient),) = self.terms.items()
         name: str
         ((name, power),) = monomial
@@ -134,7 +134,7 @@ def _join(left: Monomial, right: Monomial) -> Monomial:
 
 
 def products_of_monomials(left: Polynomial, right: Polynomial) -> set[Monomial]:
-    """Return the monomials of the product of two polynomials, with monomials whose coefficients cancel."""
+    """Return the monomials of the expanded product of two polynomials, including monomials that cancel."""
     return {_join(monomial, factor) for monomial in left.terms for factor in right.terms}
 
 
@@ -143,27 +143,27 @@ def _lift(value: Operand) -> Polynomial:
 
 
 def constant(value: Fraction | int) -> Polynomial:
-    """Return a number as a polynomial."""
+    """Return the constant polynomial with a given value."""
     return Polynomial({(): Fraction(value)})
 
 
 def generator(name: str | int) -> Polynomial:
-    """Return a generator as a polynomial."""
+    """Return the polynomial that is a single generator."""
     return Polynomial({((name, 1),): Fraction(1)})
 
 
 def cosine(angle: str) -> Polynomial:
-    """Return the generator that stands for the cosine of an angle."""
+    """Return the generator that represents the cosine of an angle."""
     return generator(f"cos({angle})")
 
 
 def sine(angle: str) -> Polynomial:
-    """Return the generator that stands for the sine of an angle."""
+    """Return the generator that represents the sine of an angle."""
     return generator(f"sin({angle})")
 
 
 def reduce_circular(source: Polynomial, angles: Iterable[str]) -> Polynomial:
-    """Return the polynomial with ``cos^2 = 1 - sin^2`` applied until each cosine stands at most to the first power."""
+    """Replace ``cos^2`` by ``1 - sin^2`` in a polynomial until no cosine has a power above 1; return the result."""
     for angle in angles:
         reduced = constant(0)
         for (power,), coefficient in source.collect([f"cos({angle})"]).items():
@@ -173,7 +173,7 @@ def reduce_circular(source: Polynomial, angles: Iterable[str]) -> Polynomial:
 
 
 def _exponents(names: list[str]) -> Callable[[Term], list[int]]:
-    """Return the key of the lexicographic order of terms."""
+    """Return the sort key that orders terms lexicographically."""
     return lambda term: [dict(term[0]).get(name, 0) for name in names]
 
 
@@ -187,7 +187,7 @@ def _term_quotient(term: Term, divisor: Term) -> Polynomial | None:
 
 
 def exact_quotient(dividend: Polynomial, divisor: Polynomial) -> Polynomial | None:
-    """Return the quotient of two polynomials when it is a polynomial, else None: division from the highest term on."""
+    """Return the quotient of two polynomials, by long division, or None if it is not a polynomial."""
     order = _exponents(sorted({name for monomial in (*dividend.terms, *divisor.terms) for name, _ in monomial}))
     highest = max(divisor.terms.items(), key=order)
     quotient, rest = constant(0), dividend
@@ -200,9 +200,9 @@ def exact_quotient(dividend: Polynomial, divisor: Polynomial) -> Polynomial | No
 
 
 def square_root(source: Polynomial) -> Polynomial:
-    """Return the root, with a positive lowest term, of a polynomial that is a square; ``ValueError`` when it is none.
+    """Return the square root of a polynomial, with a positive lowest term; raise ``ValueError`` if it is not a square.
 
-    Term by term from the lowest one, as for a power series.
+    The root is computed term by term from the lowest term up, as for a power series.
     """
     order = _exponents(sorted({name for monomial in source.terms for name, _ in monomial}))
     if not source:
@@ -210,7 +210,7 @@ def square_root(source: Polynomial) -> Polynomial:
     monomial, coefficient = min(source.terms.items(), key=order)
     scale = Fraction(isqrt(max(coefficient.numerator, 0)), isqrt(coefficient.denominator))
     if scale**2 != coefficient or any(power % 2 for _, power in monomial):
-        raise ValueError("not the square of a polynomial")
+        raise ValueError("expected the square of a polynomial")
     lowest = tuple((name, power // 2) for name, power in monomial)
     root = Polynomial({lowest: scale})
     for _ in source.terms:
@@ -221,4 +221,4 @@ def square_root(source: Polynomial) -> Polynomial:
         if term is None:
             break
         root = root + term
-    raise ValueError("not the square of a polynomial")
+    raise ValueError("expected the square of a polynomial")

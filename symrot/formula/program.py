@@ -1,7 +1,7 @@
 """A kernel as data: its signature, and its formulas as a straight-line program. Standard library only.
 
-It joins the symbolic to the numeric half: code generation writes it, propagation reads it, and a saved kernel
-comes back from JSON without SymPy.
+The program connects derivation and computation: code generation writes it, propagation reads it, and a saved kernel is
+read back from JSON without SymPy.
 """
 
 from collections import Counter
@@ -19,7 +19,7 @@ __all__ = ["Argument", "Program", "ProgramRecord", "Signature", "node_from_json"
 class Argument:
     """One argument of a kernel.
 
-    ``components`` holds (name, unit, meaning) for each number in it; a scalar has one and ``is_scalar`` set.
+    ``components`` holds (name, unit, meaning) for each number in the argument; a scalar has one, and ``is_scalar`` set.
     """
 
     name: str
@@ -40,7 +40,7 @@ class Signature:
     arguments: tuple[Argument, ...]
 
     def argument(self, name: str) -> Argument:
-        """Return the argument of that name; ``KeyError`` if there is none."""
+        """Return the argument with a given name; raise ``KeyError`` if there is none."""
         for argument in self.arguments:
             if argument.name == name:
                 return argument
@@ -58,9 +58,9 @@ class ProgramRecord(TypedDict):
 
 @dataclass(frozen=True)
 class Program:
-    """A straight-line program: each temporary once, in order, then the outputs.
+    """A straight-line program: temporaries in order of computation, each assigned once, then the outputs.
 
-    Symbols in the formulas are component names of the input arguments and names of earlier temporaries.
+    The formulas use component names of the input arguments and names of earlier temporaries.
     """
 
     signature: Signature
@@ -72,7 +72,7 @@ class Program:
         for name, node in self.temporaries + self.outputs:
             missing = names(node) - known
             if missing:
-                raise ValueError(f"{self.signature.name}: {name} uses {sorted(missing)} before they exist")
+                raise ValueError(f"{self.signature.name}: {name} uses {sorted(missing)} before computing them")
             known.add(name)
 
     def operations(self) -> Counter[str]:
@@ -80,7 +80,7 @@ class Program:
         return sum((operations(node) for _, node in self.temporaries + self.outputs), Counter())
 
     def vanishing(self, zeros: Collection[str]) -> frozenset[str]:
-        """Return the outputs that are zero, by the form of their formulas, when some inputs are zero."""
+        """Return the outputs that are zero if the given inputs are zero, judged by the form of their formulas."""
         known = set(zeros)
         for name, node in (*self.temporaries, *self.outputs):
             if vanishes(node, known):
@@ -88,7 +88,7 @@ class Program:
         return frozenset(name for name, _ in self.outputs if name in known)
 
     def uses(self, symbol: str, only: Collection[str] | None = None) -> bool:
-        """Return whether a symbol occurs in the program; with ``only``, in the operations that those outputs need."""
+        """Return whether a symbol occurs in the program, or, given ``only``, in the computation of those outputs."""
         needed = {name for name, _ in self.outputs} if only is None else set(only)
         for name, node in reversed((*self.temporaries, *self.outputs)):
             needed |= names(node) if name in needed else set()
@@ -103,7 +103,7 @@ class Program:
     ) -> dict[str, Any]:
         """Return the outputs by name, for inputs by name: floats, arrays or Fractions (with ``number=Fraction``).
 
-        With ``only``, just those outputs and what they need are computed.
+        Given ``only``, the method computes just those outputs and the temporaries that they need.
         """
         outputs = [(name, node) for name, node in self.outputs if only is None or name in only]
         needed = set().union(*(names(node) for _, node in outputs))
@@ -118,7 +118,7 @@ class Program:
         return {name: evaluate(node, known, functions, number) for name, node in outputs}
 
     def to_json(self) -> ProgramRecord:
-        """Return plain data from which :meth:`from_json` makes an equal program."""
+        """Return the program as plain data for JSON; :meth:`from_json` reads them back to an equal program."""
         return {
             "name": self.signature.name,
             "arguments": [
@@ -130,7 +130,7 @@ class Program:
 
     @classmethod
     def from_json(cls, data: ProgramRecord) -> "Program":
-        """Return the program that :meth:`to_json` saved."""
+        """Return the program that data from :meth:`to_json` describe."""
         arguments = tuple(
             Argument(name, role, tuple((component, unit, meaning) for component, unit, meaning in components), scalar)
             for name, role, components, scalar in data["arguments"]
@@ -143,7 +143,7 @@ class Program:
 
 
 def node_to_json(node: Node) -> list[Any]:
-    """Return a formula as nested lists, numbers as exact text."""
+    """Return a formula as nested lists, with numbers as exact text."""
     kind = node[0]
     if kind == "number":
         return [kind, str(node[1])]
@@ -157,7 +157,7 @@ def node_to_json(node: Node) -> list[Any]:
 
 
 def node_from_json(data: list[Any]) -> Node:
-    """Return the formula that :func:`node_to_json` saved."""
+    """Return the formula that nested lists from :func:`node_to_json` describe."""
     kind = data[0]
     if kind == "number":
         return ("number", Fraction(data[1]))

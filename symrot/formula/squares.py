@@ -1,4 +1,4 @@
-"""Squares under a root: sqrt(u^2) is abs(u), which bends where u changes its sign. Standard library only."""
+"""Squares under a root: sqrt(u^2) is abs(u), which has a kink where u changes sign. Standard library only."""
 
 from fractions import Fraction
 
@@ -8,14 +8,14 @@ from symrot.formula.tree import Node, children, text
 __all__ = ["as_polynomial", "square_under_root"]
 
 ONE: Node = ("number", Fraction(1))
-MOST_TERMS = 60  # of a polynomial that is examined for being a square
+MOST_TERMS = 60  # largest number of terms of a polynomial that is tested for being a square
 
 
 def square_under_root(radicand: Node) -> tuple[Node, Node] | None:
-    """Return (u, v) with radicand = u^2 v, so that its square root is abs(u) sqrt(v); None for u = 1.
+    """Return (u, v) with radicand = u^2 v, so that its square root is abs(u) sqrt(v), or None if u is 1.
 
-    What is left of the factors counts as a square if it is one as a polynomial in its symbols and functions:
-    t**2 - 2*c*t + c**2.
+    Besides factors that are written as squares, a sum such as t**2 - 2*c*t + c**2 counts as a square if it is the
+    square of a polynomial in its symbols and functions.
     """
     root, rest = _split(radicand)
     if rest != ONE and (more := _root_of_sum(rest)) is not None:
@@ -24,7 +24,7 @@ def square_under_root(radicand: Node) -> tuple[Node, Node] | None:
 
 
 def _split(node: Node) -> tuple[Node, Node]:
-    """Return (u, v) with node = u^2 v; u is 1 where no square is seen."""
+    """Return (u, v) with node = u^2 v; u is 1 if no factor is written as a square."""
     kind = node[0]
     if kind in ("*", "/"):
         (a, v), (b, w) = map(_split, children(node))
@@ -43,7 +43,7 @@ def _joined(kind: str, left: Node, right: Node) -> Node:
 
 
 def _root_of_sum(node: Node) -> Node | None:
-    """Return the polynomial whose square a formula is, or None."""
+    """Return the polynomial whose square is the given formula, or None if the formula is not a square."""
     generators: dict[str, Node] = {}
     polynomial = as_polynomial(node, generators)
     if polynomial is None or len(polynomial.terms) > MOST_TERMS or set(polynomial.terms) <= {()}:
@@ -56,7 +56,7 @@ def _root_of_sum(node: Node) -> Node | None:
 
 
 def as_polynomial(node: Node, generators: dict[str, Node]) -> Polynomial | None:
-    """Return a formula as a polynomial in its symbols and functions, and add these to ``generators``."""
+    """Return a formula as a polynomial in its symbols and function calls, and add these to ``generators``."""
     kind = node[0]
     if kind == "number":
         return constant(node[1])

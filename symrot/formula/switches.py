@@ -1,7 +1,8 @@
-"""Formulas that jump or bend, as smooth formulas with modes, which a stepper follows from switch to switch.
+"""Formulas with jumps or kinks, rewritten as smooth formulas with modes, which a stepper integrates between switches.
 
-A switch is a guard, a formula that changes its sign, and a mode, the number that the smooth formula takes on one side
-of it. While no guard vanishes, the smooth formula with the modes of the moment is the formula itself:
+A switch has a guard, which is a formula whose sign changes, and a mode, which is the number that the smooth formula
+contains instead of the jump. As long as no guard changes sign, the smooth formula with the current values of the modes
+equals the original formula:
 
 =====================  =============================  ==========================================
 formula                smooth formula                 guard
@@ -11,19 +12,20 @@ formula                smooth formula                 guard
 ``abs(u)``             ``s u``                        ``u``, unless u contains modes alone
 ``sqrt(u^2 v)``        ``s u sqrt(v)``                ``u``
 ``max(a, b)``          ``b + (1 + s)/2 (a - b)``      ``a - b``
-``where(c, a, b)``     ``b + p (a - b)``              those of the condition, p = 1 or 0
+``where(c, a, b)``     ``b + p (a - b)``              guards of the condition c, p = 1 or 0
                        or a or b alone (see below)
 ``floor(u)``           ``n``                          ``u - n`` and ``n + 1 - u``, n whole
 ``mod(a, b)``          ``a - b n``                    of ``floor(a/b)``
-``atan2(y, x)``        where it is cut (see below)    ``x``, and ``y`` where x < 0
+``atan2(y, x)``        at its cut (see below)         ``x``, and ``y`` where x < 0
 =====================  =============================  ==========================================
 
-The arc tangent of two arguments jumps across the negative x axis; on that side it is ``s pi - atan2(y, -x)``, with s
-the sign of y, which is smooth there.
+The arc tangent of two arguments jumps across the negative x axis. For x < 0 it equals ``s pi - atan2(y, -x)``, with s
+the sign of y; this form is smooth there.
 
-In ``where(t > 1, sqrt(t - 1), 0)`` the root has no value before t = 1, and zero times no value is none. So a ``where``
-with such a part, or with one whose features could shorten steps, stays in the formulas until the modes are known:
-:func:`chosen` then leaves the part that holds alone, and guards inside the other part do not matter.
+In ``where(t > 1, sqrt(t - 1), 0)`` the root has no value before t = 1, and zero times an undefined value is undefined.
+So a ``where`` with such a part, or with a part whose narrow features could shorten steps, stays in the smooth formula
+until the modes are known. :func:`chosen` then replaces it by the part that applies; guards inside the other part are
+ignored.
 
 Standard library only.
 """
@@ -47,31 +49,31 @@ PI: Node = ("symbol", "pi")
 CHANGING = frozenset({"t", *(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4))})
 BENDING = {*SWITCHING, "abs", "atan2"}
 CONDITIONS = {"less", "and", "or", "not"}
-MODES = "switch_"  # how the names of modes begin
-HARMLESS_DEGREE = 6  # of polynomials, which have a value everywhere and no narrow feature: they may stay unchosen
+MODES = "switch_"  # prefix of the names of modes
+HARMLESS_DEGREE = 6  # polynomials up to this degree are defined everywhere and have no narrow feature
 RISKY = HARMLESS_DEGREE + 1
 
 Conditions = tuple[tuple[Node, int], ...]
-"""Formulas of modes, and the values that all of them must have."""
+"""Conditions: pairs of a formula of modes and the value that it must have."""
 
 
 class Switch(NamedTuple):
-    """A mode and its guards.
+    """A discontinuity of a formula: a mode, and the guard whose sign determines it.
 
     Attributes
     ----------
     mode : str
-        Its name in the smooth formulas.
+        Name of the mode in the smooth formulas.
     kind : str
-        ``"sign"``: the mode is the sign of the guard; ``"floor"``: it is the whole number below the guard.
+        ``"sign"``: the mode is the sign of the guard; ``"floor"``: the mode is the largest integer below the guard.
     guard : Node
-        A smooth formula, which may hold modes.
+        A smooth formula, which may contain modes.
     where : Conditions
-        Without them the guard does not matter.
+        The switch matters only while these conditions hold.
     label : str
-        The function that switches, as it was written.
+        The function that jumps, as the user wrote it.
     at_zero : int
-        The mode for as long as the guard is zero: sign(0) = 0, step(0) = 0, 0 < 0 is false.
+        Value of the mode while the guard is exactly zero: sign(0) = 0, step(0) = 0, 0 < 0 is false.
     """
 
     mode: str
@@ -83,9 +85,9 @@ class Switch(NamedTuple):
 
 
 class Smooth(NamedTuple):
-    """Smooth formulas, and the switches that they had; each switch comes after the switches that occur in its guard.
+    """Smooth formulas and their switches; each switch comes after the switches whose modes occur in its guard.
 
-    Formulas and guards may hold ``where(p, a, b)``, with p a formula of modes that is 1 or 0, see :func:`chosen`.
+    Formulas and guards may contain ``where(p, a, b)``, with p a formula of modes that is 1 or 0; see :func:`chosen`.
     """
 
     formulas: tuple[Node, ...]
@@ -93,7 +95,7 @@ class Smooth(NamedTuple):
 
 
 def has_switches(node: Node) -> bool:
-    """Return whether a formula jumps or bends as the time or a state passes some value."""
+    """Return whether a formula contains a function that jumps or has a kink."""
     if node[0] == "call" and node[1] in SWITCHING:
         return True
     if node[0] == "call" and node[1] in BENDING and names(node) & CHANGING:
@@ -104,7 +106,7 @@ def has_switches(node: Node) -> bool:
 
 
 def condition_error(node: Node) -> str:
-    """Return a sentence about a fault of the conditions in a formula; an empty text if they are right."""
+    """Return the expected form of a condition if one in the formula is wrong; an empty text if all are right."""
 
     def wrong(node: Node, condition: bool) -> str:
         if node[0] != "call" or node[1] not in CONDITIONS:
@@ -124,19 +126,19 @@ def condition_error(node: Node) -> str:
 
 
 def hold(conditions: Iterable[tuple[Node, int]], modes: Mapping[str, int], held: Collection[str] = ()) -> bool:
-    """Return whether conditions hold for given modes; one whose mode slides between its values counts as true."""
+    """Return whether conditions hold for given modes; a condition with a mode in ``held`` counts as true."""
     return all(names(share) & set(held) or evaluate(share, modes) == value for share, value in conditions)
 
 
 def has_choices(node: Node) -> bool:
-    """Return whether a smooth formula contains a ``where``, whose part is chosen once the modes are known."""
+    """Return whether a smooth formula contains a ``where``, of which one part applies once the modes are known."""
     return node[:2] == ("call", "where") or any(map(has_choices, children(node)))
 
 
 def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> Node:
-    """Return a smooth formula in which each ``where`` is replaced by the part that holds for given modes.
+    """Return a smooth formula in which each ``where`` is replaced by the part that applies for given modes.
 
-    Where a mode of the condition is held between its values, both parts hold in shares.
+    If a mode of the condition is in ``held``, a value between those of the two sides, both parts are blended.
     """
     if not has_choices(node):
         return node
@@ -150,12 +152,12 @@ def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> 
 
 
 def blended(node: Node) -> Node:
-    """Return a smooth formula in which each ``where`` is the sum of both parts, each times its share."""
+    """Return a smooth formula in which each ``where(p, a, b)`` is replaced by the sum ``b + p (a - b)``."""
     return chosen(node, {}, names(node))
 
 
 def placed(node: Node, values: Mapping[str, Node]) -> Node:
-    """Return a formula in which names are replaced by formulas."""
+    """Return a formula with names replaced by the given formulas."""
     if node[0] in ("number", "symbol"):
         return values.get(node[1], node) if node[0] == "symbol" else node
     parts = tuple(placed(child, values) for child in children(node))
@@ -163,9 +165,10 @@ def placed(node: Node, values: Mapping[str, Node]) -> Node:
 
 
 def on_line(node: Node) -> tuple[Any, int]:
-    """Return a key and a sign: formulas of one key are proportional, and have the same sign if their signs agree.
+    """Return a key that proportional formulas share, and the sign of the factor between the formula and the key.
 
-    A formula that is no polynomial of symbols and functions is its own key.
+    Formulas with the same key vanish together, so one search for their zeros serves all. A formula that is no
+    polynomial of symbols and functions is its own key.
     """
     polynomial = as_polynomial(node, {})
     if polynomial is None or not polynomial.terms:
@@ -175,10 +178,10 @@ def on_line(node: Node) -> tuple[Any, int]:
 
 
 def between_sides(node: Node, mode: str) -> Node:
-    """Return a formula with a held mode as the mixture of its values for the modes 1 and -1, which is linear in it.
+    """Return a formula that is linear in a mode and agrees with the given formula for the modes 1 and -1.
 
-    A motion that slides along a switch moves with a mixture of the rates on both sides (A. F. Filippov); a formula that
-    is linear in the mode is that mixture already.
+    A motion that slides along a switch moves with a mixture of the rates on both sides (A. F. Filippov). A formula that
+    is linear in the mode is already such a mixture and is returned unchanged.
     """
     if _is_linear(node, mode):
         return node
@@ -187,7 +190,7 @@ def between_sides(node: Node, mode: str) -> Node:
 
 
 def _is_linear(node: Node, mode: str) -> bool:
-    """Return whether a formula is linear in a mode, by its form."""
+    """Return whether a formula is linear in a mode, judged by its form."""
     if mode not in names(node) or node == ("symbol", mode):
         return True
     parts = children(node)
@@ -200,9 +203,9 @@ def _is_linear(node: Node, mode: str) -> bool:
 
 
 def _degree(node: Node) -> int:
-    """Return the degree of a formula between its switches as a polynomial, in sines and cosines of the time too.
+    """Return the degree of a formula between its switches, as a polynomial that may contain sines of the time too.
 
-    RISKY for what may have no value, a pole or a narrow feature.
+    The result is RISKY for a formula that may be undefined, have a pole or have a narrow feature.
     """
     kind = node[0]
     if kind in ("number", "symbol"):
@@ -233,7 +236,7 @@ def _degree(node: Node) -> int:
 
 @lru_cache(maxsize=256)
 def smooth(sources: tuple[str, ...]) -> Smooth:
-    """Return formulas, given as text, as smooth formulas with modes."""
+    """Return formulas, given as text, as smooth formulas with the switches that replace their jumps and kinks."""
     nodes = [parse(source, switching=True) for source in sources]
     used_names = set().union(*map(names, nodes))
     prefix = MODES
@@ -247,13 +250,13 @@ class _Writer:
     def __init__(self, prefix: str) -> None:
         self.prefix, self.switches = prefix, list[Switch]()
         self.known: dict[tuple[str, Node, Conditions, int], Node] = {}
-        self.label = ""  # the function that is being rewritten
-        self.conditions: Conditions = ()  # under which what is being rewritten matters
+        self.label = ""  # the function call that is being rewritten
+        self.conditions: Conditions = ()  # conditions under which the part being rewritten applies
 
     def mode(self, kind: str, guard: Node, where: Conditions = (), at_zero: int = 1) -> Node:
-        """Return the mode of a guard, a new one at the first call."""
+        """Return the mode of a guard; the first call with a guard creates it."""
         where = self.conditions + where
-        for count in range(len(where) + 1):  # one that matters wherever this one does will do
+        for count in range(len(where) + 1):  # a mode that applies under fewer of the conditions serves as well
             if (mode := self.known.get((kind, guard, where[:count], at_zero))) is not None:
                 return mode
         name = f"{self.prefix}{len(self.switches) + 1}"
@@ -262,7 +265,7 @@ class _Writer:
         return ("symbol", name)
 
     def part(self, node: Node, share: Node, value: int) -> Node:
-        """Return a part of a ``where`` as a smooth formula; its guards matter where the share has that value alone."""
+        """Return a part of a ``where`` as a smooth formula; its guards matter only where ``share`` equals ``value``."""
         outside = self.conditions
         self.conditions = (*outside, (share, value))
         smooth = self.smooth(node)
@@ -289,12 +292,12 @@ class _Writer:
         if node[1] not in BENDING or (node[1] in ("abs", "atan2") and not names(node) & CHANGING):
             return ("call", node[1], parts)
         if node[1] == "abs" and not names(parts[0]) & CHANGING:
-            return ("call", "abs", parts)  # of modes alone: a constant between switches
+            return ("call", "abs", parts)  # an argument of modes alone is constant between switches
         self.label = text(node)
         return getattr(self, f"_{node[1]}")(*parts)  # type: ignore[no-any-return]
 
     def share(self, condition: Node) -> Node:
-        """Return 1 where a condition holds, else 0."""
+        """Return a condition as a formula of modes that is 1 if the condition holds, else 0."""
         name, parts = condition[1], condition[2]
         if name == "less":
             left, right = map(self.smooth, parts)
@@ -342,7 +345,7 @@ class _Writer:
 
 
 def _difference(a: Node, b: Node) -> Node:
-    """Return the formula a - b, shortened to a for b = 0, so that functions of a share one guard."""
+    """Return the formula a - b, shortened to a if b is 0, so that equal guards have equal formulas."""
     return a if b == ("number", 0) else ("-", a, b)
 
 

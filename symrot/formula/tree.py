@@ -1,11 +1,11 @@
-"""Formulas as text and as small trees: read safely, evaluated over any kind of number. Standard library only.
+"""Formulas as text and as trees: read without ``eval``, evaluated over any kind of number. Standard library only.
 
-A node is a nested tuple, the one form shared by scene texts, printed closed forms and kernels::
+A node is a nested tuple. Scene texts, printed closed forms and kernels all use this form::
 
     ("number", Fraction)   ("symbol", name)   ("neg", a)   ("call", function, (arguments,))
     ("+", a, b)   ("-", a, b)   ("*", a, b)   ("/", a, b)   ("**", a, integer)
 
-Nothing here is ever given to Python's own evaluator.
+No text is ever passed to Python's own evaluator.
 """
 
 import re
@@ -28,18 +28,18 @@ FUNCTIONS: dict[str, int] = {  # name -> number of arguments
     "sqrt": 1, "sin": 1, "cos": 1, "tan": 1, "exp": 1, "log": 1, "abs": 1, "sinh": 1, "cosh": 1, "tanh": 1,
     "asin": 1, "acos": 1, "atan": 1, "atan2": 2,
 }  # fmt: skip
-SWITCHING: dict[str, int] = {  # functions that jump or bend, of formulas of torques; min and max take two or more
+SWITCHING: dict[str, int] = {  # functions with jumps or kinks, for formulas of torques; min and max take two or more
     "step": 1, "sign": 1, "min": 2, "max": 2, "clip": 3, "floor": 1, "mod": 2, "where": 3,
 }  # fmt: skip
-COMPARISONS = {  # in the condition of where: whether the sides change, whether it is the opposite of less
+COMPARISONS = {  # operators in the condition of where: (whether to swap the sides, whether to negate) to get "less"
     "<": (False, False), "<=": (True, True), ">": (True, False), ">=": (False, True),
 }  # fmt: skip
-LOGIC = {"or": 2, "and": 4}  # how tightly they bind, below all operators
+LOGIC = {"or": 2, "and": 4}  # binding strength, below all arithmetic operators
 LONGEST_TEXT = 10_000
 DEEPEST_NESTING = 100
 LONGEST_NUMBER = 1000
 LARGEST_POWER = 64
-LARGEST_EXPONENT = 400  # of ten, in a written number: beyond any double
+LARGEST_EXPONENT = 400  # largest power of ten of a written number: beyond any double
 
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)"
@@ -52,7 +52,7 @@ _UNARY = 30  # -x**2 is -(x**2), -x*y is (-x)*y
 
 
 class _Reader:
-    """Precedence climbing over the tokens of one formula."""
+    """A parser of one formula by precedence climbing."""
 
     def __init__(self, source: str, where: str, switching: bool) -> None:
         self.source, self.where, self.depth = source, f"{where}: " if where else "", 0
@@ -61,7 +61,7 @@ class _Reader:
         self.index = 0
 
     def fail(self, expected: str, position: int, function: str = "") -> InputError:
-        from symrot.formula.advice import function_advice, mark_advice  # only on the way to an error
+        from symrot.formula.advice import function_advice, mark_advice  # imported only for an error
 
         excerpt = self.source if len(self.source) <= 60 else self.source[:57] + "..."
         known = self.functions
@@ -158,7 +158,7 @@ class _Reader:
         return Fraction(token)
 
     def power(self, position: int) -> int:
-        """Read the exponent: a whole number, with a sign or brackets if need be."""
+        """Read an exponent: a whole number, possibly with a sign or in brackets."""
         brackets = self.peek() == "("
         if brackets:
             self.next()
@@ -185,15 +185,16 @@ def parse(source: str, where: str = "", switching: bool = False) -> Node:
     source : str
         Numbers, names, ``+ - * / **`` (whole exponents), brackets and the functions of :data:`FUNCTIONS`.
     where : str
-        The place of the text (file and key), put in front of every complaint.
+        The place of the text (file and key), put in front of every error message.
     switching : bool
-        Whether the functions of :data:`SWITCHING` may stand in it too, and comparisons, ``and``, ``or`` and ``not`` in
-        the condition of ``where``: calls of ``less``, ``and``, ``or``, ``not``. See :mod:`symrot.formula.switches`.
+        Whether to allow the functions of :data:`SWITCHING` too, and comparisons, ``and``, ``or`` and ``not`` in the
+        condition of ``where``; these become calls of ``less``, ``and``, ``or``, ``not``. See
+        :mod:`symrot.formula.switches`.
 
     Raises
     ------
     InputError
-        Naming the first position that is not understood. Nothing is dropped and nothing is evaluated.
+        For the first position that cannot be read. Nothing is skipped and nothing is evaluated.
 
     Examples
     --------
@@ -222,7 +223,7 @@ def children(node: Node) -> tuple[Node, ...]:
 
 
 def rename(node: Node, symbols: Mapping[str, str] | None = None, functions: Mapping[str, str] | None = None) -> Node:
-    """Return a formula with some symbols and functions called differently; names that are not listed stay."""
+    """Return a formula with some symbols and functions renamed; names that are not listed stay."""
     kind = node[0]
     if kind == "number":
         return node
@@ -246,7 +247,7 @@ def names(node: Node) -> set[str]:
 def operations(node: Node) -> Counter[str]:
     """Count the operations of a formula: ``add`` (and subtract), ``mul``, ``div``, ``neg`` and the functions by name.
 
-    A whole power counts as the multiplications of its shortest left-to-right product.
+    A whole power n counts as ``|n| - 1`` multiplications, and one division if n is negative.
     """
     count: Counter[str] = sum((operations(child) for child in children(node)), Counter())
     kind = node[0]
@@ -262,7 +263,7 @@ ODD = {"sqrt", "sin", "tan", "sinh", "tanh", "asin", "atan", "abs"}  # functions
 
 
 def vanishes(node: Node, zeros: Collection[str]) -> bool:
-    """Return whether a formula is zero, by its form, when some symbols are zero."""
+    """Return whether a formula is zero if the given symbols are zero, judged by its form."""
     kind = node[0]
     if kind in ("number", "symbol"):
         return node[1] == 0 if kind == "number" else node[1] in zeros
@@ -289,14 +290,14 @@ def evaluate(
     values : mapping of str to number
         A value for each symbol.
     functions : mapping of str to callable, optional
-        The functions by name, for that kind of number.
+        Implementations of the functions by name, for that kind of number.
     number : callable
-        Turns the exact constants of the formula into that kind of number; ``float`` for arrays.
+        Converts the exact constants of the formula to that kind of number; ``float`` for arrays.
 
     Raises
     ------
     KeyError
-        For a symbol or a function without a value.
+        If a symbol has no value or a function no implementation.
     """
     kind = node[0]
     if kind == "number":
@@ -322,9 +323,9 @@ _INFIX = {"+": (10, " + "), "-": (10, " - "), "*": (20, "*"), "/": (20, "/")}
 
 
 def text(node: Node, binding: int = 0, literal: Callable[[Fraction], str] = str) -> str:
-    """Return a formula as infix text with the fewest brackets that keep its order of evaluation.
+    """Return a formula as infix text with the fewest brackets that preserve its order of evaluation.
 
-    :func:`parse` reads it back to the same tree (a fraction comes back as a quotient).
+    :func:`parse` reads the text back to the same tree (except that a fraction becomes a quotient).
     """
     kind = node[0]
     if kind == "number":

@@ -1,6 +1,6 @@
-"""Bodies over any numbers: moved, turned, added and subtracted. Standard library only.
+"""Mass properties of bodies over any kind of number: moved, rotated, added and subtracted. Standard library only.
 
-One code serves symbolic bodies (:class:`symrot.inertia.solids.Solid`) and the exact numbers of a scene.
+The same functions serve symbolic bodies (:class:`symrot.inertia.solids.Solid`) and the exact numbers of a scene.
 """
 
 from collections.abc import Iterable
@@ -39,16 +39,17 @@ class MassProperties(NamedTuple):
 
 
 def place(body: HasInertia, at: Any = _ORIGIN, rotation: Any = IDENTITY) -> MassProperties:
-    """Return a body turned by ``rotation`` about the origin, then moved by ``at`` (m), in the axes of the whole."""
+    """Return a body rotated by ``rotation`` about the origin, then moved by ``at`` (m), in the axes of the assembly."""
     turned = tensor.apply(rotation, body.center_of_mass)
     center = tuple(a + c for a, c in zip(tensor.vector(at), turned, strict=True))
     return MassProperties(body.mass, tensor.vector(center), tensor.rotate(body.inertia, rotation))
 
 
 def compose(added: Iterable[HasInertia], subtracted: Iterable[HasInertia] = ()) -> MassProperties:
-    """Return the mass properties of several bodies taken together, less the subtracted ones (holes).
+    """Return the mass properties of a rigid assembly: the sum of the added bodies minus the subtracted ones (holes).
 
-    All are in the same axes. Works over any numbers, SymPy expressions included; the total mass must not be zero.
+    All bodies are given in the same axes, with components of any numeric type, SymPy expressions included. The total
+    mass must not be zero.
     """
     signed = [(1, body) for body in added] + [(-1, body) for body in subtracted]
     mass = sum(sign * body.mass for sign, body in signed)

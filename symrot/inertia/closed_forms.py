@@ -1,6 +1,6 @@
 """Closed forms of the uniform solids, read from ``closed_forms.toml`` and evaluated exactly. Standard library only.
 
-The file is printed from :mod:`symrot.inertia.solids`, where the formulas are derived; so a scene needs no SymPy.
+The file is printed by :mod:`symrot.inertia.solids`, which derives the formulas, so that a scene needs no SymPy.
 """
 
 from collections.abc import Mapping
@@ -30,7 +30,7 @@ def _table() -> dict[str, dict[str, str]]:
 
 @cache
 def closed_form(shape: str) -> dict[str, Node]:
-    """Return the formulas of a shape: ``measure``, ``center_x`` .., ``xx`` .. ``yz`` of mass ``m`` about the centre."""
+    """Return formulas of a shape of mass ``m`` by name: ``measure``, ``center_x`` .., inertia ``xx`` .. ``yz``."""
     return {key: parse(text) for key, text in _table()[shape].items()}
 
 
@@ -47,21 +47,22 @@ def uniform(
     ----------
     shape : Shape
         Any but separate points.
+        Any shape but ``point_masses``.
     dimensions : mapping
-        From :func:`symrot.inertia.shapes.check_dimensions`.
+        As returned by :func:`symrot.inertia.shapes.check_dimensions`.
     mass, density : Fraction
-        One of them, in kg, or in kg per unit of the measure.
+        Exactly one of them: the mass in kg, or the density in kg per m^3, m^2 or m.
     where : str
-        Place of the shape, put in front of a complaint.
+        Place of the shape in the scene, put in front of an error message.
 
     Raises
     ------
     InputError
-        If the corners of the shape lie in a plane.
+        If the corners of a tetrahedron lie in a plane.
     """
     forms = closed_form(shape.name)
     values = scalars(shape, dimensions) | {"pi": PI}
-    measure = abs(Fraction(evaluate(forms["measure"], values)))  # signed by the order of the corners
+    measure = abs(Fraction(evaluate(forms["measure"], values)))  # the order of the corners determines its sign
     if not measure:
         prefix = f"{where}: " if where else ""
         raise InputError(f"{prefix}expected a {shape.name} that fills space, got corners in one plane")

@@ -1,4 +1,4 @@
-"""The parts of a scene's body, composed to exact mass properties. Standard library only."""
+"""Exact mass properties of a scene's body, composed from its parts. Standard library only."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
@@ -17,15 +17,16 @@ from symrot.inertia.tensor import IDENTITY
 __all__ = ["MassProperties", "Part", "mass_properties"]
 
 _ORIGIN = (0, 0, 0)
-_ROTATION_TOLERANCE = Fraction(1, 10**9)  # a matrix of rounded decimals is refused, one of doubles is not
+_ROTATION_TOLERANCE = Fraction(1, 10**9)  # rejects a matrix of rounded decimals, accepts a matrix of doubles
 
 
 class Part(NamedTuple):
-    """A part of a body, as a scene gives it.
+    """A part of a body, with its entries as the scene gives them.
 
-    ``at`` is the position (m) of the part's own origin in the axes of the body, ``rotation`` the 3x3 matrix that maps
-    components in the part's axes to the body's. Either ``mass`` (kg) or ``density`` (kg per unit of the measure, or a
-    polynomial text in x, y, z of the part's axes); neither for point masses, which bring their own.
+    ``at`` is the position (m) of the part's origin in the axes of the body, ``rotation`` the 3x3 matrix that maps
+    components in the part's axes to components in the body's. A part has either a ``mass`` (kg) or a ``density`` (kg
+    per m^3, m^2 or m, or the text of a polynomial in x, y, z of the part's axes). Point masses have neither: their
+    masses are among their dimensions.
     """
 
     shape: str
@@ -43,7 +44,7 @@ def _prefix(where: str) -> str:
 
 def _points(part: Part, dimensions: Mapping[str, Any], where: str) -> MassProperties:
     if part.mass is not None or part.density is not None:
-        raise InputError(f"{_prefix(where)}expected no mass or density of point_masses, whose masses are in 'masses'")
+        raise InputError(f"{_prefix(where)}expected no mass or density of point_masses; give their masses in 'masses'")
     nothing = tensor.scale(Fraction(0), IDENTITY)
     pairs = zip(dimensions["masses"], dimensions["points"], strict=True)
     return compose([MassProperties(mass, point, nothing) for mass, point in pairs])
@@ -72,7 +73,7 @@ def _positive(value: Any, name: str, where: str) -> Fraction:
 
 
 def _density_node(density: Any, where: str) -> Node:
-    """Return a density as a formula; a positive constant is checked as such."""
+    """Return a density as a parsed formula; raise InputError if it is a constant that is not positive."""
     if isinstance(density, str):
         node = parse(density, f"{where}.density" if where else "density")
         if node[0] != "number":
@@ -121,18 +122,19 @@ def mass_properties(parts: Sequence[Part], where: str = "") -> MassProperties:
     parts : sequence of Part
         At least one that is not subtracted.
     where : str
-        Place of the parts, put in front of every complaint; with several parts, their number too.
+        Place of the parts in the scene, put in front of every error message, with the number of the part if
+        several.
 
     Returns
     -------
     MassProperties
-        Exact for rational dimensions, up to pi (2^-320) and the rounding of the rotations given.
+        Exact for rational dimensions, except for pi (2^-320) and the rounding errors of given rotations.
 
     Raises
     ------
     InputError
-        For a part that is no body, a total mass that is not positive, or moments that no body has: a hole that is
-        larger than what it is cut from.
+        If a part is not a valid body, if the total mass is not positive, or if no body can have the resulting
+        moments, for example because a hole is larger than the part that it is cut from.
     """
     if not parts:
         raise InputError(f"{_prefix(where)}expected at least one part, got none")

@@ -1,9 +1,9 @@
-"""Exact integrals over the mapped solids: the map, its Jacobian, and moments of any polynomial. Standard library only.
+"""Exact integrals of polynomials over the shapes: map, Jacobian, and moments of mass. Standard library only.
 
-The Jacobian is computed from the map: its determinant for a solid, the root of the Gram determinant for a surface or a
-curve. Every integrand is a polynomial in the coordinates and in cosines and sines, so every integral is a rule: powers
-have polynomial antiderivatives, and products of whole powers of cos and sin over quarter turns follow from two-step
-recursion (Wallis). The result is a polynomial in the dimensions and pi.
+A shape is described by a map from coordinates to positions. Its Jacobian is computed: the determinant for a solid, the
+root of the Gram determinant for a surface or a curve. Every integrand is a polynomial in the coordinates and in cosines
+and sines of angles, so every integral is exact: powers have polynomial antiderivatives, and products of powers of cos
+and sin over multiples of pi/2 follow from Wallis' recursion. The result is a polynomial in the dimensions and pi.
 """
 
 from collections.abc import Mapping
@@ -33,13 +33,13 @@ __all__ = [
 ]  # fmt: skip
 
 LARGEST_DEGREE = 12
-"""Highest total degree of a density in x, y, z."""
+"""Highest allowed total degree of a density as a polynomial in x, y, z."""
 
 _PI = {"pi": PI}
 
 
 class Domain(NamedTuple):
-    """A mapped shape: position in the shape's axes (m), Jacobian, and the coordinates with their limits."""
+    """The map of a shape: position in the shape's axes (m), Jacobian, and the coordinates with their limits."""
 
     position: tuple[Polynomial, ...]
     jacobian: Polynomial
@@ -73,7 +73,7 @@ def _determinant(rows: list[list[Polynomial]]) -> Polynomial:
 
 
 def _jacobian(position: tuple[Polynomial, ...], coordinates: tuple[Coordinate, ...]) -> Polynomial:
-    """Return the measure per unit of the coordinates: volume, area or length."""
+    """Return the Jacobian of a map: volume, area or length per unit of its coordinates."""
     columns = [[component.derivative(c.name) for component in position] for c in coordinates]
     angles = [c.name for c in coordinates if c.angle]
     if len(columns) == 3:
@@ -83,9 +83,9 @@ def _jacobian(position: tuple[Polynomial, ...], coordinates: tuple[Coordinate, .
 
 
 def domain(shape: Shape, known: Mapping[str, Fraction] | None = None) -> Domain:
-    """Return the mapped shape with its dimensions as the numbers known, each other one as a generator.
+    """Return the map of a shape, with the given numbers for its known dimensions and symbols for the others.
 
-    The names are those of :func:`symrot.inertia.shapes.scalar_names`.
+    The keys of ``known`` are names of :func:`symrot.inertia.shapes.scalar_names`.
     """
     numbers = known or {}
     values = {n: constant(numbers[n]) if n in numbers else generator(n) for n in scalar_names(shape)}
@@ -98,7 +98,7 @@ def domain(shape: Shape, known: Mapping[str, Fraction] | None = None) -> Domain:
 
 @cache
 def _quarter_turn(cosines: int, sines: int) -> tuple[Fraction, int]:
-    """Return the integral of cos^a sin^b over the first quadrant as (rational, power of pi)."""
+    """Return the integral of cos^a sin^b from 0 to pi/2 as (rational factor, power of pi)."""
     if sines > 1:
         rational, power = _quarter_turn(cosines, sines - 2)
         return rational * Fraction(sines - 1, cosines + sines), power
@@ -109,7 +109,7 @@ def _quarter_turn(cosines: int, sines: int) -> tuple[Fraction, int]:
 
 
 def _circular(cosines: int, sines: int, lower: int, upper: int) -> Polynomial:
-    """Return the integral of cos^a sin^b between two numbers of quarter turns."""
+    """Return the integral of cos^a sin^b from ``lower * pi/2`` to ``upper * pi/2``."""
     total = constant(0)
     for quadrant in range(lower, upper):
         cosine_sign, sine_sign = ((1, 1), (-1, 1), (-1, -1), (1, -1))[quadrant % 4]
@@ -122,12 +122,12 @@ def _circular(cosines: int, sines: int, lower: int, upper: int) -> Polynomial:
 def _quarters(limit: Polynomial) -> int:
     turns = 2 * limit.collect(["pi"]).get((1,), constant(0)).value({})
     if turns.denominator != 1:
-        raise ValueError("the limits of an angle are multiples of a quarter turn")
+        raise ValueError("expected limits of an angle that are multiples of pi/2")
     return int(turns)
 
 
 def integrate(integrand: Polynomial, limits: tuple[tuple[Coordinate, Polynomial, Polynomial], ...]) -> Polynomial:
-    """Return the integral over all coordinates, a polynomial in the dimensions and ``pi``."""
+    """Return the integral over all coordinates as a polynomial in the dimensions and ``pi``."""
     for coordinate, lower, upper in limits:
         total = constant(0)
         if coordinate.angle:
@@ -142,7 +142,7 @@ def integrate(integrand: Polynomial, limits: tuple[tuple[Coordinate, Polynomial,
 
 
 def _degree(node: Node) -> int:
-    """Return a bound of the degree of a formula in x, y, z, found without expanding it; ``ValueError`` for a call."""
+    """Return an upper bound of the degree of a formula in x, y, z without expanding it; ``ValueError`` for a call."""
     kind = node[0]
     if kind == "number":
         return 0
@@ -159,7 +159,7 @@ def _degree(node: Node) -> int:
 
 
 def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: object, where: str = "") -> Polynomial:
-    """Return a density over the coordinates of a map.
+    """Return a density as a polynomial in the coordinates of a map.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: 
     Raises
     ------
     InputError
-        If it is no polynomial in x, y, z, is of a degree above LARGEST_DEGREE, or uses another name.
+        If the density is no polynomial in x, y, z, has a degree above LARGEST_DEGREE, or uses another name.
     """
     prefix = f"{where}: " if where else ""
     expected = f"{prefix}expected a density that is a polynomial in x, y, z, got {show(source)}"
@@ -193,7 +193,7 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: 
 
 
 def moments(region: Domain, density: Polynomial | None = None) -> Moments:
-    """Return the moments of a mapped shape up to the second, as polynomials in the dimensions and ``pi``."""
+    """Return the integrals of 1, x_i and x_i x_j over a shape, as polynomials in the dimensions and ``pi``."""
     weight = region.jacobian if density is None else region.jacobian * density
     first = tuple(integrate(p * weight, region.limits) for p in region.position)
     second = [[constant(0)] * 3 for _ in range(3)]
@@ -203,9 +203,10 @@ def moments(region: Domain, density: Polynomial | None = None) -> Moments:
 
 
 def moments_per_measure(region: Domain, density: Polynomial | None = None) -> tuple[Polynomial, Moments]:
-    """Return a factor and the moments over it: the measure where it divides the Jacobian, else one.
+    """Return a factor and the moments of a shape divided by that factor.
 
-    Taking the measure out beforehand is what keeps a tetrahedron with twelve symbols fast.
+    The factor is the volume, area or length if it divides the Jacobian, else 1. Dividing before integration keeps a
+    tetrahedron with twelve symbols fast.
     """
     measure = integrate(region.jacobian, region.limits)
     share = exact_quotient(region.jacobian, measure)
@@ -217,9 +218,9 @@ def moments_per_measure(region: Domain, density: Polynomial | None = None) -> tu
 def exact_moments(
     shape: Shape, dimensions: Mapping[str, Any], density: Node, source: object, where: str = ""
 ) -> Moments:
-    """Return the moments of a shape with a polynomial density as numbers: kg, kg m, kg m^2.
+    """Return the numeric moments of a shape with a polynomial density, in kg, kg m, kg m^2.
 
-    ``dimensions`` are those of :func:`symrot.inertia.shapes.check_dimensions`; pi is taken to 2^-320.
+    ``dimensions`` are those returned by :func:`symrot.inertia.shapes.check_dimensions`; pi is rounded to 2^-320.
     """
     numbers = scalars(shape, dimensions)
     region = domain(shape, numbers)

@@ -1,7 +1,8 @@
-"""Principal axes, class of body and admissibility of an inertia tensor. Standard library only.
+"""Principal axes and moments of an inertia tensor, its symmetry, and a test that a body can have it. Standard library.
 
-The class is decided on numbers far more accurate than a double (120 digits, equality to 2^-200), so bodies whose
-moments differ in their last digit are told apart, and equal moments survive a rotation by an irrational angle.
+The symmetry (spherical, symmetric, asymmetric) is decided with 120 digits, and moments count as equal if they agree to
+2^-200. So bodies whose moments differ in the last digit of a double are distinguished, and equal moments stay equal
+after a rotation by an irrational angle.
 """
 
 from decimal import Decimal, localcontext
@@ -17,7 +18,7 @@ __all__ = ["Principal", "principal_axes", "require_admissible", "why_not_propaga
 
 DIGITS = 120
 _PAIRS = ((0, 1), (0, 2), (1, 2))
-_LARGEST_DENOMINATOR = 10**40  # a moment is looked for among these fractions, and taken only when it is exactly a root
+_LARGEST_DENOMINATOR = 10**40  # a moment is tried as a fraction up to this denominator, used only if an exact root
 
 _Work = list[list[Decimal]]
 
@@ -25,10 +26,10 @@ _Work = list[list[Decimal]]
 class Principal(NamedTuple):
     """Principal moments and axes of a body.
 
-    ``moments`` are in kg m^2, exact where they are rational, and exactly equal where they are equal. Column k of
-    ``axes`` is principal axis k in the given axes: ``v_given = axes * v_principal``, right-handed, orthonormal to
-    1e-110. When the given axes are principal already, ``axes`` is the identity and the moments keep their order; else
-    each principal axis is numbered and directed like the given axis that it is closest to.
+    ``moments`` are in kg m^2, exact if they are rational, and exactly equal if they are equal. Column k of ``axes`` is
+    principal axis k in the given axes: ``v_given = axes * v_principal``, right-handed, orthonormal to 1e-110. If the
+    given axes are already principal, ``axes`` is the identity and the moments keep their order; otherwise each
+    principal axis gets the number and the direction of the given axis that is closest to it.
     """
 
     moments: tuple[Fraction, Fraction, Fraction]
@@ -39,7 +40,7 @@ class Principal(NamedTuple):
 
     @property
     def flat(self) -> bool:
-        """Whether all mass lies in a plane: the largest moment is the sum of the other two."""
+        """Whether all mass lies in a plane: the largest moment equals the sum of the other two."""
         small, middle, large = sorted(self.moments)
         return equal(small + middle, large)
 
@@ -84,8 +85,8 @@ def _jacobi(tensor: Tensor) -> tuple[list[Decimal], _Work]:
 
 
 def _eliminate(work: _Work, vectors: _Work, p: int, q: int) -> None:
-    """Turn axes p and q by the smaller of the angles that make ``work[p][q]`` zero."""
-    cotangent = (work[q][q] - work[p][p]) / (2 * work[p][q])  # of twice the angle
+    """Rotate axes p and q by the smaller of the angles that make ``work[p][q]`` zero."""
+    cotangent = (work[q][q] - work[p][p]) / (2 * work[p][q])  # of twice the rotation angle
     tangent = 1 / (abs(cotangent) + (cotangent * cotangent + 1).sqrt())
     tangent = tangent if cotangent >= 0 else -tangent
     cosine = 1 / (tangent * tangent + 1).sqrt()
@@ -100,7 +101,7 @@ def _eliminate(work: _Work, vectors: _Work, p: int, q: int) -> None:
 
 
 def _root(tensor: Tensor, value: Decimal) -> Fraction:
-    """Return the eigenvalue that ``value`` approximates: the exact one when it is a fraction of moderate size."""
+    """Return the eigenvalue that ``value`` approximates, exactly if it is a fraction of moderate size."""
     approximate = Fraction(value)
     exact = approximate.limit_denominator(_LARGEST_DENOMINATOR)
     shifted = subtract(tensor, tuple(tuple(exact * entry for entry in row) for row in IDENTITY))
@@ -112,7 +113,7 @@ def _closest_order(vectors: _Work) -> tuple[int, ...]:
 
 
 def _directed(columns: list[tuple[Fraction, ...]]) -> Tensor:
-    """Return the axes as columns, each along its given axis rather than against it, and right-handed."""
+    """Return the axes as columns, right-handed, each within 90 degrees of the given axis with its number."""
     for k, column in enumerate(columns):
         leading = column[k] or max(column, key=abs)
         if leading < 0:
@@ -124,7 +125,7 @@ def _directed(columns: list[tuple[Fraction, ...]]) -> Tensor:
 
 
 def _settle(moments: list[Fraction]) -> tuple[Fraction, Fraction, Fraction]:
-    """Return the moments with rounding removed: the negligible become zero, equal ones become exactly equal."""
+    """Return the moments without rounding errors: negligible ones become zero, nearly equal ones exactly equal."""
     limit = max(map(abs, moments)) * NEGLIGIBLE
     settled = [Fraction(0) if abs(moment) <= limit else moment for moment in moments]
     for i, j in _PAIRS:
@@ -142,20 +143,20 @@ def _class(moments: tuple[Fraction, Fraction, Fraction]) -> tuple[str, int | Non
 
 
 def principal_axes(inertia: Any, where: str = "") -> Principal:
-    """Return the principal axes and the class of a body.
+    """Return the principal axes, the principal moments and the kind of symmetry of a body.
 
     Parameters
     ----------
     inertia : 3x3 numbers or texts, kg m^2
-        Symmetric, products with the minus sign. Need not be admissible.
+        Symmetric, products with the minus sign. A tensor that no body can have is accepted.
     where : str
-        Place of the tensor, put in front of a complaint.
+        Place of the tensor in the scene, put in front of an error message.
 
     Returns
     -------
     Principal
-        Near-degenerate tensors included: the float of each moment and of each component of the axes is the double
-        nearest to its true value.
+        The double nearest to each moment and to each component of the axes is correctly rounded, even if moments
+        are nearly equal.
 
     Raises
     ------
@@ -186,10 +187,10 @@ def _listed(moments: tuple[Fraction, Fraction, Fraction]) -> str:
 
 
 def require_admissible(body: Principal, where: str = "") -> None:
-    """Raise InputError unless some distribution of mass has these moments.
+    """Raise InputError unless some distribution of mass has these principal moments.
 
-    Each moment is >= 0 and none exceeds the sum of the other two; equality (a flat body) and one zero moment (a needle)
-    are admitted, to 2^-200.
+    No moment may be negative or exceed the sum of the other two. Equality (a flat body) and one zero moment (a needle)
+    are allowed, with tolerance 2^-200.
     """
     small, middle, large = sorted(body.moments)
     if small < 0:
@@ -199,14 +200,14 @@ def require_admissible(body: Principal, where: str = "") -> None:
     if small + middle < large and not equal(small + middle, large):
         raise InputError(
             f"{_prefix(where)}expected principal moments of inertia none of which exceeds the sum of the other two "
-            f"(no body has others), got {_listed(body.moments)}, where "
+            f"(true of every body), got {_listed(body.moments)}, where "
             f"{float(large):.15g} exceeds {float(small):.15g} + {float(middle):.15g} "
             f"by {float(large - small - middle):.3g}"
         )
 
 
 def why_not_propagable(body: Principal) -> str:
-    """Return why Euler's equations cannot be solved for the rates of omega, as a clause; empty when they can."""
+    """Return the reason, as a clause, why Euler's equations do not determine the rates of omega; empty if they do."""
     if max(body.moments) == 0:
         return "a point has no moments of inertia, so no torque determines its angular acceleration"
     if body.needle:

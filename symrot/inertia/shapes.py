@@ -1,8 +1,8 @@
-"""The solids of symrot as data: dimensions, conditions, axes, and the map that sweeps them out. Standard library only.
+"""The shapes of symrot as data: dimensions, conditions, axes, and the map that generates each. Standard library only.
 
-A map gives the position in the axes of the shape as text over its coordinates, each between limits that are text
-over the dimensions; a coordinate used in ``cos`` and ``sin`` has limits that are multiples of a quarter turn.
-Measure, mass, centre of mass and inertia all follow from it (:mod:`symrot.inertia.integration`): nothing else is typed.
+A map gives the position, in the axes of the shape, as text in its coordinates; each coordinate has limits that are text
+in the dimensions. A coordinate inside ``cos`` and ``sin`` has multiples of pi/2 as limits. Volume, mass, centre of mass
+and inertia all follow from the map (:mod:`symrot.inertia.integration`); no formula for them is typed in.
 """
 
 from collections.abc import Callable, Mapping
@@ -19,11 +19,11 @@ __all__ = [
 ]  # fmt: skip
 
 DENSITY_UNITS = {"solid": "kg/m^3", "surface": "kg/m^2", "curve": "kg/m", "points": "1"}
-"""Unit of the density of each kind of shape; points carry their masses among their dimensions."""
+"""Unit of the density of each kind of shape; points have no density but masses among their dimensions."""
 
 
 class Dimension(NamedTuple):
-    """One dimension of a shape: a length in m, or a list of ``size`` points (m) or masses (kg); None is any count."""
+    """A dimension of a shape: a length in m, or a list of ``size`` points (m) or masses (kg), of any size if None."""
 
     name: str
     meaning: str
@@ -34,9 +34,9 @@ class Dimension(NamedTuple):
 
 
 class Coordinate(NamedTuple):
-    """One coordinate of a map, with its limits as text over the dimensions.
+    """One coordinate of a map, with its limits as text in the dimensions.
 
-    ``s, u, v, w`` are lengths in m, ``f_1, f_2, f_3`` shares of one, ``theta, phi`` angles in rad.
+    ``s, u, v, w`` are lengths in m, ``f_1, f_2, f_3`` fractions from 0 to 1, ``theta, phi`` angles in rad.
     """
 
     name: str
@@ -45,12 +45,12 @@ class Coordinate(NamedTuple):
 
     @property
     def angle(self) -> bool:
-        """Whether it is an angle, which the map holds only in ``cos`` and ``sin``."""
+        """Whether the coordinate is an angle, which the map uses only inside ``cos`` and ``sin``."""
         return "pi" in self.upper
 
 
 class Shape(NamedTuple):
-    """A shape of the table; ``position`` is empty for separate points."""
+    """A shape of the table: dimensions, conditions, axes and map; ``position`` is empty for separate points."""
 
     name: str
     kind: str  # a key of DENSITY_UNITS
@@ -89,7 +89,7 @@ _HALF_TURN = Coordinate("theta", "0", "pi")
 
 
 def _corner(axis: str) -> str:
-    """Return the map of a tetrahedron on one axis: f_1 of the way from corner 1 to 2, f_2 of that to 3, f_3 to 4."""
+    """Return one component of the map of a tetrahedron: f_1 of the way from corner 1 to 2, f_2 on to 3, f_3 on to 4."""
     return f"{axis}1 + f_1*({axis}2 - {axis}1 + f_2*({axis}3 - {axis}2 + f_3*({axis}4 - {axis}3)))"
 
 
@@ -205,7 +205,7 @@ def _prefix(where: str) -> str:
 
 
 def find_shape(name: object, where: str = "") -> Shape:
-    """Return the shape of that name, or raise InputError with the names there are."""
+    """Return the shape with a given name; raise InputError, with all names, if there is no such shape."""
     if not isinstance(name, str) or name not in SHAPES:
         raise InputError(f"{_prefix(where)}expected a shape, one of {', '.join(SHAPES)}; got {show(name)}")
     return SHAPES[name]
@@ -242,11 +242,11 @@ def _read_dimension(value: object, dimension: Dimension, where: str) -> Any:
 
 
 def check_names(shape: Shape, dimensions: Mapping[str, object], where: str = "") -> None:
-    """Raise InputError unless exactly the dimensions of the shape are given."""
+    """Raise InputError unless the names of the given dimensions are exactly those of the shape."""
     expected = [dimension.name for dimension in shape.dimensions]
     unknown, missing = sorted(set(dimensions) - set(expected)), [name for name in expected if name not in dimensions]
     if unknown or missing:
-        fault = f"'{unknown[0]}' is none of them" if unknown else f"'{missing[0]}' is missing"
+        fault = f"'{unknown[0]}' is not one of them" if unknown else f"'{missing[0]}' is missing"
         raise InputError(f"{_prefix(where)}expected the dimensions {', '.join(expected)} of the {shape.name}; {fault}")
 
 
@@ -258,9 +258,9 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
     shape : Shape
         An entry of :data:`SHAPES`.
     dimensions : mapping of str to number, text, or list of them
-        What :func:`symrot.formula.exact_numbers.read` reads, in m (masses in kg).
+        Values that :func:`symrot.formula.exact_numbers.read` accepts, in m (masses in kg).
     where : str
-        Place of the dimensions, put in front of every complaint.
+        Place of the dimensions in the scene, put in front of every error message.
 
     Returns
     -------
@@ -269,8 +269,8 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
     Raises
     ------
     InputError
-        For a missing or unknown dimension, one that is not a positive length (or zero, or any, where the table says
-        so), one that breaks a condition such as ``inner < outer``, or lists of different lengths.
+        If a dimension is missing or unknown, is not positive (or not of the kind that the table states instead), if a
+        condition such as ``inner < outer`` is violated, or if lists have different lengths.
     """
     check_names(shape, dimensions, where)
     dot = f"{where}." if where else ""
@@ -289,7 +289,7 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
 
 
 def scalar_names(shape: Shape) -> tuple[str, ...]:
-    """Return the names of the single numbers in the maps and closed forms of a shape; see :func:`scalars`."""
+    """Return the names of the numbers in the map and closed forms of a shape; :func:`scalars` returns their values."""
     names: list[str] = []
     for d in shape.dimensions:
         corners = [f"{axis}{n}" for n in range(1, (d.size or 0) + 1) for axis in "xyz"]
@@ -298,7 +298,7 @@ def scalar_names(shape: Shape) -> tuple[str, ...]:
 
 
 def scalars(shape: Shape, dimensions: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the dimensions as single numbers by name; corner n of ``vertices`` becomes ``xn``, ``yn``, ``zn``."""
+    """Return the dimensions as numbers by name; corner n of ``vertices`` becomes ``xn``, ``yn``, ``zn``."""
     values: list[Any] = []
     for d in shape.dimensions:
         value = dimensions[d.name]

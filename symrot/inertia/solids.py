@@ -1,7 +1,7 @@
-"""Mass properties of solids, symbolic in the dimensions, by exact integration in mapped coordinates.
+"""Mass properties of solids, symbolic in their dimensions, derived by exact integration.
 
-Nothing here is typed in: a shape is its map (:mod:`symrot.inertia.shapes`); the Jacobian, the measure, the mass, the
-centre of mass and the inertia tensor are computed (:mod:`symrot.inertia.integration`) and brought to factored form.
+A shape is given only by its map (:mod:`symrot.inertia.shapes`). The Jacobian, the volume, the mass, the centre of mass
+and the inertia tensor are computed from it (:mod:`symrot.inertia.integration`) and brought to factored form.
 ``python -m symrot.inertia.solids`` prints ``closed_forms.toml``.
 """
 
@@ -56,7 +56,7 @@ _MAP_SYMBOLS = {str(symbol): symbol for symbol in (*symbols.map_lengths, *symbol
 
 @dataclass(frozen=True)
 class Integral:
-    """One integral: integrand with the Jacobian, limits (coordinate, lower, upper), and value."""
+    """One integral of a derivation: integrand times Jacobian, limits (coordinate, lower, upper), and value."""
 
     quantity: str
     integrand: Expr
@@ -66,12 +66,12 @@ class Integral:
 
 @dataclass(frozen=True)
 class Solid:
-    """A body of one shape, in the axes of the shape.
+    """The mass properties of a body of one shape, symbolic, in the axes of the shape.
 
     Parameters
     ----------
     name : str
-        Of the shape.
+        Name of the shape.
     dimensions : mapping of str to Expr
         Lengths in m, by the names that the map uses.
     measure : Expr
@@ -100,12 +100,12 @@ class Solid:
 
     @property
     def shape(self) -> Shape:
-        """The entry of the table: map, limits, axes and origin."""
+        """The shape of the body: map, limits, axes and origin."""
         return SHAPES[self.name]
 
     @property
     def volume(self) -> Expr:
-        """The measure: volume, area or length."""
+        """The volume of a solid, the area of a surface, or the length of a curve."""
         return self.measure
 
     @cached_property
@@ -116,7 +116,7 @@ class Solid:
 
     @cached_property
     def jacobian(self) -> Expr:
-        """Measure per unit of the coordinates of the map, from the derivatives of the map."""
+        """The Jacobian of the map: volume, area or length per unit of the coordinates."""
         return _tidy(self._over(_mapped(self.name).jacobian))
 
     @cached_property
@@ -162,7 +162,7 @@ def _tidy(expression: Expr) -> Expr:
 
 
 def _tidy_measure(expression: Expr) -> Expr:
-    """Return a measure as common factors of a sum: ``pi*L*(R_2**2 - R_1**2)``."""
+    """Return a measure as common factors times a sum: ``pi*L*(R_2**2 - R_1**2)``."""
     return factor_terms(expand(expression))
 
 
@@ -171,7 +171,7 @@ def _tidied(rows: tensor.Tensor) -> ImmutableMatrix:
 
 
 def _expression(polynomial: Polynomial, values: Mapping[str, Expr]) -> Expr:
-    """Return a polynomial as an expression; a generator without a value is ``pi`` or the cos or sin of a coordinate."""
+    """Return a polynomial as a SymPy expression; a symbol without a value is pi, or cos or sin of a coordinate."""
     known = {**_CONSTANTS, **values}
     used = {name for monomial in polynomial.terms for name, _ in monomial}
     generators = {name: known[name] if name in known else evaluate(parse(name), known, _FUNCTIONS) for name in used}
@@ -189,7 +189,7 @@ def _mapped(name: str) -> Domain:
 
 @cache
 def _default_dimensions(name: str) -> dict[str, Symbol]:
-    """Return the symbol of each single number of a shape."""
+    """Return the default symbol of each number that the map of a shape uses."""
     shape = SHAPES[name]
     plain = {d.name: d.symbol for d in shape.dimensions if d.form == "length"}
     return {n: _DIMENSION_SYMBOLS[plain.get(n, f"{n[0]}_{n[1:]}")] for n in scalar_names(shape)}
@@ -198,7 +198,7 @@ def _default_dimensions(name: str) -> dict[str, Symbol]:
 def _properties(
     region: Domain, values: Mapping[str, Expr], density: Polynomial | None = None
 ) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
-    """Return mass, centre of mass, and inertia per mass about it; of unit density unless one is given."""
+    """Return mass, centre of mass, and inertia about it per unit mass; the default density is 1."""
     measure, specific_moments = moments_per_measure(region, density)
     if not specific_moments.zeroth:
         raise InputError("expected a density with a positive mass, got one with a mass of 0 kg")
@@ -210,7 +210,7 @@ def _properties(
 
 
 def _ratio(numerator: Polynomial, denominator: Polynomial, values: Mapping[str, Expr]) -> Expr:
-    """Return a quotient in lowest terms."""
+    """Return a quotient of polynomials as an expression in lowest terms."""
     quotient = exact_quotient(numerator, denominator)
     if quotient is not None:
         return _expression(quotient, values)
@@ -219,13 +219,13 @@ def _ratio(numerator: Polynomial, denominator: Polynomial, values: Mapping[str, 
 
 @cache
 def _uniform(name: str) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
-    """Return measure, centre of mass and inertia per mass of a shape in its default symbols."""
+    """Return measure, centre of mass and inertia per unit mass of a uniform shape in its default symbols."""
     measure, center, specific = _properties(_mapped(name), _default_dimensions(name))
     return _tidy_measure(measure), center, specific
 
 
 def _scalar(value: Any) -> Expr:
-    """Return a number, text or expression as an exact expression; a text may name the symbols of the shapes."""
+    """Return a number, text or expression as an exact expression; a text may use the symbols of the shapes."""
     if isinstance(value, Expr):
         return value
     if isinstance(value, str):
@@ -234,7 +234,7 @@ def _scalar(value: Any) -> Expr:
 
 
 def _formula(text: str, known: Mapping[str, Expr]) -> Expr:
-    """Return a text as an expression in known names."""
+    """Return a text as an expression; raise InputError if it uses a name that is not in ``known``."""
     values = {**known, **_CONSTANTS}
     try:
         return sympify(evaluate(parse(text), values, _FUNCTIONS, _rational))
@@ -306,19 +306,19 @@ def _density(density: Any, dimensions: Mapping[str, Expr]) -> Poly:
 
 
 def solid(name: str, *, mass: Any = None, density: Any = None, **dimensions: Any) -> Solid:
-    """Return the mass properties of a shape by exact integration.
+    """Return the mass properties of a shape, derived by exact integration.
 
     Parameters
     ----------
     name : str
         A key of :data:`symrot.inertia.shapes.SHAPES`.
     mass : number, str or Expr, kg, optional
-        Of a uniform body; the symbol ``m`` when neither mass nor density is given.
+        Mass of a uniform body; the symbol ``m`` if neither mass nor density is given.
     density : number, str or Expr, optional
-        Instead of the mass, kg per unit of the measure: a polynomial in x, y, z (m, axes of the shape). A text may use
-        the names of the dimensions: ``"1 + z/height"``.
+        Given instead of the mass, in kg per m^3, m^2 or m: a polynomial in x, y, z (m, axes of the shape). A text
+        may use the names of the dimensions: ``"1 + z/height"``.
     **dimensions : number, str or Expr, m
-        By the names of the table; a dimension left out is its symbol of the table.
+        Dimensions by the names in the table of shapes; an omitted dimension is the symbol in that table.
 
     Returns
     -------
@@ -352,7 +352,7 @@ def solid(name: str, *, mass: Any = None, density: Any = None, **dimensions: Any
     measure = _tidy_measure(measure.xreplace(chosen)) if chosen else measure
     if measure.is_zero:
         raise InputError(f"expected a {name} that fills space, got corners in one plane")
-    if measure.is_negative:  # the same tetrahedron, with its corners in the other order
+    if measure.is_negative:  # the same tetrahedron with its corners in the opposite order
         return solid(name, mass=mass, density=density, vertices=[dimensions["vertices"][n] for n in (0, 1, 3, 2)])
     if density is None:
         total = symbols.m if mass is None else _dimension(mass, _MASS, shape)
@@ -375,7 +375,7 @@ _MASS = Dimension("mass", "kg", "m")
 
 
 def _weighted(shape: Shape, values: Mapping[str, Expr], profile: Poly, measure: Expr) -> Solid:
-    """Return a body of varying density; the coefficients of the density are generators of the integrand."""
+    """Return a body of varying density; the integration treats the density's coefficients as symbols."""
     known = {name: Fraction(value.p, value.q) for name, value in values.items() if value.is_Rational}
     region = domain(shape, known)
     density, coefficients = constant(0), {}
@@ -402,7 +402,7 @@ class _PointMass:
 def _point_masses(shape: Shape, mass: Any, density: Any, dimensions: Mapping[str, Any]) -> Solid:
     check_names(shape, dimensions)
     if mass is not None or density is not None:
-        raise InputError("expected the masses of point_masses in 'masses', got a mass or density besides")
+        raise InputError("expected only 'masses' for point_masses, got a mass or density too; leave it out")
     points = _points(dimensions["points"], shape.dimensions[1])
     if not isinstance(dimensions["masses"], Sequence) or isinstance(dimensions["masses"], str):
         raise InputError(f"expected a list of masses, got {show(dimensions['masses'])}")
@@ -417,7 +417,7 @@ def _point_masses(shape: Shape, mass: Any, density: Any, dimensions: Mapping[str
 
 
 def closed_forms_text() -> str:
-    """Return ``closed_forms.toml``: the uniform shapes, as text over their dimensions and mass m."""
+    """Return the text of ``closed_forms.toml``: formulas of the uniform shapes in their dimensions and mass m."""
     lines = [
         "# Uniform bodies: measure (m^3, m^2, m), centre of mass (m), inertia about it (kg m^2), axes of the shape.",
         "# m is the mass (kg), lengths in m. Printed by `python -m symrot.inertia.solids`; do not edit.",

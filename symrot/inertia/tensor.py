@@ -1,7 +1,7 @@
-"""Algebra of 3x3 tensors as nested tuples, over Fractions, floats or SymPy expressions. Standard library only.
+"""Algebra of 3x3 tensors as nested tuples of Fractions, floats or SymPy expressions. Standard library only.
 
-One code serves the exact mass properties of a scene and the symbolic bodies of a derivation. Tensors and vectors come
-in as nested sequences, SymPy matrices or NumPy arrays, and go out as tuples.
+The same functions serve the exact mass properties of a scene and the symbolic bodies of a derivation. Arguments may be
+nested sequences, SymPy matrices or NumPy arrays; results are tuples.
 Convention: inertia components carry the minus sign, ``I_xy = -integral of x y dm``.
 """
 
@@ -28,7 +28,7 @@ def _items(source: Any) -> tuple[Any, ...]:
 
 
 def matrix(source: Any) -> Tensor:
-    """Return a 3x3 tensor as nested tuples; ``ValueError`` when it is not 3x3."""
+    """Return a 3x3 tensor as nested tuples; raise ``ValueError`` if it is not 3x3."""
     rows = tuple(map(vector, _items(source)))
     if len(rows) != 3:
         raise ValueError(f"expected a 3x3 tensor, got {len(rows)} rows")
@@ -36,7 +36,7 @@ def matrix(source: Any) -> Tensor:
 
 
 def vector(source: Any) -> Vector:
-    """Return a vector, row or column of three as a tuple; ``ValueError`` when it has not three components."""
+    """Return a vector, row or column as a tuple; raise ``ValueError`` unless it has three components."""
     components = _items(source)
     if len(components) == 1:
         components = _items(components[0])
@@ -52,22 +52,22 @@ def _entrywise(operation: Callable[..., Any], *tensors: Any) -> Tensor:
 
 
 def add(left: Any, right: Any) -> Tensor:
-    """Return left + right."""
+    """Return the sum of two tensors."""
     return _entrywise(lambda a, b: a + b, left, right)
 
 
 def subtract(left: Any, right: Any) -> Tensor:
-    """Return left - right."""
+    """Return the difference of two tensors."""
     return _entrywise(lambda a, b: a - b, left, right)
 
 
 def scale(factor: Any, tensor: Any) -> Tensor:
-    """Return factor * tensor."""
+    """Return a tensor times a scalar factor."""
     return _entrywise(lambda a: factor * a, tensor)
 
 
 def transpose(tensor: Any) -> Tensor:
-    """Return the transpose."""
+    """Return the transpose of a tensor."""
     return matrix(list(zip(*matrix(tensor), strict=True)))
 
 
@@ -84,25 +84,25 @@ def cross(left: Any, right: Any) -> Vector:
 
 
 def apply(tensor: Any, v: Any) -> Vector:
-    """Return tensor * v."""
+    """Return the product of a tensor and a vector."""
     first, second, third = matrix(tensor)
     return dot(first, v), dot(second, v), dot(third, v)
 
 
 def multiply(left: Any, right: Any) -> Tensor:
-    """Return the product left * right."""
+    """Return the product of two tensors."""
     columns = transpose(right)
     return matrix(tuple(tuple(dot(row, column) for column in columns) for row in matrix(left)))
 
 
 def trace(tensor: Any) -> Any:
-    """Return the sum of the diagonal."""
+    """Return the trace of a tensor, the sum of its diagonal."""
     rows = matrix(tensor)
     return rows[0][0] + rows[1][1] + rows[2][2]
 
 
 def determinant(tensor: Any) -> Any:
-    """Return the determinant."""
+    """Return the determinant of a tensor."""
     first, second, third = matrix(tensor)
     return dot(first, cross(second, third))
 
@@ -147,5 +147,8 @@ def about_point(inertia: Any, mass: Any, offset: Any) -> Tensor:
 
 
 def about_center_of_mass(inertia: Any, mass: Any, offset: Any) -> Tensor:
-    """Return the inertia tensor about the centre of mass from the tensor about a point that is ``offset`` away."""
+    """Return the inertia tensor about the centre of mass from the tensor about a point.
+
+    ``offset`` (m) is the vector from the point to the centre of mass, or back: the sign does not matter.
+    """
     return subtract(inertia, inertia_of_point(mass, offset))

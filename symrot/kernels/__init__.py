@@ -1,4 +1,4 @@
-"""The library of kernels: definitions whose formulas are derived from the kernel's name.
+"""The library of kernels: small computations of attitude, dynamics and inertia, whose formulas are derived.
 
-:mod:`symrot.codegen` prints them as code.
+Each kernel is a definition; :mod:`symrot.codegen` prints it as C or NumPy code.
 """

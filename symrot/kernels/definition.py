@@ -1,4 +1,4 @@
-"""Definitions of kernels, from which code is printed: arguments, formulas, domain, and laws of the outputs."""
+"""Definitions of kernels: arguments, formulas, domain, and laws of the outputs."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -11,15 +11,15 @@ from symrot.formula.program import Argument
 
 __all__ = ["Box", "Definition", "Law", "argument", "boxed", "interval", "result", "scalar"]
 
-Box = dict[str, tuple[Fraction, Fraction]]  # name of an input component -> least and largest value
+Box = dict[str, tuple[Fraction, Fraction]]  # name of an input component -> smallest and largest value
 
 
 @dataclass(frozen=True)
 class Law:
-    """A law that the outputs satisfy for all inputs: the formulas ``vanishing`` are zero where ``relations`` are.
+    """A law of a kernel's outputs, valid for all inputs: the formulas ``vanishing`` are zero if ``relations`` are zero.
 
-    The expressions contain inputs and outputs by their symbols. A law characterises the kernel independently of the
-    derivation of its formulas: a certificate proves it from the formulas.
+    The formulas contain inputs and outputs by their symbols. A law describes the outputs independently of the way in
+    which their formulas were derived; a certificate proves the law from the formulas.
     """
 
     text: str
@@ -39,7 +39,7 @@ class Definition:
     derivation: str
     box: Box  # ranges of the inputs for which rounding errors are bounded by default
     laws: Callable[[], tuple[Law, ...]]
-    named: tuple[tuple[Symbol, Expr], ...] = field(default=())  # quantities with a physical name that the formulas use
+    named: tuple[tuple[Symbol, Expr], ...] = field(default=())  # physical quantities that the formulas use by a symbol
 
     @property
     def formulas(self) -> tuple[tuple[str, Expr], ...]:
@@ -54,7 +54,7 @@ class Definition:
 def argument(name: str, role: str, components: Sequence[Symbol | str], meaning: str, unit: str = "") -> Argument:
     """Return an input or output array whose components are symbols of :mod:`symrot.symbols`, with their units.
 
-    ``unit`` is for components that are not such symbols.
+    ``unit`` is the unit of components that are plain text instead of such symbols.
     """
     described = []
     for component in components:
@@ -64,22 +64,22 @@ def argument(name: str, role: str, components: Sequence[Symbol | str], meaning: 
 
 
 def scalar(component: Symbol, meaning: str) -> Argument:
-    """Return a scalar input argument of one symbol."""
+    """Return a scalar input argument."""
     return Argument(str(component), "in", ((str(component), symbols.UNIT[component], meaning),), is_scalar=True)
 
 
 def result(
     name: str, formulas: Matrix | Sequence[Expr], components: Sequence[Symbol], meaning: str, unit: str = ""
 ) -> tuple[Argument, tuple[Expr, ...]]:
-    """Return an output argument and its formulas, a matrix row by row."""
+    """Return an output argument and the formulas of its components; a matrix is stored row by row."""
     return argument(name, "out", components, meaning, unit), tuple(formulas)
 
 
 def interval(low: Fraction | int | str, high: Fraction | int | str) -> tuple[Fraction, Fraction]:
-    """Return the range of an input, exactly."""
+    """Return the exact range of an input from its two ends."""
     return Fraction(low), Fraction(high)
 
 
 def boxed(components: Sequence[Symbol], low: Fraction | int | str, high: Fraction | int | str) -> Box:
-    """Return the ranges of several inputs that share one range, by name."""
+    """Return the ranges of several inputs, by name, if all have the same range."""
     return {str(component): interval(low, high) for component in components}

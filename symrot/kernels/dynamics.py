@@ -1,4 +1,4 @@
-"""Kernels of dynamics: Euler's equations for each class of body, full right-hand sides, energy, angular momentum."""
+"""Kernels of dynamics: Euler's equations for each symmetry of a body, rates of the state, energy, momentum."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -51,9 +51,7 @@ def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
 
 
 def tensor_argument(body: str = "tensor") -> Argument:
-    """Return the input argument for the inertia of a class of bodies: six entries, or three or two principal
-    moments.
-    """
+    """Return the input argument for the inertia of a body: six tensor entries, or two or three principal moments."""
     return argument("inertia", "in", _BODIES[body][0], _MEANING[body])
 
 
@@ -66,7 +64,7 @@ def _symbols(name: str, count: int = 3) -> tuple[Symbol, ...]:
 
 
 def _solved(inertia: Matrix, omega: Matrix, torque: Matrix) -> tuple[Named, Matrix]:
-    """Return the angular acceleration, and the named quantities that its formulas use."""
+    """Return the formulas of the angular acceleration, and the named quantities that they use."""
     if inertia.is_diagonal():
         return (), angular_acceleration(inertia, omega, torque)
     momentum, moment = Matrix(_symbols("L")), Matrix(_symbols("M"))

@@ -26,8 +26,9 @@ QUATERNION = argument("q", "in", symbols.quaternion, "attitude, body to space")
 
 
 def prefix(sequence: str) -> str:
-    """Return the first part of the names of a sequence's kernels; the names differ in more than upper and lower
-    case.
+    """Return the first part of the names of a sequence's kernels.
+
+    Names of intrinsic and extrinsic sequences differ in more than upper and lower case.
     """
     return f"euler_{sequence.lower()}" if parse_sequence(sequence)[1] else f"euler_extrinsic_{sequence}"
 
@@ -51,16 +52,17 @@ def _lock(sequence: str) -> str:
 
 
 def _regular_box(sequence: str) -> Box:
-    """Return ranges of angles away from gimbal lock: the middle angle lies within 1.4 rad of the most regular one."""
+    """Return ranges of angles away from lock: the middle angle is within 1.4 rad of its value farthest from lock."""
     axes, _ = parse_sequence(sequence)
     proper = axes[0] == axes[2]
     return ANGLE_BOX | {"theta": interval("1/10", "304/100") if proper else interval("-7/5", "7/5")}
 
 
 def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
-    """Return named products of functions of the first and last angle, and the entries of a matrix written with them.
+    """Return the entries of a matrix, written with named products of functions of the first and the last angle.
 
-    In sums, their common factor, a function of the middle angle, is collected.
+    The named products come first in the result. In a sum, a common factor, which depends on the middle angle, is
+    factored out.
     """
     named: dict[Expr, Symbol] = {}
     formulas = []
@@ -131,10 +133,10 @@ def _rates(frame: str, name: str, sequence: str) -> Definition:
 
 
 def _solved(jacobian: RateMatrix, omega: Matrix) -> tuple[Named, list[Expr]]:
-    """Return the rates of all three Euler angles, with the rate of the first or last one as a named quantity.
+    """Return the rates of all three Euler angles, with the rate of the first or last angle as a named quantity.
 
-    The column of the other outer angle is an axis of the frame: along it, omega is the sum of that angle's rate and a
-    part of the named rate. The row of the named rate, divided by the determinant, contains the only quotient.
+    The axis of the other outer angle is an axis of the frame; along it, omega is the sum of that angle's rate and a
+    part of the named rate. Only the formula of the named rate contains a division, by the determinant.
     """
     matrix, determinant = Matrix(jacobian), jacobian.determinant
     last = next(place for place in (0, 2) if not matrix[:, place].free_symbols)

@@ -1,4 +1,4 @@
-"""Kernels of inertia: mass properties of every solid of the table, parallel axes, rotation of the tensor."""
+"""Kernels of inertia: mass properties of every uniform solid, the parallel axis theorem, rotation of the tensor."""
 
 from collections.abc import Callable, Iterator
 from functools import partial

@@ -24,12 +24,12 @@ def kernel_names() -> tuple[str, ...]:
 
 @cache
 def definition(name: str) -> Definition:
-    """Return the definition of the kernel with the given name, newly derived.
+    """Return the definition of a kernel; its formulas are derived at every call.
 
     Raises
     ------
     InputError
-        For a name that is not in the table.
+        If there is no kernel of this name.
     """
     if name not in _table():
         raise InputError(f"expected the name of a kernel, such as quaternion_dcm or euler_zxz_body_rates, got {name!r}")

@@ -1,4 +1,4 @@
-"""Kernels of unit quaternions: dcm and back, product, rotation of a vector, rates in both frames."""
+"""Kernels of unit quaternions: conversion to and from the dcm, product, rotation of a vector, rates in both frames."""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -26,7 +26,7 @@ OMEGA = {"body": symbols.omega_b, "space": symbols.omega_s}
 QUATERNION = argument("q", "in", symbols.quaternion, "attitude, body to space")
 QUATERNION_BOX = boxed(symbols.quaternion, -1, 1)
 
-Named = tuple[tuple[Symbol, Expr], ...]  # quantities that formulas use by a symbol, and what they are
+Named = tuple[tuple[Symbol, Expr], ...]  # symbols that formulas use, each with its definition
 
 _DERIVATION = "derivations/quaternion_rates.md"
 _UNIT = "unit quaternions"
@@ -39,16 +39,16 @@ def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
 
 
 def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -> tuple[Named, ImmutableMatrix]:
-    """Return the dcm ``1 + scalar [t] + [t][axis]`` and the named quantities ``t = doubled`` in it.
+    """Return the dcm in the form ``1 + scalar [t] + [t][axis]``, and the named quantities ``t = doubled`` in it.
 
-    Here [v] is the matrix of the cross product with v. For a unit quaternion (q0, u) and t = 2 u it is the dcm. Since t
-    is along the axis, [t][axis] is symmetric, so that each of its products is computed once.
+    Here [v] is the matrix of the cross product with v. For a unit quaternion (q0, u), pass q0, u and t = 2 u. Because t
+    is parallel to the axis, [t][axis] is symmetric, so each of its products is computed once.
     """
     twice = tuple(Symbol(f"twice_{i}", real=True) for i in "123")
     square = skew(twice) * skew(axis)
     symmetric = ImmutableMatrix(3, 3, lambda i, j: square[min(i, j), max(i, j)])
     matrix = (eye(3) + scalar * skew(twice) + symmetric).as_mutable()
-    lost = Symbol("lost_2", real=True)  # 1 - (a + b) waits less than 1 - a - b, which shares no difference here
+    lost = Symbol("lost_2", real=True)  # 1 - (a + b) has a shorter chain of operations than 1 - a - b
     matrix[1, 1] = 1 - lost
     return (*zip(twice, doubled, strict=True), (lost, -square[1, 1])), ImmutableMatrix(matrix)
 
@@ -112,20 +112,18 @@ def _of_dcm(name: str) -> Definition:
     )  # fmt: skip
 
 
-Branch = tuple[Expr, list[Expr]]  # four times the square of a component, and four times its products with all
+Branch = tuple[Expr, list[Expr]]  # four times the square of a component, and its products with all components
 
 
 def _branch(matrix: Matrix, pivot: int) -> Branch:
-    """Return ``4 q_pivot^2`` and the row ``4 q_pivot q`` of the quaternion of a dcm; the entries of the dcm occur
-    linearly.
-    """
+    """Return ``4 q_pivot^2`` and the row ``4 q_pivot q`` of the quaternion of a dcm; both are linear in the dcm."""
     q = quaternion_of_dcm(matrix, pivot)
     square = 4 * q[pivot] ** 2
     return square, [entry * 2 * sqrt(square) for entry in q]
 
 
 def _larger(left: Branch, right: Branch) -> Branch:
-    """Return the branch of two whose component has the larger square."""
+    """Return the branch whose component has the larger square."""
     (a, row_a), (b, row_b) = left, right
     return select_ge(a, b, a, b), [select_ge(a, b, x, y) for x, y in zip(row_a, row_b, strict=True)]
 
@@ -188,10 +186,9 @@ def _rotate(towards: str, name: str) -> Definition:
 
 
 def turned(q: Sequence[Expr], vector: Matrix) -> tuple[Named, Matrix]:
-    """Return the rotated vector ``v + q0 h + u x h`` with ``h = 2 u x v`` for ``q = (q0, u)``, and h as named
-    quantities.
+    """Return the vector rotated by the quaternion ``q = (q0, u)``, as ``v + q0 h + u x h`` with ``h = 2 u x v``.
 
-    This takes fewer operations than the dcm.
+    The definition of h as named quantities comes first in the result. This takes fewer operations than the dcm.
     """
     scalar, axis = q[0], Matrix([*q][1:])
     half = Matrix([Symbol(f"twice_cross_{i}", real=True) for i in "123"])

@@ -1,20 +1,20 @@
-"""Functions with a removable singularity, as kernels compute them: accurate for all numbers, without a threshold to
-tune.
+"""Functions with a removable singularity, such as sin(x)/x at zero, computed accurately for all numbers.
 
-``sin(x)/x`` is accurate except at zero, where a conditional returns its limit. A difference of nearly equal terms, ``(x
-- sin x)/x^3``, is summed as its Taylor series near zero, with a truncation error proven below half the last bit, and
-computed directly elsewhere. The point between the two follows from the function; it is not a setting.
+``sin(x)/x`` is accurate except at zero, where a conditional returns its limit. A difference of nearly equal terms,
+such as ``(x - sin x)/x^3``, is computed near zero as its Taylor series, with a truncation error proven below half the
+last bit, and directly elsewhere. The point between the two follows from the function; no threshold has to be chosen.
 
-Errors measured by ``python -m symrot.bench.ulps`` in double and float, with fused operations or without:
+Errors measured by ``python -m symrot.bench.ulps`` in double and float, with and without fused operations, in units in
+the last place (ulp):
 
 - ``sinc``, ``sine_gap``: within 4 ulp at every finite number (measured 1.4 and 2.1).
-- ``tangent_gap``: within 4 ulp for |x| <= pi (measured 2.3). Beyond, it falls as cos(x)/x^2 and has zeros, the
-  solutions of x = tan x, which are no floating-point numbers: a relative error has no bound there. Its absolute error
-  is at most 4 * 2^-53/x^2, in float 4 * 2^-24/x^2, or half the least subnormal number (measured
-  2.5 for all numbers).
-- ``arc_ratio``: within 4 ulp on the half circle that quaternions have (measured 1.6; batches 1.2).
+- ``tangent_gap``: within 4 ulp for |x| <= pi (measured 2.3). For larger |x| the function decreases as cos(x)/x^2 and
+  has zeros, the solutions of x = tan x, which are no floating-point numbers, so its relative error has no bound. Its
+  absolute error is at most 4 * 2^-53/x^2, in float 4 * 2^-24/x^2, or half the least subnormal number (measured 2.5
+  for all numbers).
+- ``arc_ratio``: within 4 ulp on the half circle on which quaternions lie (measured 1.6; batches 1.2).
 
-Batches compute them without a branch, with the sine, cosine and arc tangent of ``symrot_math.h``.
+Batches compute these functions without a branch, with the sine, cosine and arc tangent of ``symrot_math.h``.
 """
 
 from collections.abc import Callable
@@ -36,7 +36,7 @@ arc_ratio = Function("arc_ratio", real=True)
 copysign = Function("copysign", real=True)
 select_ge = Function("select_ge", real=True)
 
-FUNCTIONS: dict[str, int] = {  # functions of kernels beyond those of scenes, with their numbers of arguments
+FUNCTIONS: dict[str, int] = {  # functions of kernels that scenes do not have, with their numbers of arguments
     "sinc": 1, "sine_gap": 1, "tangent_gap": 1, "arc_ratio": 2, "copysign": 2, "select_ge": 4,
 }  # fmt: skip
 DIGITS = {"binary64": 53, "binary32": 24}
@@ -48,9 +48,9 @@ _x = Symbol("x", real=True)
 class Removable:
     """An even analytic function of x, ``numerator / x^power``, whose quotient is undefined at zero.
 
-    ``split`` is the square of the |x| below which the series is summed; its terms alternate and decrease there. For
-    larger
-    |x|, ``scaled/x/x`` is computed, the same quotient without a power of x that would overflow before the result does.
+    ``split`` is the square of the |x| below which the series is used; its terms alternate and decrease there. For
+    larger |x|, ``scaled/x/x`` is computed: the same quotient without a power of x that would overflow before the result
+    does.
     """
 
     name: str
@@ -67,8 +67,8 @@ class Removable:
     def coefficients(self, precision: str = "binary64") -> tuple[Fraction, ...]:
         """Return as many Taylor coefficients of the function, in powers of x^2, as a precision needs.
 
-        The first omitted coefficient, times its power of ``split``, is less than a quarter of a unit in the last place
-        of the least value there: the series alternates, so that this bounds the remainder.
+        The first omitted coefficient times its power of ``split`` is less than a quarter of a unit in the last place of
+        the smallest value there. Because the series alternates, this bounds the truncation error.
         """
         return _summed(self, precision)
 

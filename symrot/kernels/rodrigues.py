@@ -1,4 +1,4 @@
-"""Kernels of classical and modified Rodrigues parameters: dcm, quaternion and back, both rates, the shadow set."""
+"""Kernels of classical and modified Rodrigues parameters: dcm, conversion to and from quaternions, rates."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -41,9 +41,9 @@ _SQUARE = Symbol("square", real=True)  # square of the length of the parameters
 
 
 def _ray(which: Projection) -> tuple[Named, Expr]:
-    """Return the scalar s for which the quaternion (s, parameters), not normalised, has the given attitude.
+    """Return the scalar s for which the quaternion (s, parameters), not normalised, describes the given attitude.
 
-    Named quantities in the formula of s are returned too.
+    The named quantities in the formula of s come first in the result.
     """
     if not which.centre:
         return (), Integer(1)
@@ -87,7 +87,7 @@ def _quaternion(which: Projection, name: str) -> Definition:
 
 def _of_quaternion(which: Projection, name: str) -> Definition:
     q0, *vector = symbols.quaternion
-    if which.centre:  # q or -q, whichever has the shorter parameters
+    if which.centre:  # q or -q, whichever has the shorter set of parameters
         sign = select_ge(q0, Integer(0), Integer(1), Integer(-1))
         formulas = [sign * entry / (1 + sign * q0) for entry in vector]
     else:
@@ -108,7 +108,7 @@ def _rates(frame: str, which: Projection, name: str) -> Definition:
     omega, rates, p = Matrix(OMEGA[frame]), _RATES[which.name], which.parameters
     square, scalar = _ray(which)
     named, half = halved(OMEGA[frame])
-    scalar_rate, *vector_rate = quaternion_rate((scalar, *p), half, frame)  # of the ray, along which dp is taken out
+    scalar_rate, *vector_rate = quaternion_rate((scalar, *p), half, frame)  # the part along the ray is subtracted below
     formulas = [rate - p * scalar_rate for rate, p in zip(vector_rate, p, strict=True)]
 
     def laws() -> tuple[Law, ...]:

@@ -1,4 +1,4 @@
-"""Kernels of rotation vectors: exp and log, the dcm, both rate Jacobians and their inverses; safe at zero and at pi."""
+"""Kernels of rotation vectors: exponential map and logarithm, dcm, rates in both frames; accurate at zero and pi."""
 
 from collections.abc import Callable, Iterator
 from functools import partial

@@ -1,4 +1,4 @@
-"""Kernels of the torques that scenes can have, in body components."""
+"""Kernels of the torques that a scene can have, in body components."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -33,7 +33,7 @@ _SIZE = {"scalar": 1, "vector": 3, "scalar or vector": 3, "attitude": 4}
 
 
 class _Turned(Motion):
-    """Motion whose vectors are rotated by the quaternion itself, which takes fewer operations than the dcm."""
+    """A motion that rotates vectors by the quaternion itself, which takes fewer operations than by the dcm."""
 
     def to_body(self, vector_s: Matrix) -> Matrix:
         named, components = turned(conjugate(self.quaternion), vector_s)
@@ -77,7 +77,7 @@ def _law_of(kind: str, fields: tuple[str, ...]) -> TorqueLaw:
 def _torque(name: str) -> Definition:
     kind, fields = _KERNELS[name]
     law = _law_of(kind, fields)
-    torque = law.torque - _MOTION.omega_b.cross(law.momentum)  # a rotor acts on the body through its momentum
+    torque = law.torque - _MOTION.omega_b.cross(law.momentum)  # a rotor's momentum causes a torque on the body
     parameters = tuple(_field_argument(field) for field in TORQUE_KINDS[kind].fields if field.name in fields)
     used = torque.free_symbols | {s for _, value in law.definitions for s in value.free_symbols}
     states = (

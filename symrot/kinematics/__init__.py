@@ -1,1 +1,1 @@
-"""Attitude descriptions and their rates, derived with SymPy; ``conversions`` is their numeric side, NumPy alone."""
+"""Descriptions of attitude and their rates, derived with SymPy; ``conversions`` evaluates them with NumPy alone."""

@@ -1,4 +1,4 @@
-"""Every attitude description by name, and the symbolic conversions between any two of them."""
+"""Lookup of attitude descriptions (charts) by name, and the symbolic conversion from any description to any other."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -23,32 +23,39 @@ CHARTS: dict[str, Callable[[], Chart]] = {
 
 
 def chart(name: str) -> Chart:
-    """Return a chart by name: one of :data:`CHARTS`, or an Euler sequence such as ``"ZXZ"``.
+    """Return the chart (attitude description) with a given name.
+
+    Parameters
+    ----------
+    name : str
+        A key of :data:`CHARTS`, such as ``"quaternion"``, or an Euler sequence, such as ``"ZXZ"``.
 
     Raises
     ------
     InputError
-        For a name that is neither.
+        If the name is neither.
     """
     if name in CHARTS:
         return CHARTS[name]()
     if name in SEQUENCES:
         return euler.chart(name)
-    raise InputError(f"an attitude description is one of {', '.join(CHARTS)} or an Euler sequence; got {name!r}")
+    raise InputError(f"expected an attitude description ({', '.join(CHARTS)}) or an Euler sequence, got {name!r}")
 
 
 def convert(source: str, target: str, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
-    """Return the parameters of ``target`` as expressions in those of ``source``, shape (n, 1).
+    """Return the parameters of one attitude description as expressions in the parameters of another, shape (n, 1).
 
-    Through the quaternion, which both charts know. A dcm is reached by ``chart(name).dcm``, and left by
-    :func:`symrot.kinematics.quaternion.quaternion_of_dcm` or :func:`symrot.kinematics.euler.euler_of_dcm`.
+    The conversion goes through the quaternion, which every description can be converted to and from. A direction cosine
+    matrix is no description here: ``chart(name).dcm`` gives it, and
+    :func:`symrot.kinematics.quaternion.quaternion_of_dcm` or :func:`symrot.kinematics.euler.euler_of_dcm` reads it.
 
     Parameters
     ----------
     source, target : str
-        See :func:`chart`.
+        Names of the descriptions; see :func:`chart`.
     values : sequence of Expr, optional
-        In place of the symbols of ``source``; they must obey its relations (unit norm).
+        Values of the parameters of ``source``; by default its symbols. They must satisfy its constraint, such as unit
+        norm.
     """
     start = chart(source)
     parameters = expressions(start.parameters if values is None else values, len(start.parameters), source)

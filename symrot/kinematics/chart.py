@@ -1,8 +1,8 @@
-"""The one interface that every attitude description has.
+"""The common interface of all attitude descriptions ("charts").
 
-A chart names an attitude by parameters p. It knows its ``dcm``, the quaternion of the same attitude, the parameters
-as functions of a quaternion, and the rate matrix B(p) of ``omega = B(p) dp/dt`` in both frames, with what there is
-to know about B: inverse, determinant, where it is singular, how badly conditioned it is on the way there.
+A chart describes an attitude by parameters p, such as Euler angles or a quaternion. It provides the direction cosine
+matrix, conversions to and from the unit quaternion, and in both frames the rate matrix B(p) of ``omega = B(p) dp/dt``
+with its inverse, its determinant, its singular parameters, and its condition number near them.
 """
 
 from collections.abc import Callable
@@ -50,7 +50,7 @@ _NUMBERS = {S.Integers: "n any integer", S.Naturals: "n = 1, 2, ...", S.Naturals
 
 @dataclass(frozen=True)
 class SingularSet:
-    """The set where an expression vanishes, solved for one variable exactly.
+    """The set of real values of one variable at which an expression is zero, computed exactly.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class SingularSet:
     variable : Expr
         An angle, rad, or another expression in the parameters of the chart.
     values : Set
-        SymPy set of real numbers; empty for a chart that is regular wherever it is defined.
+        SymPy set of real numbers; empty if the expression has no zero where the chart is defined.
 
     Examples
     --------
@@ -97,24 +97,27 @@ class SingularSet:
 
 
 def condition_of(gram: Matrix) -> Expr:
-    """Return ``sqrt(largest / smallest eigenvalue)`` of a Gram matrix ``B^T B`` or ``B B^T``: the condition of B."""
+    """Return the condition number of B from a Gram matrix ``B^T B`` or ``B B^T``.
+
+    It is the root of the ratio of the largest to the smallest eigenvalue.
+    """
     values = list(gram.eigenvals())
     return sqrt(cancel(Max(*values) / Min(*values)))
 
 
 @cache
 def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
-    """Return the zeros in ``domain`` of an expression in one variable, exactly.
+    """Return the exact set of zeros of an expression in one variable.
 
-    Where the numerator has period 4 pi (angles and half angles) and the zeros are evenly spaced over it, they are
-    returned as one family ``first + n * spacing``; else as SymPy's ``solveset`` gives them.
+    If the numerator has period 4 pi (a function of angles and half angles) and its zeros are evenly spaced, the set is
+    one family ``first + n * spacing``; otherwise it is the result of SymPy's ``solveset``.
 
     Parameters
     ----------
     equation : Expr
     variable : Symbol
     domain : Set
-        The reals, or a half line from zero.
+        The reals, or the half line from zero.
     """
     if not equation.free_symbols:
         return domain if equation == 0 else S.EmptySet
@@ -167,10 +170,11 @@ class Limit:
 
 @dataclass(frozen=True)
 class RateFacts:
-    """The results that are derived together with a rate matrix; :class:`RateMatrix` describes them.
+    """The data of a :class:`RateMatrix` in addition to its entries: frame, parameters, determinant, inverse.
 
-    The determinant depends on the parameters through ``variable`` alone (an angle, a length). ``along(x)`` returns
-    the determinant and the inverse with ``variable`` set to x, for x in ``domain``: the way to the singular points.
+    The determinant depends on the parameters only through ``variable`` (an angle or a length). ``along(x)`` returns
+    the determinant and the inverse with ``variable`` set to x, for x in ``domain``; their limits at the singular values
+    are taken along this line.
     """
 
     name: str
@@ -186,11 +190,11 @@ class RateFacts:
 
 
 class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
-    """B(p) of ``omega = B(p) dp/dt``: an immutable SymPy matrix that knows its inverse and where it has none.
+    """The rate matrix B(p) of ``omega = B(p) dp/dt``: an immutable SymPy matrix with its inverse and singular set.
 
-    Arithmetic with it gives plain SymPy matrices. A chart with four parameters and one relation (unit norm) has a
-    3 x 4 matrix; its inverse is 4 x 3 and keeps the relation, and its determinant is that of B with the gradient of
-    the relation as a fourth row.
+    Arithmetic with a rate matrix gives plain SymPy matrices. A chart with four parameters and one constraint (unit
+    norm) has a 3 x 4 rate matrix. The inverse is then 4 x 3, and the rates that it gives preserve the constraint; its
+    determinant is that of B with the gradient of the constraint as a fourth row.
 
     Attributes
     ----------
@@ -203,9 +207,9 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     singular_set : SingularSet
         Zeros of the determinant, solved for exactly.
     condition_number : Expr
-        Largest over smallest singular value (2-norm). A property here, where SymPy has a method.
+        Ratio of the largest to the smallest singular value (2-norm): a property, while SymPy has a method of this name.
     limits : tuple of Limit
-        Behaviour of the inverse toward each singular point of one turn, from both sides.
+        Limits of the inverse at each singular point in one period, from both sides.
 
     Examples
     --------
@@ -217,7 +221,7 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     facts: RateFacts
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Any:
-        """Rebuilding from SymPy arguments (``func(*args)``) gives the plain matrix."""
+        """Return a plain matrix, not a rate matrix: SymPy calls this when it rebuilds a matrix with ``func(*args)``."""
         return ImmutableDenseMatrix(*args, **kwargs)
 
     @classmethod
@@ -296,14 +300,14 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
 
 @dataclass(frozen=True)
 class Chart:
-    """An attitude description.
+    """An attitude description: its parameters, its conversions to the dcm and the quaternion, and its rate matrix.
 
     Attributes
     ----------
     name : str
     parameters : tuple of Symbol
     relations : tuple of Expr
-        Expressions that vanish on the chart (unit norm); hypotheses for proofs.
+        Expressions that are zero for every valid set of parameters, such as ``|q|^2 - 1``; proofs assume them.
     dcm : ImmutableMatrix, shape (3, 3)
         ``dcm_sb`` in the parameters.
     quaternion : ImmutableMatrix, shape (4, 1)
@@ -313,9 +317,10 @@ class Chart:
     rate_matrix : callable
         ``rate_matrix(frame)``: the :class:`RateMatrix` B of ``omega = B dp/dt``.
     unreached : Expr or None
-        Vanishes (as an expression in :data:`symrot.symbols.quaternion`) at the attitudes the chart cannot name.
+        An expression in :data:`symrot.symbols.quaternion` that is zero at the attitudes without parameters in this
+        chart.
     about : str
-        One sentence: what the parameters are.
+        A phrase that says what the parameters are.
     """
 
     name: str
@@ -329,7 +334,7 @@ class Chart:
     about: str
 
     def rates(self, frame: str = "body") -> ImmutableMatrix:
-        """Return the matrix of ``dp/dt = rates * omega``, the inverse of ``rate_matrix(frame)``."""
+        """Return the matrix M of ``dp/dt = M * omega``, the inverse of ``rate_matrix(frame)``."""
         return self.rate_matrix(check_frame(frame)).inverse
 
     def determinant(self, frame: str = "body") -> Expr:
@@ -338,5 +343,5 @@ class Chart:
 
     @property
     def singular_set(self) -> SingularSet:
-        """Where the rate matrix has no inverse; the same in both frames."""
+        """The parameters at which the rate matrix has no inverse; they are the same in both frames."""
         return self.rate_matrix("body").singular_set

@@ -1,8 +1,9 @@
-"""Continuous quaternions and Euler angles along a trajectory: one sample after another along the first dimension.
+"""Quaternions and Euler angles without jumps along a trajectory. NumPy alone.
 
-NumPy alone. The conversions of :mod:`symrot.kinematics.conversions` return each attitude in principal ranges; here
-the choices that leave the attitude as it is (sign, whole turns, the second set of Euler angles, the split of first
-and third angle at lock) are made so that neighbours are close.
+The samples of the trajectory follow each other along the first dimension. The functions of
+:mod:`symrot.kinematics.conversions` return each attitude in a standard range, so that neighbours may jump. Here the
+equivalent values are chosen (sign of the quaternion, multiples of 2 pi, the second set of Euler angles, the split of
+first and third angle at gimbal lock) that are close to the sample before.
 """
 
 from typing import Any
@@ -15,7 +16,7 @@ __all__ = ["continuous_quaternion", "unwrap_euler"]
 
 
 def continuous_quaternion(q: Any) -> Array:
-    """Return quaternions, shape (n, ..., 4), with signs such that neighbours have positive dot products."""
+    """Return quaternions, shape (n, ..., 4), with signs chosen so that neighbours have positive dot products."""
     q = array_of(q, 4, what="a quaternion")
     turns_over = np.einsum("...i,...i->...", q[1:], q[:-1]) < 0
     sign = np.ones(q.shape[:-1])
@@ -30,17 +31,18 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
     Parameters
     ----------
     angles : array, shape (n, ..., 3)
-        rad, in order of application, sampled closely enough that no angle moves by a quarter turn between samples.
+        rad, in order of application, sampled so closely that no angle changes by pi/2 between samples.
     sequence : str
     locked : bool array, shape (n, ...), optional
-        As returned with the angles: there the third angle is taken over from the last sample that was not locked
-        and the first one changed to match.
+        True at samples in gimbal lock, as returned together with the angles. Such a sample gets the third angle of
+        the last sample that is not locked, and the first angle that gives the same attitude.
 
     Notes
     -----
-    Each attitude has two sets of angles within the whole turns: a proper sequence also ``(q1 + pi, -q2, q3 + pi)``, a
-    Tait-Bryan sequence ``(q1 + pi, pi - q2, q3 + pi)``. Whether neighbours are closer in the same or in the other set
-    does not depend on which set the earlier one is in, so the choices add up along the trajectory.
+    Each attitude has two sets of angles, apart from multiples of 2 pi: a proper sequence also has
+    ``(q1 + pi, -q2, q3 + pi)``, a Tait-Bryan sequence ``(q1 + pi, pi - q2, q3 + pi)``. Whether the same or the other
+    set of the next sample is closer does not depend on the set chosen for the sample before, so the choices can be
+    accumulated along the trajectory.
     """
     (first, _, last), _, _, _ = places(sequence)
     angles = np.array(array_of(angles, 3, what=f"a set of {sequence} angles"))
@@ -59,17 +61,18 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
 
 
 def _step(before: Array, after: Array) -> Array:
-    """Return the sum of squares of the differences modulo 2 pi."""
+    """Return the sum of the squared differences of two sets of angles, each difference taken modulo 2 pi."""
     turns = (after - before) / (2 * np.pi)
     step: Array = np.sum((turns - np.rint(turns)) ** 2, axis=-1)
     return step
 
 
 def _take_over(angles: Array, locked: Any, sequence: str) -> None:
-    """At locked samples take the third angle of the last free sample, in place, and move the first one to match.
+    """Give each locked sample the third angle of the last unlocked sample, and adjust its first angle, in place.
 
-    At lock the first and last turn are about one line: in the same sense where the middle turn takes the last axis to
-    the first (their sum counts), in the opposite sense where it takes it to minus the first (their difference counts).
+    At lock the first and the last rotation are about the same line. If the middle rotation maps the last axis to the
+    first, the attitude depends on the sum of first and third angle; if it maps the last axis to minus the first, on
+    their difference. The adjustment preserves this sum or difference.
     """
     if not locked.any():
         return
@@ -78,7 +81,7 @@ def _take_over(angles: Array, locked: Any, sequence: str) -> None:
     source = np.maximum.accumulate(np.where(locked, 0, here), axis=0)
     third = np.take_along_axis(angles[..., 2], source, axis=0)
     middle = angles[..., 1]
-    # e_last carried by the middle turn, along e_first: cos q2 (proper), sign sin q2 (Tait-Bryan)
+    # component along e_first of the last axis after the middle rotation: cos q2 (proper), sign sin q2 (Tait-Bryan)
     sense = np.where(np.cos(middle) > 0, 1.0, -1.0) if first == last else np.where(middle > 0, sign, -sign)
     move = np.where(locked, third - angles[..., 2], 0.0)
     angles[..., 2] += move

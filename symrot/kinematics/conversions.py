@@ -3,15 +3,15 @@
 Conventions: :mod:`symrot.conventions`: quaternions ``(..., 4)`` scalar first, body to space; dcm ``(..., 3, 3)`` is
 ``dcm_sb``; Euler angles ``(..., 3)`` in order of application; angles in rad unless ``degrees=True``.
 
-Accuracy. Errors are a few units of 1e-16 for every attitude: near the identity (relative, down to 1e-300 rad), near
-half turns, at gimbal lock. No formula uses acos or asin.
+Accuracy. Errors are a few units of 1e-16 for every attitude: near the identity (relative error, down to angles of
+1e-300 rad), near rotations by pi, and at gimbal lock. No formula uses acos or asin.
 
-Bad rows. Quaternions need not be unit and may have any magnitude. A zero, infinite or NaN quaternion gives NaN in its
-own row; other rows are untouched. There are no warnings. What is not unique is chosen as the docstring says and, for
-Euler angles and Rodrigues parameters, reported in a mask. Only wrong shapes and types are errors (``InputError``).
+Bad rows. Quaternions may have any norm. A zero, infinite or NaN quaternion gives NaN in its own row and leaves the
+other rows unchanged, without a warning. If a result is not unique, the docstring says which value is returned; for
+Euler angles and Rodrigues parameters a mask marks such rows. Only wrong shapes and types raise ``InputError``.
 
-Inside, an array is taken apart into blocks of components, one contiguous row per component, so that every operation
-runs over many samples and its temporaries stay in cache.
+Implementation. Arrays are processed in blocks with one contiguous row per component, so that each operation runs over
+many samples and its temporaries stay in the processor's cache.
 """
 
 from collections.abc import Callable, Sequence
@@ -50,31 +50,33 @@ __all__ = [
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-Components = Sequence[Array] | Array  # one array per component, all of one length
+Components = Sequence[Array] | Array  # one array per component, all of the same length
 
 LOCK = 2.0**-51  # rad from lock: below it a quaternion in double precision cannot tell the two angles apart
 PI_LOW = 1.2246467991473532e-16  # pi - np.pi
-BLOCK = 8192  # samples taken at once
-SAFE = 1e-250, 1e250  # squared lengths in between neither lose digits to underflow nor overflow
+BLOCK = 8192  # samples processed at once
+SAFE = 1e-250, 1e250  # squared lengths between these bounds neither lose digits to underflow nor overflow
 
 
 def array_of(values: Any, *shape: int, what: str) -> Array:
-    """Return ``values`` as float64, with last dimensions ``shape``; ``InputError`` otherwise."""
+    """Return ``values`` as a float64 array; raise ``InputError`` unless its last dimensions are ``shape``."""
     try:
         array = np.asarray(values)
         real = array.dtype.kind in "fiu"
     except ValueError:  # rows of different lengths
         real = False
     if not real:
-        raise InputError(f"{what} is an array of real numbers, last dimensions {shape}; got {type(values).__name__}")
+        raise InputError(
+            f"expected {what}, an array of real numbers with last dimensions {shape}, got {type(values).__name__}"
+        )
     if array.ndim < len(shape) or array.shape[array.ndim - len(shape) :] != shape:
-        raise InputError(f"{what} has last dimensions {shape}; got an array of shape {array.shape}")
+        raise InputError(f"expected {what} with last dimensions {shape}, got an array of shape {array.shape}")
     return array.astype(np.float64, copy=False)
 
 
 @np.errstate(all="ignore")
 def _by_components(function: Callable[..., Components], rows: Array, width: int) -> Array:
-    """Return ``function`` of the components of ``rows``, shape (..., n), as an array of shape (..., width)."""
+    """Apply ``function`` to the components of ``rows``, shape (..., n); return its results as shape (..., width)."""
     flat = rows.reshape(-1, rows.shape[-1])
     result: Array = np.empty((len(flat), width))
     for start in range(0, len(flat), BLOCK):
@@ -97,9 +99,9 @@ def _largest(components: Components) -> Array:
 
 
 def _in_range(*components: Array) -> tuple[Components, Array]:
-    """Return samples and squared lengths; samples whose squares would overflow are divided by their largest entry.
+    """Return the samples and their squared lengths, scaled where the squares would overflow or underflow.
 
-    Samples that are zero, infinite or NaN become NaN.
+    A scaled sample is divided by its largest component. Samples that are zero, infinite or NaN become NaN.
     """
     squares = _sum_of_squares(components)
     extreme = ~((squares > SAFE[0]) & (squares < SAFE[1]))
@@ -141,12 +143,12 @@ def _normalize(*q: Array) -> Components:
 
 
 def normalize(q: Any) -> Array:
-    """Return unit quaternions, shape (..., 4). No overflow at 1e200, no underflow at 1e-200; NaN for a bad row."""
+    """Return unit quaternions, shape (..., 4), without overflow at 1e200 or underflow at 1e-200; NaN for a bad row."""
     return _by_components(_normalize, array_of(q, 4, what="a quaternion"), 4)
 
 
 def canonical(q: Any) -> Array:
-    """Return q or -q, shape (..., 4): with q0 > 0, or, for a half turn, its first nonzero entry positive."""
+    """Return q or -q, shape (..., 4), whichever has q0 > 0, or, if q0 = 0, a positive first nonzero component."""
     return _by_components(_canonical, array_of(q, 4, what="a quaternion"), 4)
 
 
@@ -166,12 +168,12 @@ def multiply(p: Any, q: Any) -> Array:
 
 
 def to_scipy_order(q: Any) -> Array:
-    """Return ``(q1, q2, q3, q0)``, the order of SciPy's ``Rotation``, shape (..., 4)."""
+    """Return quaternions reordered as ``(q1, q2, q3, q0)``, the order of SciPy's ``Rotation``, shape (..., 4)."""
     return np.roll(array_of(q, 4, what="a quaternion"), -1, axis=-1)
 
 
 def from_scipy_order(q: Any) -> Array:
-    """Return ``(q0, q1, q2, q3)`` of SciPy's ``(x, y, z, w)``, shape (..., 4)."""
+    """Return quaternions ``(q0, q1, q2, q3)`` from SciPy's order ``(x, y, z, w)``, shape (..., 4)."""
     return np.roll(array_of(q, 4, what="a quaternion"), 1, axis=-1)
 
 
@@ -209,10 +211,11 @@ def _quaternion_of_dcm(*r: Array) -> Components:
 
 
 def dcm_to_quaternion(dcm: Any) -> Array:
-    """Return unit quaternions with ``q0 >= 0``, shape (..., 4).
+    """Return the unit quaternions with ``q0 >= 0``, shape (..., 4), of rotation matrices ``dcm_sb``.
 
-    The largest of the four squares ``4 q_i^2`` is the pivot, so that the divisor is never small. A matrix that is no
-    rotation to rounding gets the quaternion that its pivot row shows; one with determinant <= 0, or not finite, NaN.
+    The largest of the four squares ``4 q_i^2`` is the divisor, so that it is never small. A matrix that is not quite a
+    rotation gets the quaternion computed from the row of this divisor; a matrix with determinant <= 0, or one that is
+    not finite, gives NaN.
     """
     dcm = array_of(dcm, 3, 3, what="a dcm")
     return _by_components(_quaternion_of_dcm, dcm.reshape(*dcm.shape[:-2], 9), 4)
@@ -239,14 +242,14 @@ def _logarithm(*q: Array) -> Components:
     (q0, *vector), _ = _in_range(*_canonical(*q))
     sine = _length(*vector)
     ratio = 2 * np.arctan2(sine, q0) / sine
-    np.copyto(ratio, q0, where=sine == 0)  # anything finite: the vector is zero; NaN stays
+    np.copyto(ratio, q0, where=sine == 0)  # any finite number will do: the vector is zero; NaN is preserved
     return [ratio * component for component in vector]
 
 
 def quaternion_to_rotation_vector(q: Any) -> Array:
-    """Return rotation vectors in rad, shape (..., 3), of length at most pi: the logarithm.
+    """Return rotation vectors in rad, shape (..., 3), of length at most pi (the logarithm of the quaternion).
 
-    A half turn (q0 = 0) has two; the one whose first nonzero entry is positive is returned.
+    A rotation by pi (q0 = 0) has two; the one with a positive first nonzero component is returned.
     """
     return _by_components(_logarithm, array_of(q, 4, what="a quaternion"), 3)
 
@@ -262,7 +265,7 @@ def _quaternion_of_axis_angle(n1: Array, n2: Array, n3: Array, angle: Array) -> 
 def axis_angle_to_quaternion(axis: Any, angle: Any, degrees: bool = False) -> Array:
     """Return unit quaternions, shape (..., 4), of axes of any length and angles, broadcast together.
 
-    NaN for a zero axis, unless its angle is zero.
+    A zero axis gives NaN, unless its angle is zero.
     """
     axis, angle = array_of(axis, 3, what="an axis"), array_of(angle, what="an angle")
     angle = np.radians(angle) if degrees else angle
@@ -282,8 +285,8 @@ def _axis_angle(*q: Array) -> Components:
 def quaternion_to_axis_angle(q: Any, degrees: bool = False) -> tuple[Array, Array]:
     """Return unit axes, shape (..., 3), and angles in [0, pi], shape (...).
 
-    At zero angle, where there is no axis, the axis is (1, 0, 0); a half turn as in
-    :func:`quaternion_to_rotation_vector`.
+    At zero angle, where no axis is defined, the axis is (1, 0, 0). A rotation by pi gets the axis whose first nonzero
+    component is positive.
     """
     axis_angle = _by_components(_axis_angle, array_of(q, 4, what="a quaternion"), 4)
     return axis_angle[..., :3], np.degrees(axis_angle[..., 3]) if degrees else axis_angle[..., 3]
@@ -293,7 +296,7 @@ def quaternion_to_axis_angle(q: Any, degrees: bool = False) -> tuple[Array, Arra
 
 
 def _quaternion_of_rodrigues(*g: Array) -> Components:
-    size = np.maximum(_length(*g), 1.0)  # divide by it first: g may be as large as 1e308
+    size = np.maximum(_length(*g), 1.0)  # dividing by the size first avoids overflow: g may be as large as 1e308
     return _normalize(1 / size, *(component / size for component in g))
 
 
@@ -311,9 +314,9 @@ def _rodrigues(*q: Array) -> Components:
 
 
 def quaternion_to_rodrigues(q: Any) -> tuple[Array, Mask]:
-    """Return classical Rodrigues parameters, shape (..., 3), and a mask of attitudes without any, shape (...).
+    """Return classical Rodrigues parameters, shape (..., 3), and a mask of rotations by pi, shape (...).
 
-    There are none at a half turn, where they are infinite: the mask is True and the row is NaN.
+    A rotation by pi has no finite parameters: its mask is True and its row is NaN.
     """
     rodrigues = _by_components(_rodrigues, array_of(q, 4, what="a quaternion"), 4)
     return rodrigues[..., :3], rodrigues[..., 3] == 1
@@ -322,7 +325,7 @@ def quaternion_to_rodrigues(q: Any) -> tuple[Array, Mask]:
 def _quaternion_of_mrp(*s: Array) -> Components:
     size = _length(*s)
     large = np.maximum(size, 1.0)
-    small = np.minimum(size, 1 / large)  # |s|, or 1/|s| of a long one: the length of the shorter set
+    small = np.minimum(size, 1 / large)  # length of the shorter of the two sets: |s|, or 1/|s| if |s| > 1
     norm = 1 + small * small
     ratio = 2 * np.where(size > 1, small, 1.0) / norm
     scalar = (1 - small) * (1 + small) / norm
@@ -343,7 +346,7 @@ def _mrp_short(*q: Array) -> Components:
 def _mrp_of_sign(*q: Array) -> Components:
     (q0, *vector), squares = _in_range(*q)
     norm, sine = np.sqrt(squares), _length(*vector)
-    # 1 / (1 + q0), or for negative q0, where that cancels, (1 - q0) / sine^2
+    # 1 / (1 + q0); for negative q0, where this sum cancels, (1 - q0) / sine^2
     return [np.where(q0 >= 0, component / (norm + q0), component / sine * ((norm - q0) / sine)) for component in vector]
 
 
@@ -354,8 +357,8 @@ def quaternion_to_mrp(q: Any, shadow: bool = True) -> Array:
     ----------
     q : array, shape (..., 4)
     shadow : bool
-        True: of the two sets of an attitude (of q and -q) the shorter, length at most 1. False: the set of q as it is,
-        which grows without bound toward q = (-1, 0, 0, 0), and is NaN there.
+        Each attitude has two sets, one from q and one from -q. True: return the shorter set, of length at most 1.
+        False: return the set of q itself, which grows without bound toward q = (-1, 0, 0, 0), and is NaN there.
     """
     return _by_components(_mrp_short if shadow else _mrp_of_sign, array_of(q, 4, what="a quaternion"), 3)
 
@@ -366,15 +369,15 @@ def _shadow(*s: Array) -> Components:
 
 
 def mrp_shadow(s: Any) -> Array:
-    """Return the shadow set ``-s / |s|^2`` of the same attitude, shape (..., 3); NaN for zero (no finite shadow)."""
+    """Return the second set of modified Rodrigues parameters of the same attitude, ``-s / |s|^2``; NaN for s = 0."""
     return _by_components(_shadow, array_of(s, 3, what="a set of modified Rodrigues parameters"), 3)
 
 
 @np.errstate(all="ignore")
 def mrp_switch(s: Any) -> tuple[Array, Mask]:
-    """Return the shorter of each set and its shadow, shape (..., 3), and a mask of the shadows.
+    """Return, of each set and its shadow ``-s / |s|^2``, the shorter one, shape (..., 3), and a mask of switched rows.
 
-    For a motion in modified parameters: switch whenever ``|s| > 1``, and |s| stays at most 1.
+    A propagation in modified Rodrigues parameters that switches whenever ``|s| > 1`` keeps |s| at most 1.
     """
     s = array_of(s, 3, what="a set of modified Rodrigues parameters")
     switched = np.asarray(_length(*np.moveaxis(np.atleast_2d(s), -1, 0)) > 1).reshape(s.shape[:-1])
@@ -385,7 +388,7 @@ def mrp_switch(s: Any) -> tuple[Array, Mask]:
 
 
 def places(sequence: str) -> tuple[tuple[int, int, int], tuple[int, int, int], int, int]:
-    """Return axes and places of the factors of ``dcm_sb`` from left to right, and ``e_1 x e_2 = sign e_m``."""
+    """Return axes and angle indices of the factors of ``dcm_sb``, and m, sign of ``e_1 x e_2 = sign e_m``."""
     axes, intrinsic = parse_sequence(sequence)
     (first, middle, last), order = (axes, (0, 1, 2)) if intrinsic else (axes[::-1], (2, 1, 0))
     return (first, middle, last), order, 3 - first - middle, 1 if (middle - first) % 3 == 1 else -1
@@ -406,7 +409,7 @@ def euler_to_quaternion(angles: Any, sequence: str, degrees: bool = False) -> Ar
     def product(*angle: Array) -> Components:
         half = [angle[place] / 2 for place in order]
         (c1, c2, c3), (s1, s2, s3) = map(np.cos, half), map(np.sin, half)
-        a, b, c, d = c1 * c2, s1 * c2, c1 * s2, s1 * s2  # along 1, e_first, e_middle, e_first x e_middle
+        a, b, c, d = c1 * c2, s1 * c2, c1 * s2, s1 * s2  # components along 1, e_first, e_middle, e_first x e_middle
         if first == last:
             components = (a * c3 - b * s3, a * s3 + b * c3, c * c3 + d * s3, d * c3 - c * s3)
         else:  # e_last = sign e_first x e_middle
@@ -438,14 +441,15 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
         The middle angle in [0, pi] (proper) or [-pi/2, pi/2] (Tait-Bryan), the others in [-pi, pi].
     locked : bool array, shape (...)
         True where only the sum or the difference of first and third angle is determined. There the third angle (in
-        order of application) is set to zero, as SciPy does, and the middle angle to the locked value, which changes
-        the attitude by at most ``lock``.
+        order of application) is set to zero, as SciPy does, and the middle angle to its value at lock, which
+        changes the attitude by at most ``lock``.
 
     Notes
     -----
-    Half-angle sums and differences, as :func:`symrot.kinematics.euler.euler_of_quaternion` derives
-    them. The rotation rebuilt from the angles has rounding error at any distance from lock; the angles themselves
-    are determined to about 1e-16 over that distance. Source: Bernardes & Viollet, PLoS ONE 17 (2022) e0276302.
+    The angles follow from half-angle sums and differences, as derived in
+    :func:`symrot.kinematics.euler.euler_of_quaternion`. The attitude computed back from the angles is accurate to
+    rounding at any distance from lock; the angles themselves have an error of about 1e-16 divided by that distance.
+    Source: Bernardes & Viollet, PLoS ONE 17 (2022) e0276302.
     """
     (first, middle, last), order, cross, sign = places(sequence)
     proper, intrinsic = first == last, order[2] == 2
@@ -453,17 +457,17 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
     def angles_of(*q: Array) -> Components:
         rows, _ = _in_range(*q)
         q0, along, across, third = rows[0], rows[1 + first], rows[1 + middle], sign * rows[1 + cross]
-        # along 1, e_first, e_middle, e_first x e_middle; a Tait-Bryan sequence is a proper one a quarter turn before
+        # components along 1, e_first, e_middle, e_first x e_middle; Tait-Bryan times a rotation by pi/2 is proper
         a, b, c, d = (q0, along, across, third) if proper else (q0 - across, along - third, q0 + across, along + third)
         low, high = np.sqrt(a * a + b * b), np.sqrt(c * c + d * d)
-        # arctan in place of arctan2: half the time; half turns are counted in ``odd`` and added without error
+        # arctan takes half the time of arctan2; multiples of pi are counted in ``odd`` and added without rounding error
         half_sum, half_difference, odd = np.arctan(b / a), np.arctan(d / c), np.signbit(a) ^ np.signbit(c)
         tilt = 2 * np.arctan(high / low) if proper else np.arctan(2 * (q0 * across + along * third) / (low * high))
         locked: Mask = np.minimum(low, high) <= lock / 2 * np.maximum(low, high)
         if locked.any():
             at_zero = high[locked] < low[locked]
             known = np.where(at_zero, half_sum[locked], half_difference[locked])
-            # the third angle is the right one of an intrinsic sequence (half sum - half difference), else the left
+            # the third angle is the right factor's (half sum - half difference) if intrinsic, else the left factor's
             half_sum[locked] = known if intrinsic else np.where(at_zero, known, -known)
             half_difference[locked] = known if intrinsic else np.where(at_zero, -known, known)
             odd[locked] = False
@@ -479,7 +483,7 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
 
 
 def _sum(x: Array, y: Array, odd: Mask) -> Array:
-    """Return ``x + y`` for x and y in [-pi/2, pi/2], shifted by pi into [-pi, pi] where ``odd``, and rounded once."""
+    """Return ``x + y`` for x and y in [-pi/2, pi/2], shifted by pi into [-pi, pi] where ``odd``, with one rounding."""
     total = x + y
     back = total - x
     error = (x - (total - back)) + (y - back)
@@ -495,5 +499,5 @@ def euler_to_dcm(angles: Any, sequence: str, degrees: bool = False) -> Array:
 
 
 def dcm_to_euler(dcm: Any, sequence: str, degrees: bool = False, lock: float = LOCK) -> tuple[Array, Mask]:
-    """Return Euler angles and a mask of the lock, as :func:`quaternion_to_euler` does; NaN for no rotation matrix."""
+    """Return Euler angles and a mask of gimbal lock, as :func:`quaternion_to_euler` does; NaN if dcm is no rotation."""
     return quaternion_to_euler(dcm_to_quaternion(dcm), sequence, degrees, lock)

@@ -1,6 +1,6 @@
-"""The singularity dossier of an Euler sequence: where it locks, what happens there, and which sequence to take instead.
+"""The singularities of an Euler sequence: where it locks, how its rates grow there, and which sequences to use instead.
 
-Everything is derived from :func:`symrot.kinematics.euler.rate_jacobian`; nothing is listed by hand.
+Every entry is derived from :func:`symrot.kinematics.euler.rate_jacobian`; no table is typed in.
 """
 
 from collections.abc import Iterable
@@ -26,9 +26,9 @@ class LockedPoint:
     middle : Expr
         The angle, rad.
     silent_rates : ImmutableMatrix, shape (3, 1)
-        Angle rates that turn nothing: the null vector of B. Only a combination of first and third angle counts.
+        Angle rates that do not rotate the body: the null vector of B. First and third angle cancel each other.
     lost_axis_b : ImmutableMatrix, shape (3, 1)
-        The unit direction (body components) about which no angle rates can turn the body: ``lost^T B = 0``.
+        The unit direction (body components) about which no angle rates can rotate the body: ``lost^T B = 0``.
 
     Examples
     --------
@@ -43,14 +43,14 @@ class LockedPoint:
 
     @property
     def combination(self) -> Expr:
-        """The sum or difference of first and third angle on which alone the attitude depends."""
+        """The sum or difference of first and third angle; at lock the attitude depends on this combination alone."""
         first, _, third = symbols.angles
         return first - third * self.silent_rates[0] / self.silent_rates[2]
 
 
 @dataclass(frozen=True)
 class SingularityDossier:
-    """The singularity of an Euler sequence: its place, the lost rates, the sequences that are regular there.
+    """The singularities of an Euler sequence: where it locks, its lost rates, and the sequences that are regular there.
 
     Attributes
     ----------
@@ -58,12 +58,12 @@ class SingularityDossier:
     jacobian_b, jacobian_s : EulerRateMatrix
         B of ``omega = B dq/dt`` in body and space components.
     locked : tuple of LockedPoint
-        The singular points of one turn of the middle angle.
+        The singular points in one period of the middle angle.
     regular_sequences : tuple of str
         Sequences regular at every attitude where this one locks.
     partly_regular : dict of str to Set
-        Sequences that lock at some of those attitudes: at these values of the angle of the left factor (phi if
-        intrinsic, psi if extrinsic), with the other outer angle zero.
+        Sequences that lock at some of those attitudes only. The set holds the values of phi (intrinsic) or psi
+        (extrinsic) at which they lock, with the other outer angle zero.
     singular_sequences : tuple of str
         Sequences that lock wherever this one does.
 
@@ -100,7 +100,7 @@ class SingularityDossier:
         return self.jacobian_b.limits
 
     def text(self) -> str:
-        """Return the dossier as text, the same bytes for the same sequence."""
+        """Return the dossier as text, byte for byte the same for the same sequence."""
         kind = "intrinsic" if parse_sequence(self.sequence)[1] else "extrinsic"
         return "\n".join(
             [
@@ -168,10 +168,10 @@ def _rows(matrix: Matrix, indent: str = "  ") -> list[str]:
 
 
 def _locked_point(sequence: str, middle: Expr) -> LockedPoint:
-    """Return the rates without effect and the direction out of reach at a singular value of the middle angle.
+    """Return a singular value of the middle angle with its ineffective angle rates and its lost axis.
 
-    The first and last axis coincide up to sign there, ``b_first = s b_last``: the rates ``1, 0, -s`` turn nothing,
-    and the axis across both of them and the middle one is out of reach.
+    There the first and last axis coincide up to sign, ``b_first = s b_last``. So the rates ``1, 0, -s`` do not rotate
+    the body, and no rates rotate the body about the axis perpendicular to the last and the middle axis.
     """
     first, _, third = symbols.angles
     jacobian = rate_jacobian(sequence, "body", (first, middle, third))
@@ -185,7 +185,7 @@ def _locked_point(sequence: str, middle: Expr) -> LockedPoint:
 
 @cache
 def singularity_dossier(sequence: str) -> SingularityDossier:
-    """Return where an Euler sequence is singular, what happens there, and which sequences are regular there.
+    """Return the singular points of an Euler sequence, its lost rates, and the sequences that are regular there.
 
     Parameters
     ----------
@@ -195,7 +195,7 @@ def singularity_dossier(sequence: str) -> SingularityDossier:
     Returns
     -------
     SingularityDossier
-        Angles in rad; rate matrices in body and in space components. ``print`` shows all of it.
+        Angles in rad; rate matrices in body and in space components. ``print`` shows all its entries.
 
     Raises
     ------

@@ -1,8 +1,9 @@
 """Euler angles: all 12 intrinsic and 12 extrinsic sequences, from the name of the sequence.
 
-Nothing about a sequence is typed in. An extrinsic sequence is the intrinsic one read backwards
-(``zyx`` with q1, q2, q3 is ``XYZ`` with q3, q2, q1), so every formula sees three factors from left to right,
-``dcm_sb = R_first R_middle R_last``. Convention: :mod:`symrot.conventions`. Proof: ``derivations/euler_body_rates.md``.
+No sequence has formulas of its own: all are computed from three elementary rotations. An extrinsic sequence is the
+intrinsic one read backwards (``zyx`` with q1, q2, q3 is ``XYZ`` with q3, q2, q1), so every formula uses three factors
+from left to right, ``dcm_sb = R_first R_middle R_last``. Convention: :mod:`symrot.conventions`. Proof:
+``derivations/euler_body_rates.md``.
 """
 
 from collections.abc import Sequence
@@ -49,7 +50,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Factor:
-    """One factor of ``dcm_sb``: axis number, angle, and the place of that angle in the sequence."""
+    """One factor of ``dcm_sb``: axis number, angle, and the index of that angle in order of application."""
 
     axis: int
     angle: Expr
@@ -65,7 +66,7 @@ class Factor:
 
 
 def factors(sequence: str, angles: Sequence[Any] | None = None) -> tuple[Factor, Factor, Factor]:
-    """Return the factors of ``dcm_sb`` from left to right.
+    """Return the three elementary rotations whose product from left to right is ``dcm_sb``.
 
     Parameters
     ----------
@@ -123,19 +124,19 @@ def dcm(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
 
 
 def lock_indicator(sequence: str, dcm_sb: Matrix) -> Expr:
-    """Return the entry of the dcm that is +-1 where the sequence locks, and only there.
+    """Return the entry of the dcm that is +1 or -1 exactly where the sequence is in gimbal lock.
 
-    It is the cosine between the first axis and the last axis as the body carries it: ``e_first^T dcm e_last``.
+    The entry ``e_first^T dcm e_last`` is the cosine of the angle between the first axis and the rotated last axis.
     """
     first, _, last = factors(sequence)
     return dcm_sb[first.axis, last.axis]
 
 
 def _core(sequence: str, frame: str, angles: Sequence[Any] | None) -> tuple[Matrix, Matrix, Matrix]:
-    """Return ``carry, core, order`` with ``B = carry * core * order``.
+    """Return ``carry, core, order``, the factors of the rate matrix ``B = carry * core * order``.
 
-    ``core`` holds the three axes in the frame of the middle rotation, where only the middle angle occurs. ``carry``
-    takes them from there to the body or to space, and ``order`` puts the columns in order of application.
+    The columns of ``core`` are the three rotation axes in the frame of the middle rotation, where only the middle angle
+    occurs. ``carry`` rotates them to body or space components, and ``order`` sorts the columns in order of application.
     """
     first, middle, last = factors(sequence, angles)
     if check_frame(frame) == "body":
@@ -151,9 +152,9 @@ def _core(sequence: str, frame: str, angles: Sequence[Any] | None) -> tuple[Matr
 
 
 def _solved(carry: Matrix, core: Matrix, order: Matrix) -> tuple[Expr, ImmutableMatrix | None]:
-    """Return determinant and inverse of ``carry * core * order``; no inverse where the determinant is 0.
+    """Return determinant and inverse of ``carry * core * order``; None as the inverse if the determinant is 0.
 
-    ``carry`` is a rotation and ``order`` a permutation, so only ``core``, which has one angle, is solved.
+    Only ``core``, which depends on one angle, is inverted: ``carry`` is a rotation and ``order`` a permutation.
     """
     core_determinant = core.det(method="berkowitz")
     determinant = core_determinant * order.det()
@@ -194,10 +195,10 @@ class EulerRateMatrix(RateMatrix):
         return tuple(other for other, met in meetings.items() if met is S.EmptySet)
 
     def regular_at(self, angles: Sequence[Any] | None = None) -> tuple[str, ...]:
-        """Return the sequences, of all 24, that are regular at the attitude of given angles of this sequence.
+        """Return the sequences, of all 24, that are regular at the attitude with the given angles of this sequence.
 
-        With symbols among the angles: those that are not singular for all values of the symbols. A float stands for
-        the rational number it is.
+        If some angles are symbols, a sequence is left out only if it is singular for all values of the symbols. A float
+        is taken as the exact rational number that it represents.
         """
         own_angles = expressions(
             self.parameters if angles is None else angles, 3, f"the Euler sequence {self.sequence}"
@@ -213,9 +214,9 @@ def _is_one(value: Expr) -> bool:
 
 
 def rate_jacobian(sequence: str, frame: str = "body", angles: Sequence[Any] | None = None) -> EulerRateMatrix:
-    """Return B(q), with ``omega = B(q) * dq/dt``, of an Euler sequence.
+    """Return the rate matrix B(q) of an Euler sequence, with ``omega = B(q) * dq/dt``.
 
-    Column i is the axis of rotation i, in the frame that the rotations between them give.
+    Column i is the axis of rotation i, in components of ``frame``.
 
     Parameters
     ----------
@@ -239,8 +240,8 @@ def rate_jacobian(sequence: str, frame: str = "body", angles: Sequence[Any] | No
 
     Notes
     -----
-    The axes e of the first and last turn have the angle between them as the body carries them, ``c``, and the axis
-    of the middle turn is across both: ``B^T B`` has the eigenvalues 1, 1 + c, 1 - c in both frames.
+    Let c be the cosine of the angle between the first and the last rotation axis. The middle axis is perpendicular to
+    both, so ``B^T B`` has the eigenvalues 1, 1 + c, 1 - c in both frames.
     Proof: ``derivations/euler_body_rates.md``. Source: Landau & Lifshitz, Mechanics, 3rd ed., eq. (35.1), for ZXZ.
 
     Examples
@@ -276,12 +277,12 @@ def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> E
 
 @cache
 def sequences_at_lock(sequence: str) -> dict[str, Set]:
-    """Return, for each other sequence, where on the singular set of ``sequence`` it is singular too.
+    """Return, for each other sequence, at which of the attitudes where ``sequence`` locks that sequence locks too.
 
-    In gimbal lock the first and the last rotation are about one line, and the attitude depends on one
-    combination of them, here the angle of the left factor with that of the right one zero. The values are sets of
-    that angle (phi if intrinsic, psi if extrinsic): the empty set for a sequence that is regular at every locked
-    attitude, the reals for one that locks with it everywhere.
+    In gimbal lock the first and the last rotation are about the same line, and the attitude depends on one combination
+    of their angles; so the angle of the right factor is set to zero here. Each value is a set of angles of the left
+    factor (phi if intrinsic, psi if extrinsic): empty for a sequence that is regular at all these attitudes, the reals
+    for one that locks at all of them.
     """
     left, _, _ = factors(sequence)
     chi = left.angle
@@ -306,14 +307,15 @@ def quaternion_of_euler(sequence: str, angles: Sequence[Any] | None = None) -> I
 def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
     """Return the angles of a quaternion of any norm, shape (3, 1), rad, in order of application.
 
-    The middle angle is in [0, pi] (proper) or [-pi/2, pi/2] (Tait-Bryan); the others in (-2 pi, 2 pi), to be taken
-    modulo 2 pi. Half-angle sums and differences by ``atan2``: full accuracy up to the lock, no ``acos`` or ``asin``.
+    The middle angle is in [0, pi] (proper) or [-pi/2, pi/2] (Tait-Bryan). The other angles are in (-2 pi, 2 pi); reduce
+    them modulo 2 pi if needed. They follow from half-angle sums and differences by ``atan2``, without ``acos`` or
+    ``asin``, so they keep full accuracy up to gimbal lock.
 
     Notes
     -----
-    A proper sequence has ``q = (c + s e_i)(C + S e_j)(c' + s' e_i)``, whose components along 1, e_i, e_j, e_i x e_j
-    are cosines and sines of the half-sum times C and of the half-difference times S. A Tait-Bryan sequence times a
-    quarter turn about its middle axis is a proper one. Source: Bernardes & Viollet, PLoS ONE 17 (2022) e0276302.
+    For a proper sequence, ``q = (c + s e_i)(C + S e_j)(c' + s' e_i)``. Its components along 1, e_i, e_j, e_i x e_j are
+    cosine and sine of the half sum times C, and of the half difference times S. A Tait-Bryan sequence times a rotation
+    by pi/2 about its middle axis is a proper sequence. Source: Bernardes & Viollet, PLoS ONE 17 (2022) e0276302.
     """
     first, middle, last = factors(sequence)
     q = expressions(q, 4, "a quaternion")
@@ -334,15 +336,15 @@ def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quate
 
 
 def euler_of_dcm(sequence: str, dcm_sb: Matrix) -> ImmutableMatrix:
-    """Return the angles of a dcm, shape (3, 1), rad, in order of application; ranges as arctangents give them.
+    """Return the angles of a dcm, shape (3, 1), rad, in order of application, in the range of ``atan2``.
 
-    The image of the last axis shows the first and the middle angle, the image of the first axis under the transpose
-    shows the last: each is an ``atan2`` of two entries.
+    Each angle is an ``atan2`` of two entries: the rotated last axis gives the first and the middle angle, the first
+    axis rotated by the transpose gives the last angle.
     """
     first, middle, last = factors(sequence)
     proper = first.axis == last.axis
     image, back = dcm_sb * last.direction, dcm_sb.T * first.direction
-    lifted = middle.direction.cross(last.direction)  # where the middle turn moves the last axis to
+    lifted = middle.direction.cross(last.direction)  # direction in which the middle rotation moves the last axis
     across = lifted if proper else last.direction
     across_back = -lifted if proper else first.direction
     cosine, sine = image.dot(across), image.dot(first.direction.cross(across))
@@ -358,7 +360,7 @@ def euler_of_dcm(sequence: str, dcm_sb: Matrix) -> ImmutableMatrix:
 
 @cache
 def chart(sequence: str) -> Chart:
-    """Return the chart of an Euler sequence: every attitude, singular at lock."""
+    """Return the chart of an Euler sequence: it describes every attitude, and is singular at gimbal lock."""
     kind = "intrinsic" if parse_sequence(sequence)[1] else "extrinsic"
     return Chart(
         name=sequence,

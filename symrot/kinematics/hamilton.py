@@ -1,7 +1,7 @@
-"""The Hamilton product of quaternions of any numbers, without SymPy and without NumPy.
+"""The Hamilton product of quaternions over any kind of number, without SymPy and without NumPy.
 
-:func:`symrot.quaternion_product` is the product of symbols, :func:`symrot.kinematics.conversions.multiply` the product
-of arrays of many quaternions.
+For symbols use :func:`symrot.quaternion_product`, for arrays of many quaternions
+:func:`symrot.kinematics.conversions.multiply`.
 """
 
 from collections.abc import Sequence

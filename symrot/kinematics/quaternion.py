@@ -1,4 +1,4 @@
-"""Quaternions: product, the dcm, rates in both frames. Everything follows from the Hamilton product.
+"""Quaternions: their product, direction cosine matrix and rates in both frames, all derived from the Hamilton product.
 
 Convention: :mod:`symrot.conventions`: ``(q0, q1, q2, q3)``, scalar first, Hamilton (``i j = k``), body to space.
 A quaternion is an immutable column, shape (4, 1). Proof: ``derivations/quaternion_rates.md``.
@@ -117,12 +117,12 @@ def norm_squared(q: Sequence[Any] | Matrix) -> Expr:
 
 
 def unit_relation(q: Sequence[Any] | Matrix = symbols.quaternion) -> Expr:
-    """Return the expression that vanishes for a unit quaternion, ``|q|^2 - 1``: a hypothesis for proofs."""
+    """Return ``|q|^2 - 1``, which is zero for a unit quaternion; proofs use it as a hypothesis."""
     return norm_squared(q) - 1
 
 
 def rotation_relations(matrix: Matrix) -> tuple[Expr, ...]:
-    """Return expressions that vanish for a rotation matrix: rows and columns are right-handed orthonormal frames."""
+    """Return expressions that are zero for a rotation matrix: its rows and columns are right-handed and orthonormal."""
     columns = [matrix[:, i] for i in range(3)]
     cyclic = [*columns, columns[0]]
     crossed = [a.cross(b) - columns[(k + 2) % 3] for k, (a, b) in enumerate(pairwise(cyclic))]
@@ -171,7 +171,7 @@ def quaternion_to_dcm(q: Sequence[Any] | Matrix = symbols.quaternion, form: str 
     -2*q1**2 - 2*q2**2 + 1
     """
     if form not in FORMS:
-        raise InputError(f"the form of a dcm is one of {', '.join(map(repr, FORMS))}; got {form!r}")
+        raise InputError(f"form: expected one of {', '.join(map(repr, FORMS))}, got {form!r}")
     return _dcm(tuple(expressions(q, 4, "a quaternion")), form)
 
 
@@ -188,16 +188,16 @@ def _dcm(q: tuple[Expr, ...], form: str) -> ImmutableMatrix:
 
 
 def quaternion_of_dcm(dcm_sb: Matrix, pivot: int = 0) -> ImmutableMatrix:
-    """Return a quaternion of a dcm by the branch whose divisor is ``q_pivot``, shape (4, 1).
+    """Return a quaternion of a dcm, computed by division by component ``q_pivot``, shape (4, 1).
 
-    Row ``pivot`` of the matrix ``4 q q^T``, whose entries are linear in the dcm, over ``2 sqrt`` of its diagonal
-    entry. All four branches agree up to sign where their divisor does not vanish; the pivot with the largest
-    divisor (at least 1/2) loses no digits (:func:`symrot.kinematics.conversions.dcm_to_quaternion`).
+    The result is row ``pivot`` of the matrix ``4 q q^T``, whose entries are linear in the dcm, divided by ``2 sqrt`` of
+    its diagonal entry. All four pivots give the same quaternion up to sign, if the divisor is not zero. The pivot with
+    the largest divisor (at least 1/2) loses no digits (:func:`symrot.kinematics.conversions.dcm_to_quaternion`).
     """
     if dcm_sb.shape != (3, 3):
-        raise InputError(f"a dcm is a 3 x 3 matrix, got shape {dcm_sb.shape}")
+        raise InputError(f"expected a dcm of shape (3, 3), got shape {dcm_sb.shape}")
     if pivot not in range(4):
-        raise InputError(f"pivot is 0, 1, 2 or 3, the component divided by; got {pivot!r}")
+        raise InputError(f"pivot: expected 0, 1, 2 or 3, the index of the component to divide by; got {pivot!r}")
     squares = _four_q_q(dcm_sb)
     return ImmutableMatrix(squares[pivot, :].T / (2 * squares[pivot, pivot] ** Rational(1, 2)))
 
@@ -216,9 +216,10 @@ def _four_q_q(dcm_sb: Matrix) -> Matrix:
 
 
 def quaternion_rates(frame: str = "body", q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-    """Return M(q) of ``dq/dt = M(q) * omega``.
+    """Return the matrix M(q) of ``dq/dt = M(q) * omega``.
 
-    Its columns are the last three of L(q)/2 (body) or R(q)/2 (space). The norm of q stays exactly constant, for any q.
+    Its columns are the last three of L(q)/2 (body) or R(q)/2 (space), with ``q p = L(q) p`` and ``p q = R(q) p``. The
+    rates preserve the norm of q exactly, whatever that norm is.
 
     Parameters
     ----------
@@ -252,9 +253,9 @@ def quaternion_rates(frame: str = "body", q: Sequence[Any] | Matrix = symbols.qu
 
 
 def quaternion_rate_jacobian(frame: str = "body", q: Sequence[Any] | Matrix = symbols.quaternion) -> RateMatrix:
-    """Return B(q), shape (3, 4), of ``omega = B(q) * dq/dt`` for unit q: ``2 q* dq`` or ``2 dq q*``.
+    """Return the rate matrix B(q), shape (3, 4), of ``omega = B(q) * dq/dt`` for unit q: ``2 q* dq`` or ``2 dq q*``.
 
-    Its determinant, with the gradient of ``|q|^2`` as a fourth row, is a constant: no attitude is singular.
+    With the gradient of ``|q|^2`` as a fourth row, its determinant is constant: B is singular at no attitude.
     """
     q = expressions(q, 4, "a quaternion")
     product = (left_matrix if check_frame(frame) == "body" else right_matrix)(conjugate(q))
@@ -285,7 +286,7 @@ def _constant(determinant: Expr, inverse: ImmutableMatrix, _: Expr) -> tuple[Exp
 
 @cache
 def chart() -> Chart:
-    """Return the chart of unit quaternions: every attitude twice (q and -q), singular nowhere."""
+    """Return the chart of unit quaternions: it describes every attitude twice (q and -q), and is singular nowhere."""
     return Chart(
         name="quaternion",
         parameters=symbols.quaternion,

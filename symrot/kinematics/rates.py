@@ -1,7 +1,7 @@
-"""Numeric rates: angular velocity to rates of quaternions and Euler angles, and back. NumPy alone.
+"""Rates of quaternions and Euler angles from the angular velocity, and the inverse, with NumPy alone.
 
-Arrays of any leading shape; conventions and bad rows as in :mod:`symrot.kinematics.conversions`. The formulas are
-those that :mod:`symrot.kinematics.euler` and :mod:`symrot.kinematics.quaternion` derive; the tests compare.
+Arrays may have any leading shape; bad rows are treated as in :mod:`symrot.kinematics.conversions`. The tests compare
+the results with the formulas that :mod:`symrot.kinematics.euler` and :mod:`symrot.kinematics.quaternion` derive.
 """
 
 from typing import Any
@@ -16,7 +16,7 @@ __all__ = ["angular_velocity", "euler_angular_velocity", "euler_rates", "quatern
 
 def _is_body(frame: str) -> bool:
     if frame not in ("body", "space"):
-        raise InputError(f"frame is 'body' or 'space', the frame whose components omega has; got {frame!r}")
+        raise InputError(f"frame: expected 'body' or 'space', the frame of the components of omega; got {frame!r}")
     return frame == "body"
 
 
@@ -35,7 +35,7 @@ def angular_velocity(q: Any, dq: Any, frame: str = "body") -> Array:
 
 
 def _turn(vector: Array, axis: int, angle: Array) -> Array:
-    """Return vectors turned about a coordinate axis, right-handed."""
+    """Return vectors rotated about a coordinate axis by an angle (rad), right-handed."""
     j, k = (axis + 1) % 3, (axis + 2) % 3
     shape = np.broadcast_shapes(vector.shape[:-1], angle.shape)
     turned: Array = np.broadcast_to(vector, (*shape, 3)).copy()
@@ -47,7 +47,7 @@ def _turn(vector: Array, axis: int, angle: Array) -> Array:
 
 @np.errstate(all="ignore")
 def euler_rates(angles: Any, omega: Any, sequence: str, frame: str = "body") -> tuple[Array, Mask]:
-    """Return the rates of Euler angles, shape (..., 3), rad/s, and where they are infinite, shape (...).
+    """Return the rates of Euler angles, shape (..., 3), rad/s, and a mask of gimbal lock, shape (...).
 
     Parameters
     ----------
@@ -61,9 +61,9 @@ def euler_rates(angles: Any, omega: Any, sequence: str, frame: str = "body") -> 
 
     Notes
     -----
-    Seen from between the middle and the last turn, the middle axis m and the last axis e are fixed and the first axis
-    is in the plane of e and w = m x e: ``-sin(q2) w + cos(q2) e`` (proper) or ``sign (cos(q2) w + sin(q2) e)``
-    (Tait-Bryan). At lock, where its part along w vanishes exactly, the row is not finite and the mask is True.
+    In the frame between the middle and the last rotation, the middle axis m and the last axis e are fixed, and the
+    first axis is ``-sin(q2) w + cos(q2) e`` (proper) or ``sign (cos(q2) w + sin(q2) e)`` (Tait-Bryan), with w = m x e.
+    At gimbal lock its component along w is exactly zero; the rates are not finite and the mask is True.
     """
     (first, middle, last), order, cross, sign = places(sequence)
     angles = array_of(angles, 3, what=f"a set of {sequence} angles")

@@ -1,8 +1,9 @@
-"""Rodrigues parameters, classical (axis tan(angle/2)) and modified (axis tan(angle/4), with the shadow set).
+"""Rodrigues parameters: classical, axis times tan(angle/2), and modified, axis times tan(angle/4).
 
-Both are projections of the unit quaternions from a point on the scalar axis: from the centre, and from (-1, 0, 0, 0).
-A projection is given by a quaternion h(p) of any norm that is polynomial in the parameters; dcm and rates follow by
-the product alone, and are rational. Convention: :mod:`symrot.conventions`. Proof: ``derivations/rodrigues.md``.
+Both are projections of the unit quaternions from a point on the scalar axis: the classical parameters from the centre
+of the unit sphere, the modified ones from (-1, 0, 0, 0). Each projection is described by a quaternion h(p) of any norm
+that is polynomial in the parameters; the dcm and the rates follow from h by the Hamilton product and are rational in p.
+Convention: :mod:`symrot.conventions`. Proof: ``derivations/rodrigues.md``.
 """
 
 from collections.abc import Sequence
@@ -36,10 +37,10 @@ class Projection:
         return ImmutableMatrix([component / (self.centre + q0) for component in vector])
 
     def homogeneous(self, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
-        """Return a quaternion on the ray of the parameters, of any norm, polynomial in them, shape (4, 1).
+        """Return a quaternion h(p) of the attitude, polynomial in the parameters, of any norm, shape (4, 1).
 
-        The line from ``(-centre, 0, 0, 0)`` through ``(0, p)`` meets the unit sphere at
-        ``(-centre, 0) + k (centre or 1, p)``; the scale is free, the square root is not needed.
+        The line from ``(-centre, 0, 0, 0)`` through ``(0, p)`` meets the unit sphere at ``(-centre, 0) + k (centre or
+        1, p)``. Leaving the scale free avoids the square root of a unit quaternion.
         """
         p = expressions(self.parameters if values is None else values, 3, self.name)
         if self.centre == 0:
@@ -48,7 +49,7 @@ class Projection:
         return ImmutableMatrix([1 - square, *(2 * component for component in p)])
 
     def norm(self, values: Sequence[Any] | Matrix | None = None) -> Expr:
-        """Return the norm of :meth:`homogeneous`: a polynomial for the modified parameters, a root for the others."""
+        """Return the norm of :meth:`homogeneous`: a polynomial if modified, a square root if classical."""
         base, exponent = factor(norm_squared(self.homogeneous(values))).as_base_exp()
         return base ** (exponent / 2)
 
@@ -61,9 +62,9 @@ class Projection:
         return _dcm(self, expressions(self.parameters if values is None else values, 3, self.name))
 
     def rate_matrix(self, frame: str = "body") -> RateMatrix:
-        """Return B(p), shape (3, 3), with ``omega = B(p) * dp/dt``; never singular.
+        """Return the rate matrix B(p), shape (3, 3), with ``omega = B(p) * dp/dt``; it is never singular.
 
-        From ``omega = 2 h* dh / |h|^2`` (vector part), which holds for a quaternion of any norm.
+        It follows from the vector part of ``omega = 2 h* dh / |h|^2``, which holds for a quaternion h of any norm.
         """
         return _rate_matrix(self, check_frame(frame))
 
@@ -102,7 +103,7 @@ def _rate_matrix(which: Projection, frame: str) -> RateMatrix:
     size = Symbol("size", positive=True)
     straight = {p[0]: size, p[1]: Integer(0), p[2]: Integer(0)}
     length = sqrt(sum(component**2 for component in p))
-    # a turn of p turns B with it, so that its singular values depend on the length of p alone
+    # B(R p) = R B(p) R^T for any rotation R, so the singular values of B depend on the length of p alone
     condition = condition_of((matrix.T * matrix).xreplace(straight).applyfunc(factor))
     return RateMatrix.build(
         matrix,
@@ -124,7 +125,7 @@ def _rate_matrix(which: Projection, frame: str) -> RateMatrix:
 def _along(
     parameters: tuple[Symbol, ...], determinant: Expr, inverse: ImmutableMatrix, size: Expr
 ) -> tuple[Expr, ImmutableMatrix]:
-    """Return determinant and inverse at ``p = size * n``, for a unit axis n."""
+    """Return the determinant and the inverse of the rate matrix at ``p = size * n``, for a unit axis n."""
     straight = dict(zip(parameters, (size, Integer(0), Integer(0)), strict=True))
     turned = dict(zip(parameters, (size * n for n in symbols.axis), strict=True))
     return determinant.xreplace(straight), inverse.xreplace(turned)
@@ -139,17 +140,17 @@ def projection(name: str) -> Projection:
     for which in (CLASSICAL, MODIFIED):
         if which.name == name:
             return which
-    raise InputError(f"a set of Rodrigues parameters is 'rodrigues' or 'mrp'; got {name!r}")
+    raise InputError(f"expected 'rodrigues' (classical) or 'mrp' (modified Rodrigues parameters), got {name!r}")
 
 
 def chart(name: str) -> Chart:
-    """Return the chart of ``"rodrigues"`` (no half turns) or ``"mrp"`` (no full turns; see :func:`shadow`)."""
+    """Return the chart of ``"rodrigues"`` (without rotations by pi) or ``"mrp"`` (without rotations by 2 pi)."""
     return projection(name).chart()
 
 
 def shadow(values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
-    """Return the modified parameters of the same attitude by -q, shape (3, 1): the shadow set, ``-s / |s|^2``.
+    """Return the second set of modified Rodrigues parameters of the same attitude (from -q), ``-s / |s|^2``.
 
-    Of the two sets one has length at most 1; switching there keeps the parameters bounded for every motion.
+    One of the two sets has length at most 1; switching to it keeps the parameters bounded for every motion.
     """
     return ImmutableMatrix(MODIFIED.of_quaternion(-MODIFIED.quaternion(values)).applyfunc(cancel))

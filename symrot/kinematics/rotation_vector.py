@@ -1,6 +1,6 @@
 """Rotation vector (axis times angle): the exponential map and its Jacobians, and the axis-angle pair.
 
-Everything is a function of one skew matrix K, read off its eigenvalues
+Every formula is a function of the skew matrix K of the vector, computed from the eigenvalues of K
 (:func:`symrot.kinematics.rotations.function_of_skew`). The coefficients have removable singularities at zero angle;
 their values there are limits. Convention: :mod:`symrot.conventions`. Proof: ``derivations/rotation_vector.md``.
 """
@@ -51,14 +51,15 @@ _size = Symbol("a", positive=True)
 
 
 def _stretch(z: Expr) -> Expr:
-    """Return ``sinh(z/2) / (z/2)``: by how much the exponential map stretches what lies across the vector."""
+    """Return ``sinh(z/2) / (z/2)``, the factor by which the exponential map scales components normal to the vector."""
     return 2 * sinh(z / 2) / z
 
 
 def _jacobian_function(frame: str) -> Callable[[Expr], Expr]:
-    """Return f with ``B = f(K)``: the mean of ``exp(-s K)`` (body) or ``exp(s K)`` (space) over s in [0, 1].
+    """Return the function f of the rate matrix ``B = f(K)``, K the skew matrix of the rotation vector.
 
-    ``(1 - exp(-z)) / z = exp(-z/2) sinh(z/2) / (z/2)``: half a turn, and a stretch.
+    f(K) is the mean over s in [0, 1] of ``exp(-s K)`` (body) or ``exp(s K)`` (space). For the body,
+    ``f(z) = (1 - exp(-z)) / z = exp(-z/2) sinh(z/2) / (z/2)``: a rotation by half the angle, times a scale factor.
     """
     sign = {"body": -1, "space": 1}[check_frame(frame)]
     return lambda z: exp(sign * z / 2) * _stretch(z)
@@ -83,7 +84,7 @@ def _combine(which: str, vector: Sequence[Expr], size: Expr) -> ImmutableMatrix:
 
 
 def length(vector: Sequence[Expr]) -> Expr:
-    """Return ``sqrt(v1^2 + v2^2 + v3^2)``."""
+    """Return the length of a vector, ``sqrt(v1^2 + v2^2 + v3^2)``."""
     return sqrt(sum(component**2 for component in vector))
 
 
@@ -96,8 +97,9 @@ def dcm(vector: Sequence[Any] | Matrix = symbols.rotation_vector) -> ImmutableMa
 def jacobian(frame: str = "body", vector: Sequence[Any] | Matrix = symbols.rotation_vector) -> RateMatrix:
     """Return B(v), shape (3, 3), with ``omega = B(v) * dv/dt``: the Jacobian of the exponential map.
 
-    Body: the right Jacobian ``1 - (1 - cos a)/a^2 K + (a - sin a)/a^3 K^2``, a = |v|; space: the left one, its
-    transpose. Singular at ``a = 2 pi n`` but 0, where different vectors across name one attitude.
+    Body: the right Jacobian ``1 - (1 - cos a)/a^2 K + (a - sin a)/a^3 K^2`` with a = |v| and K the skew matrix of v;
+    space: the left Jacobian, its transpose. B is singular at ``a = 2 pi n`` with n > 0, where vectors of all directions
+    describe the same attitude.
 
     Raises
     ------
@@ -116,7 +118,7 @@ def jacobian(frame: str = "body", vector: Sequence[Any] | Matrix = symbols.rotat
             relations=(),
             inverse=_combine(f"{frame} inverse", vector, size),
             determinant=stretch**2,
-            condition_number=1 / Abs(stretch),  # singular values: 1 along v, |stretch| <= 1 across
+            condition_number=1 / Abs(stretch),  # singular values of B: 1 along v, |stretch| <= 1 normal to v
             variable=size,
             along=partial(_along, frame),
             domain=Interval.open(0, oo),
@@ -125,7 +127,7 @@ def jacobian(frame: str = "body", vector: Sequence[Any] | Matrix = symbols.rotat
 
 
 def _along(frame: str, size: Expr) -> tuple[Expr, ImmutableMatrix]:
-    """Return determinant and inverse at ``v = size * n``, for a unit axis n."""
+    """Return the determinant and the inverse of the rate matrix at ``v = size * n``, for a unit axis n."""
     vector = tuple(size * n for n in symbols.axis)
     return (sin(size / 2) / (size / 2)) ** 2, _combine(f"{frame} inverse", vector, size)
 
@@ -144,7 +146,7 @@ def rotation_vector_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion
 
 
 def dcm_of_axis_angle(axis: Sequence[Any] | Matrix = symbols.axis, angle: Any = symbols.alpha) -> ImmutableMatrix:
-    """Return ``dcm_sb`` of a turn by ``angle`` (rad) about a unit axis, shape (3, 3)."""
+    """Return ``dcm_sb`` of a rotation by ``angle`` (rad) about a unit axis, shape (3, 3)."""
     axis, angle = expressions(axis, 3, "an axis"), sympify(angle)
     c0, c1, c2 = function_of_skew(lambda z: exp(angle * z), Integer(1), Integer(1))
     matrix = skew(axis)
@@ -154,15 +156,15 @@ def dcm_of_axis_angle(axis: Sequence[Any] | Matrix = symbols.axis, angle: Any = 
 def quaternion_of_axis_angle(
     axis: Sequence[Any] | Matrix = symbols.axis, angle: Any = symbols.alpha
 ) -> ImmutableMatrix:
-    """Return the unit quaternion of a turn by ``angle`` (rad) about a unit axis, shape (4, 1)."""
+    """Return the unit quaternion of a rotation by ``angle`` (rad) about a unit axis, shape (4, 1)."""
     axis, half = expressions(axis, 3, "an axis"), sympify(angle) / 2
     return ImmutableMatrix([cos(half), *(sin(half) * component for component in axis)])
 
 
 def axis_angle_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-    """Return ``(n1, n2, n3, alpha)`` of a quaternion of any norm, shape (4, 1); no axis at zero angle.
+    """Return axis and angle ``(n1, n2, n3, alpha)`` of a quaternion of any norm, shape (4, 1); undefined at zero angle.
 
-    ``alpha = 2 atan2(|(q1, q2, q3)|, q0)`` in [0, 2 pi]: accurate where ``2 acos(q0)`` loses every digit.
+    ``alpha = 2 atan2(|(q1, q2, q3)|, q0)`` is in [0, 2 pi] and accurate for small angles, where ``2 acos(q0)`` is not.
     """
     q0, *vector = expressions(q, 4, "a quaternion")
     size = length(vector)
@@ -170,16 +172,16 @@ def axis_angle_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion) -> 
 
 
 def axis_angle_jacobian(frame: str = "body") -> RateMatrix:
-    """Return B, shape (3, 4), with ``omega = B * d(n1, n2, n3, alpha)/dt`` for a unit axis.
+    """Return the rate matrix B, shape (3, 4), with ``omega = B * d(n1, n2, n3, alpha)/dt`` for a unit axis n.
 
-    ``omega_b = n dalpha + sin(alpha) dn - (1 - cos(alpha)) n x dn``; plus for space. The determinant is that with
-    the gradient of ``|n|^2 / 2`` as a first row, the condition number that on the rates that keep n unit. Singular at
-    ``alpha = 2 pi k``: there is no axis.
+    ``omega_b = n dalpha + sin(alpha) dn - (1 - cos(alpha)) n x dn``; in space components the last sign is plus. The
+    determinant is that of B with the gradient of ``|n|^2 / 2`` as a first row; the condition number is that of B on the
+    rates that preserve ``|n| = 1``. B is singular at ``alpha = 2 pi k``, where no axis is defined.
 
     Notes
     -----
-    The exponential map of ``alpha n``: what lies across the axis (K^2 = -1 there) is turned and stretched by
-    ``f(i) = (1 - exp(-i alpha)) / i = 2 sin(alpha/2) exp(-i alpha/2)``.
+    B is the derivative of the exponential map at ``alpha n``. Normal to the axis, where K^2 = -1, it rotates and scales
+    rates by the complex factor ``f(i) = (1 - exp(-i alpha)) / i = 2 sin(alpha/2) exp(-i alpha/2)``.
     """
     n, alpha = symbols.axis, symbols.alpha
     sign = {"body": -1, "space": 1}[check_frame(frame)]
@@ -211,7 +213,7 @@ def _axis_angle_along(frame: str, alpha: Expr) -> tuple[Expr, ImmutableMatrix]:
 
 @cache
 def chart() -> Chart:
-    """Return the chart of rotation vectors: every attitude, singular at |v| = 2 pi, 4 pi, ..."""
+    """Return the chart of rotation vectors: it describes every attitude, and is singular at |v| = 2 pi, 4 pi, ..."""
     return Chart(
         name="rotation_vector",
         parameters=symbols.rotation_vector,
@@ -227,7 +229,7 @@ def chart() -> Chart:
 
 @cache
 def axis_angle_chart() -> Chart:
-    """Return the chart of a unit axis and an angle: every attitude, singular at zero angle."""
+    """Return the chart of a unit axis and an angle: it describes every attitude, and is singular at zero angle."""
     n, alpha = symbols.axis, symbols.alpha
     return Chart(
         name="axis_angle",

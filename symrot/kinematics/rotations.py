@@ -1,6 +1,6 @@
-"""Elementary rotations and the skew matrices of vectors: the bricks of every attitude description.
+"""Elementary rotations and skew matrices of vectors, from which every attitude description is built.
 
-Convention: :mod:`symrot.conventions`. Rotations are active: ``elementary_rotation(axis, angle) * v`` turns ``v``
+Convention: :mod:`symrot.conventions`. Rotations are active: ``elementary_rotation(axis, angle) * v`` is ``v`` rotated
 about the axis by the angle, right-handed.
 """
 
@@ -31,27 +31,27 @@ FRAMES = ("body", "space")
 
 
 def check_frame(frame: str) -> str:
-    """Return ``frame``, or raise ``InputError`` when it is neither ``"body"`` nor ``"space"``."""
+    """Return ``frame``; raise ``InputError`` if it is neither ``"body"`` nor ``"space"``."""
     if frame not in FRAMES:
-        raise InputError(f"frame is 'body' or 'space', the frame whose components omega has; got {frame!r}")
+        raise InputError(f"frame: expected 'body' or 'space', the frame of the components of omega; got {frame!r}")
     return frame
 
 
 def expressions(values: Any, size: int, what: str) -> tuple[Expr, ...]:
-    """Return ``size`` values as SymPy expressions; ``InputError`` for another number of them."""
+    """Return ``values`` as a tuple of SymPy expressions; raise ``InputError`` unless there are exactly ``size``."""
     formulas = tuple(sympify(value) for value in values)
     if len(formulas) != size:
-        raise InputError(f"{what} takes {size} values, got {len(formulas)}: {formulas}")
+        raise InputError(f"expected {size} values for {what}, got {len(formulas)}: {formulas}")
     return formulas
 
 
 def axis_number(axis: int | str) -> int:
-    """Return 0, 1, 2 for an axis given as number or as letter, upper or lower case."""
+    """Return 0, 1 or 2 for an axis that is given as such a number or as a letter X, Y, Z (either case)."""
     if isinstance(axis, str) and len(axis) == 1 and axis.upper() in AXES:
         return AXES.index(axis.upper())
     if isinstance(axis, int) and not isinstance(axis, bool) and 0 <= axis < 3:
         return axis
-    raise InputError(f"an axis is 0, 1, 2 or one of the letters X, Y, Z; got {axis!r}")
+    raise InputError(f"expected an axis: 0, 1, 2 or one of the letters X, Y, Z; got {axis!r}")
 
 
 def unit_vector(axis: int | str) -> ImmutableMatrix:
@@ -74,10 +74,10 @@ def skew(vector: Sequence[Any] | Matrix) -> ImmutableMatrix:
 def vee(matrix: Matrix) -> ImmutableMatrix:
     """Return the vector of a skew matrix, shape (3, 1): the inverse of :func:`skew`.
 
-    Only the entries (3,2), (1,3), (2,1) are read; that the matrix is skew is for the caller to prove.
+    Only the entries (3,2), (1,3), (2,1) are read; the caller must ensure that the matrix is skew.
     """
     if matrix.shape != (3, 3):
-        raise InputError(f"vee takes a 3 x 3 matrix, got shape {matrix.shape}")
+        raise InputError(f"vee: expected a 3 x 3 matrix, got shape {matrix.shape}")
     return ImmutableMatrix([matrix[2, 1], matrix[0, 2], matrix[1, 0]])
 
 
@@ -93,7 +93,7 @@ def elementary_rotation(axis: int | str, angle: Any) -> ImmutableMatrix:
 
     Notes
     -----
-    The part along the axis stays, the part across it turns:
+    A vector along the axis e stays, a vector normal to it rotates:
     ``e e^T + cos(angle) (1 - e e^T) + sin(angle) skew(e)``.
     """
     return _elementary_rotation(axis_number(axis), sympify(angle))
@@ -109,25 +109,28 @@ def _elementary_rotation(axis: int, angle: Expr) -> ImmutableMatrix:
 def angular_velocity(dcm_sb: Matrix, parameter: Expr, frame: str = "body") -> ImmutableMatrix:
     """Return omega per unit rate of ``parameter``, shape (3, 1), by differentiating the dcm.
 
-    Body: ``vee(dcm^T d(dcm))``; space: ``vee(d(dcm) dcm^T)``. The definition; every other rate matrix is proven
-    against it.
+    Body components: ``vee(dcm^T d(dcm))``; space components: ``vee(d(dcm) dcm^T)``. This is the definition of omega;
+    every other rate matrix is proven against it.
     """
     rate = dcm_sb.diff(parameter)
     return vee(dcm_sb.T * rate if check_frame(frame) == "body" else rate * dcm_sb.T)
 
 
 def function_of_skew(function: Callable[[Expr], Expr], at_zero: Expr, size: Expr) -> tuple[Expr, Expr, Expr]:
-    """Return ``c0, c1, c2`` with ``function(K) = c0 + c1 K + c2 K^2`` for a skew K of a vector of length ``size``.
+    """Return ``c0, c1, c2`` with ``function(K) = c0 + c1 K + c2 K^2`` for a skew matrix K.
 
-    ``K^3 = -size^2 K``: the eigenvalues of K are 0 and +-i size, and the interpolating polynomial through them is the
-    matrix function. ``function`` has real Taylor coefficients, so that its values at +-i size are conjugate.
+    K is the skew matrix of a vector of length ``size``.
+
+    Because ``K^3 = -size^2 K``, the eigenvalues of K are 0 and +-i size, and the matrix function is the polynomial that
+    interpolates ``function`` there. ``function`` must have real Taylor coefficients, so that its values at +-i size are
+    conjugate.
 
     Parameters
     ----------
     function : callable of one Expr
         e.g. ``exp``.
     at_zero : Expr
-        Its value (limit) at zero.
+        Value (limit) of ``function`` at zero.
     size : Expr
         Length of the vector, positive.
     """

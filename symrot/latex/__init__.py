@@ -1,6 +1,6 @@
-"""The reader of LaTeX formulas: tokens, the tree of what is written, and the cursor that interpreters move along it.
+"""The reader of LaTeX formulas: tokens, the tree of a formula, and the cursor with which interpreters read the tree.
 
-The tree says how a formula is written and nothing about its meaning. Three interpreters give it one: the checker makes
-claims (:mod:`symrot.checker.latex`), the derivations make SymPy (:mod:`symrot.proof.notation.latex_reader`), and the
-pages make MathML (:mod:`symrot.proof.notation.mathml`).
+The tree describes how a formula is written, not its meaning. Three interpreters read it: the checker makes claims
+(:mod:`symrot.checker.latex`), derivations make SymPy expressions (:mod:`symrot.proof.notation.latex_reader`), and pages
+make MathML (:mod:`symrot.proof.notation.mathml`).
 """

@@ -1,4 +1,4 @@
-"""The cursor with which an interpreter moves along a row of the tree: pieces, then the scripts of each."""
+"""The cursor with which an interpreter reads a row of the LaTeX tree, item by item, each item before its scripts."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import ClassVar, TypeVar
@@ -13,16 +13,19 @@ Value = TypeVar("Value")
 
 
 class Cursor:
-    """The position in a row. Spaces are left out, delimiters are plain brackets, scripts follow the piece they mark.
+    """The current position of an interpreter in a row of the LaTeX tree.
+
+    Spaces are skipped, ``\\left`` and ``\\right`` are removed from delimiters, and indices and powers follow the item
+    that they belong to.
 
     Attributes
     ----------
     source, where : str
-        The whole formula and its place, for error messages.
+        The whole formula, and its place for error messages.
     synonyms : mapping
-        Text of a token -> the text by which the interpreter knows it.
+        Text of a token -> the text under which the interpreter knows it.
     after_space : set of int
-        Positions of the items after a command for space.
+        Positions of the items that follow a LaTeX command for space.
     """
 
     synonyms: ClassVar[Mapping[str, str]] = {}
@@ -34,11 +37,11 @@ class Cursor:
         self.enter(row)
 
     def fail(self, expected: str, item: Node | None = None) -> InputError:
-        """Return the error for an item, by default the next one, that is not the expected one."""
+        """Return the InputError that names the expected text, at the given item or else at the next one."""
         return complaint(self.source, self.where, (item or self.peek()).start, expected)
 
     def enter(self, node: Node) -> None:
-        """Start to read a row, or a single item."""
+        """Move the cursor to the beginning of a row, or of a single item as a row."""
         self.items: list[Node] = []
         self.index = 0
         self.flatten(node.items if isinstance(node, Row) else (node,))
@@ -62,7 +65,7 @@ class Cursor:
                 space = False
 
     def inside(self, node: Node, read: Callable[[], Value], closing: str = "'}'") -> Value:
-        """Read the whole of a row, or a single item, and return to the place before it."""
+        """Read a row or a single item to its end with ``read``, then return to the position before it."""
         outside = self.items, self.index, self.open_bars
         self.enter(node)
         self.open_bars = ()
@@ -73,7 +76,7 @@ class Cursor:
         return value
 
     def listed(self, read: Callable[[], Value], closing: str) -> list[Value]:
-        """Read values between commas, and the bracket that closes them."""
+        """Read values that are separated by commas, and the closing bracket."""
         bars, self.open_bars = self.open_bars, ()
         values = [read()]
         while self.take(","):
@@ -83,7 +86,7 @@ class Cursor:
         return values
 
     def barred(self, read: Callable[[], Value], bar: str) -> Value:
-        """Read a value, and the bar that closes it."""
+        """Read a value between two bars, after the opening bar, and the closing bar."""
         outside, self.open_bars = self.open_bars, (*self.open_bars, bar)
         value = read()
         self.expect(bar)
@@ -103,7 +106,7 @@ class Cursor:
         return item
 
     def take(self, text: str) -> bool:
-        """Step over an item if it is next, and return whether it was."""
+        """Skip the next item if it has the given text, and return whether it had."""
         is_next = self.items[self.index].text == text
         self.index += is_next
         return is_next
@@ -113,7 +116,7 @@ class Cursor:
             raise self.fail(f"'{text}'")
 
     def script(self, mark: str) -> Script | None:
-        """Step over a script if it is next, and return it."""
+        """Return the next item and move past it if it is a script (index or power) with this mark, else return None."""
         item = self.items[self.index]
         if isinstance(item, Script) and item.text == mark:
             self.index += 1

@@ -1,4 +1,4 @@
-"""The reader of LaTeX: from tokens to the tree of what is written. What it cannot read is refused with its place."""
+"""The parser of LaTeX, from tokens to the tree of a formula. It raises InputError with the place of any other text."""
 
 from collections.abc import Callable, Sequence
 
@@ -11,17 +11,17 @@ __all__ = ["read"]
 DEEPEST_NESTING = 60
 REPEATED = {"_": "only one subscript", "^": "brackets around a repeated power", "'": "primes in one place"}
 AFTER = frozenset(["script", "prime", "space"])
-"""Kinds of tokens that may be a script of the piece before them."""
+"""Kinds of tokens that may be a script (index, power or prime) of the item before them."""
 
 
 def read(source: str, where: str = "", pieces: Sequence[Token] = ()) -> Row:
-    """Return the tree of a formula: of the tokens ``pieces`` if they are given, else of all of the source.
+    """Return the tree of a LaTeX formula, or of the given tokens ``pieces`` of it.
 
     Raises
     ------
     InputError
-        For a group, a matrix or a delimiter that is not closed, for a missing argument, and for two indices or two
-        powers of one piece, with the position.
+        With the position, for a group, matrix or delimiter that is not closed, a missing argument, or two indices or
+        two powers of one item.
     """
     return _Reader(source, where, pieces or tokens(source)).row("", "end")
 
@@ -35,7 +35,7 @@ class _Reader:
         return complaint(self.source, self.where, token.start, expected)
 
     def row(self, closing: str, *stops: str) -> Row:
-        """Read items up to one of the stops, kinds or texts of tokens, which is not used."""
+        """Read items up to a token whose kind or text is one of ``stops``; that token stays unread."""
         items: list[Node] = []
         first = token = self.tokens[self.place]
         while token.kind not in stops and token.text not in stops:
@@ -43,7 +43,7 @@ class _Reader:
                 raise self.fail(f"'{closing}'" if closing else "\\left or \\begin before this", token)
             if token.kind in READERS or self.tokens[self.place + 1].kind in AFTER:
                 items.append(self.item())
-            else:  # most items are a token
+            else:  # most items are a single token
                 items.append(token)
                 self.place += 1
             token = self.tokens[self.place]
@@ -56,7 +56,7 @@ class _Reader:
         return Row(row.items, opening.start, row.end)
 
     def item(self) -> Node:
-        """Read a piece with its scripts."""
+        """Read one item of a formula with its scripts (index, power and primes)."""
         base = self.atom()
         scripts: dict[str, Script] = {}
         while base.kind != "space" and (mark := self.mark()):
@@ -67,11 +67,11 @@ class _Reader:
         if not scripts:
             return base
         if "^" in scripts:
-            scripts["^"] = scripts.pop("^")  # last
+            scripts["^"] = scripts.pop("^")  # moves the power to the end
         return Scripts(base, tuple(scripts.values()), base.start)
 
     def mark(self) -> Token | None:
-        """Step over the mark of a script and spaces before it, if it is next, and return it."""
+        """Skip the mark of a script and spaces before it, if a script is next, and return the mark."""
         place = self.place
         while self.tokens[place].kind == "space":
             place += 1
@@ -82,7 +82,7 @@ class _Reader:
         return token
 
     def argument(self) -> Node:
-        """Read a group in braces, or one piece; of a number, one digit."""
+        """Read a group in braces or a single item; of a number without braces, one digit, as LaTeX does."""
         while self.tokens[self.place].kind == "space":
             self.place += 1
         token = self.tokens[self.place]

@@ -1,4 +1,4 @@
-"""The tokens of LaTeX, with their positions. A delimiter with its size is one token, an environment's begin another."""
+"""The tokens of LaTeX, with their positions. ``\\left(`` is one token, and so is ``\\begin{matrix}``."""
 
 import re
 from typing import NamedTuple
@@ -12,11 +12,11 @@ GREEK = {
     "psi": "ψ", "omega": "ω", "Gamma": "Γ", "Delta": "Δ", "Theta": "Θ", "Lambda": "Λ", "Xi": "Ξ", "Pi": "Π",
     "Sigma": "Σ", "Upsilon": "Υ", "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω", "ell": "ℓ",
 }  # fmt: skip
-"""Letter -> its character; pi is a number."""
+"""Greek letter -> its character; pi is missing because it is a number."""
 
 _DELIMITER = r"(?:[()\[\]|/.<>]|\\[{}|]|\\(?:[lr](?:brace|brack|vert|Vert|angle|floor|ceil)|[vV]ert)(?![A-Za-z]))"
 _PRIME = r"(?:['′]|\\prime(?![A-Za-z]))"
-_TOKEN = re.compile(  # the commonest tokens first; blanks match nothing
+_TOKEN = re.compile(  # the most frequent tokens first; blanks are no token
     r"(?P<letter>[A-Za-z])|(?P<mark>[-+=()}\[\]&])|(?P<group>\{)|(?P<number>\d+(?:\.\d+)?|\.\d+)"
     rf"|(?P<prime>\^\s*(?:{_PRIME}+|\{{\s*(?:{_PRIME}\s*)+\}})|{_PRIME}+)|(?P<script>[_^])"
     rf"|(?P<sized>\\(?:left|right|middle|[bB]igg?[lrm]?)\s*{_DELIMITER})"
@@ -34,7 +34,7 @@ _KINDS = {f"\\{name}": kind for kind, names in _COMMANDS.items() for name in nam
 
 
 class Token(NamedTuple):
-    """A token of a kind, such as ``letter`` or ``command``; ``start`` is its position in the source."""
+    """A token of LaTeX; ``kind`` is e.g. ``letter`` or ``command``, ``start`` its position in the source."""
 
     kind: str
     text: str
@@ -42,9 +42,10 @@ class Token(NamedTuple):
 
 
 def tokens(source: str, start: int = 0, stop: int | None = None) -> list[Token]:
-    """Return the tokens of a text without blanks; the last one is of kind ``end``.
+    """Return the tokens of a text without blanks; the last token has the kind ``end``.
 
-    Every character that belongs to no other token is a mark, so that each interpreter refuses it with its place.
+    A character that belongs to no other token becomes a token of its own, so that each interpreter can report its
+    position.
     """
     stop = len(source) if stop is None else stop
     pieces = []

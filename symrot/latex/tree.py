@@ -1,8 +1,8 @@
-"""The tree of a LaTeX formula: the formula as it is written, before anything is known about its meaning.
+"""The tree of a LaTeX formula: how the formula is written, without its meaning.
 
-Operators, relations and brackets such as ``(`` and ``|`` are tokens of a row, as they are in LaTeX: which bracket
-closes which, and what is a product, depends on the meaning. Every node has ``start``, its position in the source,
-``text``, the command or mark it begins with, and ``kind``, of which only tokens have several.
+Operators, relations and brackets such as ``(`` and ``|`` are separate tokens of a row, because the meaning decides
+which bracket closes which and what is a product. Every node has ``start``, its position in the source, ``text``, its
+first command or mark, and ``kind``; only tokens have more than one kind.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ __all__ = ["Accent", "Delimited", "Font", "Fraction", "Node", "Root", "Row", "Sc
 
 @dataclass(frozen=True)
 class Row:
-    """A row of items: a whole formula, a group in braces, a cell of a table; ``end`` is the place of what closes it."""
+    """A row of items: a whole formula, a group in braces, or a cell of a table; ``end`` is the position of its end."""
 
     items: tuple["Node", ...]
     start: int
@@ -25,7 +25,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Command:
-    """A command with one argument, or the mark of a script with its inside; ``text`` is the command or the mark."""
+    """A command with one argument, or a script with its content; ``text`` is the command, or the mark of the script."""
 
     text: str
     inside: "Node"
@@ -34,7 +34,7 @@ class Command:
 
 
 class Accent(Command):
-    """A mark over or under its argument: ``\\dot``, ``\\vec``, ``\\hat``."""
+    """An accent over or under its argument: ``\\dot``, ``\\vec``, ``\\hat``."""
 
 
 class Font(Command):
@@ -42,12 +42,12 @@ class Font(Command):
 
 
 class Script(Command):
-    """An index, a power or primes after a piece: ``text`` is ``_``, ``^`` or ``'``; inside primes is their token."""
+    """An index, power or prime: ``text`` is ``_``, ``^`` or ``'``, and the content of primes is their token."""
 
 
 @dataclass(frozen=True)
 class Scripts:
-    """A piece with its scripts: an index and primes as they are written, then the power."""
+    """An item with its scripts: index and primes in the order in which they are written, then the power."""
 
     base: "Node"
     scripts: tuple[Script, ...]
@@ -57,7 +57,7 @@ class Scripts:
 
 @dataclass(frozen=True)
 class Fraction:
-    """A fraction with any of the commands ``\\frac``, ``\\tfrac``, ``\\dfrac`` and ``\\cfrac``."""
+    """A fraction, written with ``\\frac``, ``\\tfrac``, ``\\dfrac`` or ``\\cfrac``."""
 
     command: str
     above: "Node"
@@ -78,7 +78,7 @@ class Root:
 
 @dataclass(frozen=True)
 class Delimited:
-    """A row between ``\\left`` and ``\\right``, with the tokens of its delimiters."""
+    """A row between ``\\left`` and ``\\right``, with the tokens of the two delimiters."""
 
     opening: Token
     inside: Row
@@ -89,7 +89,7 @@ class Delimited:
 
 @dataclass(frozen=True)
 class Table:
-    """An environment with cells in lines: a matrix, cases, or several lines of formulas."""
+    """An environment with lines of cells: a matrix, cases, or several lines of formulas."""
 
     name: str
     lines: tuple[tuple[Row, ...], ...]
@@ -101,14 +101,14 @@ Node = Token | Row | Accent | Font | Script | Scripts | Fraction | Root | Delimi
 
 
 def alone(node: Node) -> Node:
-    """Return the only item of a group in braces, of any depth; the node itself if it is no such group."""
+    """Return the only item of nested groups in braces; return any other node unchanged."""
     while isinstance(node, Row) and len(node.items) == 1:
         node = node.items[0]
     return node
 
 
 def divided(row: Row, mark: str) -> list[Row]:
-    """Return the parts of a row between the tokens ``mark``."""
+    """Return the rows between the tokens ``mark`` of a row."""
     rows, first = [], 0
     for place, item in enumerate(row.items):
         if item.text == mark:

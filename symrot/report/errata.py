@@ -1,4 +1,4 @@
-"""Findings about the claims of four documents: a table for the terminal, and the page ``generated/errata.md``."""
+"""Findings about the claims of four textbooks and courses: a table for the terminal, and ``generated/errata.md``."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -16,7 +16,7 @@ Survey = list[tuple[Document, list[Finding]]]
 def survey(
     names: Sequence[str] = DOCUMENTS, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Survey:
-    """Return the findings about the claims of some documents: true or false, with corrections."""
+    """Decide the claims of some documents and return the findings: true or false, with corrections."""
     documents = []
     for name in names:
         source = document(name)
@@ -31,7 +31,7 @@ def _total(items: Sequence[Finding]) -> str:
 
 
 def lines(survey: Survey) -> list[str]:
-    """Return the findings about claims as lines of text: one line per claim, more if it is not true, and a summary."""
+    """Return the findings as lines of text: one line per claim, more if the claim is not true, and a summary."""
     text: list[str] = []
     for source, items in survey:
         text += [f"{source.title} [{source.name}]", ""]
@@ -74,9 +74,7 @@ def facts(survey: Survey) -> list[dict[str, Any]]:
 
 
 def page(survey: Survey) -> str:
-    """Return the text of ``errata.md``: the claims of each document that do not hold, with right form, reason and
-    proof.
-    """
+    """Return the text of ``errata.md``: the claims that do not hold, with correction, reason and proof, by document."""
     text = [
         "# Errata",
         "",
@@ -102,7 +100,7 @@ def _entry(item: Finding) -> list[str]:
 
 
 def _code(words: str) -> str:
-    """Return any text as inline code on one line."""
+    """Return a text as inline code on one line of Markdown."""
     flat = " ".join(words.split())
     fence = "``" if "`" in flat else "`"
     return f"{fence}{flat}{fence}"

@@ -1,4 +1,4 @@
-"""A plan as a table: each item computed or skipped, the rule, its derivation, and the operations it saves."""
+"""The plan of a scene as a table: items computed or skipped, the rule, its derivation, and the operations saved."""
 
 from collections import Counter
 from typing import TYPE_CHECKING
@@ -18,7 +18,7 @@ FREE = frozenset({"neg"})  # a minus sign counts as part of its addition or mult
 
 
 def _operations(structure: Structure) -> Counter[str]:
-    """Return the counts of operations, by kind, in one evaluation of the rates of a structure."""
+    """Return the numbers of operations, by kind, in one evaluation of the rates of a structure."""
     from symrot.codegen.scene_kernels import rates_program
     from symrot.dynamics.equations import equations_of_motion
 
@@ -32,9 +32,7 @@ def _row(item: str, skipped: bool, why: str, derivation: str = "", operations: C
 
 
 def _ladder(plan: Plan) -> "list[PlanRow]":
-    """Return one row for each rule of the plan, with the operations that remain after the rule and those that it
-    saves.
-    """
+    """Return one row for each rule of the plan, with the operations that remain after it and those it saves."""
     from symrot.planning.plan import general_structure
 
     general = _operations(general_structure(plan.scene, bool(plan.switches)))
@@ -49,7 +47,7 @@ def _ladder(plan: Plan) -> "list[PlanRow]":
 
 
 def _others(plan: Plan) -> "list[PlanRow]":
-    """Return the rows of the table that no rule decides: states, method, outputs, cached kernel."""
+    """Return the rows of the table that do not come from rules: states, method, outputs, cached kernel."""
     from symrot.build import cache as library
     from symrot.propagation.compiled_models import kernel_key
     from symrot.propagation.method import choose_method
@@ -75,7 +73,7 @@ BENDS = frozenset({"abs", "min", "max", "clip"})
 
 
 def _formulas(plan: Plan, method: str) -> "list[PlanRow]":
-    """Return the rows that say how steps are kept from missing narrow features and switches of a formula."""
+    """Return the rows about safeguards for torques by formula: no step misses a narrow feature or a switch."""
     from symrot.propagation.compiled_models import has_formulas
 
     if not has_formulas(plan):
@@ -93,7 +91,7 @@ def _narrow_features(plan: Plan) -> "PlanRow":
 
     try:
         terms = enclosure(recurrences(scene_kernel(plan).rates))
-    except InputError as reason:  # no Taylor series, and so no bound of what a step leaves out
+    except InputError as reason:  # without a Taylor series there is no bound for a feature between two samples
         return _row("narrow features", False, f"NOT looked for: {reason}")
     if terms is None:
         why = "the formulas are polynomials of low degree, or sines and cosines of time: as broad as they look"
@@ -131,7 +129,7 @@ def _samples(plan: Plan) -> "list[PlanRow]":
 def facts(plan: Plan) -> "PlanReport":
     """Return the explained plan as data for JSON.
 
-    In each row, ``operations`` counts the operations by kind after the row, and ``saved`` is the change.
+    In each row, ``operations`` counts the remaining operations by kind, and ``saved`` is the change by this row.
     """
     scene = plan.scene
     ladder = _ladder(plan)
@@ -155,7 +153,7 @@ def _counts_text(counts: dict[str, int] | None) -> str:
 
 
 def lines(report: "PlanReport") -> list[str]:
-    """Return the explained plan, the data of :func:`facts`, as lines of text; the first line is the title."""
+    """Return the explained plan, as :func:`facts` returns it, as lines of text; the first line is the title."""
     rows = [HEAD]
     for row in report["rows"]:
         changed = row["saved"] != 0

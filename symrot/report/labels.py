@@ -53,8 +53,8 @@ def _euler(output: Output) -> tuple[tuple[str, ...], str, str]:
 def labelled(trajectory: Any) -> list[Labelled]:
     """Return the time and the output quantities of a trajectory, each with its labels.
 
-    Euler angles are followed by the column :data:`LOCK`, which is true where the sequence is at gimbal lock, so that
-    only a sum or a difference of two of its angles is defined.
+    Euler angles are followed by the column :data:`LOCK`. It is true where the sequence is in gimbal lock, so that only
+    the sum or the difference of two angles is defined.
     """
     output = trajectory.scene.output
     quantities = [Labelled("t", trajectory.t, ("t",), "s", "", "time")]

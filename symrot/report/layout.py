@@ -11,12 +11,12 @@ from typing import TextIO
 __all__ = ["WIDTH", "apart", "columns", "duration", "emphasis", "exact", "fields", "number_text", "one_line", "room"]
 
 WIDTH = 110
-NARROWEST = 40  # least width to which text is wrapped
-MARGIN = 2  # columns of a terminal left free, since lines may be indented afterwards
-LEAST = 20  # least width of the column that is wrapped first, before others are wrapped
+NARROWEST = 40  # smallest width, in characters, to which text is wrapped
+MARGIN = 2  # columns of a terminal that stay free, because lines may be indented later
+LEAST = 20  # smallest width of the column that is wrapped first, before other columns are wrapped
 LONGEST_DENOMINATOR = 10**12
 DIGITS = 17  # digits that distinguish any two doubles
-SEEN = 0.001  # part of a distance to which its ends are rounded
+SEEN = 0.001  # rounding of the two ends of an interval, relative to its length
 
 
 def one_line(text: str) -> str:
@@ -30,7 +30,7 @@ def number_text(value: float | Fraction, digits: int = 6) -> str:
 
 
 def apart(*values: float) -> list[str]:
-    """Return numbers as text with enough digits to distinguish the two that are nearest to each other."""
+    """Return numbers as text with enough digits to distinguish the two closest ones."""
     ordered = sorted({float(value) for value in values})
     nearest = min((after - before for before, after in pairwise(ordered)), default=math.inf)
     digits = 6
@@ -40,7 +40,7 @@ def apart(*values: float) -> list[str]:
 
 
 def exact(value: Fraction) -> str:
-    """Return a fraction as text for programs: exact, such as ``"51/80"``, if that is short, else the nearest double."""
+    """Return a fraction as text for programs: exact if that is short, such as ``"51/80"``, else the nearest double."""
     return str(value) if value.denominator <= LONGEST_DENOMINATOR else repr(float(value))
 
 
@@ -59,10 +59,10 @@ def emphasis(text: str, stream: TextIO) -> str:
 
 
 def room(most: int = WIDTH) -> int:
-    """Return the width for lines of text: that of the terminal, at most ``most``; for a pipe or a file ``most``."""
+    """Return the width for lines of text: the width of the terminal, at most ``most``; for a pipe or file ``most``."""
     if not sys.stdout.isatty():
         return most
-    from shutil import get_terminal_size  # slow to import, and a pipe needs none
+    from shutil import get_terminal_size  # imported here: slow, and not needed for a pipe
 
     return max(NARROWEST, min(most, get_terminal_size((most, 24)).columns - MARGIN))
 
@@ -74,7 +74,7 @@ def _wrapped(text: str, width: int) -> list[str]:
 
 
 def fields(rows: Iterable[tuple[str, str]], width: int | None = None) -> list[str]:
-    """Return pairs (name, text) as lines with aligned and wrapped texts; an empty name continues the row above."""
+    """Return pairs (name, text) as aligned and wrapped lines; a pair with an empty name continues the row above."""
     rows, width = list(rows), room() if width is None else width
     first = max((len(name) for name, _ in rows), default=0) + 2
     return [
@@ -87,19 +87,19 @@ def fields(rows: Iterable[tuple[str, str]], width: int | None = None) -> list[st
 def columns(
     rows: Sequence[Sequence[str]], width: int | None = None, wrap: int = -1, right: Sequence[int] = ()
 ) -> list[str]:
-    """Return a table as lines of text; columns are aligned and two blanks apart.
+    """Return a table as lines of text; columns are aligned and separated by two blanks.
 
     Parameters
     ----------
     rows : sequence of rows of text
-        The first may be the head.
+        The first row may be the head.
     width : int, optional
-        Width of a line, for which columns of text are wrapped; a wider table of numbers is continued below itself.
-        Default: the width that :func:`room` returns.
+        Width of a line. Columns of text are wrapped to fit; a table of numbers that is too wide continues in a
+        second part below the first. Default: the width that :func:`room` returns.
     wrap : int
-        The column that is wrapped first; others only where that is not enough.
+        Index of the column that is wrapped first; other columns are wrapped only if that is not enough.
     right : sequence of int
-        Columns that are set flush right: numbers, which are never wrapped.
+        Indices of right-aligned columns: numbers, which are never wrapped.
     """
     if not rows:
         return []
@@ -122,7 +122,7 @@ def columns(
 
 
 def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequence[int]) -> list[int]:
-    """Return the widths of the columns of a table: the width of the longest text, less for wrapped columns."""
+    """Return the widths of the columns of a table: the length of the longest text, less for wrapped columns."""
     count = len(rows[0])
     widths = [max(len(row[i]) for row in rows) for i in range(count)]
     left = width - 2 * (count - 1) - sum(size for i, size in enumerate(widths) if i != wrap)
@@ -130,7 +130,7 @@ def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequenc
     words = [max((len(word) for row in rows for word in row[i].split()), default=1) for i in range(count)]
     narrowest = [widths[i] if i in right else min(widths[i], words[i]) for i in range(count)]
     if sum(narrowest) + 2 * (count - 1) > width and len(right) > 1:
-        return widths  # too many numbers for one line: the table goes on below itself
+        return widths  # too many numbers for one line: the table continues in a second part
     while sum(widths) + 2 * (count - 1) > width:
         wide = [i for i in range(count) if i not in right and widths[i] > words[i]]
         if not wide:
@@ -140,9 +140,9 @@ def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequenc
 
 
 def _parts(widths: Sequence[int], width: int, right: Sequence[int]) -> list[list[int]]:
-    """Return the columns of each part of a table that is too wide for one line.
+    """Return, for a table that is too wide for one line, the indices of the columns in each of its parts.
 
-    Parts are printed below one another, each with the first column.
+    The parts are printed below each other, each with the first column.
     """
     parts = [[0]]
     for i in range(1, len(widths)):

@@ -1,4 +1,7 @@
-"""Files of trajectories, NPZ or CSV, with labels, units, conventions and source. Equal motions give equal bytes."""
+"""Writing of trajectories to NPZ or CSV files with labels, units, conventions and source.
+
+Equal motions give equal bytes.
+"""
 
 import json
 from collections.abc import Callable, Iterator
@@ -22,9 +25,7 @@ ROWS_AT_ONCE = 4096
 
 
 def metadata(trajectory: "Trajectory", arrays: list[Labelled], tolerance: float) -> "FileRecord":
-    """Return the description that a file of a trajectory contains: scene, method, meaning of each array,
-    conventions.
-    """
+    """Return the description in a file of a trajectory: scene, method, meaning of each array, and conventions."""
     scene, stats = trajectory.scene, trajectory.stats
     return {
         "symrot": __version__,
@@ -85,7 +86,7 @@ def _csv(stream: BinaryIO, arrays: list[Labelled], about: "FileRecord") -> None:
 
 
 def _printed(item: Labelled, part: slice) -> list[list[str]]:
-    """Return rows of a quantity as columns of text; the text reads back to the same doubles."""
+    """Return a quantity as columns of text, from which the same doubles can be read back."""
     values = item.values[part].reshape(-1, len(item.components)).T
     return [[str(int(x)) if item.name == LOCK else repr(x) for x in column] for column in values.tolist()]
 
@@ -97,8 +98,9 @@ FORMATS: dict[str, Callable[[BinaryIO, list[Labelled], "FileRecord"], None]] = {
 def save(trajectory: "Trajectory", path: Path, tolerance: float) -> list[str]:
     """Write the output quantities of a trajectory to a file and return their names.
 
-    NPZ: arrays by name and ``metadata``, a JSON text; loads with ``allow_pickle=False``. CSV: comment lines, a line of
-    column names, numbers with every digit (``pandas.read_csv(file, comment="#")``).
+    An NPZ file contains arrays by name and ``metadata``, a JSON text; it can be loaded with ``allow_pickle=False``. A
+    CSV file contains comment lines, a line of column names, and numbers with all digits (``pandas.read_csv(file,
+    comment="#")``).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Matplotlib figures written to files: PDF, SVG, or PNG with a palette (a quarter of the size), without a date."""
+"""Writing of matplotlib figures to PDF, SVG or PNG files, without a date; a palette makes PNG files small."""
 
 from io import BytesIO
 from pathlib import Path
@@ -29,7 +29,7 @@ def save_page(page: Any, path: Path, dpi: int) -> None:
 
 
 def _palette(page: Any, dpi: int, stream: BinaryIO) -> None:
-    """Write a figure as a PNG with few colours, by Pillow, on which matplotlib depends."""
+    """Write a figure as a PNG with few colours, using Pillow, which matplotlib requires anyway."""
     from PIL import Image
     from PIL.PngImagePlugin import PngInfo
 

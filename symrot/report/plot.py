@@ -1,6 +1,6 @@
-"""Figure of one motion: angular velocity, attitude, conserved quantities, and paths on the sphere.
+"""The figure of one motion: angular velocity, attitude, conserved quantities, and paths on the sphere.
 
-It is drawn with matplotlib's objects and the Agg canvas: no window, no global figure. Equal motions give equal bytes.
+It uses matplotlib's objects and the Agg canvas: no window, no global state. Equal motions give equal bytes.
 """
 
 from importlib.util import find_spec
@@ -21,12 +21,12 @@ __all__ = ["SUFFIXES", "figure", "require_matplotlib", "save"]
 Floats = NDArray[np.float64]
 
 SUFFIXES = (".png", ".pdf", ".svg")
-FEWEST, MOST, PER_STEP = 1500, 20_000, 6  # samples that are drawn; a scene with others is propagated for the plot
+FEWEST, MOST, PER_STEP = 1500, 20_000, 6  # numbers of samples to draw; with others, the scene is propagated again
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")  # Okabe & Ito, 2008
-WIDTHS = (2.0, 1.6, 1.2, 0.9)  # the later ones are drawn on top: equal curves all show
+WIDTHS = (2.0, 1.6, 1.2, 0.9)  # later curves are thinner and drawn on top, so that equal curves all stay visible
 GREY = "#606060"
-TIMES = ((4 * 86400.0, 86400.0, "days"), (4 * 3600.0, 3600.0, "h"), (0.0, 1.0, "s"))  # span from which on, size, unit
-QUIET = 0.01  # a component whose change is below this part of its size may be told instead of drawn
+TIMES = ((4 * 86400.0, 86400.0, "days"), (4 * 3600.0, 3600.0, "h"), (0.0, 1.0, "s"))  # least span, factor, unit
+QUIET = 0.01  # a component that changes by less than this part of its size may be described instead of drawn
 STYLE = {
     "font.size": 9.0, "axes.titlesize": 10.0, "axes.titleweight": "bold", "axes.titlelocation": "left",
     "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": GREY, "axes.linewidth": 0.8,
@@ -70,7 +70,7 @@ def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -
 
 
 def _unwrapped(angles: Floats, turn: float) -> Floats:
-    """Return angles with a gap (not-a-number) at each jump by a whole turn, so that no line is drawn there."""
+    """Return angles with NaN at each jump by a full rotation, so that no line is drawn across the jump."""
     gaps = np.zeros_like(angles, dtype=bool)
     gaps[1:] = np.abs(np.diff(angles)) > 0.5 * turn
     return np.where(gaps, np.nan, angles)
@@ -107,13 +107,13 @@ def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
     axes.set_title("Drift of what is conserved")
     axes.set_ylabel("relative to its size")
     axes.set_yscale("log")
-    axes.set_autoscaley_on(False)  # the limits are set below; one flat line has none of its own
+    axes.set_autoscaley_on(False)  # the limits are set below, because a single flat line would give none
     changes = []
     for number, item in enumerate(trajectory.invariants):
         change = np.abs(item.values - item.values[0]) / (item.scale or 1.0)
         changes.append(change)
         visible_change = np.where(change > 0, change, np.nan)
-        norm = item.name == "quaternion norm"  # says least, hence behind the others
+        norm = item.name == "quaternion norm"  # the least informative curve is drawn behind the others
         colour = FAINT if norm else COLOURS[number % len(COLOURS)]
         axes.plot(t, visible_change, color=colour, linewidth=0.8, label=item.name, zorder=1.5 if norm else 2)
     axes.axhline(tolerance, color=GREY, linewidth=1.0, linestyle=(0, (5, 3)))

@@ -1,4 +1,4 @@
-"""Figure of the operations and time that specialised kernels save, from the general kernel down to the special one."""
+"""The figure of the operations and the time that specialised kernels save, from the general kernel to a scene's own."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,7 +17,7 @@ PANELS = (
     ("motion", 1e-6, "µs of the motion from Python"),
 )
 GENERAL, OWN, AUTO = COLOURS[1], COLOURS[0], COLOURS[6]
-LEAST = 0.6  # place on the axis of a motion without any operation
+LEAST = 0.6  # position on the logarithmic axis of a motion without any operation
 
 
 def figure(ladder: Mapping[str, Any]) -> Any:

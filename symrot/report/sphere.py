@@ -1,4 +1,4 @@
-"""Paths of a direction, drawn on a sphere seen from far away, or on its tangent plane if the path is small."""
+"""Drawing of the path of a direction on a sphere seen from far away, or on its tangent plane if the path is small."""
 
 from collections.abc import Callable
 from typing import Any
@@ -11,14 +11,14 @@ __all__ = ["FAINT", "draw_directions", "prefixed"]
 Floats = NDArray[np.float64]
 
 GRID, FAINT, DARK = "#d0d0d0", "#b4b4b4", "#303030"
-ELEVATION, ASIDE = np.radians(24.0), np.radians(28.0)  # place of the eye: above the equator, beside the path's middle
-SMALL, STILL = 0.2, 1e-12  # rad: paths smaller than this are drawn on a plane; than that, as a point
+ELEVATION, ASIDE = np.radians(24.0), np.radians(28.0)  # viewpoint: above the equator, to the side of the path's middle
+SMALL, STILL = 0.2, 1e-12  # rad: smaller paths are drawn on a plane; paths smaller than STILL as a point
 PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "\N{GREEK SMALL LETTER MU}"), (1e-9, "n"), (1e-12, "p"))
 ROOM = 1.26  # half the width of a drawing, in radii
-BACK = 0.22  # opacity of what is behind the sphere
+BACK = 0.22  # opacity of curves behind the sphere
 CURVES = 12
-FINEST = 241  # points across the disc for level curves
-MOST_VECTORS = 6000  # segments drawn as vectors in a PDF or SVG; beyond, as an image
+FINEST = 241  # grid points across the disc for level curves
+MOST_VECTORS = 6000  # largest number of segments drawn as vectors in a PDF or SVG; longer paths become an image
 
 
 def prefixed(size: float, unit: str) -> tuple[float, str]:
@@ -28,7 +28,7 @@ def prefixed(size: float, unit: str) -> tuple[float, str]:
 
 
 def _unit(vectors: Floats) -> Floats:
-    """Return the directions of vectors, shape (n, 3), without those of vectors close to zero."""
+    """Return the directions of vectors, shape (n, 3); vectors close to zero are left out."""
     length = np.sqrt(np.sum(vectors * vectors, axis=1))
     has_direction = length > 1e-9 * np.max(length, initial=0.0)
     directions: Floats = vectors[has_direction] / length[has_direction, None]
@@ -36,7 +36,7 @@ def _unit(vectors: Floats) -> Floats:
 
 
 def _eye(directions: Floats) -> Floats:
-    """Return the view of the sphere in which the path is in front: rows right, up, toward the eye, shape (3, 3)."""
+    """Return the axes of a view in which the path is in front: rows right, up, toward the eye, shape (3, 3)."""
     middle = directions.mean(axis=0)
     level = np.hypot(middle[0], middle[1])
     azimuth = ASIDE + (np.arctan2(middle[1], middle[0]) if level > 0.05 else 0.0)
@@ -48,7 +48,7 @@ def _eye(directions: Floats) -> Floats:
 
 
 def _curve(axes: Any, points: Floats, view: Floats, **style: Any) -> None:
-    """Draw a thin curve on the sphere, faint where it is behind the sphere."""
+    """Draw a thin curve on the sphere, faint on the far side."""
     x, y, z = view @ points.T
     for visible, opacity in ((z >= 0, 1.0), (z < 0, BACK)):
         mask = np.where(visible, 1.0, np.nan)

@@ -1,4 +1,4 @@
-"""Two figures of a benchmark suite: times of other programs over those of symrot, and all work-precision curves."""
+"""Two figures of a benchmark suite: times of other programs relative to symrot's, and all work-precision curves."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,9 +17,7 @@ PEERS = ("heyoka", "heyoka, best setting", "SciPy LSODA", "SciPy DOP853", "SciPy
 
 
 def figure(suite: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of a suite's ratios: a row for each motion, a dot for each decade, a bar at the
-    median.
-    """
+    """Return a matplotlib Figure of time ratios: a row for each motion, a dot for each decade of error, a bar."""
     from matplotlib.figure import Figure
 
     studies = list(suite["studies"].values())

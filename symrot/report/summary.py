@@ -1,4 +1,4 @@
-"""The report of a run: its settings and results as plain data, and the same as text on one screen."""
+"""The report of a run: its settings and results as plain data, and as text on one screen."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -95,7 +95,7 @@ def _numbers(values: list[Any], digits: int = 6) -> str:
 
 
 def _value(text: str) -> float:
-    """Return the number that an exact text means, such as ``"51/80"``, ``"5"`` or ``"1e-9"``."""
+    """Return the number that an exact text such as ``"51/80"``, ``"5"`` or ``"1e-9"`` represents."""
     numerator, _, denominator = text.partition("/")
     return float(numerator) / float(denominator or 1)
 
@@ -125,7 +125,7 @@ def _steps(cost: "CostRecord", exact: bool) -> str:
 
 def _settings(report: "RunReport") -> list[tuple[str, str]]:
     span, method = report["span"], report["method"]
-    from symrot.propagation.method import METHODS  # here, since an error found earlier needs no NumPy
+    from symrot.propagation.method import METHODS  # imported here: an error found earlier needs no NumPy
 
     meaning = METHODS[method["name"].partition(":")[0]]
     torques = ", ".join(kind.replace("_", " ") for kind in report["torques"]) or "none"
@@ -146,14 +146,14 @@ def _settings(report: "RunReport") -> list[tuple[str, str]]:
 
 
 def _switches(times: list[float], switchings: "list[SwitchingRecord]", start: str, stop: str) -> list[tuple[str, str]]:
-    """Return a row of text for each function that switched, with the times at which it did.
+    """Return a row of text for each function with jumps or kinks, with the times at which it switched.
 
-    The motion crosses a switch, is held by it, or is released from it.
+    At such a time the motion crosses the switch, begins to slide along it, or leaves it.
     """
     by_function: dict[str, list[tuple[float, str]]] = {}
     for item in switchings:
         by_function.setdefault(f"{one_line(item['function'])} ", []).append((item["t"], HOW[item["how"]]))
-    if times and not by_function:  # switching times of a table of samples
+    if times and not by_function:  # these are the jump times of a table of samples
         by_function[""] = [(t, "") for t in times]
     listed = dict(list(by_function.items())[:SWITCHES_SHOWN])
     seen = [t for own in listed.values() for t, _ in own[:SWITCHES_SHOWN]]
@@ -187,7 +187,7 @@ def _conserved(report: "RunReport") -> list[str]:
 
 
 def _lost(candidates: "list[LostRecord]") -> list[tuple[str, str]]:
-    """Return rows of text about the quantities that are not conserved, one row for each reason."""
+    """Return rows of text about candidates that are not conserved, one row for each reason."""
     names: dict[str, list[str]] = {}
     for item in candidates:
         names.setdefault(item["reason"], []).append(item["name"])
@@ -218,7 +218,7 @@ def _holding(item: "WrittenRecord") -> str:
 
 
 def summary(report: "RunReport") -> list[str]:
-    """Return the report of a run, the data of :func:`facts`, as lines of text; the first line is the title."""
+    """Return the report of a run, as :func:`facts` returns it, as lines of text; the first line is the title."""
     scene = report["scene"]
     source = [f"  {line}" for line in fields([("", one_line(scene["source"]))])] if scene["source"] else []
     settings = [f"  {line}" for line in fields(_settings(report) + _skipped(report))]

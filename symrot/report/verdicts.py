@@ -22,14 +22,14 @@ def check(
     repair: bool,
     progress: Callable[[str], None] = lambda text: None,
 ) -> list[Verdict]:
-    """Return the verdicts on a claim (text or LaTeX), or on all claims of a file.
+    """Decide a claim (text or LaTeX) or all claims of a file, and return the verdicts.
 
     A claim of a file that cannot be read gets the verdict ``"refused"``.
 
     Raises
     ------
     InputError
-        For a text that :func:`symrot.check` refuses, a file that holds no claims, and hypotheses together with a file.
+        For a text that :func:`symrot.check` rejects, a file without claims, or hypotheses given together with a file.
     """
     from symrot.checker.interface import check as check_text
     from symrot.checker.interface import verdicts_of_file
@@ -39,14 +39,14 @@ def check(
     if not source.endswith(".toml") and not Path(source).is_file():
         raise InputError(f"expected a claim 'left == right' or the path of a file of claims, got {source[:60]!r}")
     if units:
-        raise InputError("--unit: expected a claim as text with it; a file states its own units")
+        raise InputError("--unit: expected a claim as text, got a file; a file states its own units")
     if assumptions:
-        raise InputError("--given: expected a claim as text with it; a file states its own hypotheses")
+        raise InputError("--given: expected a claim as text, got a file; a file states its own hypotheses")
     return list(verdicts_of_file(source, repair, progress))
 
 
 def _units(words: Sequence[str]) -> dict[str, str]:
-    """Return the units of quantities, by name, from words like ``F=kg m/s^2``."""
+    """Return the units of quantities, by name, from texts like ``F=kg m/s^2``."""
     pairs = [word.partition("=") for word in words]
     for word, (name, sign, unit) in zip(words, pairs, strict=True):
         if not (name.strip() and sign and unit.strip()):
@@ -60,9 +60,10 @@ def _is_file(source: str) -> bool:
 
 
 def lines(verdicts: Sequence[Verdict], source: str) -> list[str]:
-    """Return verdicts as lines of text: a single claim in full.
+    """Return verdicts as lines of text.
 
-    Of a file, the claims that are not true are shown in full, with a count of all claims.
+    A single claim is shown in full. For a file, the claims that are not true are shown in full, with a count of all
+    claims.
     """
     if len(verdicts) == 1 and not _is_file(source):
         return _full(verdicts[0], verdicts[0].verdict)

@@ -1,4 +1,4 @@
-"""Work-precision studies (time against error, for several methods) as lines of text, and comparison of two studies."""
+"""Work-precision studies (time against error, for several methods) as lines of text, and the comparison of two."""
 
 import json
 import math
@@ -25,9 +25,7 @@ def _number(value: float) -> str:
 
 
 def _decades(study: Mapping[str, Any]) -> list[str]:
-    """Return a table with a column for each decade of the error: the least time, then the ratio of each method to
-    it.
-    """
+    """Return a table with a column for each decade of the error: the least time, and all times relative to it."""
     table = study["decades"]
     names = list(dict.fromkeys(name for row in table for name in row["methods"]))
     rows = [["error <=", *(f"{row['error']:.0e}" for row in table)]]
@@ -75,8 +73,9 @@ def _against(study: Mapping[str, Any]) -> list[str]:
 
 
 def lines(study: Mapping[str, Any]) -> list[str]:
-    """Return a study of :func:`symrot.bench.comparison.work_precision.study` as lines of text; the first is the
-    title.
+    """Return a study of :func:`symrot.bench.comparison.work_precision.study` as lines of text.
+
+    The first line is the title.
     """
     scene, reference, machine = study["scene"], study["reference"], study["machine"]
     others = [f"{other['name']} within {max(other['difference'], ROUNDING):.0e}" for other in reference["others"]]
@@ -142,12 +141,12 @@ def _positive(study: Mapping[str, Any]) -> bool:
 
 
 def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the comparison of a second study with a first one: ratios of times by decade, and the least errors.
+    """Compare a second study with a first one: return ratios of times by decade, and the least errors.
 
     Raises
     ------
     InputError
-        If the studies are of different scenes.
+        If the studies are of different scenes, or have no method and decade of the error in common.
     """
     names = [study["scene"]["name"] for study in (first, second)]
     if names[0] != names[1]:
@@ -187,7 +186,7 @@ def _least_errors(study: Mapping[str, Any]) -> dict[str, float]:
 
 
 def lines_of_comparison(comparison: Mapping[str, Any]) -> list[str]:
-    """Return the comparison of two studies, the result of :func:`compared`, as lines of text."""
+    """Return the comparison of two studies, as :func:`compared` returns it, as lines of text."""
     errors = sorted(
         {error for item in comparison["ratios"].values() for error in item["decades"]}, key=float, reverse=True
     )

@@ -1,7 +1,7 @@
-"""Figure of a work-precision study: time against error, one curve for each method, labelled at its end.
+"""The figure of a work-precision study: time against error, one curve for each method, labelled at its end.
 
 Both axes are logarithmic; the error grows to the left, so that better is right and faster is down. A curve joins the
-runs that no other run of the same method beats in both; the others are faint points.
+runs for which no other run of the same method is both faster and more accurate; the other runs are faint points.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,9 +18,9 @@ from symrot.report.plot import GREY, STYLE
 __all__ = ["LOOKS", "METHOD_LABELS", "OTHER", "OUTERMOST", "figure", "frontier", "save"]
 
 LEAST_ERROR = 1e-17  # an error of zero is drawn as this error
-APART = 0.042  # part of the panel's height between two names
+APART = 0.042  # least distance between two names, relative to the panel's height
 DPI = 150
-OUTERMOST = 1.5  # error from which on nothing is shown
+OUTERMOST = 1.5  # runs with larger errors are not shown
 
 
 class Look(NamedTuple):
@@ -58,7 +58,7 @@ METHOD_LABELS = {
 
 
 def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
-    """Return the runs that no other run beats in both error and seconds, ordered by error, and the remaining runs."""
+    """Return the runs that no other run beats in both error and time, ordered by error, and the remaining runs."""
     points = sorted((max(float(run["error"]), LEAST_ERROR), float(run["seconds"])) for run in runs)
     points = [point for point in points if point[0] < OUTERMOST]
     best: list[tuple[float, float]] = []
@@ -71,16 +71,14 @@ def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float
 
 
 def _names(axes: Any, ends: list[tuple[float, str, str]]) -> None:
-    """Write the names of methods at the right edge, each as near as possible to the end of its curve, without
-    overlap.
-    """
+    """Write the names of methods at the right edge, each as close as possible to its curve's end, without overlap."""
     low, high = np.log10(axes.get_ylim())
     ends = sorted(ends)
     heights = [(np.log10(value) - low) / (high - low) for value, *_ in ends]
     placed: list[float] = []
     for height in heights:
         placed.append(max(height, placed[-1] + APART) if placed else height)
-    # push names that are above the top down again, then centre groups on the ends of their curves
+    # move names that are above the top down again, then centre groups of names on the ends of their curves
     for number in range(len(placed) - 1, -1, -1):
         ceiling = 1.0 if number == len(placed) - 1 else placed[number + 1] - APART
         placed[number] = min(placed[number], ceiling)

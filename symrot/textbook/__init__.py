@@ -1,7 +1,7 @@
-"""Claims of four documents on rigid-body rotation as data: one TOML file per document.
+"""Claims of four documents on rigid-body rotation, as data in one TOML file per document.
 
-The data records where a claim is, its printed text, and the text as read. It contains no verdicts; these are computed
-by :mod:`symrot.checker.textbook`.
+For each claim the data give its place, its printed text, and the formula as symrot reads it. They contain no verdicts;
+:mod:`symrot.checker.textbook` computes these.
 """
 
 import tomllib
@@ -17,9 +17,7 @@ DOCUMENTS = ("chen", "sahakian", "brown", "beer-johnston")
 
 
 class Document(NamedTuple):
-    """One document: its name and kind, what its text extraction lost, the file of its claims, and the claims as
-    data.
-    """
+    """A document: name, kind, a note on text lost in extraction, the file of its claims, and the claims as data."""
 
     name: str
     title: str
@@ -30,12 +28,12 @@ class Document(NamedTuple):
 
 
 def document(name: str) -> Document:
-    """Return one of the documents by its short name.
+    """Return a document by its short name.
 
     Raises
     ------
     InputError
-        For another name.
+        If no document has this name.
     """
     if name not in DOCUMENTS:
         raise InputError(f"expected the name of a document, one of {', '.join(DOCUMENTS)}; got {name!r}")

@@ -1,1 +1,1 @@
-"""The work behind the commands: emit, certify, audit and bound kernels, and check an installation."""
+"""The functions behind the commands that emit, certify, audit and bound kernels, and that check an installation."""

@@ -1,8 +1,8 @@
-"""Table of rounding-error bounds that comes with symrot, printed by ``python -m symrot.workshop.bound_table``.
+"""The table of rounding-error bounds that comes with symrot; ``python -m symrot.workshop.bound_table`` writes it.
 
-Only kernels that changed are bounded again, by two processes; all kernels if the sources of the method changed. With
-``--check`` nothing is written, and the exit code is 1 if the table is incomplete, was made by another version of the
-method, or contradicts the error that is computed at one point of each box.
+Two processes compute bounds again only for kernels that changed, or for all kernels if the sources of the method
+changed. With ``--check`` nothing is written, and the exit code is 1 if the table is incomplete, if another version of
+the method made it, or if a bound is smaller than the error computed at one point of its box.
 """
 
 import sys
@@ -23,16 +23,16 @@ from symrot.kernels.library import definition, kernel_names
 
 __all__ = ["library_tasks", "table_faults", "understated"]
 
-SPARE = 1e-9  # relative: other versions of NumPy add in another order
+SPARE = 1e-9  # relative tolerance: versions of NumPy may add numbers in different orders
 
 
 def _texts() -> dict[str, str]:
-    """Return the C text of each kernel without its head comment, which states rounding errors."""
+    """Return the C text of each kernel without its head comment, which states the bounds."""
     return {name: c_functions(kernel_program(name), (DOUBLE, FLOAT), near=True) for name in kernel_names()}
 
 
 def library_tasks() -> dict[str, BoundTask]:
-    """Return the bounding tasks of all kernels of the library, by the key of their bound in the table."""
+    """Return the computations of the bounds of all kernels of the library, by the key of the bound in the table."""
     by_key: dict[str, BoundTask] = {}
     for name, text in _texts().items():
         for operations in operations_of(name, text):
@@ -44,7 +44,7 @@ def library_tasks() -> dict[str, BoundTask]:
 
 
 def table_faults() -> list[str]:
-    """Return the faults of the table, a sentence each; an empty list if it is complete and of the present method."""
+    """Return the faults of the table, one sentence each; an empty list if the table is complete and up to date."""
     required, known = library_tasks(), table()["bounds"]
     faults = [] if table()["method"] == method() else ["another version of the method computed the table"]
     if lacking := len(set(required) - set(known)):
@@ -57,12 +57,12 @@ def table_faults() -> list[str]:
 
 
 def understated(required: Mapping[str, BoundTask]) -> list[str]:
-    """Return the keys of bounds in the table that are contradicted by the point that they name as the worst."""
+    """Return the keys of the bounds in the table that are smaller than the error at the worst point that they name."""
     return [key for key, task in required.items() if not _is_consistent(task, STORE.get(key))]
 
 
 def _is_consistent(task: BoundTask, search: SearchResult | None) -> bool:
-    """Return whether a bound is finite and not below the error that the same method computes at its worst point."""
+    """Return whether a bound is finite and not smaller than the error that the method computes at its worst point."""
     if search is None or len(search.worst) != len(task.low):
         return False
     point = np.array(search.worst)

@@ -1,4 +1,4 @@
-"""Bounds of the rounding errors of a kernel of the library or of a scene, as `symrot bound` prints them."""
+"""Bounds of the rounding errors of a kernel of the library or of a scene, for the command `symrot bound`."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -33,16 +33,16 @@ PRECISIONS = {"double": "", "float": "f"}
 def rounding_problem(
     kernel: str, ranges: Sequence[str], precision: str
 ) -> tuple[Operations, RoundingProblem, dict[str, Any]]:
-    """Return the operations of a kernel, its rounding problem, and its box of inputs with the user's ranges.
+    """Return the operations of a kernel, the problem of bounding their rounding errors, and the box of its inputs.
 
     Parameters
     ----------
     kernel : str
         A kernel of the library, the name of a shipped scene or the path of a scene file.
     ranges : sequence of str
-        ``NAME=LOW:HIGH``. NAME is a component ("theta"), a place ("angles[1]") or a physical constant of a scene
-        ("A"); the range of a constant encloses the parameters that depend on it. All other inputs have the kernel's
-        own ranges.
+        ``NAME=LOW:HIGH``, in place of the kernel's own range of an input. NAME is a component ("theta"), an index
+        ("angles[1]") or a physical constant of a scene ("A"); the range of a constant determines the ranges of the
+        parameters that depend on it.
     precision : str
         ``"double"`` or ``"float"``; the kernel of a scene has only ``"double"``.
 
@@ -75,7 +75,7 @@ def _check_unit(
 
 
 def _operations(emitted: Emitted, suffix: str = "") -> Operations:
-    """Return the operations of an emitted kernel under its name without the prefix of C."""
+    """Return the operations of an emitted kernel, under the kernel's name without the prefix ``symrot_``."""
     operations = read_kernel(emitted.source, f"{emitted.function}{suffix}", f"{emitted.name}.c")
     return replace(operations, name=f"{emitted.name}{suffix}")
 
@@ -86,7 +86,10 @@ def _of_library(kernel: str, precision: str) -> tuple[Operations, RoundingProble
 
 
 def require_known(kernel: str) -> None:
-    """Raise InputError unless a name is a kernel of the library, a scene or a file; suggest the nearest name."""
+    """Raise InputError unless a name is a kernel of the library, a scene or a file.
+
+    The message suggests a similar name, if there is one.
+    """
     path = Path(kernel)
     if kernel in kernel_names() or kernel in shipped_names() or (path.exists() and path.suffix not in EMITTED):
         return
@@ -106,9 +109,9 @@ def _of_scene(scene: str, precision: str) -> tuple[Operations, RoundingProblem, 
 
 
 def section(kernel: str, ranges: Sequence[str]) -> dict[str, Any]:
-    """Return the part of a kernel's certificate about rounding errors, in all precisions.
+    """Return the section of a kernel's certificate about rounding errors, in all precisions.
 
-    Parameters are those of :func:`facts`.
+    The parameters are as for :func:`facts`.
     """
     operations, kernel_problem, box = rounding_problem(kernel, ranges, "double")
     single = rounding_problem(kernel, ranges, "float")[0] if kernel in kernel_names() else None
@@ -118,7 +121,7 @@ def section(kernel: str, ranges: Sequence[str]) -> dict[str, Any]:
 
 @contextmanager
 def _in_scene_names(kernel: str) -> Iterator[None]:
-    """Replace the places of states in error messages ("y[2]") with the names that the scene gives them."""
+    """Replace the indices of states in error messages ("y[2]") by the names that the scene gives them."""
     try:
         yield
     except InputError as reason:
@@ -146,7 +149,7 @@ def facts(kernel: str, ranges: Sequence[str], precision: str) -> dict[str, Any]:
 
 
 def _names(kernel: str) -> dict[str, str]:
-    """Return the names in a scene of a kernel's inputs and outputs, by their places such as "y[2]"."""
+    """Return the scene's names of a kernel's inputs and outputs; keys are indices such as "y[2]"."""
     if kernel in kernel_names():
         return {}
     return {place: symbol for place, (symbol, _) in scene_inputs(kernel).components.items()}
@@ -173,7 +176,7 @@ def _region_lines(section: Mapping[str, Any]) -> list[str]:
 
 
 def lines(section: Mapping[str, Any]) -> list[str]:
-    """Return the bounds of rounding errors, the result of :func:`facts`, as lines of text."""
+    """Return the bounds of rounding errors, as :func:`facts` returns them, as lines of text."""
     part = section["precisions"][0]
     names = section["names"]
     unit = f"2^-{DIGITS[part['precision']]}"
@@ -215,7 +218,9 @@ def target_facts(
     for place in places or ():
         if box[place] == ANY:
             name = kernel_problem.symbols[place]
-            raise InputError(f"--variable {name}: expected an input that {operations.name} uses, which {name} is not")
+            raise InputError(
+                f"--variable {name}: expected an input that {operations.name} uses; it does not use {name}"
+            )
     with _in_scene_names(kernel):
         size, largest = largest_box(operations, box, target, places, kernel_problem.region)
         bounds = bound_outputs(operations, largest, kernel_problem.region)
@@ -234,7 +239,7 @@ def _free(kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fra
 
 
 def target_lines(resized: Mapping[str, Any]) -> list[str]:
-    """Return the largest box, the result of :func:`target_facts`, as lines of text."""
+    """Return the largest box, as :func:`target_facts` returns it, as lines of text."""
     return [
         f"{resized['kernel']}: no error is larger than {resized['target']:g}",
         f"for {_box_text(resized['box'], resized['names'])}", *_region_lines(resized),

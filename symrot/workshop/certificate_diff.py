@@ -1,6 +1,6 @@
-"""Differences between the files of a kernel and the certified files: the first line and the output that changed.
+"""Comparison of a kernel's files with the certified files: the first line and the output that changed.
 
-A hash tells only that a file changed; the difference tells whether the kernel still computes its formulas.
+A hash tells only that a file changed; the comparison tells whether the kernel still computes its formulas.
 """
 
 from pathlib import Path
@@ -21,14 +21,17 @@ LONGEST = 200  # largest number of characters of a reason
 
 
 def kernel_of(name: str) -> str | None:
-    """Return the kernel of the library, or the shipped scene, whose function has this name; None if neither has."""
+    """Return the kernel of the library or the shipped scene whose C function has this name, or None."""
     if name in kernel_names():
         return name
     return next((scene for scene in shipped_names() if scene_kernel_name(scene) == name), None)
 
 
 def difference(certificate: Path) -> str:
-    """Return ": " and how the files next to a certificate differ from the emitted files; empty if they are equal."""
+    """Return ": " and the first difference of the files next to a certificate from the emitted files.
+
+    The text is empty if the files are equal.
+    """
     name = certificate.name.removesuffix(".cert.json")
     kernel = kernel_of(name)
     if kernel is None:
@@ -59,7 +62,7 @@ def _first_line(text: str, emitted: str) -> str:
 def _meaning(text: str, emitted: KernelUnderTest) -> str:
     """Return, in brackets, how an edited C text differs in meaning from the formulas of its kernel.
 
-    The result is an empty text if its operations are the same.
+    The result is empty if the text has the same operations.
     """
     file = f"{emitted.name}.c"
     symbols = {place: symbol for place, (symbol, _) in emitted.places.items()}

@@ -1,4 +1,4 @@
-"""Functions behind the commands certify, audit and bound: certificates of kernels, and bounds of rounding errors."""
+"""Public functions for certificates of kernels and bounds of rounding errors: certify, audit, bound, largest_box."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -27,7 +27,7 @@ Progress = Callable[[str], object]
 
 
 def _silent(line: str) -> None:
-    """Ignore a line of progress; the default for functions that report progress."""
+    """Ignore a line about progress; this is the default for functions that report progress."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Certificate:
     title : str
         What the kernel computes.
     laws : tuple of str
-        The laws that are proven of its formulas.
+        The laws that are proven from its formulas.
     proofs : tuple of str
         The kinds of proof that the certificate contains, among ``"laws"``, ``"Coq"``, ``"C text"``, ``"rounding"`` and
         ``"object code"``.
@@ -50,7 +50,7 @@ class Certificate:
     files : tuple of Path
         The files that were written.
     objects_compared : bool
-        Whether object code was compared just now.
+        Whether object code was compared in this call, not only in an earlier one.
 
     Examples
     --------
@@ -69,7 +69,7 @@ class Certificate:
 
     @property
     def refuted(self) -> bool:
-        """Whether object code was compared just now and differs where its bits must be those of the C text."""
+        """Whether object code was compared in this call and differs where its bits must equal those of the C text."""
         return self.objects_compared and certificates.refuted([dict(self.data)])
 
     def __str__(self) -> str:
@@ -78,7 +78,7 @@ class Certificate:
 
 @dataclass(frozen=True)
 class Audit:
-    """Result of a successful audit of certificates; ``print`` shows the statements that were checked.
+    """The result of a successful audit of certificates; ``print`` shows the statements that were checked.
 
     An audit that fails raises CertificateError instead.
 
@@ -87,7 +87,7 @@ class Audit:
     statements : mapping of str to tuple of str
         Path of each certificate -> the statements that were checked.
     flags : tuple of str
-        What holds under the compiler flags that were passed; empty without flags.
+        The statements that hold under the given compiler flags; empty without flags.
 
     Examples
     --------
@@ -105,20 +105,20 @@ class Audit:
 
 @dataclass(frozen=True)
 class OutputError:
-    """Bound of the rounding error of one output of a kernel.
+    """A bound of the rounding error of one output of a kernel.
 
     Attributes
     ----------
     output : str
-        Place of the output, ``"dq[0]"``.
+        Index of the output, such as ``"dq[0]"``.
     bound : float
-        No computed value on the box differs from the exact value by more; in the unit of the output.
+        Largest possible difference between the computed and the exact value on the box, in the unit of the output.
     pointwise : float
-        The largest bound at a single point of the box that was tried: by this method, ``bound`` cannot be below it.
+        The largest bound found at a single point of the box. The method cannot give a ``bound`` below this number.
     converged : bool
         Whether ``bound`` is about as small as this method can make it.
     modulo_turns : bool
-        Whether the error is measured modulo whole rotations.
+        Whether the error is measured modulo multiples of 2 pi.
 
     Examples
     --------
@@ -145,10 +145,10 @@ class RoundingBounds:
     precision : str
         ``"double"`` or ``"float"``.
     box : mapping of str to (float, float)
-        Place of each input -> its range, in the unit of the input.
+        Index of each input -> its range, in the unit of the input.
     outputs : tuple of OutputError
     assumptions : tuple of str
-        What the bounds rely on.
+        The assumptions under which the bounds hold.
     data : mapping
         The bounds as plain data, as in a certificate.
 
@@ -178,7 +178,7 @@ class RoundingBounds:
 
 @dataclass(frozen=True)
 class LargestBox:
-    """Largest box of inputs, of given proportions, on which no rounding error of a kernel exceeds a target.
+    """The largest box of inputs, of given proportions, on which no rounding error of a kernel exceeds a target.
 
     Attributes
     ----------
@@ -189,11 +189,11 @@ class LargestBox:
     size : float
         Width of the box relative to the box that the search started from.
     box : mapping of str to (float, float)
-        Place of each input -> its range, in the unit of the input.
+        Index of each input -> its range, in the unit of the input.
     error : float
         The largest bound of an output on that box.
     data : mapping
-        The same as plain data.
+        The same results as plain data.
 
     Examples
     --------
@@ -258,7 +258,7 @@ def certify(
     Notes
     -----
     Convention: SI units, angles in rad; a certificate names frames and units of every input.
-    Source: ``docs/certificates.md`` says what each proof covers.
+    Source: ``docs/certificates.md`` explains what each proof covers.
 
     Examples
     --------
@@ -285,9 +285,9 @@ def audit(
     Parameters
     ----------
     *paths : str or Path
-        Certificates NAME.cert.json, each in one folder with the files that it names.
+        Certificates NAME.cert.json, each in the folder with the files that it names.
     object_file : str or Path, optional
-        NAME.o as your compiler made it; it is compared with the C text rounding for rounding.
+        NAME.o as your compiler made it; the audit compares each of its roundings with the C text.
     flags : str, optional
         Compiler and flags, ``"gcc -O3 -mfma"``: the audit fails if they void the certificate.
     rerun_bounds : bool
@@ -310,7 +310,7 @@ def audit(
 
     Notes
     -----
-    Source: ``docs/certificates.md`` says what each proof covers.
+    Source: ``docs/certificates.md`` explains what each proof covers.
 
     Examples
     --------
@@ -337,9 +337,9 @@ def bound(kernel: str | Path, box: Ranges = (), precision: str = "double") -> Ro
     kernel : str or Path
         A kernel of the library, the name of a shipped scene, or the path of a scene file.
     box : mapping or sequence of str
-        Ranges of inputs, in their units: ``{"theta": (-1.4, 1.4)}`` or ``["theta=-1.4:1.4"]``. A name is that of a
-        component (``"theta"``), a place (``"angles[1]"``) or a physical constant of a scene (``"A"``). A float means
-        its exact binary value, a text its decimal value. All other ranges are the kernel's own.
+        Ranges of inputs, in their units: ``{"theta": (-1.4, 1.4)}`` or ``["theta=-1.4:1.4"]``. A name is a component
+        (``"theta"``), an index (``"angles[1]"``) or a physical constant of a scene (``"A"``). A float means its exact
+        binary value, a text its decimal value. Inputs that are not named have the kernel's own ranges.
     precision : str
         ``"double"`` or ``"float"``; the kernel of a scene has ``"double"`` only.
 
@@ -427,7 +427,7 @@ def _check_precision(precision: str) -> None:
 
 
 def _ranges(box: Ranges) -> Sequence[str]:
-    """Return ranges as text NAME=LOW:HIGH; a float is written as the fraction that it is."""
+    """Return ranges as texts NAME=LOW:HIGH; a float is written as the fraction that it represents."""
     if isinstance(box, str):
         raise InputError(f"box: expected a mapping or a list of texts NAME=LOW:HIGH, got one text, {box[:60]!r}")
     if not isinstance(box, Mapping):

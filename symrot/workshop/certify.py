@@ -1,4 +1,4 @@
-"""Work of `symrot certify` and `symrot audit`: make certificates of kernels, and check certificates."""
+"""The work of `symrot certify` and `symrot audit`: making certificates of kernels, and checking them."""
 
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -34,19 +34,19 @@ __all__ = [
     "refuted",
 ]
 
-PROOFS = {  # from the derivation to the object code; the names label the lines of a certificate
+PROOFS = {  # in order from the derivation to the object code; the names label the lines of a certificate
     "laws": "proven of the formulas", "Coq": "a theorem about the formulas (`symrot prove`)",
     "C text": "proven equal to the formulas", "rounding": "errors bounded on a box",
     "object code": "equal to the C text (--objects)",
 }  # fmt: skip
 LABEL = max(map(len, PROOFS)) + 2  # characters
-MANY = 12  # number of certificates from which on several processes audit them
+MANY = 12  # smallest number of certificates that several processes audit at once
 
 
 def _proven_statement(data: Data) -> Data | None:
-    """Return the part of a kernel's certificate that symrot itself can prove; None if it does not know the kernel.
+    """Return the section of a kernel's certificate that symrot can prove itself, or None for an unknown kernel.
 
-    The statement is derived and proven once, then stored in the cache under the digest of the programs.
+    The section is derived and proven once, then stored in the cache under the digest of the programs.
     """
     name = data["kernel"]
     scene = str(data["regenerate"]).removeprefix("symrot emit ").removesuffix(" --target c")
@@ -78,14 +78,14 @@ def audit_file(
     path: Path, object_file: Path | None = None, rerun: bool = False, coq: bool = False,
     progress: Callable[[str], object] = lambda text: None,
 ) -> list[str]:  # fmt: skip
-    """Return the statements of a certificate that were checked and hold, a line each.
+    """Return the statements of a certificate that were checked and hold, one line each.
 
     Parameters
     ----------
     path : Path
-        NAME.cert.json, in one folder with the files that it names.
+        NAME.cert.json, in the folder with the files that it names.
     object_file : Path, optional
-        NAME.c as compiled; it is compared with the C text rounding for rounding.
+        The compiled NAME.c; each of its roundings is compared with the C text.
     rerun : bool
         Whether bounds of rounding errors are computed again; otherwise they are compared with the stored ones.
     coq : bool
@@ -94,7 +94,7 @@ def audit_file(
     Raises
     ------
     CertificateError
-        If a statement does not hold; the message names the first.
+        If a statement does not hold; the message names the first such statement.
     """
     progress(f"auditing {path.name} ..")
     try:
@@ -145,7 +145,7 @@ def _recomputed_bounds(data: Data, text: str, progress: Callable[[str], object])
 
 
 def flag_lines(flags: str) -> list[str]:
-    """Return, as a list of one line, which statements of any certificate hold under given compiler flags.
+    """Return one line, in a list, on the statements of any certificate that hold under given compiler flags.
 
     Raises
     ------
@@ -180,16 +180,16 @@ def certify(
     kernel: str, ranges: Sequence[str] = (), directory: Path | None = None, objects: bool = False,
     bounds: bool = True, progress: Callable[[str], object] = lambda text: None,
 ) -> tuple[Data, list[Path]]:  # fmt: skip
-    """Return the certificate of a kernel, each part computed now or fetched from the cache, and the files written.
+    """Return the certificate of a kernel and the files written; parts of it may come from the cache.
 
     Parameters
     ----------
     kernel : str
         A kernel of the library, a scene, or a file NAME.c or NAME.cert.json exactly as symrot emits it.
     ranges : sequence of str
-        ``NAME=LOW:HIGH`` for the box on which rounding errors are bounded; other ranges are the kernel's own. A
-        scene has own ranges for its parameters, its time and its quaternion only; it is bounded if ``ranges`` is not
-        empty.
+        ``NAME=LOW:HIGH`` for the box on which rounding errors are bounded; other ranges are the kernel's own. A scene
+        has ranges of its own only for its parameters, its time and its quaternion; its errors are bounded only if
+        ``ranges`` is not empty.
     directory : Path, optional
         Folder for the kernel and its certificate; without it no file is written.
     objects : bool
@@ -209,7 +209,7 @@ def certify(
     if objects:
         object_code.require_compiler()
     if ranges and not bounds:
-        raise InputError(f"--box: leave out --no-bounds, which computes no bounds, got both, with {ranges[0]!r}")
+        raise InputError(f"--box: expected a box alone, got {ranges[0]!r} with --no-bounds too; leave out --no-bounds")
     rounding = None
     if bounds and (ranges or name in kernel_names()):
         progress("bounding ..")
@@ -232,8 +232,8 @@ def certify_all(
 ) -> tuple[dict[str, Data], list[Path]]:  # fmt: skip
     """Return the certificates of the library and of the kernels of shipped scenes, and the files written.
 
-    Several processes share the work. Certificates made by the same version of the programs are fetched from the cache,
-    except where files are written or object code is compared.
+    Several processes share the work. Certificates made by the same version of symrot come from the cache, unless files
+    are written or object code is compared.
 
     Parameters
     ----------
@@ -295,9 +295,9 @@ def proofs(data: Data) -> tuple[str, ...]:
 
 
 def _emitted(path: str) -> str:
-    """Return the name of the kernel or shipped scene that a C file or certificate belongs to.
+    """Return the name of the kernel or shipped scene to which a C file or certificate belongs.
 
-    Raise an error unless the file is exactly as symrot emits it.
+    Raise InputError or CertificateError unless the file is exactly as symrot emits it.
     """
     file = Path(path)
     name = file.name.removesuffix(".c").removesuffix(".cert.json")
@@ -326,8 +326,8 @@ def _emitted(path: str) -> str:
 def lines(data: Data, compared: bool = True) -> list[str]:
     """Return a certificate as lines of text.
 
-    ``compared`` says that object code was compared just now; otherwise its results are from an earlier run, and the
-    text only mentions them.
+    ``compared`` states that object code was compared in this call; otherwise its results are from an earlier call, and
+    the text only mentions them.
     """
     rows = [("domain", data["domain"]), *(("laws", f"{law['law']}: proven") for law in data["laws"])]
     if data["coq"]:

@@ -45,7 +45,7 @@ def _first_line(command: tuple[str, ...]) -> str:
 
 @contextmanager
 def _empty_cache() -> Iterator[None]:
-    """Use an empty cache inside the block: the compiler really runs, instead of an older result being loaded."""
+    """Use an empty cache inside the block, so that the compiler runs instead of an older result being loaded."""
     from tempfile import TemporaryDirectory
 
     before = os.environ.get("SYMROT_CACHE")
@@ -61,7 +61,7 @@ def _empty_cache() -> Iterator[None]:
 
 
 def _compiled_and_run() -> str:
-    """Compile and run a tiny kernel; return the reason of a failure, or an empty text."""
+    """Compile and run a tiny kernel; return the reason if that fails, else an empty text."""
     import ctypes
 
     try:
@@ -75,7 +75,7 @@ def _compiled_and_run() -> str:
 
 
 def _cached(directory: Path) -> tuple[int, int]:
-    """Return the number of files in the cache and their bytes."""
+    """Return the number of files in the cache and their total size in bytes."""
     sizes = [entry.stat().st_size for entry in os.scandir(directory) if entry.is_file(follow_symlinks=False)]
     return len(sizes), sum(sizes)
 
@@ -117,7 +117,7 @@ class DoctorReport(TypedDict):
 
 
 def facts() -> DoctorReport:
-    """Return the state of this installation as data for JSON; ``problems`` lists what makes symrot slow or unusable."""
+    """Return the state of this installation as data for JSON; ``problems`` lists causes of failure or slowness."""
     cache = build_cache.cache()
     count, size = _cached(cache.directory)
     versions = {name: _version(name) for name in NEEDED}
@@ -169,7 +169,7 @@ ROWS: tuple[tuple[str, Callable[[DoctorReport], str]], ...] = (  # label -> text
 
 
 def lines(report: DoctorReport) -> list[str]:
-    """Return the state of this installation, the result of :func:`facts`, as lines of text."""
+    """Return the state of this installation, as :func:`facts` returns it, as lines of text."""
     rows = [(name, text(report)) for name, text in ROWS]
     for extra, versions in report["extras"].items():
         hint = "" if all(versions.values()) else f" (pip install 'symrot[{extra}]')"
@@ -179,5 +179,5 @@ def lines(report: DoctorReport) -> list[str]:
 
 
 def clear_cache() -> int:
-    """Remove every file that symrot wrote from the cache and return their number."""
+    """Remove every file that symrot wrote into the cache, and return the number of files removed."""
     return len(build_cache.clear())

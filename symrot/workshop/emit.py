@@ -1,4 +1,4 @@
-"""Public functions that plan a scene, explain the plan, and emit the text of a kernel."""
+"""The public functions that plan a scene, explain the plan, and emit the text of a kernel."""
 
 import re
 from collections.abc import Mapping
@@ -36,18 +36,18 @@ class _Texts(NamedTuple):
 
 
 class Emitted(_Texts):
-    """Emitted kernel: its name, the text, and in C the header (empty otherwise).
+    """An emitted kernel: its name, its text, and in C its header (empty for NumPy).
 
-    In NumPy the function has the name of the kernel; in C it is ``function``, the name with the prefix ``symrot_``.
+    In NumPy the function has the name of the kernel; in C its name is ``function``, with the prefix ``symrot_``.
 
-    ``certificate`` is the text of its certificate; it is proven at the first access. The certificate of a kernel of the
-    library contains the bounds of its rounding errors on its own box; that of a scene's kernel contains the bounds that
-    were passed to :func:`emit`.
+    ``certificate`` is the text of the kernel's certificate, which is proven at the first access. The certificate of a
+    library kernel contains the bounds of its rounding errors on its own box; the certificate of a scene's kernel
+    contains the bounds that were passed to :func:`emit`.
 
     Attributes
     ----------
     name : str
-        The function.
+        Name of the kernel.
     source, header : str
         The text of the kernel and, in C, of its header.
 
@@ -65,7 +65,7 @@ class Emitted(_Texts):
     def of(
         cls, kernel: Any, bounds: Mapping[str, Any] | None, name: str, source: str, header: str = ""
     ) -> "Emitted":  # fmt: skip
-        """Return the emitted texts of a kernel, which keep the kernel and its rounding bounds for the certificate."""
+        """Return the emitted texts of a kernel, with the kernel and its rounding bounds for the certificate."""
         emitted = cls(name, source, header)
         emitted.kernel, emitted.bounds = kernel, bounds
         return emitted
@@ -148,20 +148,21 @@ def explain(scene: Scene | str | Path) -> str:
 
 
 def _formulas(scene: Scene | str | Path) -> Plan:
-    """Return the plan of a scene whose torques are all formulas; raise InputError for other scenes, which have no
-    kernel.
+    """Return the plan of a scene whose torques are all formulas.
+
+    Raise InputError for a scene with another torque: such a scene has no kernel.
     """
     return make_plan(_scene(scene))
 
 
 def emit(kernel: Scene | str | Path, target: str = "c", bounds: Mapping[str, Any] | None = None) -> Emitted:
-    """Return the text of a kernel of the library, or of a scene's own kernel; the same bytes on every machine.
+    """Return the text of a kernel of the library, or of a scene's own kernel, the same bytes on every machine.
 
     Parameters
     ----------
     kernel : Scene, str or Path
-        The name of a kernel (:func:`symrot.kernel_names`), of a shipped scene, a scene, or the path of a scene file.
-        The kernel of a scene is its equations of motion ``dy/dt``.
+        The name of a kernel (:func:`symrot.kernel_names`) or of a shipped scene, a scene, or the path of a scene file.
+        The kernel of a scene computes its equations of motion ``dy/dt``.
     target : str
         ``"c"`` (C99, valid C++) or ``"numpy"``.
     bounds : mapping, optional
@@ -199,9 +200,9 @@ def _is_kernel(kernel: Any) -> bool:
 
 
 def subject(kernel: Scene | str | Path, bounds: Mapping[str, Any] | None = None) -> "KernelUnderTest":
-    """Return the subject of a certificate: a kernel of the library or of a scene, with its emitted texts.
+    """Return a kernel of the library or of a scene with its emitted texts, as the subject of a certificate.
 
-    ``bounds`` are the rounding bounds that a scene's kernel is emitted with (:func:`emit`).
+    ``bounds`` are the rounding bounds with which a scene's kernel is emitted (see :func:`emit`).
     """
     from symrot.certificates.kernel_under_test import library_kernel_under_test, scene_kernel_under_test
     from symrot.codegen.library_kernels import kernel_description
@@ -243,9 +244,9 @@ def kernel_names() -> tuple[str, ...]:
 
 @cache
 def _library_kernel(name: str, target: str) -> Emitted:
-    """Return the text of a kernel of the library with its rounding bounds; each is printed once per process.
+    """Return the text of a kernel of the library with its rounding bounds; each text is printed once per process.
 
-    The head comment states the bounds of the operations below it, so the functions are printed and bounded first.
+    The head comment states the bounds of the operations below it, so the operations are printed and bounded first.
     """
     from symrot.certificates.rounding.bounds_text import bounds_sentence, library_section
     from symrot.codegen.library_kernels import kernel_description, kernel_program
@@ -283,7 +284,7 @@ def _scene_kernel(scene: Scene | str | Path, target: str, bounds: Mapping[str, A
 
 
 def scene_inputs(scene: Scene | str | Path) -> "SceneInputs":
-    """Return the arguments of a scene's own kernel, the values and formulas of its parameters, and its time span."""
+    """Return the arguments of a scene's own kernel, values and formulas of its parameters, and its time span."""
     from symrot.certificates.rounding.scenes import SceneInputs
     from symrot.dynamics.equations import equations_of_motion
     from symrot.planning.scene_kernel import bind
@@ -310,7 +311,7 @@ def _scene_rates(
 
     if not scene_plan.states:
         raise InputError(
-            f"{scene_plan.scene.name}: expected a scene with states to integrate; every state of it is constant"
+            f"{scene_plan.scene.name}: expected a scene with states to integrate; all its states are constant"
         )
     return rates_program(equations, scene_kernel_name(scene_plan.scene.name)), scene_description(
         scene_plan.scene.title, scene_plan.scene.name, target, contract_lines

@@ -1,4 +1,4 @@
-"""Reader of ``--box NAME=LOW:HIGH``: ranges of the inputs of a kernel and of the physical constants of a scene."""
+"""The reader of ``--box NAME=LOW:HIGH``: ranges of a kernel's inputs and of a scene's physical constants."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
@@ -20,7 +20,7 @@ FORM = "expected NAME=LOW:HIGH, such as theta=-1.4:1.4"
 
 
 def input_box(kernel_problem: RoundingProblem, inputs: SceneInputs | None, ranges: Sequence[str]) -> dict[str, Ends]:
-    """Return the box of a kernel with the user's ranges in place of its own.
+    """Return the box of a kernel, with the user's ranges instead of the kernel's own where they are given.
 
     Parameters
     ----------
@@ -29,13 +29,13 @@ def input_box(kernel_problem: RoundingProblem, inputs: SceneInputs | None, range
     inputs : SceneInputs, optional
         The parameters of a scene's kernel as formulas; None for a kernel of the library.
     ranges : sequence of str
-        ``NAME=LOW:HIGH``, where NAME is a component ("theta"), a place ("angles[1]") or a constant in a scene's
+        ``NAME=LOW:HIGH``, where NAME is a component ("theta"), an index ("angles[1]") or a constant in a scene's
         parameters.
 
     Raises
     ------
     InputError
-        For a malformed range, an unknown name, or two ranges of one input (by name and place, or through a constant).
+        For a malformed range, an unknown name, or two ranges of the same input (by name, index or constant).
     """
     by_place: dict[str, tuple[str, Ends]] = {}
     for text in ranges:
@@ -79,7 +79,7 @@ def _check_finite(name: str, ends: Ends, text: str) -> None:
 
 
 def _place(kernel_problem: RoundingProblem, inputs: SceneInputs | None, name: str, text: str) -> str:
-    """Return the place of a named input (such as ``angles[1]``), or the name of a constant in a scene's parameters."""
+    """Return the index of a named input (such as ``angles[1]``), or the name of a constant in a scene's parameters."""
     for place, symbol in kernel_problem.symbols.items():
         if name in (place, symbol):
             return place

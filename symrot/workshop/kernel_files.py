@@ -1,4 +1,4 @@
-"""Files of emitted kernels: write one or all, and compare the files on disk with the kernels emitted now."""
+"""Files of emitted kernels: writing one or all, and comparing the files on disk with the kernels emitted now."""
 
 import json
 import os
@@ -31,15 +31,15 @@ SCENES = "scenes"  # subfolder of each target's folder for the kernels of shippe
 
 
 def kernel_lines() -> list[str]:
-    """Return a line for each kernel of the library: its name and its title."""
+    """Return one line for each kernel of the library, with its name and its title."""
     width = max(map(len, kernel_names()))
     return [f"{name:<{width}}  {definition(name).title}" for name in kernel_names()]
 
 
 def kernel_files(kernel: str | Path, target: str, bounds: Mapping[str, Any] | None = None) -> dict[str, str]:
-    """Return file name -> text of a kernel of the library or of a scene; in C the header comes first.
+    """Return the files of a kernel of the library or of a scene, file name -> text; in C the header comes first.
 
-    ``bounds`` are the rounding bounds for the head comment of a scene's C (:func:`symrot.emit`).
+    ``bounds`` are the rounding bounds for the head comment of a scene's C (see :func:`symrot.emit`).
     """
     emitted = emit(kernel, target, bounds)
     if target == "numpy":
@@ -54,9 +54,10 @@ def kernel_files(kernel: str | Path, target: str, bounds: Mapping[str, Any] | No
 def certificate_files(
     kernel: str | Path, directory: Path, bounds: Mapping[str, Any] | None = None
 ) -> dict[str, str]:  # fmt: skip
-    """Return file name -> text of the certificate of a kernel; verdicts on object code on disk are kept if they hold.
+    """Return the certificate file of a kernel, file name -> text.
 
-    Bounds of rounding errors are on the kernel's own box; for a scene, they are ``bounds``.
+    Verdicts on object code from the certificate on disk are kept if they still hold. Bounds of rounding errors are on
+    the kernel's own box; for a scene, they are ``bounds``.
     """
     emitted = emit(kernel, "c", bounds)
     name = f"{emitted.name}.cert.json"
@@ -87,7 +88,7 @@ def stored_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, An
 
 
 def _slots(path: Path) -> dict[str, Any]:
-    """Return the certificate on disk, whose bounds and verdicts can be reused; an empty dict if it cannot be read."""
+    """Return the certificate on disk, whose bounds and verdicts can be reused; an empty dict if there is none."""
     try:
         certificate = json.loads(read_input(path, LARGEST))
     except (OSError, ValueError, RecursionError):
@@ -110,7 +111,7 @@ def _files_of(name: str, subfolder: str, targets: Sequence[str], directory: Path
 def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str], object]) -> dict[str, str]:
     """Return all files of the library and of the kernels of shipped scenes as path -> text.
 
-    Several processes print them.
+    Several processes share the work.
     """
     work = [
         (name, subfolder)
@@ -132,7 +133,7 @@ def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str]
 
 
 def _printed_before(directory: Path, targets: Sequence[str]) -> list[str]:
-    """Return the paths of all kernel files on disk, including kernels that are no longer printed."""
+    """Return the paths of all kernel files on disk, including those of kernels that no longer exist."""
     return [
         path.relative_to(directory).as_posix()
         for target in targets
@@ -167,7 +168,10 @@ def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
 
 
 def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[Path]:
-    """Write the library and the kernels of all shipped scenes, remove other kernels, and return the changed paths."""
+    """Write the library and the kernels of all shipped scenes, and return the paths of the changed files.
+
+    Files of kernels that no longer exist are deleted.
+    """
     files = _all_files(targets, directory, progress)
     changed = write_files(directory, files)
     for name in _printed_before(directory, targets):
@@ -187,7 +191,7 @@ def stale(directory: Path, targets: Sequence[str], progress: Callable[[str], obj
     """
     if not directory.is_dir():
         raise InputError(
-            f"{str(directory)!r}: expected the folder that `symrot emit --all` writes, which does not exist"
+            f"{str(directory)!r}: expected the folder that `symrot emit --all` writes, but it does not exist"
         )
     files = _all_files(targets, directory, progress)
     lines: list[str] = []

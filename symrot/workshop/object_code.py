@@ -29,17 +29,17 @@ def require_compiler() -> None:
 
 
 def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
-    """Return the part of a certificate about object code: compile a kernel and compare the results with its C text.
+    """Compile a kernel, compare the object code with its C text, and return that section of the certificate.
 
     Parameters
     ----------
     texts : mapping of str to str
         File name -> text: the kernel and the headers that it includes.
     source : str
-        The name of the C file among them.
+        The name of the C file in ``texts``.
     programs : str
-        The digest of symrot's sources. The section comes from the cache if the digest, the texts and the versions of
-        the compilers are unchanged.
+        The digest of symrot's sources. The section comes from the cache if the digest, the texts and the versions
+        of the compilers are unchanged.
     """
     versions = [compiler_version(compiler) for compiler in COMPILERS]
     key = f"objects of {json.dumps([source, dict(texts), versions])} by {programs}"
@@ -54,22 +54,20 @@ def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
 
 
 def holds(section: Data | None) -> bool:
-    """Return whether the object code of every compiler equals the C text, under all flags that must preserve its
-    bits.
-    """
+    """Return whether all object code equals the C text under every flag that must preserve its bits."""
     strict = [item for item in _objects(section) if item["flags_hold"] == BITS]
     return bool(strict) and all(function["verdict"] == IDENTICAL for item in strict for function in item["functions"])
 
 
 def lines(section: Data | None) -> list[str]:
-    """Return the verdicts on the object code of a kernel as text, a line for each compiler and its flags."""
+    """Return the verdicts on the object code of a kernel as text, one line for each compiler and its flags."""
     verdicts = [f"{item['compiler']} {item['flags']}: {_verdict(item)}" for item in _objects(section)]
     absent = (section or {}).get("missing", ())
     return [*verdicts, *(f"{compiler} is not on the path: not compared" for compiler in absent)]
 
 
 def table(sections: Mapping[str, Data | None]) -> list[str]:
-    """Return, for each compiler and its flags, how many kernels were accepted, and a line for each one that was not."""
+    """Return lines with the number of accepted kernels for each compiler and its flags, and each rejected kernel."""
     by_flags: dict[str, dict[str, Data]] = {}
     for name, section in sections.items():
         for item in _objects(section):
@@ -82,12 +80,12 @@ def table(sections: Mapping[str, Data | None]) -> list[str]:
 
 
 def object_lines(text: str, path: Path, where: str) -> list[str]:
-    """Return a line for each function in an object file, after comparing it with the C text.
+    """Compare each function in an object file with the C text, and return one line for each.
 
     Raises
     ------
     CertificateError
-        If a function differs; the message names the first and the difference.
+        If a function differs; the message names the first such function and the difference.
     """
     verdicts = compare_object(text, path, where=where)
     refused = [verdict for verdict in verdicts if not verdict.accepted]

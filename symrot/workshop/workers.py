@@ -21,8 +21,8 @@ def _ignored(arguments: object) -> None:
 def workers() -> Iterator[ProcessPoolExecutor]:
     """Yield a pool of processes; an exception in the block, Ctrl-C included, kills them at once.
 
-    Their files appear by renaming (:func:`symrot.files.writing.write`, :mod:`symrot.build.cache`), so that none stays
-    half-written. The processes ignore Ctrl-C; the main process receives it and ends them.
+    The processes write files under temporary names and rename them (:func:`symrot.files.writing.write`,
+    :mod:`symrot.build.cache`), so that no incomplete file remains. They ignore Ctrl-C; the main process ends them.
     """
     with ProcessPoolExecutor(COUNT, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)) as pool:
         try:

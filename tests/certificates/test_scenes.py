@@ -239,7 +239,7 @@ def test_what_does_not_overflow_is_bounded_to_the_largest_numbers(capsys):
         ),
         (["bound", "t_handle", *_options((*CUBE, "q0=2:3"))], "a box that contains a unit quaternion"),
         (["bound", "t_handle", *_options([f"omega_{i}=-1e200:1e200" for i in (1, 2, 3)])], "domega_1 has no bound"),
-        (["bound", "t_handle", *_options(CUBE), "--target", "1e-13", "--variable", "t"], "which t is not"),
+        (["bound", "t_handle", *_options(CUBE), "--target", "1e-13", "--variable", "t"], "it does not use t"),
         (["bound", "t_handle", "--precision", "float"], "expected double for a scene"),
         (["bound", "t_handl"], "did you mean 't_handle'?"),
         (["certify", "t_handle", "--no-bounds", "--box", "omega_1=0:1"], "leave out --no-bounds"),

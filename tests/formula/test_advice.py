@@ -29,7 +29,7 @@ def read(formula, **parameters):
         ("fmod(t, 1)", "write mod(a, b), which has the sign of b"), ("t % 1", "write mod(a, b) for a % b"),
         ("1 if t < 1 else 2", "write where(condition, a, b)"), ("t^2", "write ** for a power"),
         ("where(t < 1 && t > 0, 1, 2)", "write and between"), ("where(t < 1 || t > 3, 1, 2)", "write or between"),
-        ("where(!(t < 1), 1, 2)", "write not before a condition"), ("where(t == 1, 1, 2)", "at single times only"),
+        ("where(!(t < 1), 1, 2)", "write not before a condition"), ("where(t == 1, 1, 2)", "only at single instants"),
         ("where(t < 1, 2)", "write where(condition, a, b)"), ("clip(t, 1)", "write clip(u, low, high)"),
         ("where(1 < t < 2, 1, 0)", "one comparison at a time"), ("omega1", "write omega_1"), ("omega_x", "write omega_1"),
         ("wz", "write omega_3"), ("qw", "write q0"), ("omega[2]", "for one component"), ("ln(t)", "write log(u)"),
@@ -59,7 +59,7 @@ def test_no_word_that_formulas_know_is_among_the_foreign_ones():
 
 def test_a_formula_that_knows_no_jumps_is_not_advised_to_use_them():
     """Events are found as zeros of smooth formulas."""
-    with pytest.raises(InputError, match="stand in formulas of torques alone"):
+    with pytest.raises(InputError, match="allowed only in formulas of torques"):
         symrot.propagate("t_handle", events=["sign(omega_3)"])
     with pytest.raises(InputError) as caught:
         symrot.propagate("t_handle", events=["heaviside(t)"])

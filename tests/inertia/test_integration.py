@@ -31,7 +31,7 @@ def test_integrals_of_cosines_and_sines(powers, quarters):
 def test_angles_end_at_quarter_turns():
     """A limit in between is refused by name, not rounded."""
     angle = Coordinate("phi", "0", "pi/3")
-    with pytest.raises(ValueError, match="quarter turn"):
+    with pytest.raises(ValueError, match="multiples of pi/2"):
         integrate(cosine("phi"), ((angle, constant(0), generator("pi") / 3),))
 
 

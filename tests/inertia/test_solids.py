@@ -380,7 +380,7 @@ REFUSED = [
     (("sphere",), {"radius": sympy.nan}, "positive radius"),
     (("sphere",), {"radius": sympy.oo}, "positive radius"),
     (("sphere",), {"radius": "diameter/2"}, "'diameter'"),
-    (("sphere",), {"diameter": 1}, "'diameter' is none of them"),
+    (("sphere",), {"diameter": 1}, "'diameter' is not one of them"),
     (("sphere",), {"mass": 1, "density": 1}, "a mass or a density"),
     (("sphere",), {"mass": -1}, "positive mass"),
     (("sphere",), {"density": -1}, "positive density"),

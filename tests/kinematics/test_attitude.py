@@ -313,7 +313,7 @@ def test_angles_come_back_from_quaternion_and_dcm(sequence):
     [
         (lambda: dcm("ZZX"), "ZZX"),
         (lambda: dcm("ZxZ"), "ZxZ"),
-        (lambda: dcm("ZXZ", (phi, theta)), "3 values, got 2"),
+        (lambda: dcm("ZXZ", (phi, theta)), "expected 3 values for the Euler sequence ZXZ, got 2"),
         (lambda: rate_jacobian("ZXZ", "world"), "world"),
         (lambda: quaternion.quaternion_rates("inertial"), "inertial"),
         (lambda: quaternion.quaternion_to_dcm(form="euclidean"), "euclidean"),

@@ -404,7 +404,7 @@ def test_what_is_not_smooth_is_refused():
 
 @pytest.mark.parametrize("order", [2, 7, -4])
 def test_odd_orders_are_refused(order):
-    with pytest.raises(InputError, match=f"even number from 4 on, got {order}"):
+    with pytest.raises(InputError, match=f"even number, at least 4, got {order}"):
         small({"x": "x"}, order=order)
 
 

@@ -1,4 +1,4 @@
-"""Kernels and steppers for comparisons: handwritten in C, or made by other tools."""
+"""Kernels and steppers that symrot is compared with: handwritten in C, or made by other tools."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Compiled functions of heyoka as addresses, so that its machine code runs in the same loops as that of other tools."""
+"""Addresses of heyoka's compiled functions, so that its machine code runs in the same loops as that of other tools."""
 
 import ctypes
 import subprocess
@@ -12,7 +12,7 @@ from symrot.build import cache as build_cache
 
 __all__ = ["LANES", "heyoka_code"]
 
-LANES = 4  # doubles that heyoka's batch functions take at once
+LANES = 4  # number of doubles that heyoka's batch functions process at once
 _LOADED = Path("/proc/self/maps")
 
 
@@ -28,7 +28,7 @@ def _function(name: str) -> Any:
 
 
 def heyoka_code(name: str) -> tuple[Any, Any, Any]:
-    """Return the addresses of heyoka's code for one sample, for one sample of a batch and for ``LANES`` of a batch.
+    """Return the addresses of heyoka's code: for one sample, and for one or ``LANES`` samples of a batch.
 
     heyoka's object code is linked without change; its sines come from the library that heyoka has loaded.
 
@@ -39,7 +39,7 @@ def heyoka_code(name: str) -> tuple[Any, Any, Any]:
     """
     states = _function(name).llvm_states
     if not _LOADED.exists():
-        raise ImportError(f"expected {_LOADED}, to locate the shared library of heyoka")
+        raise ImportError(f"expected {_LOADED}, which lists the shared library of heyoka; this system has no such file")
     for line in _LOADED.read_text(encoding="utf-8").splitlines():
         if "/libheyoka" in line:
             ctypes.CDLL(line.split(maxsplit=5)[5], ctypes.RTLD_GLOBAL)

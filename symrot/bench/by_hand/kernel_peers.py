@@ -1,7 +1,7 @@
 """Kernels made from the same textbook formulas by other tools: SymPy, SymForce, CasADi, heyoka, and by hand.
 
-Each tool gets the formulas as derived, without the named quantities of symrot's own definitions. C code is compiled
-with the flags of symrot's kernels. A tool that is not installed is skipped, and the report names it.
+Each tool gets the formulas as textbooks print them, without the named quantities of symrot's own definitions. C code is
+compiled with the flags of symrot's kernels. A tool that is not installed is skipped, and the report names it.
 """
 
 import re
@@ -70,7 +70,7 @@ TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
     "rigid_body_tensor": _rigid_body,
     "heavy_top": _heavy_top,
 }
-"""The kernels that other tools can make too, each with the formula that textbooks print."""
+"""The kernels that other tools can produce too, each with the formula that textbooks print."""
 
 
 def textbook(name: str) -> list[sympy.Expr]:
@@ -102,7 +102,7 @@ def _outputs(signature: Signature) -> list[str]:
 
 
 def _program(name: str, common: Sequence[tuple[Any, Any]], results: Sequence[Any]) -> str:
-    """Return C text that computes common terms and then results, without further simplification."""
+    """Return C text that computes common terms first and then the results, without further simplification."""
     signature = kernel_program(name).signature
     temporaries = tuple((str(symbol), _products(to_node(value))) for symbol, value in common)
     outputs = tuple(zip(_outputs(signature), (_products(to_node(value)) for value in results), strict=True))
@@ -150,7 +150,7 @@ PEERS_IN_C: dict[str, Callable[[str], str | None]] = {"by hand": by_hand, "SymPy
 
 
 def counted(text: str, name: str) -> Counter[str]:
-    """Return the number of operations of each kind in a C function; equal operations count once.
+    """Return the number of operations of each kind in a C function; equal operations count only once.
 
     :mod:`symrot.certificates.readback` reads the C text.
     """

@@ -1,9 +1,10 @@
 """Contestants of a work-precision study: symrot's methods, SciPy's, and heyoka in each of its settings.
 
-For one tolerance, a contestant prepares a function that follows the motion from its start to a time and returns the
-states there and the number of steps. Work that a user does once (deriving, compiling, heyoka's own compiling) is part
-of the preparation and not timed. Everything is called from Python, as a user calls it. SciPy gets the NumPy kernel that
-symrot emits for the scene, rewritten for single states with Python floats and :mod:`math`, which takes half the time.
+For one tolerance, a contestant prepares a function that computes the motion from its start to a given time and returns
+the states there and the number of steps. Work that a user does once (deriving, compiling, heyoka's own compiling) is
+part of the preparation and not timed. All functions are called from Python, as users call them. SciPy gets the NumPy
+kernel that symrot emits for the scene, rewritten for single states with Python floats and :mod:`math`, which takes half
+the time.
 """
 
 from collections.abc import Callable, Sequence
@@ -38,8 +39,8 @@ ADAPTIVE = tuple(float(Fraction(1, 10**k)) for k in range(2, 14))  # SciPy takes
 class Contestant(NamedTuple):
     """One contestant of a study: a method with its settings, which gives one curve of time against error.
 
-    ``group`` is its name in ``--methods``; ``missing`` returns why it cannot take part, or an empty text; ``prepare``
-    returns the run for a tolerance.
+    ``group`` is the name that selects it in ``--methods``; ``missing`` returns why it cannot take part, or an empty
+    text; ``prepare`` returns the timed function for a tolerance.
     """
 
     name: str
@@ -77,7 +78,7 @@ def _no_form(problem: Problem) -> str:
 
 
 def _symrot(method: str) -> Callable[[Problem, float], Run]:
-    """Return a function that prepares a propagator; its run calls the propagator as a user does, with the end time."""
+    """Return a function that prepares a propagator; the run calls the propagator with the end time, as a user does."""
 
     def prepare(problem: Problem, tolerance: float) -> Run:
         propagate = propagator(problem.scene, method, tolerance)

@@ -1,8 +1,8 @@
 """Motions computed to 30 digits at any time by Taylor series in mpmath; for free bodies, over any number of periods.
 
 The angular velocity of a free body is periodic, and every period adds the same rotation: with period P and ``R = q(P)
-q(0)^-1`` the attitude is ``q(t + n P) = R^n q(t)``. The series of one period therefore give the motion after a million
-periods, and they share nothing with the closed form that is compared with them.
+q(0)^-1`` the attitude is ``q(t + n P) = R^n q(t)``. So the series of one period give the motion after a million
+periods. They share no code or formula with the closed form that is compared with them.
 """
 
 from fractions import Fraction
@@ -30,7 +30,7 @@ Floats = NDArray[np.float64]
 DIGITS, ORDER, TAIL = 40, 32, 1e-28
 FUNCTIONS = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
 MOST_STEPS = 2000
-SLOWEST = 1e-8  # part of the initial speed (rad/s if it is zero): errors of slower bodies are relative to it
+SLOWEST = 1e-8  # part of the initial angular speed (rad/s if it is zero); errors of slower bodies are relative to it
 
 
 def _as_mpf(value: Fraction) -> Any:
@@ -38,7 +38,7 @@ def _as_mpf(value: Fraction) -> Any:
 
 
 class ExactPath:
-    """Reference for one motion: its integrated states, computed in 40 digits from the exact numbers of the scene."""
+    """A reference for one motion: its integrated states, computed in 40 digits from the exact numbers of the scene."""
 
     def __init__(self, motion: Motion) -> None:
         self.motion, plan, kernel = motion, motion.plan, motion.kernel
@@ -71,7 +71,7 @@ class ExactPath:
             abs(one[ORDER - k]) / (size if i < self.rates else 1) for i, one in enumerate(series) for k in (0, 1)
         )
         step = (TAIL / last) ** (mpmath.mpf(1) / ORDER) if last else mpmath.mpf(1)
-        if self.deviations:  # a step ends before a feature of the torque that its coefficients do not show
+        if self.deviations:  # the step must end before a feature of the torque that its coefficients do not show
             step = min(step, self.span)
             terms = [[float(abs(one[n] * step**n)) for n in range(1, ORDER + 1)] for one in series]
             allowed = [TAIL * float(size if first < self.rates else 1) for first in self.edges[:-1]]
@@ -124,7 +124,7 @@ class ExactPath:
                 self._advance()
                 first, last, series = self.pieces[-1]
                 rates = np.array([[float(x) for x in one] for one in series[: self.rates]])
-                for k in range(8):  # doubles suffice for the start of Newton's method
+                for k in range(8):  # doubles are accurate enough for the start of Newton's method
                     t = first + (last - first) * k / 8
                     now = np.array([np.polyval(one[::-1], float(t - first)) for one in rates])
                     apart = float(np.linalg.norm(now - start))

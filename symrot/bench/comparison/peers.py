@@ -1,4 +1,4 @@
-"""Runs of heyoka and SciPy on the same right-hand sides that symrot emits, for comparisons."""
+"""Runs of heyoka and SciPy, for comparison, on the same right-hand sides that symrot emits."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -19,7 +19,7 @@ FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log", "tan", "sinh", "cosh", "tanh", 
 
 
 def heyoka_system(rates: Program, parameters: Mapping[str, float]) -> list[Any]:
-    """Return a right-hand side in heyoka's form; the values of parameters are compiled in as numbers."""
+    """Return a right-hand side in heyoka's form, with the values of parameters compiled in as numbers."""
     import heyoka
 
     names = [name for name, *_ in rates.signature.argument("y").components]
@@ -33,9 +33,9 @@ def heyoka_integrator(
     rates: Program, parameters: Mapping[str, float], start: Sequence[float], tolerance: float,
     settings: dict[str, bool], began: float = 0.0,
 ) -> Callable[[float], tuple[Any, int]] | None:  # fmt: skip
-    """Return a function from the end of a span, s, to the last state and the number of steps by heyoka.
+    """Return a function that runs heyoka to a given end time, s, and returns the last state and the number of steps.
 
-    ``began`` is the start of the span, s. Without heyoka the result is None.
+    ``began`` is the start time, s. Without heyoka the result is None.
     """
     try:
         import heyoka
@@ -53,10 +53,10 @@ def heyoka_integrator(
 
 
 def scalar_kernel(program: Program) -> Callable[..., Any]:
-    """Return the emitted NumPy kernel as ``f(t, y, p)`` for SciPy, rewritten for one state at a time as an expert
-    would.
+    """Return the emitted NumPy kernel as ``f(t, y, p)`` for SciPy, rewritten for one state at a time.
 
-    Python floats and :mod:`math` replace zero-dimensional arrays, which halves the time. The state is a list.
+    An expert would write it so: Python floats and :mod:`math` replace zero-dimensional arrays, which halves the time.
+    The state is a list.
     """
     text = numpy_source(program, UNNAMED).replace("import numpy as np", "import math\n\nimport numpy as np")
     text = re.sub(r"np\.empty\(\((\d+), \*np\.shape\(y\)\[1:\]\)\)", r"np.empty(\1)", text)

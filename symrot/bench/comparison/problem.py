@@ -1,4 +1,4 @@
-"""A scene prepared for a comparison of methods: plan, kernel, initial state, times of comparison, measure of errors."""
+"""A scene prepared for a comparison of methods: plan, kernel, initial state, times of comparison, error measure."""
 
 import math
 from collections.abc import Sequence
@@ -24,18 +24,18 @@ PARTS = (0.382, 0.618, 0.854, 1.0)
 """Fractions of the span at which errors are measured. One time is not enough: along an unstable motion, errors come
 close to zero at some times."""
 REST = 1e-3
-"""Fraction of the largest angular velocity at these times: errors of slower bodies are relative to it."""
+"""Part of the largest angular velocity at these times; errors of slower bodies are relative to it."""
 
 
 class State(NamedTuple):
-    """State of a body: angular velocity (3,), body axes, rad/s; attitude (4,), or None if it is not computed."""
+    """The state of a body: angular velocity (3,), body axes, rad/s; attitude (4,), or None if it is not computed."""
 
     omega: Floats
     quaternion: Floats | None
 
 
 class Problem:
-    """Scene with its kernel and the numbers of its parameters, for a comparison of methods.
+    """A scene with its kernel and the numbers of its parameters, for a comparison of methods.
 
     ``plan`` may differ from the scene's own plan, for example the most general one.
     """
@@ -86,8 +86,8 @@ class Problem:
     def error(state: State, exact: State, least: float = 0.0) -> float:
         """Return the larger of two errors: of the angular velocity, relative to its size; of the attitude, in rad.
 
-        For a body slower than ``least``, rad/s, the error is relative to ``least``: a body that waits for a pulse may
-        rotate at 1e-40 rad/s, where relative errors mean nothing.
+        For a body slower than ``least``, rad/s, the first error is relative to ``least``: a body that is nearly at rest
+        before a pulse may rotate at 1e-40 rad/s, where relative errors are meaningless.
         """
         if not np.isfinite(state.omega).all():
             return math.inf

@@ -15,7 +15,7 @@ __all__ = ["Measured", "race", "rounds_for", "seconds_of", "work_ahead"]
 
 SHORTEST = 2e-3  # s, least duration of one timing: long enough to load code and numbers into the caches
 MOST_REPEATS = 200
-SLOW, SLOW_ROUNDS = 0.2, 2  # a run that takes so many seconds is timed so often
+SLOW, SLOW_ROUNDS = 0.2, 2  # a run that takes at least SLOW seconds is timed in only SLOW_ROUNDS rounds
 
 
 @dataclass
@@ -62,7 +62,7 @@ def _repeats(seconds: float) -> int:
 
 
 def work_ahead(measured: Iterable[Measured], rounds: int) -> float:
-    """Return an estimate of the seconds that all rounds will take."""
+    """Return an estimate of the total seconds that all rounds will take."""
     return sum(one.first * _repeats(one.first) * rounds_for(one.first, rounds) for one in measured)
 
 

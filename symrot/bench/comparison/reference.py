@@ -14,11 +14,11 @@ reference                    equations              method                      
 No reference steps over a feature of a torque, such as a narrow pulse: enclosures of the torque limit the steps of the
 series, and fixed steps are short where the stepper of the scene, limited in the same way, takes short steps.
 
-The first available reference is used, and the others are compared with it. References that contradict one another are
-an error; errors of methods below the difference between references mean nothing. The last reference is computed only
-where just one of the others is available, as for torques without a Taylor series. All references start from the exact
-numbers of the scene, so that the rounding of parameters counts as an error of a method. References that take minutes
-are stored in the cache of kernels.
+The first available reference is used, and the others are compared with it. It is an error if references contradict each
+other; errors of methods below the difference between references are meaningless. The last reference is computed only if
+just one of the others is available, as for torques without a Taylor series. All references start from the exact numbers
+of the scene, so that the rounding of parameters counts as an error of a method. References that take minutes are stored
+in the cache of kernels.
 """
 
 import ctypes
@@ -61,15 +61,15 @@ __all__ = ["DIGITS", "Reference", "reference"]
 Progress = Callable[[str], object]
 
 DIGITS, ORDER, TAIL = 40, 28, 1e-26
-MOST_SECONDS = 150.0  # for the series; it is abandoned as soon as it is bound to take longer
+MOST_SECONDS = 150.0  # limit for the series; it is abandoned as soon as its estimated time is longer
 MOST_LONG_SECONDS = 20.0  # for fixed steps in long double
 MOST_STEPS = 2_000_000  # limit of fixed steps, like MOST_SECONDS
 FEWEST_STEPS = 64
 GRID_TOLERANCE = 1e-8  # tolerance of the motion whose steps show where fixed steps must be short
 CONTRADICTION = 1e-6  # a larger difference between references means that one of them is wrong
-CONVERGED = 4e-19  # error per radian of rotation (at least one radian) that long double can reach
-ROUNDED = 1e-15  # per radian: smaller changes may be rounding errors, larger ones come from corners in the torque
-LONG_DOUBLE_BITS = 63  # bits of the fraction, at least; otherwise long double is no better than double
+CONVERGED = 4e-19  # smallest error per radian of rotation (at least one radian) that long double can reach
+ROUNDED = 1e-15  # per radian: smaller changes may be rounding errors, larger ones come from kinks in the torque
+LONG_DOUBLE_BITS = 63  # smallest number of bits of the fraction that makes long double better than double
 LITERAL = re.compile(r"(?<![\w.])(\d+\.\d*(?:[eE][+-]?\d+)?|\d+[eE][+-]?\d+)(?![\w.])")
 CALLS = re.compile(r"\b(sqrt|sin|cos|tan|exp|log|fabs|sinh|cosh|tanh|asin|acos|atan|atan2|pow)\(")
 
@@ -79,13 +79,16 @@ class Reference(NamedTuple):
 
     states: tuple[State, ...]
     name: str
-    others: tuple[tuple[str, float], ...]  # name, and its difference as errors are measured
+    others: tuple[tuple[str, float], ...]  # names, and their differences from these states, measured like errors
     seconds: float
     skipped: tuple[str, ...]  # reasons why a reference was not available
 
     @property
     def doubt(self) -> float:
-        """The least difference from another computation, below which errors mean nothing; nan if there is no other."""
+        """The smallest difference from another reference, below which errors are meaningless.
+
+        It is nan if there is no other reference.
+        """
         return min((difference for _, difference in self.others), default=math.nan)
 
     def to_json(self) -> dict[str, Any]:
@@ -98,7 +101,7 @@ class Reference(NamedTuple):
 
 
 class _Unavailable(Exception):
-    """Signal that a reference is not available for this motion or on this machine; the text says why."""
+    """The signal that a reference is not available for this motion or on this machine; its text is the reason."""
 
 
 def reference(problem: Problem, say: Progress = lambda text: None, seconds: float = MOST_SECONDS) -> Reference:
@@ -107,8 +110,8 @@ def reference(problem: Problem, say: Progress = lambda text: None, seconds: floa
     Raises
     ------
     SymrotError
-        If no reference is available: the motion ends before its span does, or there is neither a Taylor series nor a
-        compiler. Also if no other reference confirms the first: one of them is wrong.
+        If no reference is available, because the motion ends early or because there is neither a Taylor series nor a
+        compiler; also if the references contradict each other.
     """
     began = perf_counter()
     paths: list[tuple[str, list[State]]] = []
@@ -207,7 +210,7 @@ def _series(
                 largest = max(abs(one[n]) / size for one, size in zip(series, sizes, strict=True))
                 if largest:
                     step = min(step, (TAIL / largest) ** (mpmath.mpf(1) / n))
-            if deviations:  # a step ends before a feature of the torque that its coefficients do not show
+            if deviations:  # the step must end before a feature of the torque that its coefficients do not show
                 terms = [[float(abs(one[n] * step**n)) for n in range(1, ORDER + 1)] for one in series]
                 start, length = list(map(float, state)), float(step)
                 proven = longest_followed(deviations, float(now), start, terms, length, allowed, edges, ORDER)
@@ -226,7 +229,7 @@ def _series(
 
 
 def _sizes(problem: Problem) -> list[float]:
-    """Return the unit in which errors of each state are measured: the size of omega, and 1 for an attitude."""
+    """Return the unit of the error of each state: the size of omega for angular velocities, 1 for an attitude."""
     spin = float(np.linalg.norm([float(value) for value in problem.scene.initial.omega_b])) or 1.0
     return [spin if name.startswith("omega") else 1.0 for name in problem.plan.states]
 
@@ -290,16 +293,17 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
             before = path
         steps = int(steps * 1.5)
     if finest is None:
-        raise _Unavailable("the fixed steps needed are more than allowed")
+        raise _Unavailable("the motion needs more fixed steps than allowed")
     return [_long_state(general, state, end) for state, end in zip(finest, general.ends, strict=True)]
 
 
 def _grid(problem: Problem) -> list[float]:
-    """Return times that no fixed step may pass: the ends of steps that enclosures of the torque allow, or no times.
+    """Return times at which a fixed step must end, so that no step misses a narrow pulse; an empty list if unnecessary.
 
-    A fixed step can miss a pulse that is narrower than the step; a step of half its length can miss it too, and then
-    both agree on a wrong result. Steps between two times of the grid are shortened like all others, so that the grid
-    decides only where steps are short.
+    These are the ends of steps that enclosures of the torque allow. Without them a fixed step could miss a pulse
+    narrower than the step, and a step of half its length could miss it too; then both would agree on a wrong result.
+    Steps between two of these times are halved like all others, so the times only ensure that steps are short where
+    necessary.
     """
     motion = stepped_motion(problem.plan, Choice("dop853", ""), GRID_TOLERANCE)
     if formula_deviations(problem.plan, problem.kernel) is None:
@@ -321,7 +325,7 @@ def _fixed_steps(
 ) -> Callable[[int], Any]:
     """Return a function from the number of steps to the integrated states at the times of comparison.
 
-    Each interval of the grid gets steps in proportion to its length, and at least one when ``fewest`` steps are taken
+    Each interval of the grid gets steps in proportion to its length, but at least one when ``fewest`` steps are taken
     in all; with more steps in all, this minimum grows in proportion.
     """
     parts = [

@@ -46,7 +46,7 @@ def motions() -> dict[str, tuple[str, Scene]]:
 
 
 class _Checkpoint:
-    """Finished studies of an interrupted run, in a file that only a run with the same settings uses."""
+    """The finished studies of an interrupted run, in a file that only a run with the same settings reads."""
 
     def __init__(self, directory: Path, **settings: Any) -> None:
         self.path = directory / "unfinished.json"
@@ -77,8 +77,7 @@ def run(
     tolerances: Sequence[float] = (),
     rounds: int | None = None,
 ) -> tuple[dict[str, Any], list[str]]:
-    """Return the results of the suite as data for JSON and as lines of text, after studying all motions and writing
-    files.
+    """Study all motions of the suite, write the files, and return the results as data for JSON and as lines of text.
 
     Raises
     ------
@@ -122,7 +121,10 @@ def run(
 
 
 def _compact(results: Mapping[str, Any]) -> str:
-    """Return the results as JSON text with one line for each motion; numbers are rounded to their meaningful digits."""
+    """Return the results as JSON text with one line for each motion.
+
+    Numbers are rounded to their significant digits.
+    """
     studies = results["studies"].items()
     rows = ",\n".join(f"{json.dumps(name)}: {json.dumps(_short(one), ensure_ascii=False)}" for name, one in studies)
     rest = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in results.items() if key != "studies")
@@ -138,7 +140,7 @@ def _short(value: Any, name: str = "") -> Any:
 
 
 def summary(studies: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return, for each peer, the median and the least ratio of its time to symrot's, over all motions and decades."""
+    """Return, for each peer, the median and the smallest ratio of its time to symrot's over all motions and decades."""
     rows = []
     for peer in PEERS:
         ratios = [
@@ -159,7 +161,7 @@ def _cell(one: Mapping[str, Any], peer: str, side: str = "stepped") -> str:
 
 
 def _ratio(middle: float, least: float) -> str:
-    """Return a median ratio and, in brackets, the least one as text, each with at least two digits."""
+    """Return a median ratio and, in brackets, the smallest ratio as text, each with at least two digits."""
     return " ".join(
         form.format(f"{value:.{0 if value >= 10 else 1}f}") for form, value in (("{}", middle), ("({})", least))
     )

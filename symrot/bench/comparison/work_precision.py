@@ -1,4 +1,4 @@
-"""Work-precision study: time and error of every available method on one scene.
+"""Work-precision studies: time and error of every available method on one scene.
 
 Each contestant runs over a range of tolerances. Its error is the largest at four times of the span, each reached by a
 separate run, against a more precise reference (:mod:`symrot.bench.comparison.reference`). Runs over the whole span are
@@ -33,7 +33,7 @@ __all__ = ["DECADES", "FORMAT", "Effort", "decades", "digest", "machine", "study
 
 FORMAT = "symrot work-precision 1"
 DECADES = tuple(float(f"1e-{k}") for k in range(2, 16))
-STEPPED = ("taylor", "dop853")  # symrot's own, the closed form left out
+STEPPED = ("taylor", "dop853")  # symrot's steppers, without its closed forms
 OURS = ("exact", "exact with set-up", *STEPPED)
 
 
@@ -42,7 +42,7 @@ class Effort(NamedTuple):
 
     rounds: int
     longest: float  # s: after a longer run, the tighter tolerances of its contestant are skipped
-    every: int  # every so many of a contestant's tolerances, two per decade, one is run
+    every: int  # only every so many of a contestant's tolerances is run; there are two per decade
     reference: float  # s, for the computation of the reference
 
 
@@ -60,7 +60,7 @@ def study(
     tolerances: Sequence[float] = (),
     rounds: int | None = None,
 ) -> dict[str, Any]:
-    """Return a work-precision study of one scene as data for JSON.
+    """Run a work-precision study of one scene and return it as data for JSON.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def study(
     say : callable
         Called with messages about the progress.
     tolerances : sequence of float, optional
-        Falling; each method runs at those that it supports. Default: two per decade, or one.
+        Decreasing; each method runs at those tolerances that it supports. Default: two per decade, or one.
     rounds : int, optional
         Repetitions of each run. Default: 9, quick 5.
 
@@ -115,7 +115,7 @@ def study(
 
 
 def digest(problem: Problem) -> str:
-    """Return a hash of a motion, which is equal for equal body, start, torques and span, whatever the title."""
+    """Return a hash of a motion, which depends on body, start, torques and span but not on the title."""
     scene = problem.scene
     moving = (scene.body.inertia, scene.initial, scene.torques, scene.span.start, scene.span.stop, problem.names)
     return hashlib.sha256(repr(moving).encode()).hexdigest()[:16]
@@ -156,7 +156,7 @@ def _entry(problem: Problem, contestant: Contestant, tolerance: float, exact: Se
         last, steps = follow(end)
         states.append(last if isinstance(last, State) else problem.state(last, end))
     run = partial(follow, problem.stop)
-    # the cost of a first call is paid by now: the time of one more call is measured
+    # the first call is done, so its additional cost does not count: the time of a second call is measured
     return Measured(contestant.name, tolerance, steps, problem.worst(states, exact), seconds_of(run)), run
 
 

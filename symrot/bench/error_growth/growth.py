@@ -1,8 +1,8 @@
 """Growth of the error of each method along one motion, and drift of its conserved quantities.
 
 The reference is :class:`symrot.bench.comparison.exact_path.ExactPath`, with at least 30 digits at any time. Every
-method runs at its most accurate: symrot's methods at the tightest tolerance, SciPy's at the least rtol it accepts, and
-textbook RK4 with 200 steps per revolution.
+method runs at its highest accuracy: symrot's methods at the tightest tolerance, SciPy's at the least rtol it accepts,
+and textbook RK4 with 200 steps per revolution.
 """
 
 import ctypes
@@ -31,11 +31,11 @@ Floats = NDArray[np.float64]
 
 TIGHTEST, SCIPY_RTOL, SCIPY_ATOL = 1e-15, 3e-14, 1e-15
 STEPS_PER_TURN = 200  # steps of RK4 per revolution
-FROM = 30.0  # revolutions: the power of growth is fitted from there on
+FROM = 30.0  # number of revolutions after which the power of growth is fitted
 
 
 class Curve(NamedTuple):
-    """Errors of one method along one motion, at several times; nan after the time at which it stopped."""
+    """Errors of one method along one motion at several times; nan after the time at which the method stopped."""
 
     method: str
     attitude: Floats  # rad, shape (n,)
@@ -44,7 +44,7 @@ class Curve(NamedTuple):
 
 
 class Track:
-    """One motion with the times at which methods are compared.
+    """A motion and the times at which methods are compared.
 
     Parameters
     ----------
@@ -53,11 +53,11 @@ class Track:
     times : array, shape (n,)
         Rising, not before the start.
     periodic : bool
-        Whether the body is free: then the reference of one period is continued through all periods.
+        Whether the body is free; then the reference of one period is continued through all periods.
     """
 
     def __init__(self, scene: Scene, times: Floats, periodic: bool) -> None:
-        make_plan(scene)  # refuses switched torques, since the reference series would run past the switch
+        make_plan(scene)  # rejects switched torques, because the reference series would continue past the switch
         self.scene, self.times = scene, times
         self.motion = propagator(scene, "dop853" if self.rough(scene) else "taylor", TIGHTEST)._motion
         self.speed = max(float(np.linalg.norm([float(w) for w in scene.initial.omega_b])), 1e-300)
@@ -155,9 +155,9 @@ def _rk4(normalised: bool) -> Callable[[Track, Floats], Trajectory | None]:
 
 
 class Method(NamedTuple):
-    """One method of following a motion: name, description, limits of revolutions, and the function that runs it.
+    """A method of computing a motion: name, description, limits of revolutions, and the function that runs it.
 
-    There are two limits: the default, and that with ``--long``.
+    There are two limits: the default limit, and the limit with ``--long``.
     """
 
     name: str
@@ -179,7 +179,7 @@ METHODS = (
 
 
 def growth(track: Track, long: bool = False, say: Callable[[str], object] = lambda text: None) -> list[Curve]:
-    """Return the curves of all methods that can follow this motion."""
+    """Return the error curves of all methods that can compute this motion."""
     curves = []
     for method in METHODS:
         say(f"{track.scene.name}: {method.name} ..")
@@ -192,8 +192,9 @@ def growth(track: Track, long: bool = False, say: Callable[[str], object] = lamb
 
 
 def exponent(revolutions: Floats, errors: Floats) -> float:
-    """Return the exponent k of errors that grow as t^k, fitted after :data:`FROM` revolutions; nan for too few
-    points.
+    """Return the exponent k of errors that grow as t^k, fitted after :data:`FROM` revolutions.
+
+    It is nan if there are too few points.
     """
     chosen = (revolutions >= FROM) & np.isfinite(errors) & (errors > 0.0) & (errors < 0.5)
     if int(chosen.sum()) < 4:

@@ -1,4 +1,4 @@
-"""Points of a body moved along their velocity: with tangent steps the body grows, with secant steps it does not.
+"""Points of a body moved along their velocity: the body grows with tangent steps, but not with secant steps.
 
 ``r + h (omega x r)`` is longer than r, because the step is perpendicular to r: ``|r'|^2 = |r|^2 + h^2 |omega x r|^2``.
 For r perpendicular to the axis, the length grows by the factor ``sqrt(1 + (omega h)^2)``. The secant joins two points
@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 
 
 class Carried(NamedTuple):
-    """Result of moving points of a body with one step size: growth by computation and by the law, strain, and error."""
+    """The result of moving points of a body with one step size: growth as computed and by the law, strain, error."""
 
     scheme: str
     h: float  # s
@@ -97,7 +97,7 @@ SCHEMES = {
 
 
 def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.0, 2.0, 3.0)) -> list[Carried]:
-    """Return, for each scheme and step size, how a box changes whose corners are moved along a motion."""
+    """Move the corners of a box along a motion, and return, for each scheme and step size, how the box changes."""
     points, results = _corners(size), []
     motion = propagator(scene)
     for h in steps:
@@ -120,7 +120,7 @@ def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.
 
 
 def _strain(first: Floats, last: Floats) -> float:
-    """Return the change of shape between two sets of points: the spread of the ratios of their distances.
+    """Return the change of shape between two sets of points, the spread of the ratios of their distances.
 
     A uniform change of size does not count.
     """

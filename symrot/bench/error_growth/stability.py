@@ -1,4 +1,4 @@
-"""Numerical stability: growth of errors, drift of invariants, Euler singularities, moving points of a body.
+"""Report on numerical stability: growth of errors, drift of invariants, gimbal lock, moving points of a body.
 
     symrot bench --stability [SCENE] [--long] [--plot FILE.png] [--json]
 
@@ -36,10 +36,10 @@ PLATE = (
 )  # kg m^2: (B - C)/A and its permutations are exact in doubles, so that all methods rotate the same body
 POWERS = {False: 5, True: 6}  # exponent of ten: revolutions, by default and with --long
 SAMPLES = 241  # samples of a scene
-PASSES = ("1/10", "1/1000", "1/100000", "1/10000000", "1/1000000000", 0)  # rad from gimbal lock
+PASSES = ("1/10", "1/1000", "1/100000", "1/10000000", "1/1000000000", 0)  # smallest distances to gimbal lock, rad
 SEQUENCE = "ZXZ"
-STEPS = (0.1, 0.01, 0.001)  # s
-CARRIED_FOR = 10.0  # s
+STEPS = (0.1, 0.01, 0.001)  # step sizes for points of a body, s
+CARRIED_FOR = 10.0  # duration for points of a body, s
 CYLINDER = {"principal": [0.6375, 0.6375, 0.075]}  # chen, p. 23
 
 
@@ -62,7 +62,7 @@ def stability(scene: Scene | None = None, long: bool = False, say: Callable[[str
     scene : Scene, optional
         The motion to follow; default: a free plate for many revolutions.
     long : bool
-        1e6 revolutions, and SciPy for 1e4.
+        Whether the free plate makes 1e6 revolutions, and SciPy 1e4 of them.
     say : callable
         Called with messages about the progress.
     """
@@ -169,7 +169,7 @@ def passes() -> list[dict[str, Any]]:
 
 
 def scene_distance(text: str | int) -> float:
-    """Return a distance of ``PASSES`` as a float."""
+    """Return a distance to gimbal lock, an entry of ``PASSES``, as a float."""
     top, _, bottom = str(text).partition("/")
     return float(top) / float(bottom or 1)
 
@@ -263,8 +263,7 @@ def _point_lines(results: Any) -> list[str]:
 
 
 def report(scene: str | None, long: bool, plot: Path | None, say: Callable[[str], object]) -> Any:
-    """Return the report on numerical stability of a scene, or of the free plate if ``scene`` is None; plot it on
-    request.
+    """Return the report on numerical stability of a scene, or of the free plate if ``scene`` is None; plot it if asked.
 
     Raises
     ------

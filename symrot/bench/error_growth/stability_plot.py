@@ -1,4 +1,4 @@
-"""Plot of the report of :mod:`~symrot.bench.error_growth.stability` on one page."""
+"""The plot of the report of :mod:`~symrot.bench.error_growth.stability` on one page."""
 
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from symrot.report.plot import COLOURS, GREY, STYLE
 
 __all__ = ["figure", "save"]
 
-FLOOR = 4e-17  # below it no error in doubles is drawn
+FLOOR = 4e-17  # smaller errors are not drawn
 LOOKS: dict[str, dict[str, Any]] = {
     "exact": {"color": COLOURS[6], "linewidth": 1.8}, "taylor": {"color": COLOURS[0], "linewidth": 1.8},
     "taylor, plain": {"color": COLOURS[5], "linewidth": 1.2, "linestyle": (0, (5, 2))},
@@ -60,7 +60,7 @@ def _rates(axes: Any, data: Any) -> None:
 
 
 def _smoothed(at: Any, values: Any, linear: bool) -> Any:
-    """Return the largest error so far at each time, since an error that crosses zero is not small there."""
+    """Return the largest error so far at each time, because an error that changes sign is not small there."""
     if not linear:
         return values
     largest = np.fmax.accumulate(values)

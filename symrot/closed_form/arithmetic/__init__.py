@@ -1,1 +1,1 @@
-"""Exact numbers, sums of two doubles (double-double arithmetic), and changes of axes, which all closed forms use."""
+"""Arithmetic that all closed forms use: exact numbers, sums of two doubles (double-double), and changes of axes."""

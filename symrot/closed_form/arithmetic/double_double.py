@@ -1,8 +1,8 @@
 """Double-double arithmetic on arrays: each number is an unevaluated sum ``high + low`` of two doubles.
 
-Relative errors are about 2^-104. The algorithms need every operation rounded as it is written, which NumPy does. Sums
-and products: Dekker, Numer. Math. 18 (1971) 224; Knuth, The Art of Computer Programming, vol. 2, section 4.2.2. The
-exponential is 2^(j/8) from a table times a power series.
+Relative errors are about 2^-104. The algorithms require every operation to be rounded as it is written, which NumPy
+does. Sums and products: Dekker, Numer. Math. 18 (1971) 224; Knuth, The Art of Computer Programming, vol. 2, section
+4.2.2. The exponential is 2^(j/8) from a table times a power series.
 """
 
 from fractions import Fraction
@@ -22,7 +22,7 @@ __all__ = [
 ]  # fmt: skip
 
 Pair = tuple[Any, Any]
-"""High and low, each an array or a float."""
+"""A number high + low; each part is an array or a float."""
 
 NEAR = 1 / 16
 """Largest argument for which the series of :func:`second` is accurate."""
@@ -30,7 +30,7 @@ NEAR = 1 / 16
 _SPLITTER = 134217729.0  # 2^27 + 1: multiplication by it splits a double into two halves
 _PARTS = 8  # parts of an octave (a factor of 2) in the table of the exponential
 _SHORT = 39  # bits of ln 2/8 that can be multiplied by any j (14 bits) without rounding
-_LEAST = -745.2  # for a smaller argument the exponential is 0
+_LEAST = -745.2  # the exponential of a smaller argument is 0
 _HEAD, _TAIL = 8, 16  # doubles suffice from term 8 on: NEAR^8/10! < 2^-53; the series ends at 16: NEAR^16/18! < 2^-116
 
 
@@ -63,7 +63,7 @@ def add(a: Pair, b: Pair) -> Pair:
 
 
 def subtract(a: Pair, b: Pair) -> Pair:
-    """Return a - b, to 2^-104 of the larger of the two."""
+    """Return the difference of two double-double numbers, with an error of 2^-104 of the larger of the two."""
     return add(a, (-b[0], -b[1]))
 
 
@@ -74,7 +74,7 @@ def multiply(a: Pair, b: Pair) -> Pair:
 
 
 def divide(a: Pair, b: Pair) -> Pair:
-    """Return a/b by long division: three quotients of doubles."""
+    """Return the quotient of two double-double numbers by long division: three quotients of doubles."""
     first = a[0] / b[0]
     rest = subtract(a, multiply((first, 0.0), b))
     second = rest[0] / b[0]
@@ -83,7 +83,7 @@ def divide(a: Pair, b: Pair) -> Pair:
 
 
 def square_root(a: Pair) -> Pair:
-    """Return the square root of positive pairs of arrays: two Newton steps from the square root of the high part."""
+    """Return the square root of positive double-double arrays, by two Newton steps from the root of the high part."""
     root: Pair = (np.sqrt(a[0]), 0.0)
     for _ in range(2):
         root = add(root, (subtract(a, multiply(root, root))[0] / (2.0 * root[0]), 0.0))
@@ -109,7 +109,7 @@ def _coefficients() -> list[tuple[float, float]]:
 def _octave() -> tuple[tuple[Floats, Floats], tuple[float, float, float]]:
     """Return the table of 2^(j/8) as pairs of doubles, and ln 2/8 as a sum of three doubles.
 
-    The first two of the three have few bits, so that their products with any j are exact.
+    The first two of the three doubles have few bits, so that their products with any j are exact.
     """
     root, step = Fraction(2), _PARTS
     while step > 1:
@@ -138,7 +138,7 @@ def second(x: Pair) -> Pair:
 
 
 def exponential(x: Pair) -> Pair:
-    """Return exp(x) of double-double numbers x <= 709; results near the smallest doubles have no low part."""
+    """Return exp(x) of double-double numbers x <= 709; results near the smallest doubles have a low part of zero."""
     (high, low), (first, middle, last) = _octave()
     above = np.maximum(x[0], _LEAST)
     j = np.rint(above * (_PARTS / float(ln2(number.BITS))))

@@ -11,7 +11,7 @@ Rows = Sequence[Sequence[Fraction]]
 
 
 def quaternion_of(r: Rows) -> tuple[Fraction, ...]:
-    """Return the unit quaternion of a proper rotation matrix (Shepperd's choice of the largest component)."""
+    """Return the unit quaternion of a proper rotation matrix, dividing by its largest component (Shepperd)."""
     trace = r[0][0] + r[1][1] + r[2][2]
     candidates = (
         (1 + trace, r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]),
@@ -23,10 +23,9 @@ def quaternion_of(r: Rows) -> tuple[Fraction, ...]:
 
 
 def to_axis(direction: Sequence[Fraction]) -> tuple[tuple[Fraction, ...], ...]:
-    """Return a rotation matrix that maps the third axis onto ``direction``: its third column is the unit vector along
-    it.
+    """Return a rotation matrix whose third column is the unit vector along ``direction``.
 
-    If ``direction`` lies along the third axis, the matrix only contains 0, 1 and -1.
+    If ``direction`` lies along the third axis, the matrix contains only 0, 1 and -1.
     """
     third = unit(direction)
     if third[0] == third[1] == 0:

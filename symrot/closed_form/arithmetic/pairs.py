@@ -1,4 +1,4 @@
-"""Sums ``hi + lo`` of two doubles that represent exact numbers to 31 digits. Uses the standard library only."""
+"""Sums ``hi + lo`` of two doubles that represent exact numbers to 31 digits. Standard library only."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -26,13 +26,13 @@ __all__ = [
 Number = float | int | Fraction
 
 LARGEST = 1e205
-"""Largest number that may define a motion, in its unit: so all constants of the motion are finite doubles."""
+"""Largest number that may define a motion, in its unit; it keeps all constants of the motion finite doubles."""
 
 SMALLEST = 1e-205
 """Smallest moment of inertia, kg m^2."""
 
 GRID = 2.0**-33
-"""Step, in units of the last bit of ``hi``, to whose multiples ``lo`` of an attitude is rounded."""
+"""Unit, in last bits of ``hi``, to multiples of which ``lo`` of an attitude is rounded."""
 
 _BITS = 600  # 2^600 and its inverse lie inside these bounds
 
@@ -64,14 +64,14 @@ def flatten_pairs(values: Sequence[Number]) -> list[float]:
 def attitude(values: Sequence[Number]) -> list[float]:
     """Return a quaternion as one list of 8 doubles: hi and lo of each component, correct to 2^-86 of the component.
 
-    No more digits are needed for an attitude. With this rounding, arithmetic on arrays of double-double numbers gives
-    the same doubles for many attitudes at once.
+    An attitude needs no more digits. Because of this rounding, arithmetic on arrays of double-double numbers gives the
+    same doubles for many attitudes at once.
     """
     return on_grid([value.as_integer_ratio() for value in values])
 
 
 def on_grid(values: Sequence[tuple[int, int]]) -> list[float]:
-    """Return ratios of integers as one list hi, lo, hi, lo, ..; lo is rounded to multiples of GRID last bits of hi."""
+    """Return ratios of integers as one list hi, lo, hi, lo, ..; each lo is a multiple of GRID last bits of its hi."""
     result: list[float] = []
     for top, bottom in values:
         hi = top / bottom
@@ -83,7 +83,7 @@ def on_grid(values: Sequence[tuple[int, int]]) -> list[float]:
 
 
 def same(a: Number, b: Number) -> bool:
-    """Return whether two numbers are equal up to a relative difference of 2^-200."""
+    """Return whether two numbers agree to a relative difference of 2^-200."""
     return a == b or (not (isinstance(a, float) and isinstance(b, float)) and equal(Fraction(a), Fraction(b)))
 
 
@@ -100,12 +100,13 @@ def over_common_denominator(values: Sequence[Number]) -> tuple[list[int], int]:
 def numbers(what: str, values: Sequence[Number], length: int, least: float = -LARGEST) -> list[Number]:
     """Return ``values`` unchanged if they are ``length`` real numbers of a size that a motion can use.
 
-    Floats (also NumPy's), ints and Fractions are accepted; ``what`` names the argument in error messages.
+    Floats (also NumPy's), ints and Fractions are accepted; ``what`` is the name of the argument in error messages.
 
     Raises
     ------
     InputError
-        If their number is not ``length``, or one is not a real number, beyond :data:`LARGEST`, or below ``least``.
+        If there are not ``length`` values, or if one is not a real number, exceeds :data:`LARGEST`, or is below
+        ``least``.
     """
     entries = _listed(what, values, length)
     if (
@@ -128,9 +129,7 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
 
 
 def _moderate(value: Fraction, least: float) -> bool:
-    """Return whether a quick comparison of bit lengths proves that a fraction lies within the bounds of
-    :func:`numbers`.
-    """
+    """Return whether a quick comparison of bit lengths proves that a fraction is within the bounds of `numbers`."""
     top, bottom = value.as_integer_ratio()
     size = top.bit_length() - bottom.bit_length()  # the exponent of the next power of two, or one more
     return size < _BITS and (least < 0 or (top > 0 and size > -_BITS))

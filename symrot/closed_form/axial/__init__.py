@@ -1,1 +1,1 @@
-"""Rotation driven and damped about one axis."""
+"""Closed-form motion of a body driven and damped about one axis."""

@@ -1,12 +1,12 @@
 """The angle of rotation about one axis under a constant torque and linear damping, in revolutions modulo 1.
 
 After time t the angle is ``rate t (exp(x) - 1)/x + push t^2 (exp(x) - 1 - x)/x^2`` revolutions, with ``x = -decay t``.
-Away from ``x = 0`` the equal expression ``(push/decay) t + (rate - push/decay) (1 - exp(x))/decay`` is computed.
+Away from ``x = 0`` the equal expression ``(push/decay) t + (rate - push/decay) (1 - exp(x))/decay`` is used.
 
-Three arithmetics share the work. Doubles have a relative error of 1e-16, which suffices for small angles. Larger angles
-use double-double numbers, with an error of 1e-20 of a revolution. A few times at once, and angles above 1e10
-revolutions, use integers with as many bits as the motion needs: for a few times they are faster than one call of NumPy.
-Double-double numbers and integers round to the same double.
+Three kinds of arithmetic share the work. Doubles have a relative error of 1e-16, which suffices for small angles.
+Larger angles use double-double numbers, with an error of 1e-20 of a revolution. Angles above 1e10 revolutions, and
+calls with only a few times, use integers with as many bits as the motion needs; for a few times they are faster than
+one call of NumPy. Double-double numbers and integers round to the same double.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -24,16 +24,16 @@ from symrot.formula import exact_numbers as number
 __all__ = ["FEW", "LARGE", "SMALL", "Turning", "exp_and_expm1"]
 
 FEW = 64
-"""Number of times up to which integers are used."""
+"""Largest number of times for which integers are used."""
 
 SMALL = 1 / 16
-"""Largest angle, in turns, for which doubles suffice; their error is 2e-16 rad."""
+"""Largest angle, in revolutions, for which doubles suffice; their error is then at most 2e-16 rad."""
 
 LARGE = 1e10
-"""Angle, in turns, above which double-double numbers do not suffice and integers are used."""
+"""Angle, in revolutions, above which double-double numbers do not suffice and integers are used."""
 
-_BLOCK = 4096  # times in one block: their arrays stay in the caches of the processor
-_BITS = 192  # bits of an angle in turns after the binary point, 64 of them for the size of the time
+_BLOCK = 4096  # times in one block, whose arrays stay in the caches of the processor
+_BITS = 192  # bits of an angle in revolutions after the binary point, 64 of them for the size of the time
 _HALVINGS = 8  # bits of the argument of the exponential, computed in integers
 _GROWN = 1500.0  # exp of a larger number exceeds the largest double even after multiplication by the smallest one
 _GUARD = 16  # guard bits against the rounding errors of integer arithmetic
@@ -61,7 +61,7 @@ def _less_whole_turns(turns: dd.Pair) -> Floats:
 
 
 class Turning:
-    """Multiple of the angle of rotation of a driven body, as a function of time; its constants are rounded once.
+    """A multiple of the angle of rotation of a driven body, as a function of time; its constants are rounded once.
 
     Parameters
     ----------
@@ -91,9 +91,9 @@ class Turning:
         self._bits = _BITS + max(int(abs(x)) for x in self._exact).bit_length()
         self._scaled: dict[int, tuple[int, int, int, int]] = {}
 
-    @np.errstate(over="ignore")  # upper bounds; angles above them are computed in integers
+    @np.errstate(over="ignore")  # only upper bounds overflow; such angles are computed in integers
     def __call__(self, t: Floats) -> Floats:
-        """Return the angle at each time in revolutions without whole ones, from -1/2 to 1/2."""
+        """Return the angle at each time in revolutions, reduced to -1/2 .. 1/2."""
         if len(t) > _BLOCK:
             return np.concatenate([self(t[k : k + _BLOCK]) for k in range(0, len(t), _BLOCK)])
         x = self._decay[0] * t

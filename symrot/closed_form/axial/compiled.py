@@ -1,8 +1,7 @@
 """Rotation about one axis by compiled loops: :file:`axial_at.c`, with constants from exact integers.
 
-The angle of a driven body grows with the square of time, so that its phase at 1e15 s needs constants of 212 bits.
-Python's integers compute these constants, which are quotients, to any number of bits; C receives each one as a sum of
-several doubles.
+The angle of a driven body grows with the square of time, so its phase at 1e15 s needs constants of 212 bits. Python's
+integers compute these constants to any number of bits; C receives each constant as a sum of several doubles.
 """
 
 import ctypes
@@ -21,25 +20,25 @@ from symrot.formula import exact_numbers as number
 __all__ = ["OUT_OF_RANGE", "TOO_MANY_TURNS", "Constants", "Loops", "Ratio", "available", "functions", "parts"]
 
 Ratio = tuple[int, int]
-"""Numerator and positive denominator."""
+"""A rational number: numerator and positive denominator."""
 
 TOO_MANY_TURNS, OUT_OF_RANGE = 1, 2
-"""Return values of the loops: a sample has too many turns, or the numbers at a time leave the range of doubles."""
+"""Return values of the loops: a sample has too many revolutions, or its numbers exceed the range of doubles."""
 
-_LARGEST = 200  # 2^200 replaces larger numbers: a product with it is already more turns than the loops can count
-_BITS = 260  # bits: more than a sum of four doubles represents
-_WIDE, _WIDER, _PAIR = 3, 4, 2  # doubles whose sum is one constant
+_LARGEST = 200  # 2^200 replaces larger numbers: a product with it exceeds the revolutions that the loops can count
+_BITS = 260  # more bits than a sum of four doubles represents
+_WIDE, _WIDER, _PAIR = 3, 4, 2  # numbers of doubles whose sum is one constant
 _TURNING = 14  # doubles in a struct `turning` of axial.h
-_TURN_BITS = 340  # bits of the factor from radians to a multiple of the angle in turns
-_EXPONENT = 700.0  # exp of a larger number is beyond the largest double
+_TURN_BITS = 340  # bits of the factor from radians to a multiple of the angle in revolutions
+_EXPONENT = 700.0  # exp of a larger number may exceed the range of a double
 _PI_TOP, _PI_BOTTOM = number.PI.as_integer_ratio()
 _bound: dict[str, tuple[Any, Any]] = {}
 
 
 def parts(top: int, bottom: int, count: int) -> list[float]:
-    """Return top/bottom as a list of ``count`` doubles whose sum is nearest to it.
+    """Return top/bottom as a list of ``count`` doubles whose sum is nearest to the ratio.
 
-    Each double is the rounded remainder after the ones before it. Equal ratios give the same doubles.
+    Each double is the rounded remainder after the doubles before it. Equal ratios give the same doubles.
     """
     sign, top = (-1, -top) if top < 0 else (1, top)
     size = top.bit_length() - bottom.bit_length()
@@ -58,25 +57,25 @@ def parts(top: int, bottom: int, count: int) -> list[float]:
 
 
 class Loops(NamedTuple):
-    """Constants of one motion, together with the compiled loops that compute its samples."""
+    """The constants of one motion, and the compiled loops that compute its samples."""
 
     evaluate: Any
     constants: Any
     place: int
 
     def __call__(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> int:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times into the arrays; an array that is None is
-        skipped.
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times into arrays; None skips a quantity.
 
-        Return 0 if all samples are valid; :data:`TOO_MANY_TURNS` if some samples rotate too far for this arithmetic
-        (their rows are NaN); :data:`OUT_OF_RANGE` if a number exceeds the range of doubles (then nothing is written).
+        Return 0 if all samples are valid; :data:`TOO_MANY_TURNS` if some samples have too many revolutions for this
+        arithmetic (their rows are NaN); :data:`OUT_OF_RANGE` if a number exceeds the range of doubles (then nothing is
+        written).
         """
         status: int = self.evaluate(self.place, len(times), address(times), address(omega), address(quaternion))
         return status
 
 
 def available() -> bool:
-    """Return whether the compiled loops can be used: they are loaded already, or there is a C compiler."""
+    """Return whether the compiled loops can be used: they are already loaded, or there is a C compiler."""
     return bool(_bound) or not codegen.missing()
 
 
@@ -86,7 +85,7 @@ def functions() -> tuple[Any, Any]:
     Raises
     ------
     CompilerError
-        If there is no C compiler, or it breaks error-free arithmetic.
+        If there is no C compiler, or if it breaks error-free arithmetic.
     """
     if not _bound:
         (compiled,) = library.load("axial")
@@ -101,7 +100,7 @@ def functions() -> tuple[Any, Any]:
 
 
 class Constants:
-    """Constants of a body driven about one axis; a call with an initial state returns the compiled :class:`Loops`.
+    """The constants of a body driven about one axis; a call with an initial state returns the compiled :class:`Loops`.
 
     Parameters
     ----------
@@ -114,7 +113,7 @@ class Constants:
     Raises
     ------
     InputError
-        If a rate or an acceleration is beyond all doubles; a call raises it too.
+        If a rate or an acceleration exceeds the range of a double; a call raises it too.
     """
 
     def __init__(self, axis: int, moments: tuple[Ratio, Ratio], torque: Ratio, damping: Ratio, across: Ratio) -> None:
@@ -133,7 +132,7 @@ class Constants:
         self._turns: dict[bool, tuple[int, int, list[float]]] = {}
 
     def head(self, turned: bool) -> list[float]:
-        """Return the first numbers of the C record; ``turned`` says that the body also rotates across the axis."""
+        """Return the first numbers of the C record; ``turned`` means that the body also rotates across the axis."""
         return [float(bool(self._decay)), 1.0, float(turned), *self._head]
 
     def moving(self, rate: Fraction | float, turned: bool) -> list[float]:
@@ -159,9 +158,9 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, turned: bool) -> tuple[int, int, list[float]]:
-        """Return the factor from radians to the needed multiple of the angle in revolutions, and constants for C.
+        """Return the factor from radians to the needed multiple of the angle in revolutions, and the constants for C.
 
-        The factor is an integer with a number of bits after the binary point, which is the second result.
+        The factor is an integer; the second result is the number of its bits after the binary point.
         """
         turn, bits = _HALF
         if turned:
@@ -205,13 +204,13 @@ class Constants:
 
 
 def _turns_of(top: int, bottom: int) -> tuple[int, int]:
-    """Return top/bottom radians as revolutions: an integer, and its number of bits after the binary point."""
+    """Return top/bottom radians in revolutions: an integer, and the number of its bits after the binary point."""
     top, bottom = top * _PI_BOTTOM, 2 * bottom * _PI_TOP
     bits = max(0, _TURN_BITS + bottom.bit_length() - top.bit_length())
     return (top << bits) // bottom, bits
 
 
-_HALF = _turns_of(1, 2)  # bits of half the angle
+_HALF = _turns_of(1, 2)  # half the angle in revolutions, as an integer and its bits
 
 
 def _nearest(top: int, bottom: int) -> float:

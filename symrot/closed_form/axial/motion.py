@@ -2,13 +2,13 @@
 
 For a rotation about one principal axis this is the whole motion. If a symmetric body also rotates across its axis, the
 transverse angular velocity rotates in the body by ``(C - A)/A`` times the angle about the axis, and decays by its own
-damping. The attitude then needs parabolic cylinder functions, see :mod:`symrot.closed_form.spin_up.motion`; with
+damping. The attitude then needs parabolic cylinder functions (see :mod:`symrot.closed_form.spin_up.motion`); with
 damping it has no closed form here.
 
-Angles are sums of two doubles, in turns of 2 pi, without whole turns: the error of the attitude stays at a few 1e-16
-for any number of turns, with damping or without. With a compiler, C computes the samples (:file:`axial_at.c`). NumPy
-and Python's integers compute all samples without a compiler, and always those beyond 1e10 turns of transient or 1e30
-turns in all.
+Angles are sums of two doubles, in revolutions modulo 1, so the error of the attitude stays at a few 1e-16 for any
+number of revolutions, with or without damping. With a compiler, C computes the samples (:file:`axial_at.c`). NumPy and
+Python's integers compute all samples without a compiler, and in any case samples with more than 1e10 revolutions
+during the transient or 1e30 revolutions in all.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -33,7 +33,7 @@ __all__ = ["AxialMotion", "Driven", "motion", "starts", "turned_about"]
 
 
 class AxialMotion:
-    """Motion of one body driven and damped about one axis. Times are counted from the initial state, s."""
+    """The motion of one body driven and damped about one axis. Times are counted from the initial state, s."""
 
     regime = "steady"  # elementary functions only, see symrot.closed_form.motion.REGIMES
 
@@ -48,9 +48,7 @@ class AxialMotion:
 
     @property
     def has_attitude(self) -> bool:
-        """Whether this class knows the attitude, which requires that the body does not rotate across the driven
-        axis.
-        """
+        """Whether the attitude can be computed, which requires that the body does not rotate across the driven axis."""
         return not any(self._across)
 
     def evaluate(
@@ -61,13 +59,13 @@ class AxialMotion:
         Raises
         ------
         InputError
-            If a time is not finite, or the damped angular velocity at it exceeds all doubles, or the attitude is
-            requested although :attr:`has_attitude` is false.
+            If a time is not finite, if the damped angular velocity at a time exceeds the range of a double, or if the
+            attitude is requested although :attr:`has_attitude` is false.
         """
         if quaternion and not self.has_attitude:
             raise InputError(
-                "the attitude of a body that is driven about its axis and rotates across it has another closed form, "
-                "that of symrot.closed_form.spin_up.motion, and none with damping"
+                "expected no request for the attitude of a body that also rotates across the driven axis; use "
+                "symrot.closed_form.spin_up.motion, or steps if the body is damped"
             )
         times = times_of(t)
         if self._loops is None:
@@ -121,7 +119,7 @@ class AxialMotion:
         left, lost = exp_and_expm1(x, error + t * low)
         spin = rate * left + push * (lost / high)
         early = x > 1.0
-        if early.any():  # here the difference of rate and push would lose most digits
+        if early.any():  # the difference of rate and push would lose most digits at these times
             final = self._push / self._decay
             spin[early] = float(final) + float(self._rate - final) * left[early]
         return spin
@@ -149,15 +147,15 @@ def motion(
         Principal moments, kg m^2, positive.
     axis : 0, 1 or 2
     torque : number
-        N m, about the axis, fixed in the body.
+        Torque about the axis, N m, fixed in the body.
     omega0 : 3 numbers
-        rad/s; across the axis only where the body is symmetric about it.
+        rad/s; nonzero across the axis only if the body is symmetric about it.
     quaternion0 : 4 numbers
         Body to space, scalar first.
     damping : number
-        N m s, of the torque ``-damping*omega`` about the axis.
+        Coefficient of the torque ``-damping*omega`` about the axis, N m s.
     damping_across : number
-        N m s, the same about every axis across it.
+        The same for every axis across the driven axis, N m s.
 
     Raises
     ------
@@ -179,7 +177,7 @@ def starts(
 
 
 class Driven:
-    """Driven body with the exact constants that all its motions share."""
+    """A driven body with the exact constants that all its motions share."""
 
     def __init__(
         self, inertia: Sequence[Number], axis: int, torque: Number, damping: Number, damping_across: Number
@@ -211,7 +209,7 @@ class Driven:
             raise InputError(f"expected a quaternion that is not zero, got {list(quaternion0)}")
         if (rates[axis - 2] or rates[axis - 1]) and not self._symmetric:
             raise InputError(
-                "a body that rotates across the driven axis must be symmetric about it, got moments "
+                "expected a body that is symmetric about the driven axis if it rotates across it, got moments "
                 f"{[float(x) for x in self._moments]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
             )
         return self.moving(rates, [float(x) for x in number.unit([Fraction(x) for x in components])])
@@ -223,9 +221,7 @@ class Driven:
 
 
 def turned_about(axis: int, q: Sequence[Any]) -> list[Any]:
-    """Return the quaternion product ``q * e``, where e is the unit quaternion of a rotation by 180 degrees about a body
-    axis.
-    """
+    """Return the product ``q * e`` with the unit quaternion e of a rotation by 180 degrees about a body axis."""
     product: list[Any] = [None] * 4
     product[0], product[axis + 1] = -q[axis + 1], q[0]
     product[(axis + 1) % 3 + 1], product[(axis + 2) % 3 + 1] = q[(axis + 2) % 3 + 1], -q[(axis + 1) % 3 + 1]

@@ -1,7 +1,7 @@
 """Constants of many free bodies, computed in one call of C (:file:`bodies_at.c`).
 
-Each constant is a correctly rounded sum of two doubles. If 248 bits do not decide the rounding, the constant is marked
-as doubtful and the caller computes it with fractions.
+Each constant is a correctly rounded sum of two doubles. If 248 bits do not determine the rounding, the constant is
+marked as doubtful, and the caller computes it with fractions.
 """
 
 from collections.abc import Sequence
@@ -22,8 +22,8 @@ __all__ = ["PrincipalBodies", "defects", "fixed_body", "principal_bodies", "rate
 Doubtful = NDArray[np.intp]
 Column = Floats | Fraction
 
-FRACTION = 248  # bits after the point
-_TERMS = 5  # doubles that a fraction is the sum of, to 2^-265
+FRACTION = 248  # bits after the binary point
+_TERMS = 5  # doubles whose sum represents a fraction to 2^-265
 
 
 class _Tensors(Structure):
@@ -63,11 +63,10 @@ def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray
 
 
 def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floats, Doubtful]:
-    """Return angular velocities of a :func:`fixed_body` along its principal axes, their defects, and a mask of doubtful
-    rows.
+    """Return angular velocities of a :func:`fixed_body` along its principal axes, their defects, and a mask of doubt.
 
     The shapes are (n, 6) and (n, 2), hi and lo of each number. A defect is |L|^2 - 2 T I_mid; its sign tells whether
-    the motion goes around the axis of the least or of the largest moment. Doubtful rows need exact arithmetic.
+    the motion goes around the axis of the smallest or of the largest moment. Rows in the mask need exact arithmetic.
     """
     n = len(omega)
     rates, exact, doubtful = np.empty((n, 6)), np.empty((n, 8)), np.empty(n, np.uint8)
@@ -80,7 +79,7 @@ def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
     """Return the defects |L|^2 - 2 T I_mid of free bodies, shape (n, 2), and a mask of rows that need exact arithmetic.
 
     ``moments`` are principal moments and ``omega`` angular velocities along the principal axes, both of shape (n, 3).
-    The sign of a defect tells whether the motion goes around the axis of the least or of the largest moment.
+    The sign of a defect tells whether the motion goes around the axis of the smallest or of the largest moment.
     """
     n = len(omega)
     exact, doubtful = np.empty((n, 8)), np.empty(n, np.uint8)
@@ -90,9 +89,7 @@ def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
 
 
 class PrincipalBodies(NamedTuple):
-    """Arguments of the C function symrot_free_body_prepare for many bodies, and a mask of bodies that need
-    fractions.
-    """
+    """Arguments of the C function symrot_free_body_prepare for many bodies, and a mask of bodies needing fractions."""
 
     moments: Floats  # (n, 6)
     rates: Floats  # (n, 6)

@@ -1,9 +1,9 @@
 """Motion of a free rigid body at any time in closed form, for spherical, symmetric and asymmetric bodies.
 
-All motions are covered: about the axis of least or largest moment, and on the separatrix between the two. No steps are
-taken: each sample costs the same however far it lies from the start, forward or backward. Its error is a few 1e-16,
-since the constants of the motion have 31 digits and phases are reduced to a fraction of a turn. The formulas are in
-:file:`free_body.c`.
+All motions are covered: about the axis of smallest or largest moment, and on the separatrix between the two. No steps
+are taken: each sample costs the same however far it lies from the start, forward or backward. Its error is a few 1e-16,
+because the constants of the motion have 31 digits and phases are reduced to a fraction of a revolution. The formulas
+are in :file:`free_body.c`.
 
 Source: Whittaker, Analytical Dynamics, 4th ed., section 69; van Zon & Schofield, J. Comput. Phys. 225 (2007) 145.
 
@@ -49,7 +49,7 @@ def motion(
     Raises
     ------
     InputError
-        If a number is not of this domain.
+        If a number is outside its domain.
 
     Examples
     --------
@@ -64,17 +64,17 @@ def motion(
 
 
 def starts(principal: Principal) -> Callable[[Initial], ExactMotion]:
-    """Return a function of the initial state that returns the motion of a body whose axes need not be principal.
+    """Return a function from initial states to motions of one body, whose axes need not be principal.
 
     Angular velocity and attitude refer to the given axes. The principal axes have 110 digits, and the constants of the
-    motion follow from them before anything is rounded to a double.
+    motion are computed from them before any rounding to a double.
     """
     body = FreeRigidBody(principal)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
 class FreeRigidBody:
-    """Free body with the constants that all its motions share: moments, their differences, and principal axes."""
+    """A free body with the constants that all its motions share: moments, their differences, and principal axes."""
 
     def __init__(self, body: Principal) -> None:
         integers, shared = over_common_denominator(body.moments)
@@ -85,7 +85,7 @@ class FreeRigidBody:
             (),
             [],
             [],
-        )  # of the previous motion, for reuse by the next
+        )  # constants of the previous motion, which the next motion may reuse
         self._attitude: tuple[Sequence[Number], list[float]] = (), []
         self.axes = None if body.given_axes else flatten_pairs([*entries, *quaternion_of(body.axes)])
         self._principal = body
@@ -151,7 +151,7 @@ def gaps(i: list[int], shared: int) -> list[float]:
 class Defect:
     """The quantity |L|^2 - 2 T I_mid of one body as a function of its rates, scaled and exact.
 
-    The sign tells which axis a free body's motion goes around. The scale is the square of the largest moment times the
+    Its sign tells which axis a free body's motion goes around. The scale is the square of the largest moment times the
     largest rate; the moments are integers.
     """
 

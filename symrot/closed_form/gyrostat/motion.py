@@ -22,21 +22,21 @@ def motion(
     omega0: Sequence[Number],
     quaternion0: Sequence[Number] = (1.0, 0.0, 0.0, 0.0),
 ) -> ExactMotion:
-    """Return the motion of a gyrostat whose rotor lies along the symmetry axis.
+    """Return the motion of a symmetric body whose rotor lies along the symmetry axis.
 
     Parameters
     ----------
     inertia : 3 numbers
         Principal moments, kg m^2, the rotor's mass included; the two across the rotor's axis are equal.
     rotor : 3 numbers
-        Its angular momentum relative to the body, kg m^2/s, constant; along one principal axis, or zero.
+        Angular momentum of the rotor relative to the body, kg m^2/s, constant; along one principal axis, or zero.
     omega0, quaternion0 : 3 and 4 numbers
         Angular velocity along the principal axes, rad/s; attitude, body to space, scalar first.
 
     Raises
     ------
     InputError
-        If the body is not symmetric about the rotor's axis, or a number is not of this domain.
+        If the body is not symmetric about the rotor's axis, or a number is outside its domain.
     """
     return Gyrostat(inertia, rotor).motion(omega0, quaternion0)
 
@@ -48,7 +48,7 @@ def starts(inertia: Sequence[Number], rotor: Sequence[Number]) -> Callable[[Init
 
 
 class Gyrostat:
-    """Symmetric body with a rotor along its axis, with the constants that all its motions share."""
+    """A symmetric body with a rotor along its axis, with the constants that all its motions share."""
 
     def __init__(self, inertia: Sequence[Number], rotor: Sequence[Number]) -> None:
         self._inertia = moments = numbers("inertia", inertia, 3, SMALLEST)
@@ -57,7 +57,7 @@ class Gyrostat:
         fitting = [k for k in symmetric if not momentum[k - 2] and not momentum[k - 1]]
         if not fitting:
             raise InputError(
-                "a gyrostat moves in closed form here when its rotor lies along the axis of a symmetric body, got "
+                "rotor: expected a rotor along the axis of a symmetric body, got "
                 f"moments {[float(x) for x in moments]} kg m^2 and rotor {[float(x) for x in momentum]} kg m^2/s"
             )
         axis = fitting[0]

@@ -1,5 +1,4 @@
-"""The symmetric heavy top at any time in closed form: Lagrange's top, spherical and physical pendulums, spinning or
-not.
+"""The symmetric heavy top at any time in closed form: Lagrange's top, and spherical and physical pendulums.
 
 All initial states are covered: hanging, upright, exactly vertical, passing through the vertical, near and on the
 separatrix of the sleeping top. Each sample takes the same time however far it is from the start, with an error of a few
@@ -52,9 +51,9 @@ def motion(
         Moments about the fixed point along the body's axes, kg m^2; the two across the axis of the centre of mass are
         equal. Fractions, ints and floats are taken at their exact values.
     weight : number
-        N.
+        Weight, N.
     center_of_mass : 3 numbers
-        From the fixed point, body axes, m; on one of them.
+        From the fixed point, body axes, m; it must lie on one of the axes.
     omega0 : 3 numbers
         Angular velocity in body axes, rad/s.
     quaternion0 : 4 numbers
@@ -65,7 +64,7 @@ def motion(
     Raises
     ------
     InputError
-        If the body is not symmetric about the axis of its centre of mass, or a number is not of this domain.
+        If the body is not symmetric about the axis of its centre of mass, or a number is outside its domain.
 
     Examples
     --------
@@ -87,7 +86,7 @@ def starts(
 
 
 class Top:
-    """Symmetric heavy top with the constants that all its motions share: moments, weight times distance, and axes."""
+    """A symmetric heavy top with the constants that all its motions share: moments, weight times distance, and axes."""
 
     def __init__(
         self, inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number]
@@ -101,8 +100,8 @@ class Top:
             raise InputError("direction: expected a direction of gravity that is not the zero vector, got zero")
         if len(along) > 1 or (along and not same(moments[along[0] - 2], moments[along[0] - 1])):
             raise InputError(
-                "a symmetric heavy top has its centre of mass on one axis of the body and equal moments about the two "
-                f"others, got the centre {[float(x) for x in center]} m and moments {[float(x) for x in moments]} "
+                "expected a centre of mass on one axis of the body and equal moments about the two other axes, "
+                f"got the centre {[float(x) for x in center]} m and moments {[float(x) for x in moments]} "
                 "kg m^2"
             )
         self.free = not along or not force
@@ -140,14 +139,14 @@ class Frame:
     axis : 0, 1 or 2
         The symmetry axis of the body.
     up : 3 Fractions
-        The direction in space opposite to the pull on a centre of mass at a positive distance from the fixed point.
+        The upward direction in space: opposite to gravity if the centre of mass is at a positive place on the axis.
     """
 
     def __init__(self, axis: int, up: Sequence[Fraction]) -> None:
         self.named = [(axis + 1) % 3, (axis + 2) % 3, axis]  # e1, e2, e3 among the body's axes, in cyclic order
         self.space, self.axes = _UPRIGHT, None
-        self.before, self.after = None, None  # factors of an attitude, left and right
-        if up[0] or up[1] or up[2] < 0:  # rotated so that the third axis points up
+        self.before, self.after = None, None  # left and right factor of an attitude
+        if up[0] or up[1] or up[2] < 0:  # the third axis does not point up yet
             turn = quaternion_of(to_axis(up))
             self.space, self.before = flatten_pairs(turn), (turn[0], -turn[1], -turn[2], -turn[3])
         if axis != 2:

@@ -1,7 +1,7 @@
 """Motions in closed form for use without a C compiler: mpmath computes the constants, NumPy the samples.
 
-The formulas are those of the C files. These motions are slower (milliseconds for the constants, about a microsecond for
-each sample) and equally accurate: constants have 120 digits, and phases are reduced to a fraction of a turn. Tests
+They use the formulas of the C files. They are slower (milliseconds for the constants, about a microsecond for each
+sample) but equally accurate: constants have 120 digits, and phases are reduced to a fraction of a revolution. Tests
 compare them with the results of C.
 """
 

@@ -1,4 +1,4 @@
-"""Motion of a free body by mpmath and NumPy, without a C compiler; the formulas are those of :file:`free_body.h`."""
+"""The motion of a free body by mpmath and NumPy, without a C compiler; formulas as in :file:`free_body.h`."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -15,12 +15,13 @@ from symrot.kinematics.hamilton import hamilton
 __all__ = ["PortableFreeBody"]
 
 SWITCH = 0.7  # above this modulus, theta functions are summed by their imaginary transforms
-NEGLIGIBLE = mpf(10) ** -150  # relative to the largest component of omega
+NEGLIGIBLE = mpf(10) ** -150  # size, relative to the largest component of omega, that counts as zero
 
 
 class PortableFreeBody:
-    """Motion of a free body, made from the arguments of the C function ``symrot_free_body_prepare`` (lists of hi,
-    lo).
+    """The motion of a free body, computed with mpmath and NumPy.
+
+    Its arguments are those of the C function ``symrot_free_body_prepare``: lists hi, lo, hi, lo, ..
     """
 
     def __init__(
@@ -172,9 +173,7 @@ class PortableFreeBody:
         return kappa - slope * mp.pi / k * rate, start, u / k / 2 * slope
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times into the arrays; an array that is None is
-        skipped.
-        """
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times into arrays; None skips a quantity."""
         t = times * float(self.scale)
         if self.regime == "steady":
             if omega is not None:
@@ -193,10 +192,9 @@ class PortableFreeBody:
             quaternion[:] = (x / np.sqrt(2.0 * p0 * (re * re + im * im))[:, None]) @ self.attitude.T
 
     def _sums(self, t: Floats) -> tuple[Any, Any, Floats]:
-        """Return, at the times: cn, sn and dn times their amplitudes; the theta sum N of the attitude; the phase in
-        half turns.
+        """Return the elliptic functions, the theta sum of the attitude, and the phase in half revolutions.
 
-        N is complex and is returned as its real and imaginary part.
+        The first are cn, sn and dn times their amplitudes. The theta sum is complex: its real and imaginary part.
         """
         if self.regime == "circular":
             sine, cosine = self.axial.circle(t)
@@ -219,7 +217,7 @@ class PortableFreeBody:
         )
 
         def pair(weight: float, order: float) -> tuple[Floats, Floats]:
-            """Return nome**weight times cosh(order*v) and times sinh(order*v), where cosh alone might overflow."""
+            """Return nome**weight times cosh(order*v) and times sinh(order*v), without the overflow of cosh alone."""
             log = self.log_nome * weight if weight else 0.0
             up, down = np.exp(log + order * v), np.exp(log - order * v)
             return 0.5 * (up + down), (np.sinh(order * v) if log == 0.0 else 0.5 * (up - down))
@@ -237,7 +235,7 @@ class PortableFreeBody:
 
 
 def _differences(inertia: list[float], omega: list[float], w: list[Any]) -> tuple[list[Any], Any]:
-    """Return I2 - I3, I3 - I1, I1 - I2 and |L|^2 - 2 T I_mid with 120 digits, so that cancellation does no harm."""
+    """Return I2 - I3, I3 - I1, I1 - I2 and |L|^2 - 2 T I_mid with 120 digits, so that cancellation is harmless."""
     moments = [Fraction(high) + Fraction(low) for high, low in zip(inertia[::2], inertia[1::2], strict=True)]
     rates = [Fraction(high) + Fraction(low) for high, low in zip(omega[::2], omega[1::2], strict=True)]
     middle = sorted(moments)[1]
@@ -253,7 +251,7 @@ def _rounded(x: Fraction) -> Any:
 def _canonical(
     moments: list[Any], w: list[Any], differences: list[Any], defect: Any
 ) -> tuple[list[int], list[int], int]:
-    """Return how the principal axes are assigned to e1, e2, e3: their numbers, their signs, and the sign of I3 - I2."""
+    """Return the assignment of principal axes to e1, e2, e3: their indices, their signs, and the sign of I3 - I2."""
     above = [differences[2] >= 0, differences[0] >= 0, differences[1] >= 0]  # I_i >= I_(i+1)
     largest = 0 if above[0] and not above[2] else 1 if above[1] else 2
     a, b = (largest + 1) % 3, (largest + 2) % 3

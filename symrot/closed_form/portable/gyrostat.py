@@ -1,4 +1,4 @@
-"""Motion of a gyrostat by mpmath and NumPy, without a C compiler; the formulas are those of :file:`gyrostat.h`."""
+"""The motion of a gyrostat by mpmath and NumPy, without a C compiler; formulas as in :file:`gyrostat.h`."""
 
 import numpy as np
 from mpmath import mp, mpf
@@ -12,7 +12,10 @@ __all__ = ["PortableGyrostat"]
 
 
 class PortableGyrostat:
-    """Motion of a gyrostat, made from the arguments of the C function ``symrot_gyrostat_prepare`` (lists of hi, lo)."""
+    """The motion of a gyrostat, computed with mpmath and NumPy.
+
+    Its arguments are those of the C function ``symrot_gyrostat_prepare``: lists hi, lo, hi, lo, ..
+    """
 
     regime = "steady"
 
@@ -45,9 +48,7 @@ class PortableGyrostat:
             self.attitude = mapping([hamilton(column, renaming) for column in columns])
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times into the arrays; an array that is None is
-        skipped.
-        """
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times into arrays; None skips a quantity."""
         t = times * float(self.scale)
         s, c = self.spin.circle(t)
         if omega is not None:

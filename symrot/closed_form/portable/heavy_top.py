@@ -1,7 +1,7 @@
-"""Motion of a symmetric heavy top by mpmath and NumPy, without a C compiler; formulas as in :file:`heavy_top.h`.
+"""The motion of a symmetric heavy top by mpmath and NumPy, without a C compiler; formulas as in :file:`heavy_top.h`.
 
-With 120 digits the cancellation in differences does no harm, so that the constants follow directly from the roots of
-the cubic.
+With 120 digits the cancellation in differences is harmless, so the constants follow directly from the roots of the
+cubic.
 """
 
 from typing import Any
@@ -18,12 +18,13 @@ __all__ = ["PortableHeavyTop"]
 
 SWITCH = 0.7  # above this modulus, theta functions are summed by their imaginary transforms
 EQUAL = mpf(10) ** -45  # closer roots count as equal: inputs have 31 digits, distances of roots half as many
-NOTHING = mpf(10) ** -31  # relative to alpha or beta
+NOTHING = mpf(10) ** -31  # size, relative to alpha or beta, that counts as zero
 
 
 class PortableHeavyTop:
-    """Motion of a heavy top, made from the arguments of the C function ``symrot_heavy_top_prepare`` (lists of hi,
-    lo).
+    """The motion of a symmetric heavy top, computed with mpmath and NumPy.
+
+    Its arguments are those of the C function ``symrot_heavy_top_prepare``: lists hi, lo, hi, lo, ..
     """
 
     def __init__(
@@ -153,11 +154,10 @@ class PortableHeavyTop:
         return numerators, kappas, leads, speed, v, below
 
     def _functions(self, i: int, place: Any) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-        """Return the functions in the numerator of alpha or beta, and their derivatives, at a place of the elliptic
-        functions.
+        """Return the functions in the numerator of alpha or beta, and their derivatives, at an elliptic argument.
 
-        The four lists are: functions in the real part and their derivatives, functions in the imaginary part and
-        theirs.
+        The four lists are: functions in the real part, their derivatives, functions in the imaginary part, their
+        derivatives.
         """
         odd = (
             [2 * n + 1 for n in range(TERMS)] if self.regime == "circular" or i == 0 else [2 * n for n in range(TERMS)]
@@ -191,9 +191,7 @@ class PortableHeavyTop:
         across: Any,
         spin: Any,
     ) -> None:
-        """Compute the constant factors of the theta series from the initial attitude, or from its rates where it is
-        small.
-        """
+        """Compute the constant factors of the theta series from the initial attitude, or its rates if it is small."""
         alpha, beta = start
         initial_rates = [
             mpc(0, spin / 2) * alpha - beta * mp.conj(across) / 2,
@@ -231,9 +229,7 @@ class PortableHeavyTop:
                                 float(r[2] * spin * self.scale)] for r in rows])  # fmt: skip
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times into the arrays; an array that is None is
-        skipped.
-        """
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times into arrays; None skips a quantity."""
         t = times * float(self.scale)
         (a, b), (da, db), whole = self._values(t)
         inverse = 1.0 / ((a * a.conj()).real + (b * b.conj()).real)
@@ -248,9 +244,9 @@ class PortableHeavyTop:
             quaternion[:] = np.stack([a.real, a.imag, b.real, b.imag], axis=1) @ self.attitude.T
 
     def _values(self, t: Floats) -> tuple[Any, Any, Floats]:
-        """Return the Cayley-Klein parameters alpha and beta at the times, their rates, and the phase in half turns.
+        """Return the Cayley-Klein parameters alpha and beta, their rates, and the phase in half revolutions.
 
-        Alpha and beta still lack their phase factors and are not normalised.
+        Alpha and beta are not normalised, and their phase factors are not included.
         """
         none = np.zeros_like(t)
         if self.regime == "steady":
@@ -267,7 +263,7 @@ class PortableHeavyTop:
         whole, flip, v = self.axial.argument_once(t) if separatrix else self.axial.argument(t, self.stretch)
 
         def term(weight: int, order: int) -> tuple[Any, ...]:
-            """Return nome**weight times cosh(order*v) and times sinh(order*v), where cosh alone might overflow."""
+            """Return nome**weight times cosh(order*v) and times sinh(order*v), without the overflow of cosh alone."""
             log = self.log_nome * weight if weight else 0.0
             up, down = np.exp(log + order * v), np.exp(log - order * v)
             c, s = 0.5 * flip * (up + down), flip * (np.sinh(order * v) if log == 0.0 else 0.5 * (up - down))
@@ -290,7 +286,7 @@ class PortableHeavyTop:
 
 
 def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
-    """Return the roots S1 >= S2 >= S3 of 2 (E - M + M s) s (2 - s) - (D + l s)^2; nearly equal roots are made equal."""
+    """Return the roots S1 >= S2 >= S3 of 2 (E - M + M s) s (2 - s) - (D + l s)^2, made equal if nearly so."""
     # -2M s^3 + (4M - 2(E - M) - l^2) s^2 + (4 (E - M) - 2 D l) s - D^2
     cubic = [-2 * pull, 4 * pull - twice - spin**2, 2 * twice - 2 * d * spin, -(d**2)]
     roots = sorted((mp.re(x) for x in mp.polyroots(cubic, maxsteps=400, extraprec=800)), reverse=True)

@@ -1,4 +1,4 @@
-"""Phases that grow linearly with time, in turns, and functions of them at arrays of times, without a C compiler.
+"""Phases that grow linearly with time, in revolutions, and functions of them at arrays of times, without a C compiler.
 
 The formulas are those of :file:`circular.h` and :file:`stages.h`.
 """
@@ -13,13 +13,13 @@ from symrot.closed_form.build import Floats
 
 __all__ = ["DIGITS", "TERMS", "Phase", "multiples", "number", "power_of_two", "turned_by", "vector"]
 
-DIGITS = 120  # digits of the constants: after any cancellation enough digits remain
+DIGITS = 120  # digits of the constants, enough to remain accurate after any cancellation
 TERMS = 8  # terms of a series
-LARGEST = 80.0  # argument of a hyperbolic function: for larger arguments the results are constant to rounding
+LARGEST = 80.0  # argument of a hyperbolic function above which the results are constant to rounding
 
 
 def number(high: float, low: float) -> Any:
-    """Return the number ``high + low`` to all digits of mpmath's present precision."""
+    """Return the number ``high + low`` to all digits of mpmath's current precision."""
     return mpf(high) + mpf(low)
 
 
@@ -29,29 +29,30 @@ def vector(pairs: list[float]) -> list[Any]:
 
 
 def power_of_two(value: Any) -> Any:
-    """Return a power of two near a positive number, 1 for zero."""
+    """Return a power of two near a positive number, or 1 for zero."""
     return mpf(2) ** int(mp.frexp(value)[1]) if value else mpf(1)
 
 
 class Phase(NamedTuple):
-    """A phase that grows linearly with time, in turns: its rate and its value at the start, each as hi, lo."""
+    """A phase that grows linearly with time, in revolutions: its rate and its value at the start, each as hi, lo."""
 
     rate: tuple[float, float]
     start: tuple[float, float]
 
     @classmethod
     def of(cls, rate: Any, start: Any = 0, periodic: bool = True) -> "Phase":
-        """Return the phase with a rate and a start of any precision; the start of a periodic phase is reduced to half a
-        turn.
+        """Return the phase with a given rate and start.
+
+        The start of a periodic phase is reduced to half a revolution.
         """
         start = mpf(start) - mp.nint(start) if periodic else start
         high = [float(rate), float(start)]
         return cls((high[0], float(rate - high[0])), (high[1], float(start - high[1])))
 
     def rest(self, t: Floats, parts: int, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
-        """Return the phase modulo 1/``parts`` of a turn, and the number of such parts that were removed.
+        """Return the phase plus ``more`` modulo 1/``parts`` of a revolution, and the number of parts removed.
 
-        The number is modulo ``parts``, since whole turns do not matter; ``more`` is added to the phase.
+        The number is reduced modulo ``parts``, because whole revolutions do not matter.
         """
         product, error = two_product(t, self.rate[0])
         small = error + t * self.rate[1]
@@ -61,14 +62,14 @@ class Phase(NamedTuple):
         return (high - steps / parts) + (low + small), steps
 
     def whole(self, t: Floats) -> Floats:
-        """Return the phase with all its turns, for functions that are not periodic."""
+        """Return the phase including whole revolutions, for functions that are not periodic."""
         product, error = two_product(t, self.rate[0])
         high, low = two_sum(product, self.start[0])
         phase: Floats = high + (low + (error + t * self.rate[1] + self.start[1]))
         return phase
 
     def circle(self, t: Floats, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
-        """Return sine and cosine of the phase plus ``more``, which is in turns."""
+        """Return sine and cosine of the phase plus ``more``, which is in revolutions."""
         rest, quarters = self.rest(t, 4, more)
         sine, cosine = np.sin(2.0 * np.pi * rest), np.cos(2.0 * np.pi * rest)
         quarter = quarters.astype(np.int64) & 3
@@ -77,10 +78,10 @@ class Phase(NamedTuple):
         return sign * np.where(odd, cosine, sine), sign * np.where(odd, -sine, cosine)
 
     def argument(self, t: Floats, stretch: float) -> tuple[Floats, Floats, Floats]:
-        """Return the argument of a theta series: the phase in half turns, reduced to -1/2 .. 1/2, with a sign and a
-        scaling.
+        """Return the argument of a theta series, a sign, and the argument times ``stretch``.
 
-        The sign changes with each half turn that was removed; the third result is the reduced phase times ``stretch``.
+        The argument is the phase in half revolutions, reduced to -1/2 .. 1/2. The sign changes with each half
+        revolution that the reduction removes.
         """
         rest, halves = self.rest(t, 2)
         whole = 2.0 * rest

@@ -1,4 +1,4 @@
-"""Quaternions and changes of axes with numbers of any precision and with arrays; formulas as in :file:`series.h`."""
+"""Quaternions and changes of axes with arrays and numbers of any precision; formulas as in :file:`series.h`."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -26,7 +26,7 @@ def unit(a: Sequence[Any]) -> list[Any]:
 
 
 def matrix_quaternion(r: Sequence[Sequence[Any]]) -> list[Any]:
-    """Return the unit quaternion of a proper rotation matrix (Shepperd's choice of the largest)."""
+    """Return the unit quaternion of a proper rotation matrix, dividing by its largest component (Shepperd)."""
     trace = r[0][0] + r[1][1] + r[2][2]
     rows = (
         [1 + trace, r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]],
@@ -40,7 +40,8 @@ def matrix_quaternion(r: Sequence[Sequence[Any]]) -> list[Any]:
 class Axes:
     """The rotation from the internal axes of a motion to the given axes of the body: v_given = matrix*v.
 
-    It is made from 26 numbers: hi and lo of the 9 entries of the matrix and of its quaternion; None is the identity.
+    It is made from 26 numbers, hi and lo of the 9 entries of the matrix and of its quaternion, or from None: the
+    identity.
     """
 
     def __init__(self, axes: list[float] | None) -> None:

@@ -1,4 +1,4 @@
-"""Motion of a symmetric body driven about its axis, by NumPy without a C compiler; formulas as in :file:`spin_up.h`."""
+"""The motion of a symmetric body driven about its axis, by NumPy; formulas as in :file:`spin_up.h`."""
 
 from collections.abc import Callable, Sequence
 from itertools import islice
@@ -53,7 +53,7 @@ def _circle(turns: dd.Pair) -> tuple[Floats, Floats]:
 
 
 class PortableSpinUp:
-    """Motion of a body driven about its axis; the constants are computed in integers.
+    """The motion of a symmetric body driven about its axis, with constants computed in integers.
 
     A table of Taylor polynomials is made only if samples lie near resonance (see
     :mod:`symrot.closed_form.spin_up.motion`).
@@ -78,9 +78,7 @@ class PortableSpinUp:
         self._near, self._table = np.array(take(16)).reshape(4, 4), table
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times into the arrays; an array that is None is
-        skipped.
-        """
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times into arrays; None skips a quantity."""
         t = (times * self._scale, np.zeros_like(times))
         sine, cosine = _circle(dd.multiply(t, dd.add(self._turn[0], dd.multiply(t, self._turn[1]))))
         if omega is not None:
@@ -149,7 +147,7 @@ class PortableSpinUp:
         assert self._table is not None
         sign = np.where(omega[0] < 0.0, -1.0, 1.0)
         high, low = dd.multiply((sign * omega[0], sign * omega[1]), self._inverse)
-        piece = np.minimum(np.floor(high * PIECES), len(self._table) - 1)  # the end belongs to the last one
+        piece = np.minimum(np.floor(high * PIECES), len(self._table) - 1)  # the right end belongs to the last interval
         rest = (high - (piece + 0.5) / PIECES) + low
         terms = self._table[piece.astype(np.int64)]
         q = terms[:, -1]

@@ -1,6 +1,4 @@
-"""Compiled constants and loops of :mod:`~symrot.closed_form.spin_up.motion` (:file:`spin_up.c`,
-:file:`spin_up_at.c`).
-"""
+"""Compiled constants and loops of driven symmetric bodies (:file:`spin_up.c`, :file:`spin_up_at.c`)."""
 
 import ctypes
 from typing import Any, NamedTuple
@@ -17,7 +15,7 @@ from symrot.errors import CompilerError
 __all__ = ["TABLE", "Compiled", "available", "functions", "limits"]
 
 TABLE = int(spin_up_series.NEAR) * PIECES * (DEGREE + 1) * 4
-"""Doubles of Taylor's polynomials."""
+"""Number of doubles in the table of Taylor polynomials."""
 
 _LACKING, _LOST = 1, 2  # status of samples that could not be computed, see spin_up.h
 
@@ -39,7 +37,7 @@ def limits() -> tuple[float, float, float]:
 
 
 def available() -> bool:
-    """Return whether the compiled loops can be used: they are loaded already, or there is a C compiler."""
+    """Return whether the compiled loops can be used: they are already loaded, or there is a C compiler."""
     return bool(_bound) or not library.missing()
 
 
@@ -49,7 +47,7 @@ def functions() -> _Functions:
     Raises
     ------
     CompilerError
-        If there is no C compiler, or it refuses the source.
+        If there is no C compiler, or it rejects the source.
     """
     if not _bound:
         constants, samples = load("spin_up")
@@ -64,9 +62,9 @@ def functions() -> _Functions:
 
 
 class Compiled:
-    """Constants of one motion, computed by C, and the compiled loops over its samples.
+    """The constants of one motion, computed by C, and the compiled loops over its samples.
 
-    Beyond the time ``longest``, s, double-double numbers may be too short for the number of turns.
+    Beyond the time ``longest``, s, the number of revolutions may be too large for double-double numbers.
 
     Parameters
     ----------
@@ -77,7 +75,7 @@ class Compiled:
     Raises
     ------
     CompilerError
-        If the C compiler refuses the source, or breaks error-free arithmetic.
+        If the C compiler rejects the source, or breaks error-free arithmetic.
     """
 
     def __init__(self, axis: int, numbers: list[float]) -> None:
@@ -89,7 +87,7 @@ class Compiled:
     def _prepared(self, table: Floats | None) -> tuple[Any, int, Floats | None]:
         """Return the C record of constants, its address, and the table of Taylor polynomials.
 
-        C fills the table if an array is passed.
+        If an array is passed, C fills it with the table.
         """
         bound = functions()
         constants = bound.record()
@@ -99,10 +97,9 @@ class Compiled:
         return constants, place, table
 
     def fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> bool:
-        """Write samples into the arrays; return whether some lie beyond :attr:`longest`, where the samples are not
-        valid.
+        """Write samples into arrays; None skips a quantity.
 
-        An array that is None is skipped.
+        Return whether some times lie beyond :attr:`longest`; the samples there are not valid.
         """
         samples = len(times), address(times), address(omega), address(quaternion)
         _, place, table = self._known

@@ -1,9 +1,9 @@
-"""A symmetric body under a constant torque about its axis, in integer arithmetic: for any number of turns.
+"""A symmetric body under a constant torque about its axis, in integer arithmetic, for any number of revolutions.
 
-The rotation far from resonance (:mod:`~symrot.closed_form.spin_up.off_resonance`) and the rotation near it
-(:mod:`~symrot.closed_form.spin_up.resonance`) are joined at the edge between the two. This module computes, one by one,
-the samples whose number of turns is too large for double-double numbers. Without a C compiler it also gives NumPy its
-constants. The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
+The rotation far from resonance (:mod:`~symrot.closed_form.spin_up.off_resonance`) and the rotation near resonance
+(:mod:`~symrot.closed_form.spin_up.resonance`) are joined at the boundary of the two. This module computes, one by one,
+the samples whose number of revolutions is too large for double-double numbers. Without a C compiler it also computes
+the constants for NumPy. The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
 
 import math
@@ -33,13 +33,13 @@ from symrot.formula import exact_numbers as number
 
 __all__ = ["Integers"]
 
-_DOUBT = 1e-14  # relative: a time so near to the edge of resonance could lie on either side of it
+_DOUBT = 1e-14  # relative distance from the boundary of resonance at which a time could lie on either side
 
 _LARGEST = Fraction(10) ** 300
 
 
 def _scale(*values: Fraction) -> Fraction:
-    """Return a power of two near the largest of some numbers; not all of them are zero."""
+    """Return a power of two near the largest of some numbers, at least one of which is not zero."""
     largest = max(map(abs, values))
     size = largest.numerator.bit_length() - largest.denominator.bit_length()
     return Fraction(2) ** max(-900, min(900, size))
@@ -53,7 +53,7 @@ def _map(left: Quaternion, right: Quaternion) -> list[float]:
 
 
 class Integers:
-    """Motion of a body driven about its axis, in integers. Times are counted from the initial state, s.
+    """The motion of a body driven about its axis, in integers. Times are counted from the initial state, s.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Integers:
         A across the axis and C about it, kg m^2.
     axis : 0, 1 or 2
     torque : Fraction
-        N m, about the axis.
+        Torque about the axis, N m.
     rates : 3 Fractions
         Angular velocity at the start, rad/s, not parallel to the axis.
     attitude : 4 Fractions
@@ -113,7 +113,7 @@ class Integers:
         return Near(rounded(self._sweep.across * self._scale / self._root))
 
     def _side(self, omega: Fraction) -> int:
-        """Return where a rate Omega about the axis lies: before resonance (-1), after it (1) or near it (0)."""
+        """Return -1 if a rate Omega about the axis lies before resonance, 1 after resonance, 0 near resonance."""
         if self._sweep.series.wide:
             return 1
         return 0 if abs(omega) < self._edge else 1 if omega > 0 else -1
@@ -132,8 +132,9 @@ class Integers:
         return product(leaving, conjugate(self._near.quaternion(Fraction(side * int(NEAR)))))
 
     def _begin(self, side: int) -> tuple[Fraction, Fraction, Quaternion]:
-        """Return where the formulas of one side of resonance begin: the time, Omega there, and the body's rotation
-        until then.
+        """Return the time, the rate Omega and the attitude at which the formulas for one side of resonance begin.
+
+        The attitude is the rotation of the body since the start.
         """
         if self._side(self._start) == side:
             return Fraction(0), self._start, ONE
@@ -165,25 +166,23 @@ class Integers:
 
     @cached_property
     def longest(self) -> float:
-        """The time, s, beyond which double-double numbers may be too short for the number of turns."""
+        """The time, s, beyond which the number of revolutions may be too large for double-double numbers."""
         values = self._start, self._sweep.across, self._turn[0], self._sweep.s, self._turn[1]
         start, across, turn, s, growth = (abs(float(x)) for x in values)
         even = start + across + turn
         return 2.0 * MOST / (even + math.sqrt(even * even + 4.0 * (s + growth) * MOST)) / float(self._scale)
 
     def _far(self, first: float, last: float) -> bool:
-        """Return whether all times between ``first`` and ``last`` certainly lie on one side of resonance, far from
-        it.
-        """
+        """Return whether all times between ``first`` and ``last`` surely lie on one side of resonance, far from it."""
         start, s, scale = float(self._start), float(self._sweep.s), float(self._scale)
         ends, edge = (start + s * first * scale, start + s * last * scale), float(self._edge)
         edge += _DOUBT * (edge + max(map(abs, (start, *ends))))
         return self._sweep.series.wide or ends[1] <= -edge or ends[0] >= edge
 
     def fill(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> bool:
-        """Write samples by NumPy; return whether some lie beyond :attr:`longest`, where the samples are not valid.
+        """Write samples by NumPy; None skips a quantity.
 
-        An array that is None is skipped.
+        Return whether some times lie beyond :attr:`longest`; the samples there are not valid.
         """
         first, last = min(0.0, float(times.min())), max(0.0, float(times.max()))
         near = attitudes is not None and not self._far(first, last)
@@ -197,7 +196,7 @@ class Integers:
         return abs(self._spin[0] + self._spin[1] * Fraction(time) * self._scale) < number.LARGEST
 
     def put(self, i: int, time: float, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Write sample ``i`` into the arrays; an array that is None is skipped."""
+        """Write sample ``i`` into the arrays; None skips a quantity."""
         t = Fraction(time) * self._scale
         angle = self._turn[0] * t + self._turn[1] * t * t
         if rates is not None:

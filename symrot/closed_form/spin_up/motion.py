@@ -1,15 +1,15 @@
-"""A symmetric body under a constant torque about its axis, at any time, in closed form: spin up, down, and through.
+"""A symmetric body under a constant torque about its axis, at any time, in closed form.
 
-The transverse angular velocity keeps its length W and rotates in the body by a phase quadratic in time. In axes that
-rotate with it the body rotates at ``(W, 0, Omega)``, with Omega linear in time. This is the equation of a two-level
-system swept through resonance (Zener, Proc. R. Soc. A 137 (1932) 696), which takes place at Omega = 0. The solutions
-are parabolic cylinder functions of ``x = Omega/sqrt(s)``, with the sweep rate s and the only parameter ``kappa =
-W/sqrt(s)``.
+The transverse angular velocity has a constant length W and rotates in the body by a phase quadratic in time. In axes
+that rotate with it, the body rotates at ``(W, 0, Omega)``, with Omega linear in time. This is the equation of a
+two-level system swept through resonance (Zener, Proc. R. Soc. A 137 (1932) 696); resonance is at Omega = 0. The
+solutions are parabolic cylinder functions of ``x = Omega/sqrt(s)``, with the sweep rate s and the only parameter
+``kappa = W/sqrt(s)``.
 
-Far from resonance, or for a large kappa, asymptotic series give every digit of a double: they describe a slowly
-rotating vector and the rotation about it. Near resonance, Taylor series at 40 points do so. Phases are sums of two
-doubles, in turns, so that the error of the attitude stays at a few 1e-16 for any number of turns. A sample takes the
-same time at any t; samples beyond 1e13 rad are computed in integers.
+Far from resonance, or for a large kappa, asymptotic series give all digits of a double: they describe a slowly rotating
+vector and the rotation about it. Near resonance, Taylor series at 40 points give them. Phases are sums of two doubles,
+in revolutions, so the error of the attitude stays at a few 1e-16 for any number of revolutions. A sample takes the same
+time at any t; samples beyond 1e13 rad are computed in integers.
 
 The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
@@ -38,7 +38,7 @@ __all__ = ["SpinUp", "SpunBody", "motion", "starts"]
 
 
 class SpinUp:
-    """Motion of a symmetric body driven about its axis. Times are counted from the initial state, s.
+    """The motion of a symmetric body driven about its axis. Times are counted from the initial state, s.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class SpinUp:
 
     @cached_property
     def integers(self) -> "Integers":
-        """The same motion in integer arithmetic, for samples of very many turns."""
+        """The same motion in integer arithmetic, for samples with very many revolutions."""
         from symrot.closed_form.spin_up.integers import Integers
 
         body, rates, attitude = self._initial_state
@@ -78,7 +78,7 @@ class SpinUp:
         Raises
         ------
         InputError
-            If a time is not finite, or the angular velocity at it exceeds all doubles.
+            If a time is not finite, or the angular velocity at a time exceeds the range of a double.
         """
         times = times_of(t)
         rates = np.empty((len(times), 3)) if omega else None
@@ -88,7 +88,7 @@ class SpinUp:
         return rates, attitudes
 
     def _by_integers(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Write, in integer arithmetic, those samples whose number of turns is too large for double-double numbers."""
+        """Write, in integer arithmetic, samples whose number of revolutions is too large for double-double numbers."""
         for time in (float(times.min()), float(times.max())):
             if not self.integers.finite(time):
                 raise InputError(f"expected times at which the angular velocity is a finite number, got {time!r} s")
@@ -112,14 +112,15 @@ def motion(
         Principal moments, kg m^2, positive; the two across the axis are equal.
     axis : 0, 1 or 2
     torque : number
-        N m, about the axis, fixed in the body.
+        Torque about the axis, N m, fixed in the body.
     omega0, quaternion0 : 3 and 4 numbers
-        Angular velocity along the principal axes, rad/s, not all along the axis; attitude, body to space, scalar first.
+        Angular velocity along the principal axes, rad/s, not parallel to the axis; attitude, body to space, scalar
+        first.
 
     Raises
     ------
     InputError
-        If the body is not symmetric about the axis, rotates about it alone, or a number is not of this domain.
+        If the body is not symmetric about the axis or rotates only about it, or if a number is outside its domain.
     """
     return SpunBody(inertia, axis, torque).motion(omega0, quaternion0)
 
@@ -134,7 +135,7 @@ def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[In
 
 
 class SpunBody:
-    """Symmetric body and its torque, with the constants that all its motions share."""
+    """A symmetric body and its torque, with the constants that all its motions share."""
 
     def __init__(self, inertia: Sequence[Number], axis: int, torque: Number) -> None:
         self._inertia, (self.torque,) = numbers("inertia", inertia, 3, SMALLEST), numbers("torque", [torque], 1)

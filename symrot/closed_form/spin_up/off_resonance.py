@@ -1,11 +1,11 @@
 """Rotation of a driven symmetric body between two times far from resonance, in fractions, to 90 digits.
 
-In axes that rotate with its transverse angular velocity the body rotates at ``(W, 0, Omega)``, with ``Omega = Omega0 +
-s t``. The angle of rotation is the integral of ``S = sqrt(Omega^2 + W^2)`` over a time t:
+In axes that rotate with its transverse angular velocity, the body rotates at ``(W, 0, Omega)``, with
+``Omega = Omega0 + s t``. The angle of rotation is the integral of ``S = sqrt(Omega^2 + W^2)`` over a time t:
 
     t/(2 D) (E sqrt(1 + z^2) + W^2 asinh(z)/z),  E = S0 S + Omega0 Omega,  D^2 = (W^2 + E)/2,  z = s t/(2 D).
 
-The sum has positive terms only, so that no digits cancel for any s.
+All terms of the sum are positive, so no digits cancel for any s.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -27,7 +27,7 @@ Quaternion = tuple[int, int, int, int]
 
 ONE: Quaternion = (1 << FIXED, 0, 0, 0)
 
-_HALVINGS = 12  # halvings of the argument of asinh, at least
+_HALVINGS = 12  # smallest number of halvings of the argument of asinh
 _SMALL = Fraction(1, 1 << _HALVINGS)
 
 
@@ -56,7 +56,7 @@ def product(a: Quaternion, *others: Quaternion) -> Quaternion:
 
 
 def conjugate(q: Quaternion) -> Quaternion:
-    """Return the inverse of a unit quaternion: its vector part changes sign."""
+    """Return the inverse of a unit quaternion, whose vector part has the opposite sign."""
     return (q[0], -q[1], -q[2], -q[3])
 
 
@@ -92,7 +92,7 @@ def _polynomial(coefficients: Floats, y: float) -> float:
 
 
 class Sweep:
-    """Constants of a sweep through resonance: W, the sweep rate s, and the asymptotic series for kappa^2 = W^2/s.
+    """The constants of a sweep through resonance: W, the sweep rate s, and the asymptotic series for kappa^2 = W^2/s.
 
     See :mod:`symrot.closed_form.spin_up.motion` for the quantities.
     """
@@ -107,9 +107,7 @@ class Sweep:
         return number.sqrt(rounded(omega * omega + self._square))
 
     def _places(self, omega: Fraction) -> tuple[float, float, float]:
-        """Return sine and cosine of the angle theta between angular velocity and third axis, and the variable y of the
-        series.
-        """
+        """Return sine and cosine of the angle from third axis to angular velocity, and the variable y of the series."""
         speed = self.speed(omega)
         return float(self.across / speed), float(omega / speed), float(rounded(self.unit / (speed * speed)))
 
@@ -119,7 +117,7 @@ class Sweep:
         return cosine * _polynomial(self.series.e, y)
 
     def axes(self, omega: Fraction) -> Quaternion:
-        """Return the rotation that carries the third axis to the slowly rotating vector.
+        """Return the rotation of the third axis to the slowly rotating vector.
 
         That vector is at rest in space and follows the axis of rotation.
         """
@@ -134,9 +132,7 @@ class Sweep:
         return product(turn, fixed(number.unit((m3, -m2, m1, Fraction(0)))))
 
     def angle(self, start: Fraction, time: Fraction) -> Fraction:
-        """Return the angle of the body's rotation about the slowly rotating vector within a time, from Omega =
-        ``start``.
-        """
+        """Return the body's angle of rotation about the slowly rotating vector in a time, from Omega = ``start``."""
         omega = start + self.s * time
         here, there, product = self.speed(omega), self.speed(start), rounded(omega * start)
         if product >= 0:
@@ -150,6 +146,6 @@ class Sweep:
         return rounded(steady) + Fraction(self.delta(omega)) - Fraction(self.delta(start))
 
     def rotation(self, start: Fraction, time: Fraction) -> Quaternion:
-        """Return the rotation of the body, in body axes, within a time that lies wholly far from resonance."""
+        """Return the rotation of the body, in body axes, in a time interval that lies wholly far from resonance."""
         end = conjugate(self.axes(start + self.s * time))
         return product(self.axes(start), about_third(self.angle(start, time)), end)

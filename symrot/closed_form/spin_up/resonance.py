@@ -1,13 +1,13 @@
-"""Attitude of a driven symmetric body near resonance: Taylor series at evenly spaced points, in integers, rounded once.
+"""Attitude of a driven symmetric body near resonance, by Taylor series at evenly spaced points, in integers.
 
 A body that rotates at ``(kappa, 0, x)`` and is aligned with space at ``x = 0`` has the attitude ``(alpha, beta)``,
 ``alpha = q0 + i q3``, ``beta = q1 + i q2``, with
 
     2 alpha' = i x alpha - kappa beta,  2 beta' = kappa alpha - i x beta.
 
-The solutions are parabolic cylinder functions of x. For ``-x``, q1 and q2 change their signs. At each point the
-equations give each Taylor coefficient from the two before; each series begins with the value at which the previous one
-ends.
+The solutions are parabolic cylinder functions of x. For ``-x``, q1 and q2 have the opposite signs. At each point the
+equations give each Taylor coefficient from the two coefficients before; each series begins with the final value of the
+series before.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -30,7 +30,7 @@ DEGREE = 19
 
 _TERMS = 34  # terms of a series in integers
 
-_Spinor = tuple[int, int, int, int]  # a spinor: q0, q3, q1, q2
+_Spinor = tuple[int, int, int, int]  # the complex pair alpha, beta as q0, q3, q1, q2
 
 
 class Near:

@@ -6,14 +6,14 @@ In axes in which a body rotates at ``(kappa, 0, x)``, ``x`` the time, a vector `
     n1 = (kappa/r) a(v),  n2 = (kappa/r) v c(v),  n3 = (x/r) b(v),
 
 the equation becomes ``c = -(a + 2 v a')``, ``b - a = -v^2 (3 c + 2 v c')``, ``2 (1 - kappa^2 v) b' = kappa^2 (b + c)``,
-so that each coefficient follows from the ones before. They are ordered by powers of ``v^2``; each order is a polynomial
-in ``kappa^2 v``, which is at most 1. The series does not converge, yet for x beyond :data:`NEAR`, or kappa beyond
-:data:`WIDE`, its terms fall below 1e-18 before they grow.
+so each coefficient follows from the coefficients before. They are ordered by powers of ``v^2``; each order is a
+polynomial in ``kappa^2 v``, which is at most 1. The series does not converge, but for x above :data:`NEAR`, or kappa
+above :data:`WIDE`, its terms fall below 1e-18 before they grow.
 
-In axes whose third is the axis of rotation, the components of ``n`` across it are ``m = (kappa/r) (x/r v^2 g, v c,
-..)``. The angle about it exceeds the integral of ``r`` by ``delta = (x/r) e(v)``.
+In axes whose third axis is the axis of rotation, the components of ``n`` normal to it are
+``m = (kappa/r) (x/r v^2 g, v c, ..)``. The angle about it exceeds the integral of ``r`` by ``delta = (x/r) e(v)``.
 
-Source: DLMF 12.9 and 12.10 for the functions of which these are the modulus and the phase. Proof:
+Source: DLMF 12.9 and 12.10, for the functions whose modulus and phase these are. Proof:
 ``derivations/driven_rotation.md``.
 """
 
@@ -27,13 +27,13 @@ from symrot.closed_form.build import Floats
 __all__ = ["DEGREE", "MOST", "NEAR", "WIDE", "Series", "series"]
 
 NEAR = 10.0
-"""Least x for which the series holds for every kappa."""
+"""Smallest x for which the series is accurate for every kappa."""
 
 WIDE = 9.0
-"""Least kappa for which the series holds for every x."""
+"""Smallest kappa for which the series is accurate for every x."""
 
 MOST = 1e13
-"""Phase, rad, above which double-double numbers are too short."""
+"""Phase, rad, above which double-double numbers have too few digits."""
 
 DEGREE = 12
 """Degree of the polynomials that replace the series."""
@@ -44,10 +44,10 @@ _TERMS = 32  # powers of kappa^2 v that are used where kappa^2 v <= _SMALL
 
 
 class Series(NamedTuple):
-    """Functions of the asymptotic series of one motion, as polynomials in ``y = v radius2``, lowest power first.
+    """The functions of the asymptotic series of one motion, as polynomials in ``y = v radius2``, lowest power first.
 
-    The range is 0 <= y <= 1. Where the series holds for every x (``wide``), ``radius2`` is kappa^2; elsewhere it is the
-    least r^2 for which the series holds.
+    The range is 0 <= y <= 1. If the series is accurate for every x (``wide``), ``radius2`` is kappa^2; otherwise it is
+    the smallest r^2 for which the series is accurate.
     """
 
     wide: bool
@@ -58,7 +58,7 @@ class Series(NamedTuple):
 
 @cache
 def _nodes() -> tuple[Floats, Floats]:
-    """Return Chebyshev's points between 0 and 1, as many as a series has coefficients, and the powers of each."""
+    """Return Chebyshev's points between 0 and 1, as many as a series has coefficients, and the powers of each point."""
     y = 0.5 - 0.5 * np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
     return y, np.vander(y, 3 * _ORDERS + 1, increasing=True)
 

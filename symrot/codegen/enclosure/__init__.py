@@ -1,1 +1,1 @@
-"""Enclosures of right-hand sides: the terms that a step could miss, and C text that bounds them."""
+"""Enclosures of right-hand sides: the terms with features that a step could miss, and C text that bounds them."""

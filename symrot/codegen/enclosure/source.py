@@ -1,7 +1,7 @@
-"""C text of the enclosure of a right-hand side: bounds of how far its terms deviate from constants on discs.
+"""C text of the enclosure of a right-hand side: bounds of the deviation of its terms from constants on discs.
 
-The discs are regions of complex times and states. The text stands between :file:`propagation/enclosures/disc.h`, which
-has the rules, and a stepper. Standard library only.
+The discs are regions of complex times and states. The text is placed between :file:`propagation/enclosures/disc.h`,
+which has the rules of disc arithmetic, and a stepper. Standard library only.
 """
 
 from collections.abc import Mapping, Sequence
@@ -35,10 +35,11 @@ def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequen
     enclosure : Enclosure or None
         None for a right-hand side that needs no enclosure.
     order : int
-        Order N of the polynomials that follow the states, which the table of radii is for: a step of size h misses at
-        most ``h D reach^-N/((N + 1)(1 - 1/reach))`` where the rates deviate by at most D on a disc of ``reach`` steps.
+        Order N of the polynomials that approximate the states; the table of radii depends on it. If the rates
+        deviate by at most D on a disc of ``reach`` steps, a step of size h has an error of at most ``h D
+        reach^-N/((N + 1)(1 - 1/reach))``.
     edges : sequence of int
-        Edges of the blocks of states whose errors are judged apart, from 0 to the number of states.
+        Edges of the blocks of states whose errors are judged separately, from 0 to the number of states.
     """
     if enclosure is None:
         return "#define SYMROT_ENCLOSED 0\n#define SYMROT_DEPENDS 0\n"
@@ -82,7 +83,7 @@ def _constant(node: Node, places: Mapping[str, str]) -> str:
 
 
 def _disc(system: Recurrences, number: int, places: Mapping[str, str]) -> str:
-    """Return the C expression for the disc of series ``number``; ``places`` names the values that it uses."""
+    """Return the C expression for the disc around the values of series ``number``; ``places`` names its operands."""
     series = system.series[number]
     own = [f"d{operand}" for operand in value_operands(series)]
     if series.rule == "state":

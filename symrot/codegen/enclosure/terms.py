@@ -1,12 +1,12 @@
-"""Terms of a right-hand side that a step may miss, so that their size must be bounded (enclosed).
+"""Selection of the terms of a right-hand side that must be bounded (enclosed) because a step may miss their features.
 
-A stepper sees a right-hand side only where it evaluates it. A pulse, a switch or a pole between two such points leaves
-no trace there, but the formula shows it: evaluated over complex discs (:file:`propagation/enclosures/disc.h`), it
-bounds all Taylor coefficients that a step leaves out.
+A stepper knows a right-hand side only at the points where it evaluates it. A pulse, a switch or a pole between two such
+points has no effect there, but evaluating the formula over complex discs (:file:`propagation/enclosures/disc.h`) shows
+it: the result bounds all Taylor coefficients that a step omits.
 
 Polynomials of low degree in the states, in time and in sine and cosine of ``a*t + b`` need no enclosure: they have no
-feature narrower than their coefficients show. Each rate is therefore split into its terms, and only the other terms are
-enclosed; a right-hand side without such terms costs nothing.
+feature narrower than their coefficients show. Therefore each rate is split into its terms, and only the other terms
+are enclosed; a right-hand side without such terms costs nothing.
 
 Standard library only.
 """
@@ -18,21 +18,21 @@ from symrot.formula.tree import Node
 
 __all__ = ["LOW_ORDER", "REACHES", "Enclosure", "enclosure", "value_operands"]
 
-HIGHEST_DEGREE = 6  # degree of a polynomial that hides nothing: cos(t)**6 is as broad as a pulse of half a radian
+HIGHEST_DEGREE = 6  # degree of a polynomial without narrow features: cos(t)**6 is as broad as a pulse of 0.5 rad
 BEYOND = HIGHEST_DEGREE + 1
-REACHES = {  # radii of the discs, in steps, by whether the order is low: a disc must be wide where few orders are known
+REACHES = {  # radii of the discs, in steps, by whether the order is low: a disc must be larger for a low order
     False: (1.3, 1.8, 2.6, 3.6, 5.0, 7.0, 10.0, 16.0),
     True: (1.5, 2.5, 4.0, 7.0, 12.0, 20.0, 40.0, 80.0),
 }
 LOW_ORDER = 10
-BOUNDED = ("sin", "cos")  # functions of a*t + b whose size their coefficients show at every time
+BOUNDED = ("sin", "cos")  # functions of a*t + b that are bounded at every time
 
 
 class Enclosure(NamedTuple):
     """The terms of the rates of a system that must be enclosed, as series of :mod:`symrot.codegen.taylor.recurrences`.
 
-    ``series`` lists the numbers of all series needed, each after its operands; ``terms`` holds for each rate the pairs
-    (weight, series) of its enclosed terms; ``states`` holds the numbers of the states on which they depend.
+    ``series`` lists the indices of all series needed, each after its operands; ``terms`` holds for each rate the pairs
+    (weight, series) of its enclosed terms; ``states`` holds the indices of the states on which they depend.
     """
 
     system: Recurrences
@@ -42,15 +42,13 @@ class Enclosure(NamedTuple):
 
 
 def value_operands(series: Series) -> tuple[int, ...]:
-    """Return the operands that determine the value of a series, without those that only drive its later
-    coefficients.
-    """
+    """Return the operands that determine the value of a series, not those that affect only its later coefficients."""
     first = {"driven": 2, "primitive": 3}.get(series.rule, 0)
     return () if series.rule == "clock" else series.operands[first:]
 
 
 def enclosure(system: Recurrences) -> Enclosure | None:
-    """Return the series of the rates that need an enclosure, or None if no series does."""
+    """Return the enclosure of a system's rates, or None if no rate needs an enclosure."""
     degrees: list[int] = []
     for series in system.series:
         degrees.append(min(_degree(series, degrees), BEYOND))

@@ -1,1 +1,1 @@
-"""Lowering: SymPy formulas are turned into straight-line programs with few operations."""
+"""Lowering: the translation of SymPy formulas into straight-line programs with few operations."""

@@ -11,24 +11,24 @@ __all__ = ["Share"]
 
 
 class Share:
-    """Collection of formula trees in which common factors and sums are found: the most frequent pair becomes a node.
+    """A collection of formula trees that finds common factors and sums: the most frequent pair becomes a shared node.
 
-    Among equally frequent pairs the one that appears first is taken. Every distinct node has a number, its identity.
+    Among equally frequent pairs the pair that appears first is chosen. Each distinct node has a number, its identity.
     """
 
     def __init__(self) -> None:
         self.identity: dict[Tree, int] = {}
-        self.nodes: list[tuple[Any, ...]] = []  # over identities
+        self.nodes: list[tuple[Any, ...]] = []  # nodes by identity; their operands are identities
 
     def intern(self, node: Tree) -> int:
-        """Return the identity (number) of a node whose operands are identities; equal nodes have the same identity."""
+        """Return the identity of a node, which is the same for equal nodes; the node's operands are identities."""
         if node not in self.identity:
             self.identity[node] = len(self.nodes)
             self.nodes.append(node)
         return self.identity[node]
 
     def add(self, tree: Tree) -> int:
-        """Return the identity of a formula tree, after adding all its parts."""
+        """Add a formula tree and all its parts to the collection, and return its identity."""
         kind = tree[0]
         if kind in ("sym", "num"):
             return self.intern(tree)
@@ -40,9 +40,7 @@ class Share:
         return self.intern(("add", tuple(sorted(((self.add(item), sign) for sign, item in tree[1])))))
 
     def extract(self) -> None:
-        """Replace the most frequent pair of factors or terms by a new node, again and again, until no pair occurs
-        twice.
-        """
+        """Repeatedly replace the most frequent pair of factors or terms by a new node, until no pair occurs twice."""
         for kind, pairs, swap in (
             ("mul", self._quotient_pairs, self._swap_quotient),
             ("mul", self._reciprocals, self._swap_reciprocal),
@@ -77,11 +75,11 @@ class Share:
             yield "add", ((a, 1), (b, s * r))
 
     def _is_variable(self, pair: Any) -> bool:
-        """Return whether a pair contains no constant: such pairs are replaced first."""
+        """Return whether a pair contains no constant; such pairs are replaced first."""
         return pair[0] == "add" or not any(self.nodes[i][0] == "num" for part in pair[1:] for i in part)
 
     def _replace(self, kind: str, pair: tuple[Any, ...], swap: Callable[..., tuple[Any, ...]]) -> None:
-        """Replace a pair of operands in every node by one identity, which is new unless the pair already has one."""
+        """Replace a pair of operands in every node by the identity of the pair, which is created if necessary."""
         if pair not in self.nodes:
             self.nodes.append(pair)
         new = self.nodes.index(pair)
@@ -131,5 +129,5 @@ def _without(part: tuple[int, ...], item: int) -> tuple[int, ...]:
 
 
 def _negated(pair: Any) -> Any:
-    """Return a sorting key with the opposite order, so that ``max`` selects the pair that appeared first."""
+    """Return a sorting key in the opposite order, so that ``max`` selects the pair that appeared first."""
     return tuple(_negated(item) if isinstance(item, tuple) else -item for item in pair if not isinstance(item, str))

@@ -1,4 +1,4 @@
-"""Constant parts of expressions: a part that depends on no variable becomes one number that is computed only once."""
+"""Constants of expressions: a part that depends on no variable becomes a number that is computed only once."""
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
@@ -13,18 +13,17 @@ from symrot.errors import InputError
 __all__ = ["HOISTED", "Gather", "Tree"]
 
 Tree = tuple[Any, ...]
-"""sym name | num Fraction | mul factors divisors | add (sign, tree)... | call name args"""
+"""A tree: sym name | num Fraction | mul factors divisors | add (sign, tree)... | call name args"""
 
 HOISTED = "$"
-"""First letter of a constant that has no number yet."""
+"""First letter of a constant that has not been numbered yet."""
 
-LARGEST_POWER = 64  # largest power that is written as one product
+LARGEST_POWER = 64  # largest power that is written as a single product
 ONE: Tree = ("num", Fraction(1))
 
 
 class Gather:
-    """Splits expressions into a constant times a variable core, so that constants are computed when parameters are
-    bound.
+    """Splits expressions into a constant times a variable core; constants are computed once for given parameters.
 
     Parameters
     ----------
@@ -89,9 +88,10 @@ class Gather:
         return tree if sign > 0 else ("add", ((-1, tree),))
 
     def _distributed(self, ordered: Sequence[Expr]) -> list[Expr]:
-        """Return the terms of a constant times a sum, multiplied out: c*(a + b*x) is c*a + (c*b)*x, one operation less.
+        """Return the terms of a constant times a sum, expanded: c*(a + b*x) is c*a + (c*b)*x, one operation less.
 
-        A sum that may stay at zero, such as 1 + tanh(u), is left alone: its terms would leave the rounding of c there.
+        A sum that may tend to zero, such as 1 + tanh(u), is not expanded, because the rounding error of c would remain
+        there.
         """
         sums = [argument for argument in ordered if self.is_variable(argument)]
         if len(sums) != 1 or not sums[0].is_Add or sums[0].atoms(*LEVELLING):
@@ -129,7 +129,7 @@ class Gather:
     def _power(self, expr: Expr) -> tuple[Expr, Tree]:
         base, power = expr.as_base_exp()
         if not (2 * power).is_Integer:
-            raise InputError(f"expected whole and half powers in a kernel, got {expr}")
+            raise InputError(f"expected whole and half powers in a kernel, got {expr}; use sqrt for roots")
         if power.is_Integer:
             constant, core = self.split(base)
         else:
@@ -145,7 +145,7 @@ class Gather:
         return constant**power, ("mul", factors * count, divisors * count)
 
     def _sum(self, terms: Iterable[Expr]) -> tuple[Expr, Tree]:
-        total: dict[Tree, Expr] = {}  # core -> its constant, equal cores taken together
+        total: dict[Tree, Expr] = {}  # core -> its constant, with equal cores combined
         for term in sorted(self._flattened(terms) if self.flat else terms, key=default_sort_key):
             constant, core = self.split(term)
             total[core] = total.get(core, S.Zero) + constant
@@ -173,7 +173,7 @@ class Gather:
 
 
 def _repeated(tree: Tree, count: int) -> Tree:
-    """Return a large power of a tree as repeated squares; a product of all its factors would be nested too deeply."""
+    """Return a large power of a tree by repeated squaring; a product of all its factors would be nested too deeply."""
     if count <= LARGEST_POWER:
         return ("mul", (tree,) * count, ())
     half = _repeated(tree, count // 2)
@@ -181,8 +181,9 @@ def _repeated(tree: Tree, count: int) -> Tree:
 
 
 def _oriented(value: Expr) -> tuple[int, Expr]:
-    """Return a constant as its sign and a size that is the same for a and -a, for example for (A - C)/A and (C -
-    A)/A.
+    """Return a constant as its sign and a magnitude that is the same for a and -a.
+
+    For example, (A - C)/A and (C - A)/A have the same magnitude.
     """
     sign, factors = 1, []
     for factor in Mul.make_args(value):
@@ -194,7 +195,7 @@ def _oriented(value: Expr) -> tuple[int, Expr]:
 
 
 def _signed_sum(terms: Sequence[tuple[int, Tree]]) -> tuple[int, Tree]:
-    """Return a sum as its sign and a remaining sum whose first term is positive."""
+    """Return a signed sum as a sign and a sum whose first term is positive."""
     if len(terms) == 1:
         return terms[0]
     sign = 1 if any(s > 0 for s, _ in terms) else -1

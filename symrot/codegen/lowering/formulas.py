@@ -13,7 +13,7 @@ __all__ = ["chain", "function_name", "to_node"]
 
 
 def to_node(expr: Expr) -> Node:
-    """Return a SymPy expression as a formula tree, term by term.
+    """Return a SymPy expression as a formula tree, translated term by term.
 
     Raises
     ------
@@ -62,9 +62,7 @@ def chain(mark: str, nodes: Sequence[Node]) -> Node:
 
 
 def function_name(expr: Expr) -> str:
-    """Return the name of the function that an expression calls; raise InputError if kernels do not have this
-    function.
-    """
+    """Return the name of the function that an expression calls; raise InputError if kernels do not support it."""
     name = "abs" if isinstance(expr, Abs) else "exp" if expr.func.__name__ == "exp" else str(expr.func)
     if not isinstance(expr, Function) or (FUNCTIONS | OWN_FUNCTIONS).get(name) != len(expr.args):
         raise InputError(f"expected a formula of + - * /, whole and half powers and {', '.join(FUNCTIONS)}; got {expr}")

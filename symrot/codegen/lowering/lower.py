@@ -1,9 +1,10 @@
 """Lowering of SymPy expressions to a straight-line program with few operations.
 
-There are three exact steps. Parts that do not depend on time or state become constants, computed once when parameters
-are bound (:mod:`symrot.codegen.lowering.constants`). Common factors and sums are shared
-(:mod:`symrot.codegen.lowering.common_factors`). Temporaries are named (:mod:`symrot.codegen.lowering.temporary_names`).
-The result depends on the expressions alone, never on the order of a hash table.
+There are three exact steps. Parts that do not depend on time or state become constants, computed once for given
+parameters (:mod:`symrot.codegen.lowering.constants`). Common factors and sums are shared
+(:mod:`symrot.codegen.lowering.common_factors`). Temporaries get names
+(:mod:`symrot.codegen.lowering.temporary_names`). The result depends only on the expressions, never on the order of a
+hash table.
 """
 
 from collections import Counter
@@ -25,27 +26,23 @@ from symrot.formula.tree import Node, children, names, rename, text
 __all__ = ["Lowered", "lower"]
 
 ANONYMOUS = "#"
-"""First letter of a temporary that has no name yet."""
+"""First letter of a temporary that has not been named yet."""
 
 
 @dataclass(frozen=True)
 class Lowered:
-    """A program together with the formulas of its constants: ``parameters[k]`` is (name, formula of physical
-    constants).
-    """
+    """A program with the formulas of its constants: ``parameters[k]`` is (name, formula of physical constants)."""
 
     program: Program
     parameters: tuple[tuple[str, Node], ...]
 
 
 class _Writer:
-    """Writes formulas in the order in which they are needed; each node that is used more than once becomes a
-    temporary.
-    """
+    """Writes formulas in the order in which they are needed; a node that is used more than once becomes a temporary."""
 
     def __init__(self, share: Share, roots: Sequence[int], named: dict[int, str]) -> None:
         self.nodes, self.named = share.nodes, dict(named)
-        self.anonymous: list[str] = []  # temporaries that get their names once the program is complete
+        self.anonymous: list[str] = []  # temporaries that are named after the program is complete
         self.uses: Counter[int] = Counter()
         seen: set[int] = set()
         for root in roots:
@@ -91,8 +88,9 @@ class _Writer:
         return bool(kind == "num" or (kind == "sym" and first.startswith(HOISTED)))
 
     def _is_sum(self, index: int) -> bool:
-        """Return whether a node is written as a sum in brackets: such a factor comes first in a product, as in (A - B)
-        x y.
+        """Return whether a node is written as a sum in brackets.
+
+        Such a factor comes first in a product: (A - B) x y.
         """
         return bool(self.nodes[index][0] == "add" and self.uses[index] < 2 and index not in self.named)
 
@@ -122,23 +120,23 @@ def lower(
     ----------
     signature : Signature
         The variables are the components of its input arguments; every other symbol is a physical constant. It must
-        not hold the parameter argument, which is appended here once its size is known.
+        not contain the parameter argument, which is appended here once its size is known.
     outputs : sequence of (component name, Expr)
-        In the order of the output argument.
+        Component names and expressions, in the order of the output arguments.
     definitions : sequence of (Symbol, Expr)
-        Quantities with a physical name, used by later definitions and outputs as that symbol.
+        Quantities with a physical name; later definitions and the outputs use this symbol.
     parameter_argument : str
-        Name of the array of hoisted constants.
+        Name of the array argument for the constants that are computed once.
 
     Returns
     -------
     Lowered
-        The program and the formulas of its parameters over the physical constants.
+        The program and the formulas of its parameters in terms of the physical constants.
 
     Raises
     ------
     InputError
-        For a function or a power that kernels do not hold.
+        For a function or a power that kernels do not support.
     """
     ways = [_lowered(signature, outputs, definitions, parameter_argument, flat) for flat in (False, True)]
     lowered, anonymous = min(ways, key=lambda way: way[0].program.operations().total())
@@ -150,9 +148,9 @@ def _lowered(
     signature: Signature, outputs: Sequence[tuple[str, Expr]], definitions: Sequence[tuple[Symbol, Expr]],
     parameter_argument: str, flat: bool,
 ) -> tuple[Lowered, list[str]]:  # fmt: skip
-    """Return the lowered program, and its temporaries that have no name yet.
+    """Return the lowered program, and the temporaries that have no name yet.
 
-    ``flat`` says that nested sums are merged before common parts are shared.
+    If ``flat`` is true, nested sums are merged before common parts are shared.
     """
     inputs = [name for a in signature.arguments if a.role == "in" for name, *_ in a.components]
     held = {symbol for _, expr in [*outputs, *definitions] for symbol in expr.free_symbols}
@@ -218,7 +216,7 @@ def _leaves(node: Node) -> Iterable[str]:
 
 
 def _exact(expr: Expr) -> Expr:
-    """Return the expression unchanged; raise InputError if it contains a float, since the symbolic layer is exact."""
+    """Return the expression unchanged; raise InputError if it contains a float, because formulas must be exact."""
     if expr.has(Number) and any(not number.is_Rational for number in expr.atoms(Number)):
         raise InputError(f"expected exact numbers in a kernel, got a float in {expr}")
     return expr

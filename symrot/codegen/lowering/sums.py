@@ -1,4 +1,4 @@
-"""Sums of formulas with few minus signs: a sign is moved to a place where it costs no operation.
+"""Sums of formulas with few minus signs: a minus sign is moved to a place where it costs no operation.
 
 Such a place is a difference, a number, or a product that contains one of these.
 """
@@ -11,9 +11,7 @@ __all__ = ["negative", "summed"]
 
 
 def negative(node: Node) -> Node:
-    """Return minus a formula; the sign is moved into a number, a sum or a product inside it if that costs no
-    operation.
-    """
+    """Return minus a formula, with the sign moved into a number, a sum or a product where that costs no operation."""
     if node[0] == "number":
         return ("number", -node[1])
     if node[0] == "neg":
@@ -33,7 +31,7 @@ def negative(node: Node) -> Node:
 
 
 def _turned(sign: int, node: Node) -> tuple[int, Node]:
-    """Return a term and its sign, where a minus sign is moved into a difference: -(a - b)*c becomes (b - a)*c."""
+    """Return a signed term with a minus sign moved into a difference: -(a - b)*c becomes (b - a)*c."""
     turned = _with_difference_turned(node) if sign < 0 else None
     return (sign, node) if turned is None else (1, turned)
 
@@ -58,7 +56,7 @@ def _terms(node: Node) -> list[tuple[int, Node]]:
 
 
 def summed(first: Node, terms: Sequence[tuple[int, Node]]) -> Node:
-    """Return the sum of ``first`` and the signed terms; positive terms come before negative ones."""
+    """Return the sum of ``first`` and signed terms, positive terms before negative ones."""
     for sign, term in sorted((_turned(*each) for each in terms), key=lambda item: item[0] < 0):
         first = ("+" if sign > 0 else "-", first, term)
     return first

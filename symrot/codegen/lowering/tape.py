@@ -1,6 +1,6 @@
-"""Tapes: a straight-line program as a list of single operations, with equal operations only once.
+"""Tapes: straight-line programs as lists of single operations, in which equal operations occur only once.
 
-Text that is printed operation by operation starts from a tape: values as sums of two doubles and their gradients
+Text that is printed operation by operation is made from a tape: values as sums of two doubles with their gradients
 (:mod:`symrot.codegen.taylor.invariant_source`), and values with bounds of their rounding errors
 (:mod:`symrot.codegen.printing.event_source`). Standard library only.
 """
@@ -16,9 +16,7 @@ __all__ = ["Operation", "Tape", "tape_of"]
 
 
 class Operation(NamedTuple):
-    """One operation of a tape: ``+ - * / neg``, a function of :data:`symrot.formula.tree.FUNCTIONS`, a number or a
-    symbol.
-    """
+    """An operation of a tape: ``+ - * / neg``, a function of :mod:`symrot.formula.tree`, a number or a symbol."""
 
     kind: str
     operands: tuple[int, ...] = ()
@@ -26,7 +24,7 @@ class Operation(NamedTuple):
 
 
 class Tape(NamedTuple):
-    """Operations in an order of computation, and the index of the operation that gives each output."""
+    """Operations in order of computation, and for each output the index of the operation that computes it."""
 
     operations: tuple[Operation, ...]
     outputs: tuple[int, ...]
@@ -72,7 +70,7 @@ class _Writer:
 
 
 def tape_of(program: Program, outputs: Sequence[str], more: Sequence[Node] = ()) -> Tape:
-    """Return the tape of some outputs of a program, and of ``more`` formulas of its inputs and outputs."""
+    """Return the tape of some outputs of a program, and of additional formulas ``more`` of its inputs and outputs."""
     writer = _Writer()
     formulas = dict(program.outputs)
     for name, node in program.temporaries:

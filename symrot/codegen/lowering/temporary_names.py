@@ -1,8 +1,8 @@
-"""Names of temporaries that say what they are: sin_theta, q1_q2, omega_1_sq, two_q3_sq, A_minus_B, inv_det.
+"""Descriptive names of temporaries: sin_theta, q1_q2, omega_1_sq, two_q3_sq, A_minus_B, inv_det.
 
 A product of inputs is named by its factors, a small sum by its terms, a call by the function and its argument. A
 temporary whose name would be long is named after the output that needs it first: ``domega_1_term_2`` is the second such
-temporary of domega_1. A name depends on the program alone and is a valid name in C, C++ and Python.
+temporary of domega_1. A name depends only on the program and is a valid name in C, C++ and Python.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -14,8 +14,8 @@ from symrot.formula.tree import Node, names, rename
 
 __all__ = ["with_names"]
 
-LONGEST = 32  # letters of a name made of its parts
-MOST_TERMS = 3  # terms of a sum that is named by its terms
+LONGEST = 32  # largest number of letters of a name made of parts
+MOST_TERMS = 3  # largest number of terms of a sum that is named by its terms
 WORDS = {
     Fraction(1): "", Fraction(2): "two", Fraction(3): "three", Fraction(4): "four", Fraction(5): "five",
     Fraction(6): "six", Fraction(8): "eight", Fraction(1, 2): "half", Fraction(1, 3): "third",
@@ -67,7 +67,7 @@ def with_names(program: Program, anonymous: Collection[str], numbers: Mapping[st
     anonymous : collection of str
         The temporaries to name.
     numbers : mapping of str to Node
-        Constants that are printed as numbers, and the formula of each over pi: names contain the formula.
+        Constants that are printed as numbers, each with its formula, which becomes part of the name.
     """
     arguments = program.signature.arguments
     used = {a.name for a in arguments} | {name for a in arguments for name, *_ in a.components} | set(RESERVED)
@@ -89,7 +89,7 @@ def with_names(program: Program, anonymous: Collection[str], numbers: Mapping[st
                 output = first_output[old]
                 name = next(each for each in _numbered(f"{output}_{_noun(node)}") if each not in used)
             new[old] = name
-        if product is not None and len(product.powers) <= 2:  # larger products are referred to by their name
+        if product is not None and len(product.powers) <= 2:  # larger products are used by their own name
             products[name] = product
         used.add(name)
         temporaries.append((name, node))
@@ -105,7 +105,7 @@ def _numbered(stem: str) -> Iterable[str]:
 
 
 def _noun(node: Node) -> str:
-    """Return the last word of a long temporary's name: the function that it calls, or ``term``."""
+    """Return the last word of the name of a temporary: the function that it calls, or ``term``."""
     return NOUNS.get(node[1], str(node[1])) if node[0] == "call" else "term"
 
 
@@ -124,9 +124,9 @@ def _first_outputs(program: Program) -> dict[str, str]:
 
 
 def _product_of(node: Node, products: Mapping[str, _Product]) -> _Product | None:
-    """Return a formula as a product of powers of symbols, or None if it is no such product.
+    """Return a formula as a product of powers of symbols, or None if it is not such a product.
 
-    Temporaries that are products themselves are multiplied out.
+    Temporaries that are products themselves are replaced by their factors.
     """
     kind = node[0]
     if kind == "number":
@@ -145,7 +145,7 @@ def _product_of(node: Node, products: Mapping[str, _Product]) -> _Product | None
 
 
 def _structural_name(node: Node, product: _Product | None, products: Mapping[str, _Product]) -> str | None:
-    """Return a name for a formula made of the names inside it, or None if there is no short one."""
+    """Return a name for a formula made of the names inside it, or None if no short name exists."""
     if product is not None:
         return product.name()
     if node[0] in ("+", "-"):
@@ -160,7 +160,7 @@ def _structural_name(node: Node, product: _Product | None, products: Mapping[str
 
 
 def _name_of_term(node: Node, products: Mapping[str, _Product]) -> str | None:
-    """Return the name of one term, which is a number, a symbol or a product; None if it has no short name."""
+    """Return the name of one term, which is a number, a symbol or a product, or None if no short name exists."""
     if node[0] == "number":
         word = "one" if node[1] == 1 else WORDS.get(node[1])
         return word or None

@@ -1,4 +1,4 @@
-"""The head of every emitted file: title, arguments, domain, certificate, cost, derivation, release."""
+"""The head comment of every emitted file: title, arguments, domain, certificate, cost, derivation, release."""
 
 import re
 from collections.abc import Iterable
@@ -12,10 +12,10 @@ from symrot.formula.program import Argument, Program
 __all__ = ["CONTRACT", "Description", "banner", "cost"]
 
 WIDTH = 110
-WIDEST = 56  # characters of a column; a longer entry moves the rest of its row
+WIDEST = 56  # largest width of an aligned column; a longer entry shifts the rest of its row
 NAMES = {"add": "add", "mul": "mul", "div": "div", "neg": "neg"}
 
-CONTRACT = (  # lines of the head of a C file about its certificate: its place, its assumptions, flags of compilers
+CONTRACT = (  # lines in the head of a C file: place of the certificate, its assumptions, compiler flags
     ("Certificate", "{kernel}.cert.json; re-check it by `python recheck.py {kernel}.cert.json` or `symrot audit`"),
     ("Assumes", "IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding "
      "errors, functions of <math.h> within 1 unit in the last place"),
@@ -26,25 +26,25 @@ CONTRACT = (  # lines of the head of a C file about its certificate: its place, 
 
 @dataclass(frozen=True)
 class Description:
-    """Texts in the head of an emitted file that do not follow from the program."""
+    """Texts in the head of an emitted file that cannot be computed from the program."""
 
     title: str
     domain: str
     derivation: str
     command: str
     convention: str = "body axes; quaternion scalar first, Hamilton, body to space (symrot conventions)"
-    contract: tuple[tuple[str, str], ...] = ()  # more lines: heading, text, {kernel} for its name
+    contract: tuple[tuple[str, str], ...] = ()  # further lines (heading, text); {kernel} is its name
 
 
 def _harmless(text: str) -> str:
-    """Return a text that cannot end the comment or docstring it is printed in, nor mean anything to a compiler.
+    """Return a text that can neither end the comment or docstring around it nor have a meaning for a compiler.
 
-    Titles and names of scenes may contain any characters. Those that are not printable ASCII are written as
-    ``<U+00E9>``: readers of certified C accept ASCII only, and compilers warn about letters that reverse the direction
-    of a line.
+    Titles and names of scenes may contain any characters. Characters that are not printable ASCII are written as
+    ``<U+00E9>``: readers of certified C accept only ASCII, and compilers warn about characters that reverse the
+    direction of a line.
     """
     text = text.replace("\\", "/").replace('"""', "'''")
-    text = re.sub(r"(?<=\*)(?=/)|(?<=/)(?=[*/])|(?<=\?)(?=\?)", " ", text)  # no end of a comment, no trigraph
+    text = re.sub(r"(?<=\*)(?=/)|(?<=/)(?=[*/])|(?<=\?)(?=\?)", " ", text)  # breaks ends of comments and trigraphs
     return re.sub(r"[^ -~]", lambda letter: f"<U+{ord(letter[0]):04X}>", text)
 
 
@@ -56,7 +56,7 @@ def cost(program: Program) -> str:
 
 
 def _rows(argument: Argument) -> list[tuple[str, str, str, str]]:
-    """Return the rows of an argument in the table of a head: components, unit and meaning.
+    """Return the rows for an argument in the table of a head comment: components, unit and meaning.
 
     Components with the same unit and meaning share a row. A constant of a scene has its own row, whose meaning is its
     formula and value.
@@ -83,7 +83,7 @@ def _arguments(arguments: Iterable[Argument]) -> list[str]:
 
 
 def banner(program: Program, description: Description, start: str, each: str, end: str) -> list[str]:
-    """Return the comment lines that open an emitted file.
+    """Return the lines of the head comment of an emitted file.
 
     Parameters
     ----------

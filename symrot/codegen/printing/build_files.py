@@ -1,4 +1,4 @@
-"""Build files with which a C or C++ project includes the library of kernels: a CMake target and a pkg-config file.
+"""Build files for C and C++ projects that use the library of kernels: a CMake target and a pkg-config file.
 
 Every kernel is also one self-contained file that can be compiled alone: ``cc -c KERNEL.c``.
 """
@@ -6,7 +6,7 @@ Every kernel is also one self-contained file that can be compiled alone: ``cc -c
 __all__ = ["FLAGS", "build_files"]
 
 FLAGS = ("-O3", "-fno-math-errno", "-fno-tree-slp-vectorize", "-ffp-contract=off")
-"""Recommended for kernels: loops over samples are vectorised, no operation is fused, roots need no errno."""
+"""Recommended flags: loops over samples are vectorised, operations are not fused, square roots do not set errno."""
 
 _CMAKE = """\
 # Kernels of symrot as a static library. Printed by `symrot emit --all`; do not edit.

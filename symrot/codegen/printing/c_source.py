@@ -1,6 +1,6 @@
 """C99 text of programs, which is also valid C++: a function for one sample, and one for a batch of samples.
 
-The arrays of a batch are structures of arrays: component i of all n samples lies in one row.
+In a batch, component i of all n samples is stored in one row (structure of arrays).
 """
 
 from collections.abc import Callable, Sequence
@@ -31,12 +31,12 @@ __all__ = [
 ]
 
 MATH_HEADER = "symrot_math.h"
-INDEPENDENT = "SYMROT_INDEPENDENT"  # precedes a loop over independent samples: no sample reads what another one writes
+INDEPENDENT = "SYMROT_INDEPENDENT"  # precedes a loop over independent samples: none reads a result of another
 RELATIONS = {"==": "eq", "<": "lt"}
-STREAMS = 16  # arrays that a loop walks along before processors fetch ahead for it no more
+STREAMS = 16  # largest number of arrays that processors prefetch in one loop
 REGISTERS = 16  # vector registers, from SSE2 to AVX2
-WAYS = 12  # arrays of which the first cache of processors holds a line each, where n is a multiple of 512 (8 to 12)
-SPAN = "SYMROT_SPAN"  # samples that loops of a batch take in turn: what one has read is in cache for the next
+WAYS = 12  # arrays of which the first cache holds a line each if n is a multiple of 512 (8 to 12 by processor)
+SPAN = "SYMROT_SPAN"  # samples in a block of a batch: data that one loop has read are in cache for the next loop
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Real:
     precision: str
 
     def literal(self, value: Fraction) -> str:
-        """Return the number of this type nearest to an exact one, as the shortest text that reads back to it."""
+        """Return the number of this type nearest to an exact number, as the shortest text that reads back to it."""
         digits = _shortest_float(value) if self.suffix else repr(float(value))
         return (digits if "." in digits or "e" in digits or "n" in digits else f"{digits}.0") + self.suffix
 
@@ -61,7 +61,7 @@ class Real:
 
     @cached_property
     def near_functions(self) -> dict[str, str]:
-        """Return the C names of functions in a batch, where angles are in the range of ``symrot_math.h``."""
+        """Return the C names of the functions for batches, whose angles are in the range of ``symrot_math.h``."""
         own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
         shared = {"sin": "sin", "cos": "cos", "atan2": "atan2", "select_ge": "choose_ge"}
         return self.functions | own | {name: f"symrot_{other}{self.suffix}" for name, other in shared.items()}
@@ -89,9 +89,9 @@ def _as_float(value: float) -> float:
 
 
 def c_expression(node: Node, real: Real = DOUBLE, near: bool = False) -> str:
-    """Return a formula as a C expression with the brackets that keep its order of evaluation.
+    """Return a formula as a C expression, with the brackets that its order of evaluation needs.
 
-    ``near`` selects the functions that batches call, for angles in the range of ``symrot_math.h``.
+    ``near`` selects the functions for batches, whose angles are in the range of ``symrot_math.h``.
     """
     return text(rename(node, functions=real.near_functions if near else real.functions), 0, real.literal)
 
@@ -102,7 +102,7 @@ def c_arguments(program: Program, real: Real = DOUBLE) -> str:
 
 
 def _head(name: str, arguments: str, qualifier: str = "", returns: str = "void") -> str:
-    """Return the head of a C function; arguments are put on separate lines where one line is too long."""
+    """Return the head of a C function, with arguments on separate lines if one line is too long."""
     head = f"{qualifier}{returns} {name}({arguments})"
     if len(head) <= WIDTH:
         return head
@@ -122,7 +122,7 @@ def _used(program: Program) -> set[str]:
 
 
 def _statement(head: str, formula: str, indent: str, mark: str = "=") -> list[str]:
-    """Return the lines of ``head = formula;``, broken after operators where one line is too long."""
+    """Return the lines of ``head = formula;``, broken after operators if one line is too long."""
     line = f"{indent}{head} {mark} {formula};"
     if len(line) <= WIDTH + 10:
         return [line]
@@ -144,15 +144,15 @@ def _body(
 ) -> list[str]:  # fmt: skip
     """Return the statements of a function; each value is computed just before the first output that needs it.
 
-    So few values are live at a time. ``index_of`` returns the index of a component in its array. With ``late``, all
-    values are computed before the first store: results have names until then, and the outputs are computed in another
-    order.
+    This keeps the number of values small that are needed at the same time. ``index_of`` returns the index of a
+    component in its array. With ``late``, all results are computed before the first one is stored; until then they are
+    temporaries, and the outputs are computed in another order.
     """
     results = dict(program.outputs)
     lines: list[str] = []
     stores: dict[str, list[str]] = {a.name: [] for a in program.signature.arguments}
     reserved = _reserved(program, real)
-    waiting: dict[str, tuple[set[str], list[str]]] = {}  # name -> names that it needs, its statement
+    waiting: dict[str, tuple[set[str], list[str]]] = {}  # name -> names that its statement needs, the statement
     for argument in program.signature.arguments:
         if argument.role == "in" and not argument.is_scalar:
             own_index = _index_of_one if argument.name == "p" else index_of
@@ -160,7 +160,7 @@ def _body(
                 statement = f"{indent}const {real.type} {name} = {argument.name}[{own_index(index)}];"
                 waiting[name] = (set(), [statement])
     angles = [node[1] for node in turning_arguments(program) if node[1] in waiting]
-    waiting = {name: waiting[name] for name in (*angles, *waiting)}  # gcc calls sincos where the angle is loaded
+    waiting = {name: waiting[name] for name in (*angles, *waiting)}  # gcc calls sincos at the place of the angle
     for name, node in program.temporaries:
         statements = _statement(f"const {real.type} {name}", c_expression(node, real, near), indent)
         waiting[name] = (names(node), statements)
@@ -183,10 +183,10 @@ def _body(
 def _computed_in_turn(program: Program) -> list[Argument]:
     """Return the output arguments in the order in which a loop that stores last computes them: fewest inputs first.
 
-    They stay in their order where all inputs and results fit into registers. With gcc 12 on Zen 3 this takes, in the
-    geometric mean over n = 512, 1000, 1024, 4096, 10^6, 0.88 of the time of the order of the arguments for
-    inertia_tetrahedron, 0.95 for heavy_top (1.03 at 1000, 0.97 at 10^6), 0.98 for heavy_top_symmetric; of the kernels
-    with fewer values, inertia_triangular_prism and inertia_frustum would take 1.06.
+    If all inputs and results fit into registers, the outputs keep their order. With gcc 12 on Zen 3 (geometric mean
+    over n = 512, 1000, 1024, 4096, 10^6) the new order takes 0.88 of the time of the original order for
+    inertia_tetrahedron, 0.95 for heavy_top (1.03 at 1000, 0.97 at 10^6), and 0.98 for heavy_top_symmetric. Of the
+    kernels with fewer values, inertia_triangular_prism and inertia_frustum would take 1.06.
     """
     outputs = [a for a in program.signature.arguments if a.role == "out"]
     if _streams(program) <= REGISTERS:
@@ -195,7 +195,7 @@ def _computed_in_turn(program: Program) -> list[Argument]:
 
 
 def _reserved(program: Program, real: Real) -> set[str]:
-    """Return the names that a temporary for a result in a batch must not have."""
+    """Return the names that cannot be given to temporaries for results in a batch."""
     arguments = program.signature.arguments
     inputs = {name for a in arguments if a.role == "in" for name, *_ in a.components}
     functions = {*real.functions.values(), *real.near_functions.values()}
@@ -228,14 +228,14 @@ def c_name(kernel: str, real: Real = DOUBLE) -> str:
 
 
 def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> str:
-    """Return the C text of the one-sample function alone.
+    """Return the C text of the one-sample function, without includes and head comment.
 
     Parameters
     ----------
     program : Program
-        What it computes. Outputs must not overlap inputs.
+        The program to print. Its outputs must not overlap its inputs.
     qualifier : str
-        In front of the definition, e.g. ``"static inline "``.
+        Text in front of the definition, e.g. ``"static inline "``.
     real : Real
         ``DOUBLE`` or ``FLOAT``; the name of the function for floats ends in ``f``.
     """
@@ -256,7 +256,7 @@ def _own_function(name: str, real: Real) -> list[str]:
 
 
 def _near_function(name: str, real: Real) -> list[str]:
-    """Return the C definition, for batches, of a function that <math.h> does not have: without a branch."""
+    """Return the C definition, without a branch, of a function for batches that <math.h> does not have."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
     lines = [_head(real.near_functions[name], arguments, "static inline ", real.type), "{"]
@@ -328,9 +328,9 @@ def _blocks(size: str) -> list[str]:
 def _split(program: Program) -> list[Program]:
     """Return a program as one part for each output argument if separate loops are faster, else as a whole.
 
-    They are faster where the whole program walks along more arrays than processors fetch ahead and each part does not,
-    if no operation is done twice and at most a fifth more is read. Programs with sines stay whole, since sines take
-    longer than memory.
+    Separate loops are faster if the whole program accesses more arrays than processors prefetch and each part does not,
+    provided that no operation is done twice and at most a fifth more is read. Programs with sines stay whole, because
+    sines take longer than memory access.
     """
     whole = _streams(program)
     scalars = any(a.is_scalar for a in program.signature.arguments if a.role == "in")
@@ -366,11 +366,11 @@ def _streams(program: Program) -> int:
 def _stores_last(program: Program) -> bool:
     """Return whether the loops of a batch store all results only after computing them.
 
-    They do where the loops, or a part of them, walk along more arrays than share a set of the first cache: compilers
-    read values again after a store, and these are no longer in the cache. With gcc 12 on Zen 3, the kernels of the
-    library that store last take 0.9 of the time of stores in between at n = 512 m (heavy_top 0.7, but
-    heavy_top_symmetric 1.1) and the same at others; quaternion_product, of 12 arrays, would take 1.15 at n = 1000,
-    where gcc tunes for Zen 3: 26 loads per iteration, not 22.
+    They do if the loops, or a part of them, access more arrays than share a set of the first cache: compilers read
+    values again after a store, and these values are then no longer in the cache. With gcc 12 on Zen 3, the kernels of
+    the library that store last take 0.9 of the time of stores in between at n = 512 m (heavy_top 0.7, but
+    heavy_top_symmetric 1.1) and the same time at other n. quaternion_product, with 12 arrays, would take 1.15 at n =
+    1000 with gcc tuned for Zen 3: it needs 26 loads per iteration instead of 22.
     """
     return _streams(program) > WAYS
 
@@ -440,14 +440,14 @@ def c_header(program: Program, description: Description, reals: Sequence[Real] =
 
 
 def c_source(program: Program, description: Description, reals: Sequence[Real] = (DOUBLE,), near: bool = False) -> str:
-    """Return the C99 text of a kernel. The same program gives the same bytes: no clock, no path, no environment.
+    """Return the C99 text of a kernel; it depends only on the arguments, not on clock, path or environment.
 
     Parameters
     ----------
     program : Program
         The kernel.
     description : Description
-        What the head comment states in addition to the program.
+        Further texts for the head comment.
     reals, near
         As for :func:`c_functions`.
     """
@@ -469,8 +469,8 @@ def c_functions(program: Program, reals: Sequence[Real] = (DOUBLE,), near: bool 
     reals : sequence of Real
         The types of numbers, each with its one-sample and its batch function.
     near : bool
-        Whether batches take sine and cosine from ``symrot_math.h``, which compilers vectorise, with those of the C
-        library for blocks with an angle out of its range.
+        Whether batches use sine and cosine of ``symrot_math.h``, which compilers vectorise; blocks with an angle out of
+        its range are computed again with the C library.
     """
     near = near and without_branches(program)
     lines = _includes(program, near)

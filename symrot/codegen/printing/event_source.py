@@ -1,12 +1,12 @@
-"""C text of formulas whose zeros are searched for: values with bounds of their rounding errors, and enclosures.
+"""C text of formulas whose zeros are located: values with bounds of their rounding errors, and enclosures.
 
-The bound is computed along the tape with the value, operation by operation, to first order. It distinguishes a curve
-that touches zero from one that only comes near it, and it is the size below which a sign means nothing.
+The bound is computed along the tape together with the value, operation by operation, to first order. It distinguishes a
+curve that touches zero from a curve that only comes close to zero, and the sign of a smaller value is meaningless.
 
 Enclosures, by real intervals and by complex discs, contain all values of the formula over an interval of time. They
 show where there is no zero, and bound features that samples of the formula cannot show.
 
-The text stands between :file:`event_enclosures.h` and :file:`events.c`.
+The text is placed between :file:`event_enclosures.h` and :file:`events.c`.
 """
 
 from collections.abc import Sequence
@@ -19,13 +19,13 @@ from symrot.formula.tree import FUNCTIONS, Node
 
 __all__ = ["event_definitions"]
 
-SLOPES = {  # function -> a bound of its slope, from argument a and value v
+SLOPES = {  # function -> a bound of its slope, given its argument a and its value v
     "sqrt": "0.5/{v}", "sin": "1.0", "cos": "1.0", "tan": "(1.0 + {v}*{v})", "exp": "{v}", "log": "1.0/{a}",
     "abs": "1.0", "sinh": "sqrt(1.0 + {v}*{v})", "cosh": "{v}", "tanh": "1.0", "asin": "1.0/sqrt(1.0 - {a}*{a})",
     "acos": "1.0/sqrt(1.0 - {a}*{a})", "atan": "1.0/(1.0 + {a}*{a})", "atan2": "1.0/sqrt({a}*{a} + {b}*{b})",
 }  # fmt: skip
 assert set(SLOPES) == set(FUNCTIONS)
-ENCLOSURES = {  # kind -> how a number with an error becomes one, and what nothing is
+ENCLOSURES = {  # kind -> how to enclose a number with an error, and the result that contains no information
     "range": ("symrot_range_around", "symrot_nowhere()"), "disc": ("symrot_disc_of", "symrot_disc_unknown()"),
 }  # fmt: skip
 OPERATIONS = {"+": "add", "-": "sub", "*": "mul", "/": "div", "neg": "neg"}
@@ -44,8 +44,8 @@ def event_definitions(
     states : sequence of str
         Names of the states, in order.
     edges, scales
-        Blocks of states, as :func:`symrot.propagation.steppers.dop853.translation_unit` takes them: a state is known to
-        a few units in the last place of the largest of its block, or of the scale.
+        Blocks of states, as for :func:`symrot.propagation.steppers.dop853.translation_unit`. A state is known to a few
+        units in the last place of the largest state of its block, or of the scale.
     """
     places = {"t": "t", **{name: f"y[{i}]" for i, name in enumerate(states)}}
     for argument in program.signature.arguments:
@@ -99,7 +99,10 @@ def _switch(
     ends: Sequence[str],
     kind: str = "double",
 ) -> list[str]:
-    """Return the body of a function with one case per event, without the return statement for an unknown event."""
+    """Return the body of a function with one case per event.
+
+    The return statement for an unknown event is not included.
+    """
     lines = ["{", "    (void)t;", "    (void)y;", "    (void)p;", *head, "    switch (which) {"]
     for number, (tape, statements) in enumerate(zip(tapes, texts, strict=True)):
         lines += [f"    case {number}: {{", *(f"        const {kind} {text};" for text in statements)]
@@ -108,9 +111,7 @@ def _switch(
 
 
 def _span(tape: Tape, states: Sequence[str], edges: Sequence[int]) -> tuple[int, int]:
-    """Return the range (first, last + 1) of the states that a formula depends on, extended to whole blocks of
-    states.
-    """
+    """Return the range (first, last + 1) of the states on which a formula depends, extended to whole blocks."""
     used = {op.value for op in tape.operations if op.kind == "symbol"}
     places = [i for i, name in enumerate(states) if name in used]
     if not places:
@@ -155,7 +156,7 @@ def _statements(index: int, op: Operation, places: dict[str, str], known: dict[s
 
 
 def _enclosed(kind: str, around: str, op: Operation, places: dict[str, str], known: dict[str, str]) -> str:
-    """Return the C expression for the enclosure of an operation: a call of a function of :file:`event_enclosures.h`."""
+    """Return the C expression for the enclosure of an operation, a call of a function of :file:`event_enclosures.h`."""
     if op.kind == "number":
         return f"symrot_{kind}_point({c_expression(('number', op.value))})"
     if op.kind == "symbol":

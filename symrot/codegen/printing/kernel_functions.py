@@ -10,8 +10,8 @@ from symrot.kernels.removable import FUNCTIONS, REMOVABLE, Removable
 
 __all__ = ["NEAR", "called", "own_function", "series", "turning_arguments", "without_branches"]
 
-TURNING = ("sinc", *REMOVABLE)  # own functions that take a sine or cosine of their argument
-NEAR = (*TURNING, "arc_ratio")  # own functions with a form for batches, without a branch
+TURNING = ("sinc", *REMOVABLE)  # functions of symrot that call sine or cosine of their argument
+NEAR = (*TURNING, "arc_ratio")  # functions of symrot that have a form without branches, for batches
 
 Statement = tuple[str, Node]  # name of a temporary, formula
 ONE, ZERO = ("number", Fraction(1)), ("number", Fraction(0))
@@ -25,7 +25,7 @@ _CHOICES: dict[str, tuple[tuple[str, ...], Choice]] = {
 
 
 def _calls(program: Program) -> Iterator[tuple[str, tuple[Node, ...]]]:
-    """Yield function name and arguments of every call in a program, inner calls first."""
+    """Yield the function name and the arguments of every call in a program, inner calls first."""
 
     def visit(node: Node) -> Iterator[tuple[str, tuple[Node, ...]]]:
         for child in children(node):
@@ -38,7 +38,7 @@ def _calls(program: Program) -> Iterator[tuple[str, tuple[Node, ...]]]:
 
 
 def turning_arguments(program: Program) -> list[Node]:
-    """Return the distinct angles of which a program takes a sine or cosine, directly or inside another function."""
+    """Return the distinct angles whose sine or cosine a program computes, directly or inside another function."""
     return list(dict.fromkeys(arguments[0] for name, arguments in _calls(program) if name in ("sin", "cos", *TURNING)))
 
 

@@ -2,13 +2,13 @@
 
 Compilers can vectorise such functions. An angle is reduced by the nearest multiple of pi/2, which is subtracted in
 parts so short that each product is exact, with and without fused operations (Cody and Waite, Software Manual for the
-Elementary Functions, 1980). Sine and cosine of the remainder are polynomials; the function to return and its sign are
-chosen by bits. The arc tangent is computed of a quotient z of at most 1/2: the smaller over the larger coordinate, or
-their difference over their sum. The rounding error of the quotient is computed from halves whose products are exact,
-and corrected. The coefficients are computed here: interpolation of the exact series at Chebyshev points, in fractions.
+Elementary Functions, 1980). Sine and cosine of the remainder are polynomials; bits select the function and its sign.
+The arc tangent is computed from a quotient z of at most 1/2: the smaller coordinate over the larger, or their
+difference over their sum. The rounding error of the quotient is computed exactly from half-length factors and
+corrected. The coefficients are computed here, in fractions, by interpolation of the exact series at Chebyshev points.
 
-Stated error: at most 1 unit in the last place, of sine and cosine for ``|x|`` up to ``FAR``. Measured by ``python -m
-symrot.bench.ulps``, and with every float and all multiples of pi/2 by tests/kernels/test_in_c.py
+Stated error: at most 1 unit in the last place, of sine and cosine for ``|x|`` up to ``FAR``. It is measured by
+``python -m symrot.bench.ulps`` and, for every float and all multiples of pi/2, by tests/kernels/test_in_c.py
 (tests/reference/sine_harness.c).
 """
 
@@ -21,25 +21,25 @@ from symrot.formula.exact_numbers import PI
 
 __all__ = ["FAR", "math_header", "quarter_turn_parts", "tail_coefficients"]
 
-FAR = {"binary64": 2**17, "binary32": 2**12}  # rad; beyond it, a batch computes its block again with the C library
+FAR = {"binary64": 2**17, "binary32": 2**12}  # rad; for larger angles a batch computes its block with the C library
 _DIGITS = {"binary64": 53, "binary32": 24}
-_PARTS = {"binary64": (36, 36), "binary32": (12, 12, 12)}  # bits: a part times the number of quarter turns is exact
+_PARTS = {"binary64": (36, 36), "binary32": (12, 12, 12)}  # bits of each part; its product with a count is exact
 _COUNT = {"binary64": (6, 6), "binary32": (4, 4)}  # coefficients of sine and cosine
-_SQUARE = Fraction(617, 1000)  # largest square of the rest, that of pi/4 and a little more
+_SQUARE = Fraction(617, 1000)  # largest square of the remainder, slightly above (pi/4)^2
 _TERMS = 20  # terms of the exact series
 _ARC_COUNT = {"binary64": 13, "binary32": 6}  # coefficients of the arc tangent
 _ARC_SQUARE = Fraction(1, 4)  # largest square of the quotient
 _ARC_TERMS = 60  # terms of the exact series
 _HALF = {"binary64": 27, "binary32": 12}  # bits of the lower half of a fraction
-_RAISED = {"binary64": (900, 200), "binary32": (90, 40)}  # a quotient below 2^-first is found times 2^second
+_RAISED = {"binary64": (900, 200), "binary32": (90, 40)}  # a quotient below 2^-first is computed scaled by 2^second
 
 
 @cache
 def tail_coefficients(first: int, count: int) -> tuple[Fraction, ...]:
-    """Return the polynomial in t = x^2 nearest to the tail of a series, lowest power first.
+    """Return the polynomial in t = x^2 nearest to the remainder of a series, lowest power first.
 
-    The tail is ``sum of (-1)^k t^(k - m)/first!..``: of sine for ``first = 3``, of cosine for ``first = 4``, from the
-    term ``x^first/first!`` on, over that power of x.
+    The remainder is ``sum of (-1)^k t^(k - m)/first!..``, the terms of sine (``first = 3``) or cosine (``first = 4``)
+    from ``x^first/first!`` on, divided by that power of x.
     """
     sign = -1 if first == 3 else 1
     return _nearest([Fraction(sign * (-1) ** k, factorial(first + 2 * k)) for k in range(_TERMS)], _SQUARE, count)
@@ -56,7 +56,7 @@ def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fra
 
     The range is 0 <= t <= ``largest``.
     """
-    # zeros of a Chebyshev polynomial whose last one is put at t = 0, since the tail counts times t
+    # zeros of a Chebyshev polynomial whose last zero is moved to t = 0, because the error is weighted with t
     zeros = [Fraction(round(cos(pi * (2 * k + 1) / (2 * count + 2)) * 2**20), 2**20) for k in range(count + 1)]
     points = [largest * (zero - zeros[-1]) / (1 - zeros[-1]) for zero in zeros[:-1]]
     values = [sum((a * t**k for k, a in enumerate(series)), Fraction(0)) for t in points]
@@ -72,7 +72,7 @@ def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fra
 
 
 def quarter_turn_parts(precision: str) -> list[Fraction]:
-    """Return pi/2 as a sum of several parts with few bits and a last part with full precision."""
+    """Return pi/2 as a sum of some parts with few bits and a last part with full precision."""
     rest, parts = PI / 2, []
     for bits in _PARTS[precision]:
         parts.append(_leading(rest, bits))
@@ -99,7 +99,7 @@ def _horner(coefficients: tuple[Fraction, ...], real: Real) -> str:
 
 
 def _wrapped(head: str, formula: str) -> list[str]:
-    """Return the lines of ``head = formula;``, broken before brackets where one line is too long."""
+    """Return the lines of ``head = formula;``, broken before brackets if one line is too long."""
     pieces = formula.split(" + ")
     lines, line = [], f"    const {head} = {pieces[0]}"
     for piece in pieces[1:]:
@@ -112,9 +112,7 @@ def _wrapped(head: str, formula: str) -> list[str]:
 
 
 def _reduction(real: Real) -> list[str]:
-    """Return the C statements that reduce x: the remainder ``high + low``, its square t, the number of quarter
-    rotations.
-    """
+    """Return the C statements that reduce x to a remainder ``high + low``, its square t, and the count of pi/2."""
     parts = [real.literal(part) for part in quarter_turn_parts(real.precision)]
     digits = _DIGITS[real.precision]
     lines = [

@@ -27,7 +27,7 @@ _NAMES["copysign"] = "np.copysign"
 
 
 def _own_function(name: str) -> list[str]:
-    """Return the Python definition of a function that NumPy does not have; both sides of its choice are computed."""
+    """Return the Python definition of a function that NumPy does not have; it computes both sides of its choice."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, "binary64")
     condition = f"{_expression(left)} {relation} {_expression(right)}"
     return [

@@ -1,15 +1,14 @@
-"""Auxiliary states (companions): quantities of the attitude alone that follow equations of their own in a Taylor
-series.
+"""Auxiliary states ("companions") of a Taylor series: quantities of the attitude that have equations of their own.
 
-The components of a direction fixed in space, seen from the body, ``gamma = R(q)^T e``, are sums of products of q0..q3,
-which occur in further products: at each order of a series one convolution waits for another. But ``gamma' = gamma x
-omega``, so that gamma is known one order ahead, like a state. These equations are found automatically: a quantity that
-contains only the attitude and functions of time is differentiated along the motion, each factor beside a rate in the
-result becomes a companion too, and so on until no new companion appears. If that does not end soon, the system stays
-unchanged.
+The components of a direction fixed in space, seen from the body, ``gamma = R(q)^T e``, are sums of products of q0..q3.
+They occur in further products, so at each order of the series one convolution waits for another. But because
+``gamma' = gamma x omega``, gamma is known one order earlier, like a state. Such equations are found automatically: a
+quantity that contains only the attitude and functions of time is differentiated along the motion; each factor that
+multiplies a rate in the result becomes a companion too, and so on until no new companion appears. If this does not end
+soon, the system stays unchanged.
 
-A companion is computed from the attitude at the start of every step, so that it cannot drift. The identities hold for a
-unit quaternion; its norm must be found constant along the motion.
+A companion is computed from the attitude at the start of every step, so it cannot drift. The identities hold for a unit
+quaternion; its norm must be constant along the motion.
 """
 
 from collections.abc import Iterable
@@ -23,16 +22,16 @@ from symrot.formula.tree import Node, children
 __all__ = ["with_companions"]
 
 QUATERNION = ("q0", "q1", "q2", "q3")
-MOST_COMPANIONS, MOST_TERMS = 9, 200  # companions of three directions; more bring no gain
+MOST_COMPANIONS, MOST_TERMS = 9, 200  # nine are the companions of three directions; more do not save time
 ONE: Node = ("number", Fraction(1))
 
 
 class _Open(Exception):
-    """Signal that the equations of auxiliary states do not close, or not soon enough."""
+    """The signal that the equations of auxiliary states do not close, or not soon enough."""
 
 
 class _Term(NamedTuple):
-    """One term of a sum: a number times a constant formula, and perhaps times an auxiliary state and a state."""
+    """One term of a sum: a number times a constant formula, optionally times an auxiliary state and a state."""
 
     companion: int | None
     number: Fraction
@@ -43,9 +42,9 @@ class _Term(NamedTuple):
 def with_companions(system: Recurrences) -> Recurrences:
     """Return a system in which quantities of the attitude alone are replaced by auxiliary states.
 
-    Auxiliary states are states beyond those of the program: ``rates`` of the result contains their rates, and ``seeds``
-    a formula of states and t for coefficient 0 of each. The system is returned unchanged if there are no such
-    quantities.
+    Auxiliary states are appended to the states of the program: ``rates`` of the result contains their rates, and
+    ``seeds`` a formula of states and t for coefficient 0 of each. A system without such quantities is returned
+    unchanged.
     """
     if not set(QUATERNION) <= set(system.states):
         return system
@@ -56,7 +55,7 @@ def with_companions(system: Recurrences) -> Recurrences:
 
 
 def _times(a: Polynomial, b: Polynomial) -> Polynomial:
-    """Return the product; raise _Open if it has more monomials than are worth it, before any of them cancel."""
+    """Return a product of polynomials; raise _Open if it has too many monomials, counted before any of them cancel."""
     if len(a.terms) * len(b.terms) > MOST_TERMS and len(products_of_monomials(a, b)) > MOST_TERMS:
         raise _Open
     return a * b
@@ -74,8 +73,8 @@ class _Closure:
             raise _Open
         self.companions: list[Polynomial] = []
         self.known: dict[frozenset[tuple[Monomial, Fraction]], tuple[int, Fraction]] = {}
-        self.replaced: dict[int, list[_Term]] = {}  # series -> what it is, in companions
-        self.parts: dict[Series, tuple[set[int], list[_Term]]] = {}  # sum -> operands replaced, by what
+        self.replaced: dict[int, list[_Term]] = {}  # series -> its terms in companions
+        self.parts: dict[Series, tuple[set[int], list[_Term]]] = {}  # sum -> operands replaced, and their replacement
 
     # -------------------------------------------------------------------------------------------- polynomials
 
@@ -101,7 +100,7 @@ class _Closure:
         return parts[0] + (parts[1] if node[0] == "+" else _times(parts[1], constant(-1)))
 
     def polynomial(self, i: int) -> Polynomial | None:
-        """Return a series as a polynomial of states, functions of time and constants, or None if it is none."""
+        """Return a series as a polynomial in states, functions of time and constants, or None if it is not one."""
         if i not in self.polynomials:
             s = self.series[i]
             result: Polynomial | None = None
@@ -118,7 +117,7 @@ class _Closure:
         return self.polynomials[i]
 
     def sum(self, s: Series, only: Iterable[int] | None = None) -> Polynomial | None:
-        """Return a sum of series, or of only some of its operands, as a polynomial; None if it is none."""
+        """Return a sum of series, or of some of its operands, as a polynomial, or None if it is not a polynomial."""
         *weights, constant = s.weights
         total = self.constant(constant) if constant is not None and only is None else Polynomial({})
         for operand, weight in zip(s.operands, weights, strict=True):
@@ -156,9 +155,7 @@ class _Closure:
         return variable in self.attitude or self.variables[variable][0] == "clock"
 
     def of_attitude(self, form: Polynomial | None) -> bool:
-        """Return whether a polynomial contains only the attitude, functions of time and constants, and is not a single
-        state.
-        """
+        """Return whether a polynomial has only attitude, functions of time and constants, but is not a single state."""
         if form is None:
             return False
         free = [v for monomial in form.terms for v, _ in monomial if self.variables[v][0] != "constant"]
@@ -169,9 +166,7 @@ class _Closure:
         return sum(power for variable, power in monomial if variable in self.attitude)
 
     def split(self, form: Polynomial) -> list[tuple[Node, int | None, Polynomial]]:
-        """Return a polynomial as a sum of products: a constant, a state or None, and a polynomial of attitude and
-        time.
-        """
+        """Return a polynomial as a sum of products (constant, state or None, polynomial in attitude and time)."""
         groups: dict[Monomial, dict[Monomial, Fraction]] = {}
         for monomial, x in form.terms.items():
             outer = tuple((v, p) for v, p in monomial if not self.is_inner(v))
@@ -193,11 +188,10 @@ class _Closure:
     # -------------------------------------------------------------------------------------------- closing
 
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
-        """Return an auxiliary state, a factor and a number such that a polynomial of the attitude is factor*state +
-        number.
+        """Return an auxiliary state, a factor and a number with ``polynomial = factor*state + number``.
 
-        The auxiliary state is added if it is new. For a unit quaternion all terms of the polynomial can be given the
-        same degree; of degree two, they are fixed only up to a multiple of the squared norm.
+        A new auxiliary state is added if necessary. For a unit quaternion all terms of the polynomial can be given the
+        same degree; terms of degree two are then determined only up to a multiple of the squared norm.
         """
         degrees = {self.degree(monomial) for monomial in inner.terms}
         top = max(degrees)
@@ -234,9 +228,7 @@ class _Closure:
         return result
 
     def seek(self, i: int) -> None:
-        """Search a series and its operands for polynomials of the attitude alone, and replace them by auxiliary
-        states.
-        """
+        """Search a series and its operands for polynomials of the attitude, and replace these by auxiliary states."""
         s = self.series[i]
         if i in self.replaced or s.rule not in ("sum", "product"):
             return
@@ -249,8 +241,9 @@ class _Closure:
                 self.seek(operand)
 
     def seek_in(self, s: Series) -> None:
-        """Replace the products of the attitude in a sum by auxiliary states, all together, then search its other
-        operands.
+        """Replace the products of the attitude in a sum by auxiliary states, all together.
+
+        The other operands of the sum are then searched too.
         """
         alone = {
             i for i in s.operands if self.series[i].rule == "product" and self.of_attitude(self.polynomial(i))
@@ -328,7 +321,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     }  # fmt: skip
 
     def left(s: Series) -> list[int]:
-        """Return those operands of a series that remain after the replacement by auxiliary states."""
+        """Return the operands of a series that remain after the replacement by auxiliary states."""
         return [i for i in s.operands if i not in closure.parts.get(s, (set(),))[0]]
 
     needed: set[int] = set()
@@ -374,7 +367,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
         operands = []
         for term in terms:
             if term.companion is None and term.state is None:
-                raise _Open  # a companion with rate zero would be a constant
+                raise _Open  # a companion with zero rate would be a constant
             both = (term.state, None if term.companion is None else count + term.companion)
             pair = [own for own in both if own is not None]
             if len(pair) == 2 and tuple(pair) not in products:

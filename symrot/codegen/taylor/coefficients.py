@@ -1,6 +1,6 @@
 """Taylor coefficients of a system, computed from its recurrences with any kind of number.
 
-With Fractions they are exact, which tests use to prove the rules; with numbers of 40 digits they are a reference.
+With Fractions they are exact, which tests use to prove the rules; with numbers of 40 digits they serve as a reference.
 Standard library only.
 """
 
@@ -15,7 +15,7 @@ __all__ = ["coefficients"]
 
 
 class _Run(NamedTuple):
-    """Data for the rules while coefficients are computed: constants as numbers, functions, and all series so far."""
+    """Data that the rules use: constants as numbers, functions, and all series computed so far."""
 
     constant: Callable[[Node], Any]
     functions: Mapping[str, Callable[..., Any]]
@@ -37,7 +37,7 @@ def coefficients(
     values : mapping
         States, parameters and t by name.
     functions, number
-        As :func:`symrot.formula.tree.evaluate` takes them.
+        As for :func:`symrot.formula.tree.evaluate`.
 
     Examples
     --------
@@ -125,4 +125,4 @@ _RULES: dict[str, Callable[[_Run, Series, int, list[Any]], Any]] = {
     "primitive": _primitive_rule,
     "clock": _clock_rule,
 }
-"""Coefficient n of each rule."""
+"""Function that computes coefficient n, for each rule."""

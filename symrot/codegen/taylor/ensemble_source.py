@@ -1,12 +1,12 @@
 """C text of the recurrences of a system with one trajectory in each SIMD lane, for ensembles of motions.
 
-It computes the jet, which is the list of all Taylor coefficients at one time. No value moves between lanes: a series is
-an array of vectors, and each operation is done for all trajectories at once. Convolutions that enter all sums with the
-same weight share an accumulator. Two orders are computed together: loops over known coefficients serve both orders and
-read each number once; then order n and order n + 1 are completed by the terms with the newest coefficients. No loop
-over the order is unrolled.
+It computes the jet, the list of all Taylor coefficients at one time. No value moves between lanes: a series is an array
+of vectors, and each operation is done for all trajectories at once. Convolutions that occur with the same weight in the
+same sums share an accumulator. Two orders are computed together: loops over known coefficients serve both orders and
+read each number once; then the terms with the newest coefficients complete order n and order n + 1. No loop over the
+order is unrolled.
 
-The text stands between :file:`lanes.h` and :file:`lanes.c` of :mod:`symrot.ensemble`.
+The text is placed between :file:`lanes.h` and :file:`lanes.c` of :mod:`symrot.ensemble`.
 """
 
 from collections.abc import Iterable, Sequence
@@ -22,14 +22,14 @@ from symrot.formula.tree import Node, names, rename
 __all__ = ["lane_definitions", "multiplications"]
 
 ONE: Node = ("number", 1)
-CIRCLE = {"sin", "cos"}  # found at once
-LOAD_OF_LOOP = 24  # accumulators and factors of a loop: half more than the 16 registers of AVX2 hold, as measured
+CIRCLE = {"sin", "cos"}  # both are computed by one call
+LOAD_OF_LOOP = 24  # accumulators and factors of a loop: by measurement, half more than the 16 registers of AVX2
 
 
 class Convolution(NamedTuple):
-    """A convolution ``sum(a[k] b[n-k])``, and which of its two end terms belong to it.
+    """A convolution ``sum(a[k] b[n-k])``, and which of its two end terms it includes.
 
-    ``ends`` says: both end terms, only the one with the newest coefficient of a (last), or none.
+    ``ends`` is both end terms, only the term with the newest coefficient of a (last), or none.
     """
 
     a: int
@@ -42,7 +42,7 @@ class Convolution(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """An accumulator: the sum of several convolutions, each with a sign."""
+    """An accumulator: a sum of convolutions, each with a sign."""
 
     terms: tuple[tuple[int, Convolution], ...]
 
@@ -51,7 +51,7 @@ class Slot(NamedTuple):
         return self.terms[0][1].square
 
 
-CONVOLUTIONS = {  # rule -> operands a and b of its convolution (-1: the series itself), and its ends
+CONVOLUTIONS = {  # rule -> operands a and b of its convolution (-1 is the series itself), and its end terms
     "product": (0, 1, "both"),
     "quotient": (-2, -1, "last"),
     "root": (-1, -1, "none"),
@@ -63,7 +63,7 @@ CONVOLUTIONS = {  # rule -> operands a and b of its convolution (-1: the series 
 def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> str:
     """Return the C text of a system for :file:`lanes.c`: sizes, blocks, constants and the function for the jet.
 
-    Arguments are those of :func:`symrot.codegen.taylor.source.taylor_definitions`.
+    The arguments are those of :func:`symrot.codegen.taylor.source.taylor_definitions`.
 
     Raises
     ------
@@ -89,16 +89,16 @@ def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[fl
 
 
 def multiplications(program: Program, order: int) -> int:
-    """Return the number of multiplications in the loops of one jet, for each trajectory."""
+    """Return the number of multiplications in the loops of one jet, for one trajectory."""
     jet = _Jet(recurrences(program))
     shares = [(0.5 if slot.square else 1.0) * len(slot.terms) for slot in jet.slots]
     return int(sum(shares) * order * (order + 1) / 2)
 
 
 class _Jet:
-    """Writer of the jet of one system.
+    """The writer of the C text of one system's jet.
 
-    In C ``v{i}`` is the newest coefficient of series i, ``u{i}`` (or ``x[i]``) all of them.
+    In C ``v{i}`` is the newest coefficient of series i; ``u{i}`` (or ``x[i]``) is the array of all its coefficients.
     """
 
     def __init__(self, system: Recurrences) -> None:
@@ -106,8 +106,8 @@ class _Jet:
         self.state = {i: s.number for i, s in enumerate(self.series) if s.rule == "state"}
         self.constants: dict[Node, int] = {}
         self.slots: list[Slot] = []
-        self.slot_of: dict[int, tuple[int, int]] = {}  # series -> its sign in its slot, the number of the slot
-        self.shared: set[int] = set()  # products that are only parts of sums and get no value of their own
+        self.slot_of: dict[int, tuple[int, int]] = {}  # series -> its sign in its slot, and the index of the slot
+        self.shared: set[int] = set()  # products that occur only in sums and get no variable of their own
         self._make_slots()
         self.stored = {
             operand for slot in self.slots for _, c in slot.terms for operand in (c.a, c.b) if operand not in self.state
@@ -166,7 +166,7 @@ class _Jet:
     def slot(self, number: int, phase: str, sums: str) -> str:
         """Return the C expression for coefficient n of an accumulator.
 
-        It is the sum of two chains, so that neither waits for all of the newest coefficients.
+        It is the sum of two chains, so that neither chain waits for all of the newest coefficients.
         """
         older = f"{sums}{number}" if phase == "later" else ""
         newer = ""
@@ -182,9 +182,7 @@ class _Jet:
         return f"V_ADD({older}, {newer})" if older and newer else older or newer
 
     def sum(self, s: Series, first: bool, factor: str = "") -> str:
-        """Return the C expression of a weighted sum of series times a factor; terms that are computed last are added
-        last.
-        """
+        """Return the C expression of a weighted sum of series times a factor; the newest terms are added last."""
         value = ""
         *weights, constant = s.weights
         if first and constant is not None and constant != ("number", 0):
@@ -272,7 +270,7 @@ class _Jet:
         return [f"{name} = V_MUL(p{s.operands[0]}, {step});"]
 
     def _clock_start(self, i: int, s: Series) -> list[str]:
-        """Return the C statements for coefficient 0 of functions of ``a t + b`` that appear in each other's derivative.
+        """Return the C statements for coefficient 0 of a pair of functions of ``a t + b``, such as sine and cosine.
 
         The statements of both functions are returned with the first one.
         """
@@ -285,7 +283,7 @@ class _Jet:
             return [*lines, f"symrot_circle(high{i}, low{i}, &v{i}, &v{both[1]});"]
         for one in both:
             lines.append(f"const symrot_v k{one} = V_CALL({self.series[one].function}, high{i});")
-        for one in both:  # the rounding error of the phase is corrected by the slope
+        for one in both:  # the rounding error of the phase is corrected to first order, by the function's slope
             slope = "FMA" if self.series[one].sign > 0 else "FNMA"
             lines.append(f"v{one} = V_{slope}(low{i}, k{self.series[one].operands[0]}, k{one});")
         return lines
@@ -293,9 +291,7 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, phase: str, sums: str) -> list[str]:
-        """Return the C statements of one order: all series in the order of computation, then the next coefficient of
-        states.
-        """
+        """Return the C statements of one order: all series in order, then the next coefficients of states."""
         lines: list[str] = []
         made: set[int] = set()
 
@@ -331,12 +327,12 @@ class _Jet:
     def loops(self) -> list[str]:
         """Return the C loops over known coefficients for the orders n (even) and m = n + 1.
 
-        Sums a run over k + j = n, sums b over k + j = m.
+        The sums a run over k + j = n, the sums b over k + j = m.
         """
         return [line for group in self._groups() for line in self._loop(group)]
 
     def _groups(self) -> list[list[int]]:
-        """Return the accumulators of each loop; those with common factors share a loop while registers suffice."""
+        """Return the accumulators of each loop; those with common factors share a loop as long as registers suffice."""
         left = list(range(len(self.slots)))
         groups: list[list[int]] = []
         while left:
@@ -378,9 +374,7 @@ class _Jet:
     def _products(
         self, terms: Sequence[tuple[int, int, Convolution]], left: Sequence[int], right: Sequence[int]
     ) -> list[str]:
-        """Return a C loop over products that computes two values of k per pass, one right-hand factor after the
-        other.
-        """
+        """Return the C loop that adds products of coefficients to the accumulators, for two values of k per pass."""
         lines = ["{", *(f"    symrot_v f{i} = {self.at(i, '1')};" for i in left)]
         lines.append("    for (int64_t k = 1; k < n - 1; k += 2) {")
         for new, old, ahead, behind in (("g", "f", "k + 1", "n - k"), ("f", "g", "k + 2", "n - k - 1")):

@@ -1,10 +1,10 @@
 """C text of the conserved quantities of a motion: values in double-double arithmetic, gradients in doubles.
 
-A value is a sum of two doubles with about 32 digits, so that it shows how far a motion has left its invariants long
-before a double could. The gradients show which small change of the states takes the motion back; they are accumulated
-backwards along the tape, one pass for each invariant.
+A value is a sum of two doubles with about 32 digits, so it shows how far a motion has left its invariants long before a
+double could. The gradients give the smallest change of the states that takes the motion back; they are accumulated
+backwards along the tape, in one pass for each invariant.
 
-The text stands between :file:`taylor.h` and :file:`taylor.c`; :file:`projection.c` uses it.
+The text is placed between :file:`taylor.h` and :file:`taylor.c`; :file:`projection.c` uses it.
 """
 
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ __all__ = ["invariant_definitions", "projectable"]
 
 QUATERNION = tuple(f"q{i}" for i in range(4))
 NORM = "q0*q0 + q1*q1 + q2*q2 + q3*q3"
-_OPERATIONS = {  # on pairs of doubles, in C
+_OPERATIONS = {  # C functions of operations on pairs of doubles
     "+": "dd_add_fast", "-": "symrot_pair_subtract", "*": "symrot_pair_multiply", "/": "symrot_pair_divide",
     "neg": "dd_negative", "sqrt": "symrot_pair_root",
 }  # fmt: skip
@@ -41,11 +41,11 @@ def invariant_definitions(
     program : Program
         Quantities of t, states and parameters.
     outputs : sequence of str
-        The conserved quantities. One that is not :func:`projectable` is left out. The norm of the quaternion is added.
+        The conserved quantities. Those that are not :func:`projectable` are left out. The quaternion's norm is added.
     states : sequence of str
         Names of the states, in order.
     parameters : sequence of str
-        Names of the parameters; the text takes two numbers for each, a value and what its rounding left out.
+        Names of the parameters; the text takes two numbers for each, a value and its rounding error.
     """
     norm = set(QUATERNION) <= set(states)
     tape = tape_of(program, projectable(program, outputs), [parse(NORM)] if norm else [])
@@ -112,9 +112,7 @@ def _varying(tape: Tape, needed: Sequence[int], states: set[str]) -> set[int]:
 
 
 def _shares(op: Operation, index: int, own: str) -> list[str]:
-    """Return, for each operand of an operation, the C expression that the operation adds to the operand's
-    derivative.
-    """
+    """Return, for each operand of an operation, the C expression that it adds to the derivative of that operand."""
     values = [f"v{i}.hi" for i in op.operands]
     if op.kind == "+":
         return [own, own]

@@ -1,7 +1,7 @@
 """C functions for the jets of ensembles, lane by lane: phases ``a t + b`` as sums of two doubles, sine and cosine.
 
-The argument reduction and polynomials are those that :mod:`symrot.codegen.printing.math_header` prints for batches. A
-lane with a larger angle calls the C library, so that its bits depend on its own angle only.
+They use the argument reduction and polynomials of :mod:`symrot.codegen.printing.math_header`. A lane with a larger
+angle calls the C library, so that its bits depend only on its own angle.
 """
 
 from fractions import Fraction
@@ -67,9 +67,7 @@ static inline void symrot_circle(symrot_v high, symrot_v low, symrot_v *sine, sy
 
 
 def _horner(name: str, coefficients: tuple[Fraction, ...]) -> str:
-    """Return the C statements that evaluate a polynomial in ``square`` by Horner's rule; ``name`` holds the last
-    coefficient.
-    """
+    """Return C statements for a polynomial in ``square`` by Horner's rule; ``name`` starts as its last coefficient."""
     return "\n".join(
         f"    {name} = V_FMA(square, {name}, V_ALL({DOUBLE.literal(each)}));" for each in coefficients[-2::-1]
     )

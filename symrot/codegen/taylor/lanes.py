@@ -1,10 +1,10 @@
-"""Placement of the Taylor series of one motion in SIMD vectors (rows) of four lanes.
+"""Arrangement of the Taylor series of one motion in rows: SIMD vectors of four lanes.
 
 A row holds up to four series of one rule that can be computed together; the states have rows of their own. Convolutions
-are grouped into columns of the same shape: a slot of a row is a sum of columns, and a column is the lane-by-lane
-convolution of two packs of four series. Each lane of a row of sums takes its products with one constant from one slot.
-A pack whose lanes are all the same series is broadcast and costs no storage, which is how ``dq/dt = 1/2 q*(0, omega)``
-becomes three broadcasts times a permuted quaternion.
+are grouped into columns of the same shape. A column is the lane-by-lane convolution of two packs of four series, and a
+slot of a row is a sum of columns. Each lane of a row of sums takes its products with one constant from one slot. A pack
+whose four lanes are the same series is broadcast and needs no storage; so ``dq/dt = 1/2 q*(0, omega)`` becomes three
+broadcasts times a permuted quaternion.
 """
 
 from collections.abc import Iterable, Sequence
@@ -18,28 +18,27 @@ from symrot.formula.tree import Node
 __all__ = ["LANES", "Address", "Column", "Layout", "Pack", "Row", "Slot", "Term", "cost", "lay_out"]
 
 LANES = 4
-MOST_USES = (1, 2)  # a product in at most so many sums needs no row of its own
+MOST_USES = (1, 2)  # tried values of the largest number of sums in which a product needs no row of its own
 ZERO: Node = ("number", Fraction(0))
 ONE: Node = ("number", Fraction(1))
 
 
 class Address(NamedTuple):
-    """The place of a value: one lane of one row, with a sign; sign 0 means a lane that holds zero."""
+    """The place of a value: a lane of a row, and a sign; the sign 0 means the value zero."""
 
     sign: int
     row: int
     lane: int
 
 
-Pack = tuple[Address, ...]  # four of them
+Pack = tuple[Address, ...]  # the addresses of four lanes
 _Pair = tuple[tuple[int, int], tuple[int, int]]  # two factors, each a sign and a series
 
 
 class Column(NamedTuple):
-    """A convolution ``sum(a[k] b[n-k])``, lane by lane; ``ends`` says which of the terms k = 0 and k = n are in the
-    sum.
+    """A convolution ``sum(a[k] b[n-k])``, lane by lane; ``ends`` tells whether it includes the terms k = 0 and k = n.
 
-    ``both``: 0 to n; ``last``: 1 to n, where b[n] is the coefficient that is being computed; ``none``: 1 to n - 1.
+    ``both``: k = 0 to n; ``last``: k = 1 to n, without b[n]; ``none``: k = 1 to n - 1, without a[n] and b[n].
     """
 
     a: Pack
@@ -48,7 +47,7 @@ class Column(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """A weighted sum of columns: the numbers of the columns, and one constant per lane."""
+    """A weighted sum of columns: the indices of the columns, and one constant per lane."""
 
     columns: tuple[int, ...]
     weights: tuple[Node, ...]
@@ -64,9 +63,9 @@ class Term(NamedTuple):
 class Row(NamedTuple):
     """Four lanes that are computed by one rule.
 
-    ``lanes`` holds the numbers of the series, or None in an unused lane, which holds zero; ``slots`` the convolutions;
-    ``terms`` the addends of the rule ``sum``, else the operands of the rule in their order; ``constant`` the number
-    that is added to coefficient 0.
+    ``lanes`` holds the indices of the series, or None for an unused lane, which holds zero; ``slots`` holds the
+    convolutions; ``terms`` the addends of the rule ``sum``, or the operands of another rule in their order;
+    ``constant`` the number that is added to coefficient 0.
     """
 
     rule: str
@@ -77,17 +76,17 @@ class Row(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """All rows in the order of their computation: first the states, then their auxiliary states, then the other series.
+    """All rows in order of computation: first the states, then their auxiliary states, then the other series.
 
     For auxiliary states see :mod:`symrot.codegen.taylor.auxiliary_states`. ``rates`` has one row per row of states and
-    of auxiliary states; ``seeds`` has the formulas of coefficient 0 of auxiliary states.
+    of auxiliary states; ``seeds`` has the formulas for coefficient 0 of auxiliary states.
     """
 
     series: tuple[Series, ...]
     rows: tuple[Row, ...]
     rates: tuple[Row, ...]
     columns: tuple[Column, ...]
-    states: tuple[tuple[int, ...], ...]  # the numbers of the states in each row of states
+    states: tuple[tuple[int, ...], ...]  # the indices of the states in each row of states
     names: tuple[str, ...]  # names of the states
     seeds: tuple[tuple[Node, ...], ...] = ()  # one per row of companions
 
@@ -95,17 +94,15 @@ class Layout(NamedTuple):
 def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
     """Return the layout of a system in rows of four lanes.
 
-    ``edges`` are the edges of the blocks of states, which never share a row. A product that occurs in two sums is
-    computed once or in each of them, whichever layout costs less.
+    ``edges`` are the edges of the blocks of states; two blocks never share a row. A product that occurs in two sums is
+    computed once or in each sum, whichever layout costs less.
     """
     bundled = _with_bundles(system)
     return min((_Placer(bundled, edges, uses).layout() for uses in MOST_USES), key=cost)
 
 
 def cost(layout: Layout) -> int:
-    """Return an estimate of the time for one order: the number of convolutions, and of rows that wait for one
-    another.
-    """
+    """Return an estimate of the time for one order: convolutions, and rows that wait for each other."""
     return len(layout.columns) + len(layout.rows)
 
 
@@ -175,9 +172,7 @@ class _Placer:
         self.rows.append(row._replace(lanes=lanes))
 
     def _inlined(self, most_uses: int) -> set[int]:
-        """Return the products that occur in at most ``most_uses`` sums: they are expanded there, without stored
-        coefficients.
-        """
+        """Return the products that occur in at most ``most_uses`` sums; they are computed there and not stored."""
         count: dict[int, int] = {}
         for s in (*self.series, *self.system.rates):
             for operand in s.operands:
@@ -186,10 +181,13 @@ class _Placer:
         return {operand for operand, uses in count.items() if uses <= most_uses}
 
     def level(self, i: int) -> int:
-        """Return in which round of an order a series can be computed; states are known before the first round."""
+        """Return the round, within one order of the Taylor series, in which a series can be computed.
+
+        Round 0 contains the states, which are known before.
+        """
         if i not in self.levels:
             s = self.series[i]
-            older = {"driven": (1,), "primitive": (1,), "clock": (0,)}.get(s.rule, ())  # used below coefficient n alone
+            older = {"driven": (1,), "primitive": (1,), "clock": (0,)}.get(s.rule, ())  # used below n only
             waits = [operand for k, operand in enumerate(s.operands) if k not in older]
             deepest = max((self.level(operand) for operand in waits), default=0)
             self.levels[i] = 0 if s.rule == "state" else deepest if i in self.inlined else 1 + deepest
@@ -206,7 +204,7 @@ class _Placer:
                 last.append(i)
             else:
                 groups.append([i])
-        for group in groups:  # every lane holds a series, so that none divides by zero
+        for group in groups:  # every lane gets a series, so that no lane divides by zero
             self.put(Row(self.series[group[0]].rule, tuple(group + [group[-1]] * (LANES - len(group)))))
         for number in range(len(self.state_rows), len(self.rows)):
             self.rows[number] = self._filled(self.rows[number])
@@ -244,9 +242,9 @@ class _Placer:
         return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
 
     def column(self, pairs: Sequence[_Pair | None], ends: str, needed: Sequence[bool] = ()) -> int:
-        """Make a column from pairs of series and return its number.
+        """Make a column from pairs of series and return its index.
 
-        A lane without a pair adds zero where its value is needed, else it holds whatever costs least.
+        A lane without a pair holds zero if its value is needed, else the series that costs least.
         """
         a = self.pack([None if pair is None else pair[0] for pair in pairs])
         b = self.pack([None if pair is None else pair[1] for pair in pairs])
@@ -323,9 +321,7 @@ class _Placer:
         return Row("sum", lanes, tuple(made), tuple(terms), None if set(constants) == {ZERO} else constants)
 
     def _columns(self, lanes: list[list[tuple[int, int]]]) -> Iterable[int]:
-        """Yield columns that contain all products of the lanes: broadcasts as long as possible, then one product per
-        lane.
-        """
+        """Yield columns that contain all products of the lanes: broadcasts if possible, else one product per lane."""
         rest = [[(sign, self.series[p].operands[0], self.series[p].operands[1]) for sign, p in lane] for lane in lanes]
         needed = [bool(lane) for lane in lanes]
         while any(rest):
@@ -375,6 +371,6 @@ class _Placer:
 
 
 def _first_positive(item: tuple[Node, list[tuple[int, int]]]) -> tuple[Node, list[tuple[int, int]]]:
-    """Return a weighted sum of products in which the sign of the first product is moved into the constant."""
+    """Return a weighted sum of products with the sign of its first product moved into the weight."""
     weight, terms = item
     return item if terms[0][0] > 0 else (("neg", weight), [(-sign, operand) for sign, operand in terms])

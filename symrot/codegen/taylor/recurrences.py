@@ -1,4 +1,4 @@
-"""Recurrences of Taylor coefficients, made from a right-hand side by one rule for each operation.
+"""Recurrences of Taylor coefficients, built from a right-hand side with one rule for each operation.
 
 A series is the list of coefficients ``u[0], u[1], ...`` of one quantity along the motion. Every operation of a program
 becomes a rule that gives coefficient n of its result from coefficients up to n of its operands; the states follow by
@@ -14,10 +14,10 @@ primitive              ``n w[n] = (g[n] - sum(e[k] v[n-k], k = 1..n-1))/v[0]``: 
 clock                  ``n w[n] = s a v[n-1]``: exp, sin, cos, sinh, cosh of ``a t + b``
 =====================  ====================================================================================
 
-Here t is the time from the centre of the expansion, so that ``t u'`` has the coefficients ``n u[n]``. Source: A.
+Here t is the time from the centre of the expansion, so ``t u'`` has the coefficients ``n u[n]``. Source: A.
 Griewank, A. Walther, Evaluating Derivatives, 2nd ed., sections 10.2 and 13.2.
 
-Standard library only: the recurrences of a cached kernel are made without SymPy.
+Standard library only: the recurrences of a cached kernel are built without SymPy.
 """
 
 from collections.abc import Callable, Sequence
@@ -32,7 +32,7 @@ __all__ = ["ONE", "ZERO", "Recurrences", "Series", "recurrences", "split_sign"]
 
 ONE: Node = ("number", Fraction(1))
 ZERO: Node = ("number", Fraction(0))
-HALF_TURNS: dict[str, tuple[str, str, int, int]] = {  # function -> sine-like, cosine-like, signs of their rates
+HALF_TURNS: dict[str, tuple[str, str, int, int]] = {  # function -> its pair sine-like, cosine-like, signs of rates
     "sin": ("sin", "cos", 1, -1), "cos": ("sin", "cos", 1, -1),
     "sinh": ("sinh", "cosh", 1, 1), "cosh": ("sinh", "cosh", 1, 1),
 }  # fmt: skip
@@ -42,9 +42,9 @@ TANGENTS = {"tan": 1, "tanh": -1}  # function -> sign in t w' = (1 + sign w^2) t
 class Series(NamedTuple):
     """One series of Taylor coefficients: its rule, its operands, and the constants of the rule.
 
-    ``weights`` holds the constants of a sum, one per operand, and then the constant that is added to coefficient 0 (or
-    None); for a clock, a and b. ``function`` gives coefficient 0, from coefficient 0 of the last operands, where the
-    rule does not. ``sign`` is the s of the rule. ``number`` is the number of a state.
+    ``weights`` holds the constants of a sum, one per operand, followed by the constant that is added to coefficient 0
+    (or None); for a clock, it holds a and b. ``function`` gives coefficient 0, from coefficient 0 of the last operands,
+    if the rule does not. ``sign`` is the s of the rule. ``number`` is the index of a state.
     """
 
     rule: str  # state time sum product quotient root theta driven primitive clock
@@ -58,8 +58,8 @@ class Series(NamedTuple):
 class Recurrences(NamedTuple):
     """The recurrences of a program: all series, in an order in which each coefficient can be computed.
 
-    ``rates`` holds for each state the series of its rate. Auxiliary states, if there are any, come after those of the
-    program; their coefficient 0 is given by ``seeds``, formulas of the states and t, see
+    ``rates`` holds the series of the rate of each state. Auxiliary states, if any, come after those of the program;
+    ``seeds`` holds formulas of the states and t for their coefficient 0, see
     :mod:`symrot.codegen.taylor.auxiliary_states`.
     """
 
@@ -70,7 +70,7 @@ class Recurrences(NamedTuple):
     seeds: tuple[Node, ...] = ()
 
 
-POLYNOMIAL = {"state", "time", "sum", "product"}  # rules of series that never stay at one value, as tanh does
+POLYNOMIAL = {"state", "time", "sum", "product"}  # rules of series that do not tend to a constant, as tanh does
 
 
 class _Linear(NamedTuple):
@@ -86,12 +86,12 @@ def recurrences(program: Program) -> Recurrences:
     Parameters
     ----------
     program : Program
-        Arguments t (may be missing), y, p (may be missing) and dy, one component of dy per component of y.
+        Arguments t (optional), y, p (optional) and dy, which has one component for each component of y.
 
     Raises
     ------
     InputError
-        For an operation that has no Taylor series everywhere: abs.
+        For an operation that does not have a Taylor series everywhere, such as abs.
     """
     return _Builder(program).result()
 
@@ -136,7 +136,7 @@ class _Builder:
         return _READERS[kind](self, node, parts)
 
     def series_of(self, form: _Linear) -> int:
-        """Return the number of a series that equals a linear form; the series is added if it is new."""
+        """Return the index of the Taylor series that equals a linear form; it is added if it is new."""
         if form.constant is None and list(form.terms.values()) == [ONE]:
             return next(iter(form.terms))
         return self.add(self.sum_of(form))
@@ -172,7 +172,7 @@ class _Builder:
     def sum(self, left: _Linear, right: _Linear, sign: int) -> _Linear:
         """Return the sum or difference of two linear forms.
 
-        A bracket that may vanish during the motion is not multiplied out: see :meth:`bracket`.
+        A bracket that may become zero during the motion is not expanded; see :meth:`bracket`.
         """
         if left.terms and right.terms:
             left, right = self.bracket(left), self.bracket(right)
@@ -181,7 +181,7 @@ class _Builder:
     def bracket(self, form: _Linear) -> _Linear:
         """Return a multiple of a sum with functions, such as ``m*(1 + tanh(u))``, as a multiple of one series.
 
-        If it were multiplied out, ``m + m*tanh(u)`` would leave the rounding error of m where the bracket is zero.
+        If it were expanded, ``m + m*tanh(u)`` would have the rounding error of m where the bracket is zero.
         """
         parts = [*form.terms.values(), *([] if form.constant is None else [form.constant])]
         factors = [_number_and_rest(part) for part in parts]
@@ -265,10 +265,10 @@ class _Builder:
         return (weight, form.constant) if series >= 0 and self.series[series].rule == "time" else None
 
     def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: _Linear) -> int:
-        """Add several functions of one argument whose derivatives contain each other; return the number of the first
-        one.
+        """Add several functions of one argument whose derivatives contain each other; return the index of the first.
 
-        Each is given by its name and sign, and by its partner in the derivative, as cosine is the partner of sine.
+        Each function is given by its name and sign, and by its partner in the derivative: the partner of sine is
+        cosine.
         """
         clock = self.clock(argument)
         seed = () if clock else (self.series_of(argument),)
@@ -282,9 +282,7 @@ class _Builder:
         return self.known[key]
 
     def half_turn(self, name: str, argument: _Linear) -> _Linear:
-        """Return sin, cos, sinh or cosh of a linear form; the other function of the pair, its derivative, is added
-        too.
-        """
+        """Return sin, cos, sinh or cosh of a linear form; the other function of the pair is added too."""
         sine, cosine, *signs = HALF_TURNS[name]
         first = self.driven(((sine, signs[0]), (cosine, signs[1])), (1, 0), argument)
         if cosine == "cosh":
@@ -350,7 +348,7 @@ class _Builder:
 
 
 def _without_unused(system: Recurrences) -> Recurrences:
-    """Return the system without the series that neither a rate nor another series needs; states stay."""
+    """Return the system without series that neither a rate nor another series needs; states stay."""
     needed = {i for i, series in enumerate(system.series) if series.rule == "state"}
     waiting = [operand for rate in system.rates for operand in rate.operands]
     while waiting:
@@ -379,9 +377,7 @@ def _value(form: _Linear) -> Node:
 
 
 def _folded(node: Node) -> Node:
-    """Return a constant formula simplified: its numbers are combined, its sign is in front, factors of one are
-    removed.
-    """
+    """Return a constant formula simplified: numbers combined, sign in front, factors of one removed."""
     kind, parts = node[0], children(node)
     if kind == "neg":
         sign, inner = split_sign(parts[0])

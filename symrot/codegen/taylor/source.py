@@ -1,10 +1,10 @@
-"""C text of the recurrences of a system: one function computes all Taylor coefficients of all states, the jet.
+"""C text of the recurrences of a system: one function computes the jet, all Taylor coefficients of all states.
 
 Two orders are computed together. First come the sums over known coefficients, in loops that read each number once for
-both orders; then order n and order n + 1 are completed by the terms with the newest coefficients. No loop over the
-order is unrolled, so that the code stays small whatever the order is.
+both orders; then the terms with the newest coefficients complete order n and order n + 1. No loop over the order is
+unrolled, so the code stays small for any order.
 
-The text stands between :file:`taylor.h`, which has the operations on four lanes, and :file:`taylor.c`, which steps.
+The text is placed between :file:`taylor.h`, which has the operations on four lanes, and :file:`taylor.c`, the stepper.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -19,8 +19,8 @@ from symrot.formula.tree import Node, children, names, rename
 
 __all__ = ["ORDER", "checked_system", "jet_source", "taylor_definitions"]
 
-ORDER = 20  # by measurement: below errors of 1e-6, orders 16 to 24 lie within a tenth of each other
-COLUMNS_PER_LOOP = 4  # two sums each, so that sums and factors stay in 16 registers
+ORDER = 20  # as measured: for errors below 1e-6, the times of orders 16 to 24 differ by less than a tenth
+COLUMNS_PER_LOOP = 4  # each with two sums, so that sums and factors fit into 16 registers
 
 
 def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[float], order: int = ORDER) -> str:
@@ -31,11 +31,12 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
     program : Program
         The right-hand side ``dy = f(t, y, p)``.
     edges : sequence of int
-        Edges of the blocks of states whose errors are judged apart, from 0 to the number of states.
+        Edges of the blocks of states whose errors are judged separately, from 0 to the number of states.
     scales : sequence of float
-        One per block: 0 judges its error against the block's own size, a positive number against that number.
+        One per block: with 0 its error is relative to the block's own size, otherwise relative to this positive
+        number.
     order : int
-        Even, at least 4.
+        Order of the series: even, at least 4.
 
     Raises
     ------
@@ -64,17 +65,15 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
 
 
 def checked_system(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> Recurrences:
-    """Return the recurrences of a program, after checking the arguments as :func:`taylor_definitions` describes
-    them.
-    """
+    """Return the recurrences of a program; raise InputError for arguments that :func:`taylor_definitions` excludes."""
     if order < 4 or order % 2:
-        raise InputError(f"order of the Taylor method: expected an even number from 4 on, got {order}")
+        raise InputError(f"order of the Taylor method: expected an even number, at least 4, got {order}")
     system = recurrences(program)
     count = len(system.states)
     if [*edges[:1], *edges[-1:]] != [0, count] or list(edges) != sorted(set(edges)) or len(scales) != len(edges) - 1:
         raise InputError(
-            f"blocks of {count} states rise from 0 to {count} and have one scale each; got blocks {list(edges)} and "
-            f"scales {list(scales)}"
+            f"expected edges of blocks that rise from 0 to {count}, with one scale for each block; got edges "
+            f"{list(edges)} and scales {list(scales)}"
         )
     return system
 
@@ -89,14 +88,14 @@ def jet_source(layout: Layout, parameters: Sequence[str]) -> str:
 
 
 class _Jet:
-    """Writer of the jet for one layout; each pack of lanes and each vector of constants has one name in C."""
+    """The writer of the C text of the jet for one layout; each pack and each vector of constants has one name in C."""
 
     def __init__(self, layout: Layout, parameters: Sequence[str]) -> None:
         self.layout, self.rows, self.parameters = layout, layout.rows, parameters
         self.state_rows, self.own_rows = len(layout.rates), len(layout.states)
         self.constants: dict[tuple[Node, ...], int] = {}
         self.packs: dict[Pack, int] = {}  # packs whose coefficients are stored
-        self.stored: set[int] = set()  # rows that are not states and whose coefficients are kept
+        self.stored: set[int] = set()  # rows, other than states, whose coefficients are stored
         for column in layout.columns:
             for pack in (column.a, column.b):
                 if _is_row(pack) or _is_broadcast(pack):
@@ -163,7 +162,10 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- rows
 
     def sum(self, row: Row, phase: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
-        """Return the C expression of a row of sums times a factor; terms that are computed last are added last."""
+        """Return the C expression for four weighted sums of series, one per lane of a row, times a factor.
+
+        Terms that are computed last are added last.
+        """
         value = ""
         parts = [(self.picked(term.pack), term.weights) for term in row.terms]
         parts += [(self.slot(slot.columns, phase, sums), slot.weights) for slot in reversed(row.slots)]
@@ -179,8 +181,9 @@ class _Jet:
         return value or "V_ALL(0.0)"
 
     def _rest_of_time(self, row: Row) -> str:
-        """Return the C weights of ``t_low``, the low part of the time, in a row of sums; empty if the time is not in
-        it.
+        """Return the C weights of ``t_low``, the low part of the time, in a row of sums.
+
+        The text is empty if the row does not contain the time.
         """
         weights: list[Node] = []
         for number in row.lanes:
@@ -239,7 +242,7 @@ class _Jet:
         return [f"{name} = V_DIV({upper}, {lower});"]
 
     def _quotient(self, row: Row, name: str, phase: str, terms: list[str], total: str) -> list[str]:
-        """Return the C statements of ``(u - sum)/v``; a numerator of one contributes to coefficient 0 only."""
+        """Return the C statements of ``(u - sum)/v``; a numerator of one contributes only to coefficient 0."""
         divisor, upper = f"d{name[1:]}", "V_ALL(0.0)"
         if len(terms) > 1:
             weights = self._weighted(row.terms[1].weights, "")
@@ -266,12 +269,12 @@ class _Jet:
     def _clock_seed(self, row: Row, name: str) -> list[str]:
         """Return the C statements for coefficient 0 of functions of ``a t + b``.
 
-        The rounding error of ``a t + b`` is corrected by the slope of the function.
+        The rounding error of ``a t + b`` is corrected to first order, by the function's slope.
         """
         series = [self.layout.series[i] for i in row.lanes if i is not None]
         rates = self.constant(tuple(s.weights[0] for s in series))  # type: ignore[misc]
         offsets = self.constant(row.constant) if row.constant and set(row.constant) != {("number", 0)} else ""
-        lines, turns = [], {}  # equal lanes take one call
+        lines, turns = [], {}  # equal lanes share one call
         for lane, s in enumerate(series):
             if s.weights not in turns:
                 turn = turns[s.weights] = f"turn_{name}_{lane}"
@@ -318,9 +321,7 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, phase: str, sums: str) -> list[str]:
-        """Return the C statements of one order: packs and rows in the order of computation, then the next of the
-        states.
-        """
+        """Return the C statements of one order: packs and rows in order, then the next coefficients of states."""
         lines: list[str] = []
         done, packed = set(range(self.state_rows)), set[Pack]()
 
@@ -351,19 +352,19 @@ class _Jet:
     def loops(self) -> list[str]:
         """Return the C loops over known coefficients for the orders n and m = n + 1.
 
-        Sums a run over k + j = n, sums b over k + j = m.
+        The sums a run over k + j = n, the sums b over k + j = m.
         """
         lines: list[str] = []
         columns = self.layout.columns
         loops = -(-len(columns) // COLUMNS_PER_LOOP)
-        for loop in range(loops):  # groups of similar size, since a single column would wait for its own sums
+        for loop in range(loops):  # groups of similar size, because a single column would wait for its own sums
             group = range(loop * len(columns) // loops, (loop + 1) * len(columns) // loops)
             for i in group:
                 a, b, _ = columns[i]
                 lines.append(f"symrot_v4 h{i} = {self.at(b, 'n - 1')};")
                 lines.append(f"symrot_v4 a{i} = V_MUL({self.at(a, '1')}, h{i}), b{i} = V_ALL(0.0);")
             lines.append("for (int64_t k = 2; k < n; k += 2) {")
-            for i in group:  # one column after the other needs only three registers besides the sums
+            for i in group:  # processing columns one after the other needs only three registers besides the sums
                 a, b, _ = columns[i]
                 lines += [
                     f"    const symrot_v4 f{i} = {self.at(a, 'k')}, j{i} = {self.at(b, 'n - k')};",

@@ -1,10 +1,10 @@
-"""Right-hand sides with a moved clock, for motions that start far from t = 0.
+"""Right-hand sides with time counted from an epoch, for motions that start far from t = 0.
 
-A double holds 53 bits of ``a*t + b``: at t = 1e9 s a phase is off by 1e-7 rad, however short the steps are. With ``t =
-epoch + tau`` every polynomial of t, inside sine, cosine, exp or elsewhere, becomes a polynomial of tau whose
-coefficients are computed exactly once and rounded once. In the arguments of sine, cosine and tangent, whole turns are
-subtracted before. A product of factors of degree one stays a product: multiplied out, ``((t - c)/w)**2`` would be a
-difference of large numbers around a narrow pulse.
+A double holds 53 bits of ``a*t + b``: at t = 1e9 s the error of a phase is 1e-7 rad, however short the steps are. With
+``t = epoch + tau`` every polynomial of t, inside sine, cosine, exp or elsewhere, becomes a polynomial of tau whose
+coefficients are computed exactly and rounded once. In the arguments of sine, cosine and tangent, multiples of 2 pi are
+subtracted first. A product of factors of degree one stays a product: expanded, ``((t - c)/w)**2`` would be a difference
+of large numbers around a narrow pulse.
 
 Standard library only.
 """
@@ -25,13 +25,13 @@ ZERO: Node = ("number", Fraction(0))
 ONE: Node = ("number", Fraction(1))
 TIME = "t"
 TURNING = {"sin", "cos", "tan"}
-HIGHEST = 12  # degree of a polynomial that is moved as one
+HIGHEST = 12  # largest degree of a polynomial of t that is shifted as a whole
 
 
 def from_epoch(kernel: SceneKernel) -> SceneKernel:
     """Return the kernel of a scene with rates in which t counts from an epoch, a new constant of the scene.
 
-    Conserved quantities that depend on the time are left out: their time is not that of the rates.
+    Conserved quantities that depend on the time are left out, because they use another time than the rates.
     """
     rates, parameters = moved(kernel.rates, kernel.rate_parameters)
     timeless = [
@@ -48,9 +48,9 @@ def moved(program: Program, parameters: Parameters) -> tuple[Program, Parameters
     Parameters
     ----------
     program : Program
-        ``dy = f(t, y, p)``, with the arguments t, y, p (may be missing) and dy; the time stands in it.
+        ``dy = f(t, y, p)``, with the arguments t, y, p (optional) and dy; the time occurs in it.
     parameters : tuple of (name, Node)
-        What the components of p are: formulas of constants. Those of the result hold the symbol ``epoch`` too, s.
+        The components of p as formulas of constants. Those of the result also contain the symbol ``epoch``, in s.
     """
     return _Mover(program, parameters).result()
 
@@ -61,9 +61,9 @@ def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tupl
     Parameters
     ----------
     formulas : sequence of Node
-        Of the time, constants, and states of any names.
+        Formulas of the time, of constants, and of states with any names.
     constants : collection of str
-        The names that stand for constants; all others are states.
+        The names of constants; all other names are states.
     """
     used = sorted(set().union(*map(names, formulas)) - {TIME})
     shared = tuple((name, ("symbol", name)) for name in used if name in constants)
@@ -78,7 +78,7 @@ def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tupl
 class _Form(NamedTuple):
     """A rewritten formula, with its coefficients if it is a polynomial of t with constant coefficients."""
 
-    node: Node | None  # None: of degree one, made from the terms where it is used
+    node: Node | None  # None for a polynomial of degree one, whose formula is made from the terms when it is used
     terms: tuple[Node, ...] | None = None
     centred: bool = False  # whether it is a product of factors such as t - c, each small near its own time
 
@@ -133,10 +133,10 @@ class _Mover:
         return _Form((kind, *written, *node[2:]) if kind == "**" else (kind, *written), terms, centred)
 
     def gathered(self, node: Node) -> _Form | None:
-        """Return a sum with all its terms of the form a t + b combined: far from t = 0 their constants may nearly
-        cancel.
+        """Return a sum in which all terms of the form a t + b are combined, or None if there is nothing to combine.
 
-        The result is None if there is nothing to combine: the sum has only such terms, or fewer than two, or no time.
+        Far from t = 0 the constants of such terms may nearly cancel. There is nothing to combine if the sum has only
+        such terms, has fewer than two of them, or does not contain the time.
         """
         lines: list[tuple[Node, ...]] = []
         others: list[tuple[bool, _Form]] = []
@@ -154,7 +154,7 @@ class _Mover:
         return _Form(gathered)
 
     def summands(self, node: Node, negative: bool) -> Iterator[tuple[bool, _Form]]:
-        """Yield the terms of a sum, each with whether it is subtracted."""
+        """Yield the terms of a sum, each with a flag that is true if the term is subtracted."""
         if node[0] in ("+", "-"):
             yield from self.summands(node[1], negative)
             yield from self.summands(node[2], negative != (node[0] == "-"))
@@ -166,7 +166,7 @@ class _Mover:
     def written(self, form: _Form, turns: bool = False) -> Node:
         """Return a rewritten formula as a formula tree; a polynomial of t is written by Horner's rule.
 
-        Its coefficients become parameters. ``turns`` says that the value matters only modulo 2 pi.
+        Its coefficients become parameters. ``turns`` means that the value matters only modulo 2 pi.
         """
         whole = turns and form.terms is not None and len(form.terms) > 1 and not form.centred
         if form.node is not None and not whole:
@@ -216,9 +216,7 @@ def _is_shifted(form: _Form) -> bool:
 
 
 def _terms(node: Node, parts: list[tuple[Node, ...] | None]) -> tuple[Node, ...] | None:
-    """Return the coefficients of a polynomial in t, given the coefficients of its operands; None if it is no
-    polynomial.
-    """
+    """Return the coefficients of a polynomial in t from those of its operands, or None if it is not a polynomial."""
     if any(part is None for part in parts):
         return None
     kind, polynomials = node[0], [part for part in parts if part is not None]

@@ -1,1 +1,1 @@
-"""Arguments of sines and cosines: sums of atoms, rational multiples of pi, inverse functions."""
+"""Arguments of sines and cosines: sums of symbols, rational multiples of pi, and inverse functions."""

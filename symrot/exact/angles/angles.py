@@ -1,9 +1,9 @@
-"""Angles: every argument of a sine or cosine as a Q-linear form in atoms, and the base angle of each atom.
+"""Angles as rational combinations of atoms (symbols or other non-numeric factors), and the base angle of each atom.
 
-``sin(2*phi - psi/2 + pi/3)`` is the form ``{phi: 2, psi: -1/2}`` with ``1/3`` half-turns. When all forms of a problem
-are known, each atom gets one base angle, the greatest common divisor of its coefficients, so that every angle is an
-integer combination of base angles and every sine and cosine a polynomial in theirs (``docs/exact_decisions.md``,
-section 4).
+``sin(2*phi - psi/2 + pi/3)`` has the linear form ``{phi: 2, psi: -1/2}`` plus ``1/3`` of pi. When the forms of all
+angles of a problem are known, each atom gets one base angle, the greatest common divisor of its coefficients. Then
+every angle is an integer combination of base angles, and every sine and cosine is a polynomial in the sines and cosines
+of base angles (``docs/exact_decisions.md``, section 4).
 """
 
 from collections.abc import Iterable
@@ -16,14 +16,14 @@ from sympy import Expr, Rational, cos, pi, sin, sqrt
 from symrot.errors import InputError
 
 PARTS = 24
-"""Constant angles are counted in pi/24: all their sines and cosines lie in Q(sqrt 2, sqrt 3, cos(pi/8))."""
+"""Constant angles are counted in pi/24: their sines and cosines lie in Q(sqrt 2, sqrt 3, cos(pi/8))."""
 
 
 @dataclass(frozen=True)
 class LinearForm:
     """An angle ``sum(coefficient * atom) + half_turns * pi``.
 
-    ``half_turns`` is a multiple of 1/24; a constant of another denominator stays as a multiple of the atom ``pi``.
+    ``half_turns`` is a multiple of 1/24; a constant angle with another denominator is a multiple of the atom ``pi``.
     """
 
     terms: tuple[tuple[Expr, Fraction], ...]
@@ -31,21 +31,22 @@ class LinearForm:
 
 
 def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
-    """Return the Q-linear form of an angle (rad); products are expanded, every factor that is no number is an atom.
+    """Return the linear form of an angle (rad) with rational coefficients.
 
-    Without ``turns``, as for the exponent of an exponential, ``pi`` is an atom like any other.
+    Products are expanded; every factor that is not a number is an atom. With ``turns=False``, used for the exponent of
+    an exponential, ``pi`` is an atom like any other.
 
     Raises
     ------
     InputError
-        If the angle holds a floating point number.
+        If the angle contains a floating point number.
     """
     coefficients: dict[Expr, Fraction] = {}
     half_turns = Fraction(0)
     for term in argument.expand().as_ordered_terms():
         number, atom = term.as_coeff_Mul()
         if not number.is_Rational:
-            raise InputError(f"an exact angle needs rational coefficients, got {number} in {argument}")
+            raise InputError(f"expected rational coefficients, such as 1/2, in an angle; got {number} in {argument}")
         coefficient = Fraction(int(number.p), int(number.q))
         if turns and atom == pi and PARTS % coefficient.denominator == 0:
             half_turns += coefficient
@@ -56,9 +57,9 @@ def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
 
 
 def base_coefficients(forms: Iterable[LinearForm]) -> dict[Expr, Fraction]:
-    """Return, for each atom, the largest rational of which all its coefficients are integer multiples.
+    """Return, for each atom, the largest rational number of which all its coefficients are integer multiples.
 
-    The base angle of the atom is this coefficient times the atom: ``theta/2`` when ``theta`` and ``theta/2`` occur.
+    The base angle of the atom is this number times the atom: ``theta/2`` if ``theta`` and ``theta/2`` occur.
     """
     bases: dict[Expr, Fraction] = {}
     for form in forms:
@@ -70,10 +71,10 @@ def base_coefficients(forms: Iterable[LinearForm]) -> dict[Expr, Fraction]:
 
 
 def constant_cosine_sine(half_turns: Fraction) -> tuple[Expr, Expr]:
-    """Return the exact cosine and sine of ``half_turns * pi`` (a multiple of 1/24) in square roots.
+    """Return the exact cosine and sine of ``half_turns * pi`` (a multiple of 1/24) in terms of square roots.
 
-    An odd multiple is a multiple of pi/12 plus pi/8, and ``sin(pi/8) = (sqrt(2) - 1) cos(pi/8)``: so one new root is
-    enough, where sin(pi/8) and cos(pi/8) would be two roots that depend on each other.
+    An odd multiple of pi/24 is a multiple of pi/12 plus pi/8. Because ``sin(pi/8) = (sqrt(2) - 1) cos(pi/8)``, one
+    additional root suffices; sin(pi/8) and cos(pi/8) would be two roots that depend on each other.
     """
     odd = half_turns * PARTS % 2 == 1
     rest = half_turns - Fraction(1, 8) if odd else half_turns
@@ -87,12 +88,12 @@ def constant_cosine_sine(half_turns: Fraction) -> tuple[Expr, Expr]:
 
 
 def base_angle(atom: Expr, coefficient: Fraction) -> Expr:
-    """Return the base angle as an expression, rad."""
+    """Return the base angle of an atom as an expression, rad."""
     return Rational(coefficient.numerator, coefficient.denominator) * atom
 
 
 def chebyshev(multiple: int) -> tuple[list[int], list[int]]:
-    """Return the integer coefficients (low to high) of T_n and U_(n-1), ``n >= 1``.
+    """Return the integer coefficients (lowest power first) of the Chebyshev polynomials T_n and U_(n-1), ``n >= 1``.
 
     ``cos(n x) = T_n(cos x)`` and ``sin(n x) = sin(x) U_(n-1)(cos x)``.
     """
@@ -105,7 +106,7 @@ def chebyshev(multiple: int) -> tuple[list[int], list[int]]:
 
 
 def _double_shift_minus(last: list[int], before: list[int]) -> list[int]:
-    """Return the coefficients of ``2 x * last - before``: the recurrence of both kinds of Chebyshev polynomial."""
+    """Return the coefficients of ``2 x * last - before``, the recurrence of both kinds of Chebyshev polynomials."""
     result = [0] + [2 * c for c in last]
     for power, coefficient in enumerate(before):
         result[power] -= coefficient

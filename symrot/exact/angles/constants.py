@@ -1,9 +1,9 @@
-"""Decide by a separation bound whether a number made of roots and of cosines of rational angles is zero.
+"""Proof that a number made of roots and of cosines of rational angles is zero, or not, by a separation bound.
 
-A sum of products of algebraic integers is one itself. If it is not zero, the product of its conjugates is a whole
-number other than zero, so it is at least ``B^(1 - D)`` in size, where B bounds all its conjugates and D is the degree
-of the field (Burnikel, Funke, Mehlhorn, Schirra, Schmitt, A separation bound for real algebraic expressions, 2001). An
-interval narrower than that decides.
+A sum of products of algebraic integers is an algebraic integer. If it is not zero, the product of its conjugates is a
+nonzero whole number, so its size is at least ``B^(1 - D)``, where B bounds all its conjugates and D is the degree of
+the field (Burnikel, Funke, Mehlhorn, Schirra, Schmitt, A separation bound for real algebraic expressions, 2001). An
+interval around the number that is narrower than this bound decides.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -17,17 +17,17 @@ from sympy.polys.rings import PolyElement
 __all__ = ["MOST_BITS", "Number", "cosine_number", "root_number", "vanishes"]
 
 MOST_BITS = 40_000
-"""Largest number of bits of the interval; a sum that would need more is not known to vanish."""
+"""Largest working precision, in bits; a sum that would need more is not decided."""
 
 Monomial = tuple[int, ...]
 
 
 @dataclass(frozen=True)
 class Number:
-    """A generator of the ring that is an algebraic number.
+    """An algebraic number that is a variable (generator) of the ring: a root, or ``2 cos(pi/order)``.
 
-    ``multiplier * number`` is an algebraic integer whose conjugates are at most ``2^bound`` in size; ``index`` and
-    ``inside`` make it a root, ``order`` makes it ``2 cos(pi/order)``; ``needs`` are the generators inside it.
+    ``multiplier * number`` is an algebraic integer whose conjugates are at most ``2^bound`` in size. A root has
+    ``index`` and ``inside`` (its radicand), a cosine has ``order``; ``needs`` are the generators in the radicand.
     """
 
     place: int
@@ -41,16 +41,16 @@ class Number:
 
 
 class NotReal(ArithmeticError):
-    """An even root of a negative number."""
+    """The error raised for an even root of a negative number."""
 
 
 def cosine_number(place: int, degree: int, order: int) -> Number:
-    """Return ``2 cos(pi/order)``."""
+    """Return the description of ``2 cos(pi/order)`` as an algebraic number; ``place`` is its variable in the ring."""
     return Number(place, degree, 1, 1, order)
 
 
 def root_number(place: int, index: int, inside: PolyElement, known: Mapping[int, Number]) -> Number:
-    """Return the root of a polynomial in known numbers."""
+    """Return the description of a root of a polynomial in known numbers; ``place`` is its variable in the ring."""
     needs = _places(inside)
     needs = needs.union(*(known[n].needs for n in needs)) if needs else needs
     multiplier, bound = _integral(inside.items(), known)
@@ -60,7 +60,7 @@ def root_number(place: int, index: int, inside: PolyElement, known: Mapping[int,
 
 
 def vanishes(poly: PolyElement, known: Mapping[int, Number]) -> bool:
-    """Return whether a polynomial in numbers is proven to be zero."""
+    """Return whether a polynomial in algebraic numbers is proven to be zero."""
     terms = list(poly.items())
     if not terms:
         return True
@@ -92,7 +92,7 @@ def _places(poly: PolyElement) -> frozenset[int]:
 
 
 def _integral(terms: Iterable[tuple[Monomial, Any]], known: Mapping[int, Number]) -> tuple[int, int]:
-    """Return a multiplier that makes a sum an algebraic integer, and a bound (a power of two) on its conjugates."""
+    """Return a factor that makes a sum an algebraic integer, and a power of two that bounds its conjugates."""
     terms = list(terms)
     most = [max(column) for column in zip(*(mono for mono, _ in terms), strict=True)]
     whole = lcm(*(int(c.denominator) for _, c in terms))

@@ -1,8 +1,8 @@
 """Sines and cosines of rational multiples of pi other than multiples of pi/24, as polynomials in one number.
 
-With ``g = 2 cos(pi/N)``, N even, ``2 cos(k pi/N)`` is a polynomial in g with integer coefficients, and the sine is the
-cosine of the complement. The minimal polynomial of g comes from the cyclotomic polynomial of order 2N, which reads
-``x^d M(x + 1/x)``.
+With ``g = 2 cos(pi/N)``, N even, ``2 cos(k pi/N)`` is a polynomial in g with integer coefficients, and a sine is the
+cosine of the complementary angle. The minimal polynomial M of g follows from the cyclotomic polynomial of order 2N,
+which equals ``x^d M(x + 1/x)``.
 """
 
 from fractions import Fraction
@@ -33,7 +33,7 @@ def order(denominator: int) -> int:
 
 
 def needs_cyclotomic_field(denominator: int) -> bool:
-    """Return whether sines of multiples of pi/denominator are within the limit."""
+    """Return whether sines of multiples of pi/denominator can be expressed within the limit of the degree."""
     return order(denominator) <= 12 * LARGEST_DEGREE and degree(order(denominator)) <= LARGEST_DEGREE
 
 
@@ -44,7 +44,7 @@ def degree(n: int) -> int:
 
 @cache
 def minimal_polynomial(n: int) -> tuple[int, ...]:
-    """Return the coefficients, low to high, of the minimal polynomial of 2 cos(pi/n), n >= 2; the last is 1."""
+    """Return the coefficients, lowest power first, of the minimal polynomial of 2 cos(pi/n), n >= 2; the last is 1."""
     symmetric = [int(c) for c in Poly(cyclotomic_poly(2 * n, x), x).all_coeffs()]
     middle = len(symmetric) // 2
     total = [symmetric[middle]] + [0] * middle
@@ -58,7 +58,7 @@ def minimal_polynomial(n: int) -> tuple[int, ...]:
 
 @cache
 def doubled_cosine(times: int, n: int) -> tuple[int, ...]:
-    """Return the coefficients, low to high, of 2 cos(times pi/n) in g = 2 cos(pi/n)."""
+    """Return the coefficients, lowest power first, of 2 cos(times pi/n) as a polynomial in g = 2 cos(pi/n)."""
     times = abs(times) % (2 * n)
     times = min(times, 2 * n - times)
     relation = minimal_polynomial(n)
@@ -71,7 +71,10 @@ def doubled_cosine(times: int, n: int) -> tuple[int, ...]:
 
 
 def multiples(turns: Fraction, n: int) -> tuple[int, int]:
-    """Return (k, l) with ``cos(turns pi) = cos(k pi/n)`` and ``sin(turns pi) = cos(l pi/n)``; n turns is whole."""
+    """Return (k, l) with ``cos(turns pi) = cos(k pi/n)`` and ``sin(turns pi) = cos(l pi/n)``.
+
+    The product ``n * turns`` must be a whole number.
+    """
     k = int(turns * n)
     return k, n // 2 - k
 
@@ -81,7 +84,7 @@ def _minus(first: list[int], second: list[int]) -> list[int]:
 
 
 def _rest(poly: list[int], relation: tuple[int, ...]) -> list[int]:
-    """Return the remainder of a polynomial by a monic one."""
+    """Return the remainder of the division of a polynomial by a monic polynomial."""
     poly = list(poly)
     size = len(relation) - 1
     while len(poly) > size:

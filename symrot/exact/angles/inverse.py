@@ -1,7 +1,7 @@
-"""Inverse trigonometric functions as angles: the sine and cosine of each, on its branch, and the range of its values.
+"""Inverse trigonometric functions as angles: the sine and cosine of their values, and the ranges of their values.
 
-``asin``, ``acos``, ``atan`` and ``atan2`` have their principal values. So ``cos(asin(u)) = +sqrt(1 - u^2)``, and half
-the value of each lies in [-pi/2, pi/2], where the cosine is not negative. ``atan2(y, x)`` is undefined at (0, 0).
+``asin``, ``acos``, ``atan`` and ``atan2`` return principal values. So ``cos(asin(u)) = +sqrt(1 - u^2)``, and half of
+any value lies in [-pi/2, pi/2], where the cosine is not negative. ``atan2(y, x)`` is undefined at (0, 0).
 """
 
 from collections.abc import Callable
@@ -43,9 +43,9 @@ INVERSE: dict[type, Callable[..., Pair]] = {asin: _asin, acos: _acos, atan: _ata
 
 
 def cosine_sine(angle: Expr, halvings: int) -> Pair:
-    """Return the cosine and sine of a value of an inverse function, halved so many times."""
+    """Return the cosine and sine of the value of an inverse function divided by ``2**halvings``."""
     pair = INVERSE[type(angle)](*angle.args)
-    if halvings and isinstance(angle, acos):  # the half of pi too
+    if halvings and isinstance(angle, acos):  # the range of acos ends at pi, half of which is included too
         (u,) = angle.args
         pair = sqrt(HALF + u / 2), sqrt(HALF - u / 2)
         halvings -= 1
@@ -55,7 +55,7 @@ def cosine_sine(angle: Expr, halvings: int) -> Pair:
 
 
 Range = tuple[Fraction, Fraction, bool, bool]
-"""Least and greatest value, in half-turns, and whether the function attains each of them."""
+"""Smallest and largest value, in multiples of pi, and whether the function takes each of these values."""
 
 _QUARTER = Fraction(1, 2)
 

@@ -1,4 +1,4 @@
-"""Multiples of inverse trigonometric functions, as angles whose sine and cosine are known."""
+"""Multiples of inverse trigonometric functions, as angles whose sine and cosine can be computed."""
 
 from collections.abc import Iterator
 from fractions import Fraction
@@ -12,20 +12,20 @@ __all__ = ["halved", "is_bound", "parts_of", "unbound"]
 
 
 def is_bound(atom: Expr, coefficient: Fraction) -> bool:
-    """Return whether the sine and cosine of a multiple of an atom are known.
+    """Return whether the sine and cosine of ``coefficient * atom`` can be computed.
 
-    They are for an inverse function times an integer, or divided by a power of two.
+    They can if the atom is an inverse trigonometric function and the denominator of the coefficient is a power of two.
     """
     return type(atom) in INVERSE and coefficient.denominator in (1, 2, 4, 8)
 
 
 def unbound(form: LinearForm) -> LinearForm:
-    """Return an angle without those parts whose sine and cosine are known."""
+    """Return an angle without its multiples of inverse trigonometric functions (see :func:`is_bound`)."""
     return LinearForm(tuple(term for term in form.terms if not is_bound(*term)), form.half_turns)
 
 
 def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
-    """Yield pairs (h, n) such that a multiple of an angle is the sum of n times the angle halved h times."""
+    """Yield pairs (h, n) such that ``coefficient`` times an angle is the sum of n times the angle halved h times."""
     left, halvings = coefficient, 0
     while left:
         times = int(left)
@@ -35,5 +35,5 @@ def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
 
 
 def parts_of(atom: Expr, coefficient: Fraction) -> list[Expr]:
-    """Return the cosines and sines from which the cosine and sine of a multiple of an inverse function are formed."""
+    """Return the cosines and sines that make up the cosine and sine of a multiple of an inverse function."""
     return [part for halvings, _ in halved(coefficient) for part in cosine_sine(atom, halvings)]

@@ -1,1 +1,1 @@
-"""Where a formula has a value, and points at which that is proven."""
+"""The domain in which a formula is defined, and points proven to lie in it."""

@@ -1,4 +1,4 @@
-"""Where a formula is defined: the divisors, which must not vanish, and the radicands, which must not be negative."""
+"""The domain of a formula: its divisors, which must not be zero, and its radicands, which must not be negative."""
 
 from collections.abc import Container, Iterable
 
@@ -12,9 +12,9 @@ __all__ = ["divisors", "is_dense", "radicands", "signs", "split_radicands"]
 
 
 def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
-    """Return the divisors, which must not vanish, as (divisor as written, its factor), without ``granted`` factors.
+    """Return the divisors, which must not be zero, as (divisor as written, its factor), except the ``granted`` factors.
 
-    In place of a root its radicand is returned.
+    A factor that is a root is replaced by its radicand.
     """
     roots = {place: root for root, place in ring.roots.items()}
     pairs: list[tuple[Expr, Expr]] = []
@@ -43,7 +43,7 @@ def radicands(ring: FormulaRing) -> list[Expr]:
 
 
 def split_radicands(ring: FormulaRing) -> list[Expr]:
-    """Return the radicands that must not be negative for proofs to hold, although the formulas are real elsewhere too.
+    """Return the radicands that must not be negative for proofs to hold, although the formulas may be real elsewhere.
 
     ``sqrt(P f^2)`` is read as ``|f| sqrt(P)``, which is not real where f is zero and P is negative.
     """
@@ -52,10 +52,10 @@ def split_radicands(ring: FormulaRing) -> list[Expr]:
 
 
 def is_dense(ring: FormulaRing) -> bool:
-    """Return whether the points at which no divisor vanishes are known to be dense.
+    """Return whether the points at which no divisor is zero are known to be dense.
 
-    They are dense in the decidable core, but not with roots, with numbers that are not algebraic, or with angles and
-    exponents that may depend on each other as ``x log(4)`` and ``x log(2)`` do.
+    They are dense for formulas in the decidable scope, but maybe not with roots, with numbers that are not algebraic,
+    or with angles and exponents that may depend on each other, as ``x log(4)`` and ``x log(2)`` do.
     """
     return not ring.roots and not ring.outside_scope and all(map(_is_plain, (*ring.bases, *ring.exponent_bases)))
 
@@ -70,7 +70,7 @@ def _is_plain(atom: Expr) -> bool:
 
 
 def signs(ring: FormulaRing) -> list[Expr]:
-    """Return formulas that are not negative wherever the given ones are defined, in all forms that are known."""
+    """Return formulas that are nonnegative wherever the formulas of the ring are defined, in all known forms."""
     sides = [1 + sign * leaf.args[0] for leaf in _leaves(ring) if isinstance(leaf, asin | acos) for sign in (1, -1)]
     return [*radicands(ring), *sides]
 
@@ -93,5 +93,5 @@ def _nonnegative(leaf: Expr) -> list[Expr]:
 
 
 def _is_square(base: Expr) -> bool:
-    """Return whether a radicand is the even power of a real number."""
+    """Return whether a radicand is an even power of a real number."""
     return bool(isinstance(base, Pow) and base.exp.is_Integer and base.exp % 2 == 0)

@@ -1,7 +1,7 @@
-"""The range of a formula over all real points: bounds that hold whatever the values of its symbols are.
+"""The range of a formula over all real points: bounds that hold for all values of its symbols.
 
 ``cos(x) - 2`` lies between -3 and -1, so its root is real nowhere. Bounds are exact fractions or infinite; a formula
-whose range is not known this way has the bounds (-inf, inf), which say nothing.
+whose range is not known gets the bounds (-inf, inf), which exclude nothing.
 """
 
 from collections.abc import Callable, Sequence
@@ -26,13 +26,13 @@ MOST_BITS = 2000
 
 
 def fails_everywhere(need: Need) -> bool:
-    """Return whether a need is proven to hold at no real point."""
+    """Return whether a condition (see :class:`Need`) is proven to hold at no real point."""
     low, high = range_everywhere(need.formula)
     return bool({">= 0": high < 0, "> 0": high <= 0, "!= 0": low == high == 0}.get(need.sign, False))
 
 
 def range_everywhere(formula: Expr) -> Range:
-    """Return (low, high) between which a formula lies at every real point where it has a value."""
+    """Return bounds (low, high) of a formula over all real points at which it is defined."""
     return _range(formula, {})
 
 
@@ -68,7 +68,7 @@ def _of_number(node: Expr) -> Range:
 
 
 def _end(value: Any) -> Fraction:
-    """Return the exact value of an end of an interval."""
+    """Return the exact value of an endpoint of an interval."""
     sign, mantissa, power, _ = value._mpi_[0]
     if abs(power) > MOST_BITS:
         raise OverflowError
@@ -101,7 +101,7 @@ def _product(x: Bound, y: Bound) -> Bound:
 def _power(base: Range, exponent: Expr) -> Range:
     low, high = base
     if not exponent.is_Rational:
-        return Fraction(0), inf  # of a positive number
+        return Fraction(0), inf  # range of a power of a positive number
     if exponent.q > 1:
         return (Fraction(0), inf)
     power = int(exponent)
@@ -114,7 +114,10 @@ def _power(base: Range, exponent: Expr) -> Range:
 
 
 def _monotone(function: Callable[[Expr], Expr], least: Bound, most: Bound) -> Callable[[Range], Range]:
-    """Return the range of an increasing function, between its limits at the ends of its domain."""
+    """Return the function that maps the range of an argument to the range of an increasing function of it.
+
+    ``least`` and ``most`` are the limits of the increasing function at the ends of its domain.
+    """
 
     def of(argument: Range) -> Range:
         low, high = (_at(function, end) for end in argument)

@@ -1,8 +1,8 @@
-"""Points at which formulas are proven to be real numbers, so that no verdict "true" is vacuous.
+"""Search for points at which formulas are proven to be real numbers, so that no verdict "true" is vacuous.
 
 Any claim about formulas that are defined nowhere, or under hypotheses that no point satisfies, would be "true". The
-search runs in double precision; the point that it returns is then proven by interval arithmetic, with fractions for the
-unknowns or with a box that contains a solution of the hypotheses (:mod:`symrot.exact.domain.newton_box`).
+search runs in double precision. Interval arithmetic then proves its result, with fractions for the unknowns or with a
+box that contains a solution of the hypotheses (:mod:`symrot.exact.domain.newton_box`).
 """
 
 from collections.abc import Iterator, Sequence
@@ -36,7 +36,7 @@ Point = dict[Expr, Any]
 
 
 def holds(need: Need, point: Point) -> bool:
-    """Return whether a need is proven to hold at a point."""
+    """Return whether a condition (see :class:`Need`) is proven to hold at a point."""
     if need.sign == "real":
         return False
     held = enclosure(need.formula, point)
@@ -46,19 +46,19 @@ def holds(need: Need, point: Point) -> bool:
 
 
 def known_point(needs: Sequence[Need], equations: Sequence[Expr] = ()) -> Point | None:
-    """Return a point where needs and equations hold, proven, or None if none was found.
+    """Return a point at which the conditions and the equations are proven to hold, or None if none is found.
 
     Parameters
     ----------
     needs : sequence of Need
         Conditions to satisfy, in addition to the assumed signs of the symbols.
     equations : sequence of Expr
-        Formulas that must vanish.
+        Formulas that must be zero.
 
     Returns
     -------
     dict or None
-        From symbols, functions of time and derivatives to fractions, or to intervals that hold the value.
+        From symbols, functions of time and derivatives to fractions, or to intervals that contain the value.
     """
     leaves = leaves_of([*(need.formula for need in needs), *equations])
     needs = [*needs, *(need for leaf in leaves for need in assumptions_of(leaf))]
@@ -107,7 +107,7 @@ class _Search:
         return source.choice(fitting) if fitting else Fraction(1)
 
     def broken(self, point: Point) -> list[Need]:
-        """Return the needs that do not hold in double precision."""
+        """Return the conditions that do not hold in double precision."""
         values = {leaf: float(value) for leaf, value in point.items()}
         known: dict[Expr, float] = {}
         return [need for need in self.needs if not self.seems(need, values, known)]
@@ -121,12 +121,12 @@ class _Search:
         return value >= -TOLERANCE if need.sign == ">= 0" else value > 0 if need.sign == "> 0" else value != 0
 
     def moved(self, point: Point) -> Point:
-        """Return a point improved one value at a time, as long as each change reduces the number of broken needs."""
+        """Return a point improved one value at a time, as long as fewer conditions are violated after each change."""
         point = self.jumped(point)
         return self.climbed(point) if self.broken(point) else point
 
     def climbed(self, point: Point) -> Point:
-        """Return a point at which the needs are violated by less; a step that does not help is halved."""
+        """Return a point reached by steps that violate the conditions less; a step without effect is halved."""
         size, depth = Fraction(1), self.depth(point)
         while depth < 0 and size > SMALLEST_STEP and self.looks < MOST_LOOKS:
             trials = ({**point, leaf: point[leaf] + sign * size}
@@ -139,7 +139,7 @@ class _Search:
         return point
 
     def depth(self, point: Point) -> float:
-        """Return by how much needs are violated in double precision, as a negative number; zero where all hold."""
+        """Return minus the size of the violation of the conditions in double precision; zero if all hold."""
         values = {leaf: float(value) for leaf, value in point.items()}
         known: dict[Expr, float] = {}
         self.looks += len(self.needs)

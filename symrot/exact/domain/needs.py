@@ -1,8 +1,9 @@
-"""The needs of a formula: the conditions on its radicands, logarithms and divisors under which it is a real number.
+"""The needs of a formula: conditions on its radicands, logarithms and divisors under which it is a real number.
 
-All functions have real values of real arguments, on their principal branch. A power ``u^(p/q)`` with a fraction in
-lowest terms, odd q included, is real for u >= 0 only, for u > 0 if p < 0: SymPy's cube root of -8 is ``1 + sqrt(3) i``.
-A term that SymPy cancelled while the formula was built (``0*log(x)``) is not seen here; the reader of claims notes it.
+All functions take real values for real arguments, on their principal branch. A power ``u^(p/q)`` with a fraction in
+lowest terms, even with odd q, is real only for u >= 0, and for u > 0 if p < 0: SymPy's cube root of -8 is
+``1 + sqrt(3) i``. A term that SymPy cancels while it builds the formula (``0*log(x)``) cannot be seen here; the reader
+of claims notes it.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -20,7 +21,7 @@ __all__ = ["Need", "assumptions_of", "is_leaf", "leaves_of", "needs_of"]
 
 @dataclass(frozen=True)
 class Need:
-    """``formula sign 0`` with the sign ``">= 0"``, ``"> 0"`` or ``"!= 0"``; ``"real"`` for a function in no table."""
+    """A condition on a formula: ``">= 0"``, ``"> 0"``, ``"!= 0"``, or ``"real"`` for an unknown function."""
 
     formula: Expr
     sign: str
@@ -43,33 +44,33 @@ _NEEDS: dict[type, Callable[..., list[tuple[Expr, str]]]] = {
     sympy.sign: lambda u: [(u, "!= 0")],
     sympy.atan2: lambda y, x: [(x**2 + y**2, "!= 0")],
 }
-"""Function -> the needs of its arguments; other functions of :data:`symrot.exact.intervals.INTERVAL` have no needs.
+"""Function -> the needs of its arguments. Other functions of :data:`symrot.exact.intervals.INTERVAL` have no needs.
 
 The function ``sign`` is the derivative of an absolute value, which does not exist at zero."""
 
 
 def is_leaf(node: Expr) -> bool:
-    """Return whether a node is a free real number: a symbol, a function of time, a derivative of one, an entry."""
+    """Return whether a node is a free real number: a symbol, a function of time, its derivative, or a matrix entry."""
     if isinstance(node, sympy.Derivative):
         return isinstance(node.expr, AppliedUndef)
     return bool(node.is_Symbol) or isinstance(node, AppliedUndef | MatrixElement)
 
 
 def leaves_of(formulas: Iterable[Expr]) -> list[Expr]:
-    """Return symbols, functions of time and derivatives that occur, each once, in an order free of hashing."""
+    """Return the symbols, functions of time and derivatives that occur, each once, in a reproducible order."""
     leaves = {node for node in _pieces(formulas) if is_leaf(node)}
     return sorted(leaves, key=lambda leaf: (str(leaf), type(leaf).__name__))
 
 
 def assumptions_of(leaf: Expr) -> list[Need]:
-    """Return the signs that a symbol is assumed to have."""
+    """Return the conditions that SymPy's assumptions on a symbol state, such as ``x > 0``."""
     known = ((leaf, "> 0", leaf.is_positive), (-leaf, "> 0", leaf.is_negative), (leaf, ">= 0", leaf.is_nonnegative),
              (-leaf, ">= 0", leaf.is_nonpositive), (leaf, "!= 0", leaf.is_nonzero))  # fmt: skip
     return [Need(formula, sign) for formula, sign, assumed in known if assumed]
 
 
 def needs_of(formulas: Iterable[Expr]) -> list[Need]:
-    """Return the needs of formulas, the needs of these needs included, without those that hold by their form alone."""
+    """Return the conditions under which formulas, and these conditions, are real; obvious ones are left out."""
     needs: dict[Need, None] = {}
     for node in _pieces(formulas):
         for need in _needs(node):

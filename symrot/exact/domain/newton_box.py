@@ -1,9 +1,9 @@
-"""Boxes that are proven to hold a solution of equations, by the interval Newton operator of Krawczyk.
+"""Boxes that provably contain a solution of equations, by the interval Newton operator of Krawczyk.
 
-Of m unknowns in n equations, m - n keep the values that a search in double precision ended at, as exact fractions. For
-the other n a small box X around the end x of the search is mapped to ``K = x - Y f(x) + (1 - Y J(X)) (X - x)``; where K
-lies inside X there is a solution in X (Krawczyk, Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken,
-Computing 4, 1969).
+With n equations for m unknowns, m - n unknowns are fixed at the values where a search in double precision ended, as
+exact fractions. For the other n, a small box X around the end x of the search is mapped to
+``K = x - Y f(x) + (1 - Y J(X)) (X - x)``. If K lies inside X, then X contains a solution (Krawczyk, Newton-Algorithmen
+zur Bestimmung von Nullstellen mit Fehlerschranken, Computing 4, 1969).
 """
 
 from collections.abc import Mapping, Sequence
@@ -22,23 +22,23 @@ __all__ = ["EquationSystem"]
 MOST_STEPS = 40
 MOST_EQUATIONS = 24
 MOST_PIECES = 4000
-"""Largest number of subexpressions of all equations together; larger systems are not solved."""
+"""Largest total number of subexpressions of the equations; larger systems are not solved."""
 
 SMALLEST_PIVOT = 1e-7
 RADII = (1e-11, 1e-8, 1e-6)
-"""Half widths of the boxes that are tried, relative to the size of the unknown."""
+"""Half widths of the boxes to try, relative to the size of the unknown."""
 
 Row = list[float]
 
 
 class EquationSystem:
-    """Equations ``formula = 0`` in given unknowns, to be solved from a start.
+    """Equations ``formula = 0`` in given unknowns, solved from a starting point.
 
     Parameters
     ----------
     formulas : sequence of Expr
     leaves : sequence of Expr
-        All symbols, functions of time and derivatives in the formulas; further ones are left as they are.
+        All symbols, functions of time and derivatives in the formulas.
     """
 
     def __init__(self, formulas: Sequence[Expr], leaves: Sequence[Expr]) -> None:
@@ -49,7 +49,7 @@ class EquationSystem:
         self.slopes = [[formula.diff(name) for name in self.names.values()] for formula in self.formulas]
 
     def solved(self, start: Mapping[Expr, float]) -> dict[Expr, float] | None:
-        """Return the point to which Newton's method with shortest steps converges, or None if it does not converge."""
+        """Return the point to which Newton's method with steps of least length converges, or None."""
         values = {self.names[leaf]: float(start[leaf]) for leaf in self.leaves}
         for _ in range(MOST_STEPS if self.small else 0):
             try:
@@ -67,7 +67,7 @@ class EquationSystem:
         return None
 
     def box(self, near: Mapping[Expr, float]) -> dict[Expr, Any] | None:
-        """Return intervals and fractions for the leaves that are proven to hold a solution, or None."""
+        """Return intervals and fractions for the unknowns that provably contain a solution, or None."""
         values = {self.names[leaf]: near[leaf] for leaf in self.leaves}
         try:
             rows = [[float_at(slope, values, {}) for slope in row] for row in self.slopes]
@@ -117,7 +117,7 @@ def _point(value: Fraction) -> Any:
 
 
 def _shortest(rows: list[Row], residuals: Row) -> Row | None:
-    """Return the shortest step with ``rows * step = residuals``, slightly damped where the rows are dependent."""
+    """Return the shortest step with ``rows * step = residuals``, slightly damped if the rows are dependent."""
     gram = [[sum(a * b for a, b in zip(p, q, strict=True)) for q in rows] for p in rows]
     size = max(gram[n][n] for n in range(len(gram)))
     if not size:
@@ -132,7 +132,7 @@ def _shortest(rows: list[Row], residuals: Row) -> Row | None:
 
 
 def _inverted(rows: list[Row]) -> list[Row] | None:
-    """Return the inverse of a square matrix by elimination with pivots, or None."""
+    """Return the inverse of a square matrix by elimination with pivoting, or None if it is singular."""
     size = len(rows)
     work = [[*row, *(float(i == j) for j in range(size))] for i, row in enumerate(rows)]
     for column in range(size):
@@ -150,7 +150,7 @@ def _inverted(rows: list[Row]) -> list[Row] | None:
 
 
 def _pivots(rows: list[Row]) -> list[int] | None:
-    """Return as many columns as there are rows in which the rows are independent, the best first, or None."""
+    """Return as many columns as there are rows, chosen so that they are independent, best pivot first, or None."""
     work = [list(row) for row in rows]
     chosen: list[int] = []
     for step in range(len(work)):

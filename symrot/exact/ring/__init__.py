@@ -1,1 +1,1 @@
-"""Polynomials, fractions and relations: the ring in which a formula has a normal form."""
+"""Polynomials, fractions and relations: the ring in which each formula has a unique normal form."""

@@ -1,7 +1,7 @@
 """Groebner bases by Buchberger's algorithm within a counted budget.
 
-The algorithm may need more work than any machine can do; here it stops after a stated number of products of terms,
-which is the same on every machine.
+The algorithm can need an unlimited amount of work. Here it stops after a given number of products of terms, which is
+the same on every machine.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,7 +15,7 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["MOST_PRODUCTS", "groebner_basis"]
 
 MOST_PRODUCTS = 400_000
-"""Products of two terms that one basis may need: about a second."""
+"""Largest number of products of two terms for one basis, which takes about a second."""
 
 Monomial = tuple[int, ...]
 Terms = dict[Monomial, Any]
@@ -34,16 +34,16 @@ def groebner_basis(
     polynomials : sequence of PolyElement
         The generators of the ideal, in ``ring``.
     ring : PolyRing
-        Over a field, in any order of monomials.
+        Ring over a field, with any order of monomials.
     most_products : int
         The budget.
     spent : list of one int, optional
-        What several calls with one budget have used so far.
+        The part of the budget used so far; several calls may share it.
 
     Raises
     ------
     TooLarge
-        When the budget is spent.
+        If the budget is exhausted.
     """
     return _Basis(ring, most_products, [0] if spent is None else spent).of(polynomials)
 
@@ -59,7 +59,7 @@ class _Basis:
     def spend(self, products: int) -> None:
         self.spent[0] += products * self.weight
         if self.spent[0] > self.most:
-            raise TooLarge(f"relating the hypotheses takes more than {self.most} products of terms")
+            raise TooLarge(f"the hypotheses need more than {self.most} products of terms; use fewer or simpler ones")
 
     def of(self, polynomials: Sequence[PolyElement]) -> tuple[PolyElement, ...]:
         pairs: list[tuple[Any, ...]] = []
@@ -73,7 +73,7 @@ class _Basis:
         return self.reduced()
 
     def add(self, terms: Terms, pairs: list[tuple[Any, ...]]) -> None:
-        """Add a reduced polynomial to the basis, and its pairs to the queue, pairs with a small lcm first."""
+        """Add a reduced polynomial to the basis, and its pairs to the queue, smallest least common multiple first."""
         if not terms:
             return
         lead = max(terms, key=self.key)
@@ -86,10 +86,10 @@ class _Basis:
         self.members.append({mono: c * inverse for mono, c in terms.items()})
         self.leads.append(lead)
         if not any(lead):
-            pairs.clear()  # the whole ring
+            pairs.clear()  # a constant generates the whole ring
 
     def idle(self, i: int, j: int) -> bool:
-        """Return whether a third member makes a pair superfluous, by Buchberger's chain criterion on older pairs."""
+        """Return whether a third polynomial makes a pair superfluous (Buchberger's chain criterion on older pairs)."""
         both = tuple(map(max, self.leads[i], self.leads[j]))
         return any(
             k < i and _divides(lead, both) and tuple(map(max, lead, self.leads[i])) != both
@@ -106,7 +106,7 @@ class _Basis:
         return total
 
     def subtract(self, total: Terms, terms: Terms, shift: Monomial, times: Any) -> None:
-        """Subtract a multiple of a polynomial in place."""
+        """Subtract ``times * shift`` times a polynomial from ``total``, in place."""
         self.spend(len(terms))
         zero = self.ring.domain.zero
         for mono, coefficient in terms.items():
@@ -118,7 +118,7 @@ class _Basis:
                 del total[place]
 
     def normal(self, terms: Terms, members: Sequence[Terms]) -> Terms:
-        """Return the remainder of a polynomial: no leading term divides any of its terms."""
+        """Return the remainder of a polynomial: no leading term of a member divides any of its terms."""
         leads = self.leads if members is self.members else [max(member, key=self.key) for member in members]
         left: Terms = {}
         while terms:

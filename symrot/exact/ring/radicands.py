@@ -1,7 +1,7 @@
-"""Radicands of square roots: squares are extracted, and roots of products are expressed by products of roots.
+"""Radicands of square roots: extraction of squares, and roots of products as products of roots.
 
-``sqrt(x^2 y) = |x| sqrt(y)``. Of several square roots whose radicands multiply to a square, say ``a``, ``b`` and
-``a b``, one is expressed by the others, ``sqrt(a b) = sqrt(a) sqrt(b)``: true wherever all of them are real.
+``sqrt(x^2 y) = |x| sqrt(y)``. If the product of some radicands is a square, as with ``a``, ``b`` and ``a b``, one root
+is expressed by the others, ``sqrt(a b) = sqrt(a) sqrt(b)``, which is true wherever all of them are real.
 """
 
 from collections.abc import Mapping, Sequence
@@ -24,9 +24,10 @@ Outside = tuple[tuple[Root | Expr, int], ...]
 
 
 def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Expr]) -> tuple[Expr, Outside, bool]:
-    """Return (P, outside, loose) with ``above/below = P * product(factor^(2 n))``; P a polynomial, no factor negative.
+    """Return (P, outside, loose) with ``above/below = P * product(factor^(2 n))``, where no factor is negative.
 
-    The result is loose if a factor f may be zero where P is negative: there ``sqrt(P f^2)`` is real, ``sqrt(P)`` not.
+    The result is loose if a factor f may be zero where P is negative; there ``sqrt(P f^2)`` is real but ``sqrt(P)`` is
+    not.
     """
     whole = above.ring.clone(domain=ZZ)
     above, below = above.set_ring(whole), below.set_ring(whole)
@@ -47,7 +48,7 @@ def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Ex
 
 
 def _square_part(poly: PolyElement) -> tuple[PolyElement, list[tuple[PolyElement, int]]]:
-    """Return (P, [(f, n), ..]) with ``poly = P * product(f^(2n))``, P without squares, the f irreducible."""
+    """Return (P, [(f, n), ..]) with ``poly = P * product(f^(2n))``, P square-free and each f irreducible."""
     if poly.is_ground or len(poly) > MOST_TERMS or all(degree < 2 for degree in poly.degrees()):
         return poly, []
     rest, squares = poly, []
@@ -66,7 +67,7 @@ def _irreducible(poly: PolyElement) -> list[tuple[PolyElement, int]]:
 
 @dataclass(frozen=True)
 class Dependence:
-    """A root that equals ``sqrt(number) * product(roots) / product(factor^n)``, with the factors of a Radical."""
+    """A square root as a product of others: ``sqrt(number) * product(roots) / product(factor^n)``."""
 
     number: Rational
     roots: tuple[Root, ...]
@@ -74,10 +75,10 @@ class Dependence:
 
 
 def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr]) -> dict[Root, Dependence]:
-    """Return, for each square root that is a product of others, its dependence on them.
+    """Return, for each square root that is a product of others, the expression by these others.
 
-    Linear algebra over the field of two elements: a root is the set of irreducible factors that its radicand has an
-    odd number of times.
+    The method is linear algebra modulo 2: a root is represented by the irreducible factors with odd exponents in its
+    radicand.
 
     Parameters
     ----------
@@ -107,14 +108,14 @@ def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr
             number /= factored[other][0]
             for factor, n in factored[other][1].items():
                 total[factor] = total.get(factor, 0) + n
-        if number > 0:  # else they are real together at isolated points only
+        if number > 0:  # otherwise all of them are real only at isolated points
             divisors = ((absolute(f.as_expr(*generators)), n // 2) for f, n in sorted(total.items(), key=str) if n)
             relations[root] = Dependence(number, tuple(others), tuple(divisors))
     return relations
 
 
 def _factored(poly: PolyElement) -> tuple[Rational, dict[PolyElement, int]]:
-    """Return a polynomial as a rational number times powers of irreducible factors; a large one is left as it is."""
+    """Return a polynomial as a rational number times powers of irreducible factors; a large one is not factored."""
     if poly.is_ground or len(poly) > MOST_TERMS:
         return (_rational(poly.LC), {}) if poly.is_ground else (Rational(1), {poly: 1})
     constant, pairs = poly.factor_list()

@@ -1,8 +1,8 @@
-"""Fractions over a polynomial ring whose denominators are products of known factors.
+"""Fractions of polynomials whose denominators are products of known factors.
 
-Formulas of rotation divide many times by a few factors (``sin(theta)``, a moment of inertia, ``1 + q0``). Each factor
-is stored once and represented by an exponent, so that sums over equal denominators are sums of polynomials. Every
-factor is stored with the expression in which it first was a divisor: the condition under which the formula is defined.
+Formulas of rotation divide often by a few factors (``sin(theta)``, a moment of inertia, ``1 + q0``). Each factor is
+stored once and represented by an exponent, so that a sum over equal denominators is a sum of polynomials. With each
+factor the expression is stored in which it first was a divisor: it is a condition for the formula to be defined.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,18 +20,18 @@ from symrot.errors import InputError
 __all__ = ["MOST_PRODUCTS", "Ratio", "Ratios", "TooLarge"]
 
 MOST_PRODUCTS = 1_000_000
-"""Products of two terms that one problem may need: seconds of work, counted, so that all machines agree.
+"""Largest number of products of two terms for one problem: seconds of work, counted, so that all machines agree.
 
-The claims of the four documents need 27 000 at most."""
+The claims of the four textbooks and courses need at most 27 000."""
 
 
 class TooLarge(InputError):
-    """A formula that cannot be expanded within the budget."""
+    """The error raised for a formula that cannot be expanded within the budget."""
 
 
 @dataclass(frozen=True)
 class Ratio:
-    """``numerator / (constant * product of factors)``; factors by number, with exponents, in increasing order."""
+    """A fraction ``numerator / (constant * product of factors)``; factors are (number, exponent), increasing."""
 
     numerator: PolyElement
     constant: int = 1
@@ -39,16 +39,16 @@ class Ratio:
 
 
 class Ratios:
-    """Arithmetic of :class:`Ratio` in one ring.
+    """The arithmetic of fractions (:class:`Ratio`) in one polynomial ring.
 
     Parameters
     ----------
     ring : PolyRing
-        Over the integers or the rationals.
+        Ring over the integers or the rationals.
     generators : sequence of Expr
         The expressions that the generators of the ring represent.
     reduce : function
-        The normal form of a polynomial modulo the relations.
+        Function that returns the normal form of a polynomial modulo the relations.
     """
 
     def __init__(
@@ -57,18 +57,18 @@ class Ratios:
         self.ring = ring
         self.generators = generators
         self.reduce = reduce
-        self.factors: list[PolyElement] = []  # primitive, not constant, leading coefficient positive
-        self.sources: list[Expr] = []  # what stood in the denominator where the factor was met first
+        self.factors: list[PolyElement] = []  # primitive, not constant, with positive leading coefficients
+        self.sources: list[Expr] = []  # for each factor, the denominator in which it first occurred
         self.point = [37 + 6 * place + place % 5 for place in range(len(generators))]
-        self.values: list[int] = []  # of the factors there
-        self.products = 0  # spent so far
+        self.values: list[int] = []  # values of the factors at the fixed point
+        self.products = 0  # products of terms used so far
 
     def number(self, numerator: int, denominator: int = 1) -> Ratio:
-        """Return a rational number."""
+        """Return a rational number as a fraction of the ring."""
         return Ratio(self.ring.ground_new(self.ring.domain(numerator)), denominator)
 
     def add(self, terms: Sequence[Ratio]) -> Ratio:
-        """Return the sum; terms with equal denominators are added before any cross-multiplication."""
+        """Return the sum of fractions; those with equal denominators are added before any cross-multiplication."""
         groups: dict[tuple[int, tuple[tuple[int, int], ...]], PolyElement] = {}
         for term in terms:
             key = (term.constant, term.factors)
@@ -93,7 +93,7 @@ class Ratios:
         return Ratio(total, common_constant, tuple(sorted(common.items())))
 
     def multiply(self, factors: Sequence[Ratio]) -> Ratio:
-        """Return the product, small numerators first."""
+        """Return the product of fractions, multiplying small numerators first."""
         numerator, constant = self.ring.one, 1
         below: dict[int, int] = {}
         for factor in sorted(factors, key=lambda f: len(f.numerator)):
@@ -113,7 +113,7 @@ class Ratios:
         return Ratio(base.numerator**exponent, base.constant**exponent, below)
 
     def invert(self, value: Ratio, source: Expr) -> Ratio:
-        """Return 1/value; the new factors of its numerator are stored with the expression ``source``.
+        """Return 1/value; new factors of its numerator are stored with ``source``, the divisor as it is written.
 
         Raises
         ------
@@ -128,7 +128,7 @@ class Ratios:
         return Ratio(above if constant > 0 else -above, abs(constant.numerator), below)
 
     def denominator(self, value: Ratio) -> PolyElement:
-        """Return the denominator multiplied out."""
+        """Return the denominator of a fraction as an expanded polynomial."""
         below = self.ring.ground_new(self.ring.domain(value.constant))
         for number, power in value.factors:
             below = below * self.factors[number] ** power
@@ -171,10 +171,11 @@ class Ratios:
         )
 
     def _may_divide(self, number: int, value: int) -> bool:
-        """Return whether a factor may divide a polynomial, judged by integer values of both: a vain division is slow.
+        """Return whether a factor can divide a polynomial, judged by the integer values of both at one point.
 
-        Both have integer coefficients without a common divisor, so by Gauss's lemma the quotient has integer
-        coefficients too.
+        The test is fast, unlike a division that fails. Both polynomials have coprime integer coefficients, so by
+        Gauss's lemma a quotient has integer coefficients too, and the value of the factor must divide the value of the
+        polynomial.
         """
         own = self.values[number]
         return own == 0 or value % own == 0
@@ -190,7 +191,7 @@ class Ratios:
 
 
 def _most_terms(poly: PolyElement, exponent: int) -> int:
-    """Return an upper bound on the number of terms of a power, from its number of terms and from its degrees."""
+    """Return an upper bound on the number of terms of a power, from the terms and the degrees of the polynomial."""
     if len(poly) < 2 or exponent == 1:
         return len(poly)
     by_degrees = prod(int(degree) * exponent + 1 for degree in poly.degrees())
@@ -198,7 +199,7 @@ def _most_terms(poly: PolyElement, exponent: int) -> int:
 
 
 def _primitive(poly: PolyElement) -> tuple[Fraction, PolyElement]:
-    """Return (c, P) with poly = c*P; P has coprime integer coefficients, the leading one positive."""
+    """Return (c, P) with poly = c*P, where P has coprime integer coefficients and a positive leading coefficient."""
     scale: Any = 1
     if poly.ring.domain is QQ:
         scale, poly = poly.clear_denoms()

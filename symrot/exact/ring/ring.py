@@ -1,13 +1,13 @@
-"""Expressions as fractions of polynomials, in one ring made for the problem at hand.
+"""Expressions as fractions of polynomials, in a ring made for the formulas of one problem.
 
-Generators, highest first: roots (outer before inner), sines, then symbols and functions of time, exponentials of base
-exponents, then cosines. Inverse trigonometric functions are angles whose sine and cosine are known. The order is
-lexicographic, so each relation
+The generators are, highest first: roots (outer before inner), sines, symbols and functions of time, exponentials of
+base exponents, and cosines. Inverse trigonometric functions are angles whose sine and cosine are known. The order of
+monomials is lexicographic, so each relation
 
     root:    g^n = P           circle:    s^2 = 1 - c^2           hypothesis:    q0^2 = 1 - q1^2 - q2^2 - q3^2
     number:  M(2 cos(pi/N)) = 0, its minimal polynomial
 
-leads with a power of its own generator, and replacing leading powers gives the unique normal form
+has a power of its own generator as its leading term. Replacing leading powers gives the unique normal form
 (:mod:`symrot.exact.ring.relations`; ``docs/exact_decisions.md``, sections 2 to 4).
 """
 
@@ -47,14 +47,14 @@ MOST_MULTIPLES = 240
 """Largest multiple of a base angle."""
 
 MOST_ANGLE_TERMS = 4096
-"""Largest number of terms of a sine or cosine expanded in base angles: a sum of twelve angles has 2048."""
+"""Largest number of terms in the expanded sine or cosine of a sum of base angles; twelve angles give 2048."""
 
 MOST_NESTED_TERMS = 40
 """Largest number of terms of a radicand that contains roots: each level of nesting multiplies the work."""
 
 
 def as_zero(relation: Any) -> Expr:
-    """Return the expression that is zero by a hypothesis: an expression itself, or left - right of an equation.
+    """Return the expression that a hypothesis makes zero: an expression itself, or left - right of an equation.
 
     Raises
     ------
@@ -67,25 +67,25 @@ def as_zero(relation: Any) -> Expr:
     if isinstance(relation, sympy.Eq):
         relation = relation.lhs - relation.rhs
     if not isinstance(relation, Expr):
-        raise InputError(f"a hypothesis is an equation, or an expression that is zero; got {relation}")
+        raise InputError(f"expected a hypothesis that is an equation, or an expression that is zero; got {relation}")
     return relation
 
 
 class NeedsFractions(ArithmeticError):
-    """A relation has coefficients that are not integers."""
+    """The error raised if a relation has coefficients that are not integers in a ring over the integers."""
 
 
 class FormulaRing:
-    """The polynomial ring, its relations and its known denominators, for a fixed set of expressions.
+    """The polynomial ring of a fixed set of expressions, with its relations and its known denominators.
 
     Parameters
     ----------
     expressions : sequence of Expr
-        Everything that will be read into the ring.
+        All expressions that will be read into the ring.
     relations : sequence of Expr
         Hypotheses, each an expression that is zero.
     domain : sequence of Expr
-        Formulas that are not negative wherever the expressions are defined, such as radicands that SymPy cancelled.
+        Formulas that are nonnegative wherever the expressions are defined, such as radicands that SymPy cancelled.
 
     Raises
     ------
@@ -93,7 +93,7 @@ class FormulaRing:
         If an expression contains a floating point number, an infinity, or a term that is not a scalar formula, if a
         divisor is zero everywhere, or if the hypotheses contradict each other.
     TooLarge
-        When the decision that asks for the ring has spent its budget (:mod:`symrot.exact.budget`).
+        If the budget of the current decision is exhausted (:mod:`symrot.exact.budget`).
     """
 
     def __init__(
@@ -104,9 +104,9 @@ class FormulaRing:
         self.domain = tuple(domain)
         self.forms: dict[Expr, LinearForm] = {}  # argument of a sine or cosine -> its linear form
         self.exponents: dict[Expr, LinearForm] = {}  # argument of an exponential -> its linear form
-        self.rewritten: dict[Expr, Expr] = {}  # node -> what it is read as
-        self.radicals: dict[Expr, Radical] = {}  # node with a fractional power -> what it is made of
-        self.leaves: dict[Expr, bool] = {}  # symbols, functions of time, other functions -> in scope?
+        self.rewritten: dict[Expr, Expr] = {}  # node -> the equal expression that is read instead
+        self.radicals: dict[Expr, Radical] = {}  # node with a fractional power -> its factors and roots
+        self.leaves: dict[Expr, bool] = {}  # symbols, functions of time, other functions -> whether it is in scope
         self._collect([*expressions, *relations, *domain])
 
         self.bases = base_coefficients(map(unbound, self.forms.values()))
@@ -117,7 +117,7 @@ class FormulaRing:
         while True:
             self._number_generators(sorted(roots - set(self.dependences), key=_depth))
             relations_found = self._relate(ZZ) or self._relate(QQ)
-            assert relations_found is not None  # the rationals suffice for any polynomial
+            assert relations_found is not None  # rational coefficients suffice for any polynomial
             self.relations: Relations = relations_found
             new = self._without_circles(self._dependences())
             if not new:
@@ -146,7 +146,7 @@ class FormulaRing:
             (self.fine_place,) = self._number([(pi, 2 * cos(pi / self.fine))]).values()
 
     def _number(self, named: Iterable[tuple[Any, Expr]]) -> dict[Any, int]:
-        """Append generators and return the number of each by its key."""
+        """Append generators to the ring and return the index of each by its key."""
         numbers = {}
         for key, expression in named:
             numbers[key] = len(self.generators)
@@ -192,7 +192,7 @@ class FormulaRing:
                 self.leaves[node] = is_function_of_time(node)
 
     def _radicand(self, base: Expr, index: int) -> Radicand:
-        """Return a radicand in lowest terms, reduced by those hypotheses that hold no roots themselves."""
+        """Return a radicand in lowest terms, reduced by the hypotheses that contain no roots themselves."""
         plain = tuple(each for each in self.hypotheses if not any(map(is_root, preorder_traversal(each))))
         radicand: Radicand = remembered(("radicand", base, index, plain), lambda: _taken_apart(base, index, plain))
         return radicand
@@ -206,7 +206,7 @@ class FormulaRing:
         return dependences({root: self._polynomial(root) for root in places}, self.generators)
 
     def _without_circles(self, dependences: dict[Root, Dependence]) -> dict[Root, Dependence]:
-        """Return the dependences by which no root is expressed by itself, directly or through others."""
+        """Return the dependences without those that express a root by itself, directly or through other roots."""
         accepted: dict[Root, Dependence] = {}
         for root, dependence in dependences.items():
             stack, seen = _named(dependence), set()
@@ -220,21 +220,21 @@ class FormulaRing:
         return accepted
 
     def _take_fine_constants(self) -> int:
-        """Return N of the generator 2 cos(pi/N) for constant angles that are not multiples of pi/24; 0 without any."""
+        """Return N of the number 2 cos(pi/N) that expresses constant angles, or 0 if multiples of pi/24 suffice."""
         if pi not in self.bases or not cyclotomic.needs_cyclotomic_field(self.bases[pi].denominator):
             return 0
         return cyclotomic.order(self.bases.pop(pi).denominator)
 
     @property
     def outside_scope(self) -> tuple[Expr, ...]:
-        """Functions between which relations may hold that the ring does not know: a nonzero form proves nothing."""
+        """Functions between which unknown relations may hold; with them a nonzero normal form proves nothing."""
         atoms = [atom for atom in self.bases if atom.is_number or atom.has(*INVERSE, sympy.log)]
         return tuple(sorted([*atoms, *(leaf for leaf, known in self.leaves.items() if not known)], key=_order))
 
     # -- the ring and its relations ---------------------------------------------------------------------------------
 
     def _relate(self, domain: Any) -> Relations | None:
-        """Build the ring over a domain and return its relations; None if they need fractions that it lacks."""
+        """Build the ring over a domain of coefficients and return its relations; None if they need fractions."""
         self.ring = PolyRing([f"x{number}" for number in range(len(self.generators))], domain, lex)
         self.relations = Relations()
         self.numbers: dict[int, Number] = {}
@@ -256,7 +256,7 @@ class FormulaRing:
         return relate(rules, self.hypothesis_numerators)
 
     def _polynomial(self, root: Root) -> PolyElement:
-        """Return the polynomial that a power of a root equals; ``NeedsFractions`` if it has fractional coefficients."""
+        """Return the polynomial that a power of a root equals; raise ``NeedsFractions`` for fractional coefficients."""
         value = self.ratio(root.power_expression)
         above, below = self.reduce(value.numerator).cancel(self.ratios.denominator(value))
         if not below.is_ground:
@@ -268,9 +268,9 @@ class FormulaRing:
         return above.quo_ground(below.LC)
 
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
-        """Return the generators that are numbers and between which unknown relations may hold.
+        """Return the generators that are algebraic numbers and between which unknown relations may hold.
 
-        Square roots of primes have no such relations. The result is empty when one of the numbers is imaginary.
+        Square roots of primes have no unknown relations. The result is empty if one of the numbers is imaginary.
         """
         known: dict[int, Number] = {}
         if self.fine:
@@ -283,12 +283,12 @@ class FormulaRing:
         return {} if simple or len(known) < 2 or I in self.generators else known
 
     def reduce(self, poly: PolyElement) -> PolyElement:
-        """Return the normal form of a polynomial: zero exactly when it follows from the relations."""
+        """Return the normal form of a polynomial; it is zero if and only if the relations make the polynomial zero."""
         poly = self.relations.reduce(poly)
         return self._without_zeros(poly) if self.numbers and poly else poly
 
     def _without_zeros(self, poly: PolyElement) -> PolyElement:
-        """Return a polynomial without those coefficients, made of tangled numbers, that are zero."""
+        """Return a polynomial without coefficients that are sums of dependent numbers and proven to be zero."""
         groups: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
         for mono, coefficient in poly.items():
             free = tuple(0 if n in self.numbers else power for n, power in enumerate(mono))
@@ -310,7 +310,7 @@ class FormulaRing:
         return known
 
     def difference(self, left: Expr, right: Expr) -> Ratio:
-        """Return left - right as a fraction."""
+        """Return left - right as a fraction of the ring."""
         minus_right = self.ratios.multiply([self.ratios.number(-1), self.ratio(right)])
         return self.ratios.add([self.ratio(left), minus_right])
 
@@ -358,7 +358,7 @@ class FormulaRing:
         return self.ratios.multiply([number, *map(self._root, (*primes, *dependence.roots)), *divisors])
 
     def _outside(self, factors: Iterable[tuple[Root | Expr, int]]) -> Iterator[Ratio]:
-        """Yield the powers of the factors in front of roots: absolute values and nonnegative expressions."""
+        """Yield the powers of the factors in front of a root: absolute values and nonnegative expressions."""
         for factor, times in factors:
             if isinstance(factor, Root):
                 yield self._power(self._root(factor), times, factor.expression)
@@ -391,13 +391,13 @@ class FormulaRing:
                 continue
             multiple = int(coefficient / self.bases[atom])
             if abs(multiple) > MOST_MULTIPLES // (1 + 7 * (atom is pi)):
-                raise TooLarge(f"an angle of more than {MOST_MULTIPLES} times another is not expanded: {argument}")
+                raise TooLarge(f"expected angles up to {MOST_MULTIPLES} times another angle, got {argument}")
             first, second = chebyshev(abs(multiple))
             c = self._in_generator(self.cosines[atom], first)
             s = self._in_generator(self.cosines[atom], second) * self.ring.gens[self.sines[atom]]
             s = s if multiple > 0 else -s
             if len(cosine) * (len(c) + len(s)) > MOST_ANGLE_TERMS:
-                raise TooLarge(f"the sine of a sum of angles with more than {MOST_ANGLE_TERMS} terms is not expanded")
+                raise TooLarge(f"the sine of a sum of angles has more than {MOST_ANGLE_TERMS} terms when expanded")
             cosine, sine = cosine * c - sine * s, sine * c + cosine * s
         turned = Ratio(cosine), Ratio(sine)
         for pair in pairs:
@@ -416,7 +416,7 @@ class FormulaRing:
         )
 
     def _known_angle(self, atom: Expr, coefficient: Fraction) -> Iterator[tuple[Ratio, Ratio]]:
-        """Yield the cosines and sines of angles that sum to a multiple of an inverse trigonometric function."""
+        """Yield (cosine, sine) of angles whose sum is a multiple of an inverse trigonometric function."""
         for halvings, times in halved(coefficient):
             c, s = map(self.ratio, cosine_sine(atom, halvings))
             if times < 0:
@@ -430,7 +430,7 @@ class FormulaRing:
         return cosine, sine
 
     def _in_generator(self, place: int, coefficients: Sequence[int]) -> PolyElement:
-        """Return the polynomial in one generator with these integer coefficients, low to high."""
+        """Return the polynomial in one generator with the given integer coefficients, lowest power first."""
         gen = self.ring.gens[place]
         return sum((gen**power * number for power, number in enumerate(coefficients) if number), self.ring.zero)
 
@@ -442,12 +442,12 @@ class FormulaRing:
         return constant * above / below
 
     def lowest_terms(self, value: Ratio) -> tuple[Rational, Expr, Expr]:
-        """Return (c, P, Q) with value = c*P/Q: c a rational >= 0, P and Q primitive over the integers."""
+        """Return (c, P, Q) with value = c*P/Q: a rational c >= 0, and P and Q primitive over the integers."""
         constant, above, below = self.lowest_polynomials(value)
         return constant, above.as_expr(*self.generators), below.as_expr(*self.generators)
 
     def lowest_polynomials(self, value: Ratio) -> tuple[Rational, PolyElement, PolyElement]:
-        """Return (c, P, Q) as :meth:`lowest_terms`, P and Q in the ring."""
+        """Return (c, P, Q) as :meth:`lowest_terms` does, with P and Q as polynomials of the ring."""
         numerator = self.reduce(value.numerator)
         if not numerator:
             return Integer(0), self.ring.zero, self.ring.one
@@ -462,7 +462,7 @@ def _taken_apart(base: Expr, index: int, hypotheses: Sequence[Expr]) -> Radicand
     inner = FormulaRing([base], hypotheses)
     content, above, below = inner.lowest_polynomials(inner.ratio(base))
     if inner.roots and len(above) + len(below) > MOST_NESTED_TERMS:
-        raise TooLarge(f"a root of a formula with roots and more than {MOST_NESTED_TERMS} terms is not taken apart")
+        raise TooLarge(f"a radicand that contains roots has more than {MOST_NESTED_TERMS} terms; simplify it")
     if index != 2:
         return Radicand(content, above.as_expr(*inner.generators), below.as_expr(*inner.generators))
     rest, outside, loose = take_squares(above, below, inner.generators)
@@ -470,7 +470,7 @@ def _taken_apart(base: Expr, index: int, hypotheses: Sequence[Expr]) -> Radicand
 
 
 def _named(dependence: Dependence | None) -> list[Root]:
-    """Return the roots that occur in the dependence of a root."""
+    """Return the roots by which a root is expressed; an empty list if it is independent."""
     if dependence is None:
         return []
     return [*dependence.roots, *(factor for factor, _ in dependence.divisors if isinstance(factor, Root))]
@@ -481,10 +481,10 @@ def _occurring(poly: PolyElement) -> set[int]:
 
 
 def _order(node: Expr) -> tuple[str, str]:
-    """Return a key that does not depend on hashing."""
+    """Return a sort key of an expression that is the same in every run."""
     return (written(node), type(node).__name__)
 
 
 def _depth(root: Root) -> tuple[int, str, str]:
-    """Return a key that puts outer roots before the roots inside them."""
+    """Return a sort key that puts outer roots before the roots inside them."""
     return (-root.depth, written(root.expression), written(root.power_expression))

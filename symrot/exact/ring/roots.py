@@ -1,11 +1,11 @@
-"""Roots: every fractional power as a rational factor times generators ``g`` with a relation ``g^n = P``.
+"""Roots: each fractional power as a rational factor times generators ``g`` with a relation ``g^n = P``.
 
-``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``, and positive rational numbers are taken out as square roots of
-primes: the generator of a square root is never negative. (For other roots, ``(P/Q)^(1/n) = g/Q``.) Squares leave a root
-as absolute values, ``sqrt(x^2 y) = |x| sqrt(y)``, and the root of a product of other radicands gets no generator
-(:mod:`symrot.exact.ring.radicands`). Roots that depend on each other in other ways, nested roots for example, keep one
-generator each: equations that follow from the relations are true, and others may still be true on one branch. In that
-case :func:`symrot.exact.decide.decide` returns "undecided" unless it finds a counterexample.
+``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``, and rational numbers are written by square roots of primes, so
+that the generator of a square root is never negative. (For other roots, ``(P/Q)^(1/n) = g/Q``.) Squares leave a root as
+absolute values, ``sqrt(x^2 y) = |x| sqrt(y)``, and the root of a product of other radicands gets no generator
+(:mod:`symrot.exact.ring.radicands`). Roots that depend on each other in other ways, such as nested roots, have one
+generator each. Then equations that follow from the relations are true, but others may be true on one branch of the
+roots; :func:`symrot.exact.decide.decide` returns "undecided" for these unless it finds a counterexample.
 """
 
 from collections.abc import Callable, Iterable
@@ -37,7 +37,7 @@ MOST_TERMS = 4000
 
 @lru_cache(maxsize=20_000)
 def written(node: Expr) -> str:
-    """Return the text of an expression: a key for sorting that does not depend on hashing."""
+    """Return the text of an expression, used as a sort key that is the same in every run."""
     return str(node)
 
 
@@ -53,10 +53,11 @@ class Root:
 
 @dataclass(frozen=True)
 class Radicand:
-    """``content * above / below * product(factor^(2 n) of outside)``, ``below`` being 1 under a square root.
+    """A radicand in factors: ``content * above / below * product(factor^(2 n) of outside)``.
 
-    ``content`` is a rational >= 0, ``above`` and ``below`` are primitive polynomials over the integers in canonical
-    form; no factor outside is negative. ``loose``: a factor may be zero where ``above`` is negative.
+    ``content`` is a rational >= 0; ``above`` and ``below`` are primitive polynomials over the integers in canonical
+    form, and ``below`` is 1 under a square root; no factor of ``outside`` is negative. ``loose`` is true if such a
+    factor may be zero where ``above`` is negative.
     """
 
     content: Rational
@@ -68,10 +69,10 @@ class Radicand:
 
 @dataclass(frozen=True)
 class Radical:
-    """``(rational * product(roots) * product(factor^n of outside) / below)^power``, a root of ``base``.
+    """A fractional power in factors: ``(rational * product(roots) * product(factor^n of outside) / below)^power``.
 
-    A factor outside is an absolute value, which is a root too, or an expression that is not negative. A ``loose``
-    radical is real at some points where one of its roots is not real but a factor is zero.
+    A factor of ``outside`` is an absolute value, which is a root too, or an expression that is never negative. A
+    ``loose`` radical is real at some points where one of its roots is not real but a factor is zero.
     """
 
     base: Expr
@@ -84,24 +85,24 @@ class Radical:
 
     @property
     def generators(self) -> tuple[Root, ...]:
-        """All roots that occur, absolute values included."""
+        """All roots in the radical, absolute values included."""
         return (*self.roots, *(factor for factor, _ in self.outside if isinstance(factor, Root)))
 
     @property
     def parts(self) -> tuple[Expr, ...]:
-        """The expressions that must be read into the ring before this one."""
+        """The expressions that must be read into the ring before this radical."""
         insides = [root.power_expression for root in self.generators]
         return (self.rational, self.below, *insides, *(f for f, _ in self.outside if not isinstance(f, Root)))
 
 
 def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
-    """Return the parts of a fractional power, of ``i`` or of the absolute value of a real expression.
+    """Return the factors of a fractional power, of ``i``, or of the absolute value of a real expression.
 
     Parameters
     ----------
     node : Expr
     radicand : function
-        From an expression and the index of a root to its factors, squares apart for a square root.
+        Function from an expression and the index of a root to the factors of the radicand.
 
     Raises
     ------
@@ -136,7 +137,7 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
     elif above != 1 or below != 1:
         terms, times = len(Add.make_args(below)), index - 1
         if len(Add.make_args(above)) * comb(terms + times - 1, times) > MOST_TERMS:
-            raise TooLarge(f"a root whose radicand has more than {MOST_TERMS} terms over one denominator is not taken")
+            raise TooLarge(f"the radicand of a root has more than {MOST_TERMS} terms over one denominator; simplify it")
         inside = (above * below ** (index - 1)).expand()
         written_root = below * (above / below) ** Rational(1, index)
         roots.append(Root(written_root, inside, index, 1 + _nesting([inside])))
@@ -144,22 +145,22 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
 
 
 def absolute(value: Expr) -> Root | Expr:
-    """Return the absolute value of a real expression: itself or its negative where that is known, or a root."""
+    """Return the absolute value of a real expression: itself or its negative if the sign is known, otherwise a root."""
     sign = sign_of(value)
     return sign * value if sign else Root(Abs(value), (value**2).expand(), 2, 1 + _nesting([value]))
 
 
 def sign_of(value: Expr) -> int:
-    """Return 1 or -1 for a real expression that is never of the other sign, 0 where that is not known."""
+    """Return 1 for a real expression that is never negative, -1 if it is never positive, 0 if neither is known."""
     if value.is_nonnegative or _is_positive_where_defined(value):
         return 1
     return -1 if value.is_nonpositive or _is_positive_where_defined(-value) else 0
 
 
 def _is_positive_where_defined(value: Expr) -> bool:
-    """Return whether a formula consists of exponentials and positive numbers.
+    """Return whether a formula consists of exponentials and positive numbers, so that it is positive.
 
-    SymPy does not call an exponential positive, since its exponent might be infinite.
+    SymPy does not call an exponential positive, because its exponent might be infinite.
     """
     if isinstance(value, exp):
         return True
@@ -169,7 +170,7 @@ def _is_positive_where_defined(value: Expr) -> bool:
 
 
 def is_root(node: Expr) -> bool:
-    """Return whether the node is a fractional power, ``i``, or the absolute value of something real."""
+    """Return whether a node is a fractional power, ``i``, or the absolute value of a real expression."""
     if isinstance(node, Pow):
         return bool(node.exp.is_Rational and not node.exp.is_Integer)
     return node is I or (isinstance(node, Abs) and _is_real_where_defined(node.args[0]))
@@ -192,7 +193,7 @@ def square_root_of_number(value: Rational) -> tuple[Rational, list[Root]]:
 
 
 def _nesting(expressions: Iterable[Expr]) -> int:
-    """Return how deep fractional powers are nested."""
+    """Return the depth to which fractional powers are nested."""
     deepest = 0
     for node in expressions:
         below = _nesting(node.args)
