@@ -199,7 +199,7 @@ class ShapeMismatch(InputError):
 
     def __init__(self, left: Shape, right: Shape) -> None:
         self.shapes = (left, right)
-        super().__init__(f"expected two sides of the same shape, got {shape_text(left)} = {shape_text(right)}")
+        super().__init__(f"expected two sides of one shape, got {shape_text(left)} = {shape_text(right)}")
 
 
 def matched_sides(left: Any, right: Any) -> tuple[list[Expr], list[Expr], Shape]:

@@ -62,7 +62,7 @@ def test_sides_are_matched_entry_by_entry():
     assert matched_sides(row, 0) == ([x, y], [0, 0], (1, 2))
     assert matched_sides(0, row) == ([0, 0], [x, y], (1, 2))
     for left, right in ((row, row.T), (row, 1), (x, row)):
-        with pytest.raises(ShapeMismatch, match="the same shape"):
+        with pytest.raises(ShapeMismatch, match="one shape"):
             matched_sides(left, right)
     assert place_in_matrix(5, (2, 3)) == (2, 3) and place_in_matrix(0, None) is None
 
