@@ -410,7 +410,7 @@ def test_odd_orders_are_refused(order):
 
 @pytest.mark.parametrize("blocks, scales", [((0, 1), (1.0,)), ((0, 1, 1, 2), (1, 1, 1)), ((0, 2), (1, 1))])
 def test_blocks_that_do_not_fit_are_refused(blocks, scales):
-    with pytest.raises(InputError, match="blocks of 2 states"):
+    with pytest.raises(InputError, match="expected edges of blocks that rise from 0 to 2"):
         taylor.translation_unit(program({"x": "y", "y": "x"}), blocks, scales)
 
 
