@@ -103,6 +103,7 @@ PULSE = {"kind": "expression", "torque": ["0", "0", "exp(-((t - 2)/w)**2)/w"], "
 AT_REST = {"initial": {"omega": [0, 0, 0]}, "span": {"t": [0, 5], "samples": 2}}
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("computed", [item[1] for item in REFERENCES if item[0] != "closed form"],
                          ids=["taylor", "dop853", "midpoints"])  # fmt: skip
 def test_no_reference_steps_over_a_pulse(computed):

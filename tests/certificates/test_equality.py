@@ -55,6 +55,7 @@ SWAPS = {"+": "-", "-": "+", "*": "/", "/": "*", "sin": "cos", "cos": "sin", "0.
          "[1]": "[2]", ">=": "<", "<": ">=", "1.0": "1.5", "==": ">=", "sqrt": "fabs"}  # fmt: skip
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", SLICE)
 def test_a_corrupted_text_is_refused(name):
     """One token of the one-sample function, or of a function that it calls, is another."""

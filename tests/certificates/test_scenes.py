@@ -213,6 +213,7 @@ def test_what_does_not_overflow_is_bounded_to_the_largest_numbers(capsys):
     assert 1 <= Fraction(units) / (Fraction(float.fromhex(error)) * 2**53) < 1 + Fraction(1, 500)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [

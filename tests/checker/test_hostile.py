@@ -74,6 +74,7 @@ TEXTS = {
 }
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(("text", "words"), TEXTS.values(), ids=TEXTS)
 def test_a_hostile_text_is_refused_in_one_sentence(text, words):
     with pytest.raises(InputError, match=words) as refusal:
@@ -201,6 +202,7 @@ HEAVY = {
 }
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("text", HEAVY.values(), ids=HEAVY)
 def test_what_cannot_be_multiplied_out_is_disproved_as_it_is_written(text):
     """The budgets are counts, so a machine that gets here does so after the same work as any other."""

@@ -40,6 +40,7 @@ NOWHERE = (
 )
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(("claim", "given", "words"), NOWHERE, ids=[", ".join(given) for _, given, _ in NOWHERE])
 def test_hypotheses_that_hold_nowhere_prove_nothing(claim, given, words):
     with pytest.raises(InputError, match=words) as refusal:

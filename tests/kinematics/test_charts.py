@@ -32,6 +32,7 @@ def seeded_values(chart, seed):
     return dict(zip(chart.parameters, values, strict=True))
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", CHARTS)
 def test_dcm_is_a_rotation_and_that_of_the_quaternion(name):
     chart = attitude.chart(name)
@@ -53,6 +54,7 @@ def test_rates_follow_from_the_dcm(name, frame):
     assert normal_form(jacobian - other.T) == zeros(3)  # the mirror of these charts: p -> -p transposes
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("frame", FRAMES)
 @pytest.mark.parametrize("name", MINIMAL)
 def test_inverse_and_determinant(name, frame):

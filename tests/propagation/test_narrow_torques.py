@@ -107,6 +107,7 @@ def test_dense_output_reaches_the_last_sample(method):
     assert trajectory.sol(trajectory.t)[2] == pytest.approx(trajectory.omega[:, 2], abs=1e-9)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("method", STEPPED)
 @pytest.mark.parametrize("number", ["m", "1e11"])
 @pytest.mark.parametrize("large", ["1 + tanh((t-2)*1000)", "tanh((t-2)*1000) - tanh((t-3)*1000)"])

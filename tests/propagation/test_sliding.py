@@ -129,6 +129,7 @@ SEVERAL_AT_ONCE = [  # torques of functions that are all at their switches at th
 ]  # fmt: skip
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("method", ["auto", "scipy:DOP853"])
 @pytest.mark.parametrize(("frame", "torque", "simpler", "omega"), SEVERAL_AT_ONCE)
 def test_functions_that_switch_together_settle_in_any_order(frame, torque, simpler, omega, method):
@@ -148,6 +149,7 @@ AWAY = [  # torque, angular velocity at the start, and when motions beside the s
 ]
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
 @pytest.mark.parametrize(("torque", "frame", "omega", "end"), AWAY)
 def test_a_motion_does_not_slide_where_others_lead_away(torque, frame, omega, end, method):

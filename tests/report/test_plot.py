@@ -30,6 +30,7 @@ quantities = {quantities}
 """
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("suffix", plot.SUFFIXES)
 def test_pages_are_the_same_twice_and_name_no_date(tmp_path, capsys, suffix):
     pages = []
@@ -57,6 +58,7 @@ def test_panels_and_their_units(scene, titles):
         assert any(np.array_equal(line.get_ydata(), motion.omega[:, number]) for number in range(3))
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(("body", "omega", "quantities"), [
     ("principal = [1, 2, 2.5]", "[0.1, 1, 0.1]", '["omega"]'),
     ("principal = [1, 1, 1]", "[0.1, 1, 0.1]", '["quaternion"]'),
