@@ -104,6 +104,11 @@ class Setup:
     warnings: tuple[str, ...] = ()
 
     @cached_property
+    def message(self) -> str:
+        """The method and the reason for it, as one text."""
+        return f"{self.choice.method}: {self.choice.reason}"
+
+    @cached_property
     def kernel(self) -> SceneKernel:
         """The kernel of the plan, which computes rates and quantities; loaded on first use."""
         return self.load_kernel()
@@ -420,7 +425,7 @@ class ClosedFormMotion(RestartableMotion):
     def follow(self, times: Floats, in_order: bool = False) -> tuple[tuple[Floats, ...], Stats]:
         """Return angular velocity (n, 3) and, if it is computed, attitude (n, 4) at the times, and the cost."""
         attitude, exact = self.plan.structure.attitude, self.exact
-        began, start = perf_counter(), self.start
+        began, start = perf_counter(), self.setup.start
         omega, quaternion = exact.evaluate(times - start if start else times, quaternion=attitude)
         assert omega is not None
         if not (in_order and len(times) and times.item(0) > start):  # exactly, as with every other method

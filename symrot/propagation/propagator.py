@@ -142,21 +142,21 @@ class Propagator:
         motion = self._motion
         if omega is not None or quaternion is not None:
             motion = self.motion_from(read_start(self.scene, omega, quaternion))
-        message, began = f"{motion.choice.method}: {motion.choice.reason}", perf_counter()
+        setup, began = motion.setup, perf_counter()
         try:
             if events is not None:
-                return self._with_events(motion, times, events, message)
+                return self._with_events(motion, times, events)
             states, stats = motion.follow(times, in_order)
         except (PropagationError, KeyboardInterrupt) as error:
             raise self._with_samples(error, motion, times, began) from None
-        return Trajectory(motion, times, states, motion.choice.method, stats, message)
+        return Trajectory(motion, times, states, setup.choice.method, stats, setup.message)
 
-    def _with_events(self, motion: Motion, times: Floats, events: Any, message: str) -> Trajectory:
+    def _with_events(self, motion: Motion, times: Floats, events: Any) -> Trajectory:
         from symrot.propagation.events.event_result import integrate_with_events
         from symrot.propagation.events.events import read_events
 
         result = integrate_with_events(motion, times, read_events(events))
-        message = message if result.error is None else str(result.error)
+        message = motion.setup.message if result.error is None else str(result.error)
         trajectory = Trajectory(motion, result.t, result.states, motion.choice.method, result.stats, message, result)
         if result.error is not None:
             result.error.trajectory = trajectory  # type: ignore[attr-defined]

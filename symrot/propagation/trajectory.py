@@ -91,11 +91,11 @@ class Trajectory:
     ) -> None:
         self._motion, self._parts = motion, states
         self.t, self.method, self.stats, self.message = t, method, stats, message
-        self.t_events = events and events.t_events
-        self.y_events = events and events.y_events
-        self.event_kinds = events and events.kinds
-        self.status = int(events is not None and events.ended)
-        self.warnings: tuple[str, ...] = motion.warnings + (events.warnings if events else ())
+        self.status, self.warnings = 0, motion.setup.warnings
+        self.t_events, self.y_events, self.event_kinds = None, None, None
+        if events is not None:
+            self.status, self.warnings = int(events.ended), (*self.warnings, *events.warnings)
+            self.t_events, self.y_events, self.event_kinds = events.t_events, events.y_events, events.kinds
 
     def __len__(self) -> int:
         return len(self.t)
