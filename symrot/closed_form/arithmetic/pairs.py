@@ -67,7 +67,10 @@ def attitude(values: Sequence[Number]) -> list[float]:
     An attitude needs no more digits. Because of this rounding, arithmetic on arrays of double-double numbers gives the
     same doubles for many attitudes at once.
     """
-    return on_grid([value.as_integer_ratio() for value in values])
+    result: list[float] = []
+    for value in values:
+        result += (value + 0.0, 0.0) if isinstance(value, float) else on_grid([value.as_integer_ratio()])
+    return result
 
 
 def on_grid(values: Sequence[tuple[int, int]]) -> list[float]:

@@ -110,7 +110,7 @@ class Top:
         axis = along[0]
         pull = Fraction(force) * Fraction(center[axis])
         self.moments, self.pull = flatten_pairs([moments[axis - 2], moments[axis]]), flatten_pairs([abs(pull)])
-        self.frame = Frame(axis, [-Fraction(x) if pull > 0 else Fraction(x) for x in down])
+        self.frame = Frame(axis, [-x for x in down] if pull > 0 else down)
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
         """Return the motion from an initial angular velocity, rad/s, and attitude, body to space."""
@@ -138,16 +138,16 @@ class Frame:
     ----------
     axis : 0, 1 or 2
         The symmetry axis of the body.
-    up : 3 Fractions
+    up : 3 numbers
         The upward direction in space: opposite to gravity if the centre of mass is at a positive place on the axis.
     """
 
-    def __init__(self, axis: int, up: Sequence[Fraction]) -> None:
+    def __init__(self, axis: int, up: Sequence[Number]) -> None:
         self.named = [(axis + 1) % 3, (axis + 2) % 3, axis]  # e1, e2, e3 among the body's axes, in cyclic order
         self.space, self.axes = _UPRIGHT, None
         self.before, self.after = None, None  # left and right factor of an attitude
         if up[0] or up[1] or up[2] < 0:  # the third axis does not point up yet
-            turn = quaternion_of(to_axis(up))
+            turn = quaternion_of(to_axis([Fraction(x) for x in up]))
             self.space, self.before = flatten_pairs(turn), (turn[0], -turn[1], -turn[2], -turn[3])
         if axis != 2:
             matrix = [[Fraction(int(self.named[k] == i)) for k in range(3)] for i in range(3)]
