@@ -212,12 +212,14 @@ class Driven:
                 "expected a body that is symmetric about the driven axis if it rotates across it, got moments "
                 f"{[float(x) for x in self._moments]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
             )
-        return self.moving(rates, [float(x) for x in number.unit([Fraction(x) for x in components])])
+        return self._moving(rates, [float(x) for x in number.unit(components)])
 
     def moving(self, rates: Sequence[Number], attitude: list[float]) -> AxialMotion:
         """Return the motion from initial rates and a unit attitude that :meth:`motion` has already checked."""
-        exact = [Fraction(x) for x in numbers("omega", rates, 3)]
-        return AxialMotion(self, exact, (attitude, turned_about(self.axis, attitude)))
+        return self._moving([Fraction(x) for x in numbers("omega", rates, 3)], attitude)
+
+    def _moving(self, rates: list[Fraction], attitude: list[float]) -> AxialMotion:
+        return AxialMotion(self, rates, (attitude, turned_about(self.axis, attitude)))
 
 
 def turned_about(axis: int, q: Sequence[Any]) -> list[Any]:
