@@ -8,6 +8,7 @@ taken from symrot, so that an error of symrot cannot hide.
 Run `python tests/campaigns/checker/corpus/verify.py` to list the entries whose check disagrees with their label.
 """
 
+import functools
 import itertools
 import pathlib
 import random
@@ -135,7 +136,6 @@ def solved(sequence, angles, omega, frame="b"):
 
 SEQUENCES = [a + b + c for a in "XYZ" for b in "XYZ" for c in "XYZ" if a != b != c]
 POINTS = [((0.61, 0.83, 1.07), (0.47, 1.13, 0.71)), ((0.93, 0.52, 0.68), (1.17, 0.58, 0.79))]
-_family: dict[str, np.ndarray] = {}
 
 
 def _columns(sequence, angles, frame):
@@ -145,6 +145,7 @@ def _columns(sequence, angles, frame):
     return in_space if frame == "s" else (one @ two @ elementary(sequence[2], angles[2])).T @ in_space
 
 
+@functools.cache
 def _readings(inverse):
     rows = []
     for sequence, frame in itertools.product(SEQUENCES, "bs"):
@@ -162,9 +163,14 @@ def _readings(inverse):
     return np.array(rows)
 
 
+def _among(values, table):
+    """Tell whether a row of the table has these values, all with the same sign or all with the other."""
+    return any(bool(np.any(np.all(abs(table - sign * values) < 1e-9, axis=1))) for sign in (1, -1))
+
+
 def rate_like(formula):
     """Tell whether a formula of (phi, theta, psi, dphi, dtheta, dpsi) is a component of the angular velocity in any usual reading."""
-    table = _family.setdefault("direct", _readings(inverse=False))
+    table = _readings(inverse=False)
     values = np.array([formula(*angles, *rates) for angles, rates in POINTS])
     return bool(
         np.any(
@@ -176,7 +182,7 @@ def rate_like(formula):
 
 def solved_like(formula):
     """Tell whether a formula of (phi, theta, psi, p, q, r) is the rate of one angle in any usual reading."""
-    table = _family.setdefault("inverse", _readings(inverse=True))
+    table = _readings(inverse=True)
     values = np.array([formula(*angles, *rates) for angles, rates in POINTS])
     return bool(
         np.any(
@@ -438,8 +444,10 @@ class Cloud:
 
 def body(I1, I2, I3):
     """Return particles on the axes with given principal moments (masses may be negative: sums are linear in them)."""
-    half = (I1 + I2 + I3) / 4
-    return Cloud(np.repeat([half - I1 / 2, half - I2 / 2, half - I3 / 2], 2), np.kron(np.eye(3), [[1], [-1]]) * 1.0)
+    quarter = (I1 + I2 + I3) / 4
+    return Cloud(
+        np.repeat([quarter - I1 / 2, quarter - I2 / 2, quarter - I3 / 2], 2), np.kron(np.eye(3), [[1], [-1]]) * 1.0
+    )
 
 
 def cloud():
