@@ -14,6 +14,7 @@ from symrot.checker.claim.notation import Notation, notation_of
 from symrot.checker.claim.reader import Reading, readings_of
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
+from symrot.checker.recognition.together import fit_together
 from symrot.checker.rounding import with_rounding
 from symrot.checker.typed.cursor import TIME
 from symrot.checker.verdict import Verdict
@@ -23,6 +24,8 @@ __all__ = ["verdict_on_text"]
 
 WORST_FIRST = ("false", "doubtful", "undecided", "conditional", "definition", "recognised", "true")
 """The order in which the verdicts on the parts of a text decide the verdict on the whole."""
+
+APART = "each line is a formula that symrot derives, but no body, frame or sequence has all of them for its components"
 
 NAMING = ("definition", "recognised")
 
@@ -138,6 +141,13 @@ def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], not
                 counted.append(verdict)
     counted = counted or list(verdicts)
     worst = min(counted, key=lambda verdict: WORST_FIRST.index(verdict.verdict))
+    by_line = [
+        (str(line[0].relation[1].value), _names(line[0].relation[2]), verdict)
+        for line, verdict in zip(lines, verdicts, strict=False)
+        if total == len(lines) and line[0].relation is not None
+    ]
+    if worst.verdict == "recognised" and not fit_together(by_line):
+        worst = replace(worst, verdict="doubtful", recognised_as=(), reason=APART)
     claim_notes = [note for line in lines for claim in line for note in claim.notes]
     seconds = sum(verdict.seconds for verdict in verdicts)
     return replace(worst, notes=tuple(dict.fromkeys([*claim_notes, *notes])), seconds=seconds)

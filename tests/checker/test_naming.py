@@ -173,3 +173,42 @@ def test_a_relation_of_quantities_is_not_called_false(claim):
 ])  # fmt: skip
 def test_a_wrong_identity_stays_false(claim):
     assert symrot.check(claim).verdict == "false"
+
+
+@pytest.mark.parametrize("claim", [
+    "I_1 ω̇_1 + ω_2 ω_3 (I_2 − I_3) = N_1", r"I_1\dot\omega_1 = \omega_2\omega_3(I_3-I_2)",
+    "L_x = I_xx omega_x + I_xy omega_y + I_yz omega_z", r"\omega_3 = \dot\theta_1\sin\theta_2 + \dot\theta_2",
+])  # fmt: skip
+def test_no_renaming_tears_axes_or_angles_from_their_names(claim):
+    """Each would be a known formula if some of its axes were exchanged, and others not."""
+    assert symrot.check(claim).verdict != "recognised"
+
+
+def test_few_symbols_are_recognised_in_the_letters_of_their_quantities():
+    assert symrot.check("H_G = I_G omega").verdict == "recognised"
+    assert symrot.check("H_G = I_G omega^2").verdict != "recognised"
+    assert symrot.check("v_1 = q v q").verdict == "definition"
+
+
+def test_lines_for_the_components_of_one_quantity_belong_together():
+    body = "ω_x = φ̇ sin θ sin ψ + θ̇ cos ψ\nω_y = φ̇ sin θ cos ψ − θ̇ sin ψ\nω_z = "
+    assert symrot.check(body + "φ̇ cos θ + ψ̇").verdict == "recognised"
+    mixed = symrot.check(body + "ψ̇ cos θ + φ̇")  # the third component in the other frame
+    assert (mixed.verdict, mixed.reason.partition(":")[0]) == (
+        "doubtful", "each line is a formula that symrot derives, but no body, frame or sequence has all of them for its components"
+    )  # fmt: skip
+
+
+def test_names_that_are_equal_have_the_same_formula():
+    assert symrot.check("Ixx = Iyy = m(3r² + h²)/12").verdict == "recognised"
+    assert symrot.check("Ixx = Iyy = m(3r² + h²)/6").verdict == "doubtful"
+
+
+@pytest.mark.parametrize("claim", ["β₀² + β₁² + β₂² + β₃² = 1", "λ_1 Ω² cos θ − λ_3 ω Ω + M g R = 0"])
+def test_a_constraint_of_quantities_is_not_called_false(claim):
+    assert symrot.check(claim).verdict == "definition"
+
+
+@pytest.mark.parametrize("claim", ["x*y == 0", "sin(x)^2 + cos(y)^2 = 1", "Rx(a)*Ry(b) == Rx(c)*Ry(b)"])
+def test_a_wrong_identity_in_letters_of_one_side_stays_false(claim):
+    assert symrot.check(claim).verdict == "false"

@@ -9,6 +9,7 @@ from functools import partial, reduce
 from typing import NamedTuple
 
 from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk
 
 __all__ = ["NamedFormula", "named_formula", "related_formula"]
@@ -59,23 +60,48 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     """
     assert claim.relation is not None
     left, right = _without_common_factors(*claim.relation[1:])
-    if claim.hypotheses or any(
-        node.kind in ("list", "index", "transpose") for tree in (left, right) for _, node in walk(tree)
-    ):
-        return None
     known = _known(claim)
     letters = [_quantities(side) for side in (left, right)]
-    if any(quantity[0] in known for quantity in (*letters[0], *letters[1])):
+    if claim.hypotheses or any(name in known for quantities in letters for name, _ in quantities):
         return None
     if all(_is_name(side) or _is_rate(side) for side in (left, right)):
         return None
-    if all(letters) and not letters[0] & letters[1]:
+    apart = all(letters) and not letters[0] & letters[1]
+    if is_matrix(claim.equation.left) or is_matrix(claim.equation.right):
+        of_names = any(_is_list_of_names(side) for side in (left, right))
+        return NamedFormula(text(left), left, right, solve=None) if apart and of_names else None
+    if apart:
         for side, formula in ((left, right), (right, left)):
             if (solution := _solution(side)) is not None:
                 (name, is_rate), solve = solution
                 return NamedFormula(name, side, formula, is_rate, solve)
         return NamedFormula(text(left), left, right, solve=None)
-    return _equation_of_motion(left, right)
+    if (equation := _equation_of_motion(left, right)) is not None:
+        return equation
+    return NamedFormula(text(left), left, right, solve=None) if _is_constraint(left, right, letters) else None
+
+
+def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, bool]]]) -> bool:
+    """Return whether a sum with several letters outside of functions is a number: q0^2 + q1^2 + q2^2 + q3^2 = 1."""
+    polynomial, constant = (left, right) if letters[0] else (right, left)
+    if polynomial.kind != "sum" or constant.kind != "number":
+        return False
+    powers = [node for _, node in walk(polynomial) if node.kind == "power"]
+    outside = {name for factor in _factors(polynomial) if _is_name(factor) for name, _ in _quantities(factor)}
+    return len(outside) > 1 and all(power.args[1].kind == "number" for power in powers)
+
+
+def _is_list_of_names(tree: Node) -> bool:
+    """Return whether a tree is a vector or matrix of names and rates alone."""
+    is_list = tree.kind == "list" or (tree.kind == "call" and tree.value == "Matrix")
+    return is_list and all(_is_name(part) or _is_rate(part) or _is_list_of_names(part) for part in tree.args)
+
+
+def _factors(tree: Node) -> list[Node]:
+    """Return the factors of all terms of a sum, without powers and signs."""
+    if tree.kind in ("sum", "product", "neg"):
+        return [factor for part in tree.args for factor in _factors(part)]
+    return _factors(tree.args[0]) if tree.kind == "power" else [tree]
 
 
 def _known(claim: Claim) -> set[str]:

@@ -56,8 +56,14 @@ class Chain:
 
     @property
     def links(self) -> tuple[Relation, ...]:
-        """The relations between neighbouring sides."""
-        return tuple(zip(self.signs, self.sides, self.sides[1:], strict=False))
+        """The relations between neighbouring sides; in ``I_x = I_y = F`` each name is compared with the formula F."""
+        formulas = [side for side in self.sides if side.kind != "name"]
+        rights = list(self.sides[1:])
+        if formulas and set(self.signs) == {"=="}:
+            for n in range(len(rights) - 2, -1, -1):
+                if self.sides[n].kind == rights[n].kind == "name":
+                    rights[n] = rights[n + 1]
+        return tuple(zip(self.signs, self.sides, rights, strict=False))
 
 
 @dataclass(frozen=True)

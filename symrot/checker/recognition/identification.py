@@ -24,6 +24,7 @@ from symrot.checker.claim.tree import Node, walk
 from symrot.checker.latex.reader import read_latex_formula
 from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, Values, fingerprint, values_at
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
+from symrot.checker.recognition.renaming import component, is_consistent
 from symrot.checker.units.units import conventional_unit
 from symrot.checker.verdict import Identification
 from symrot.errors import InputError, complaint
@@ -44,6 +45,8 @@ MOST_DRAWS = 24
 """The most points at which the constant factor between two formulas is sought."""
 FACTORS = tuple(Rational(*pair) for pair in ((1, 1), (-1, 1)))
 SCALES = (*FACTORS, *(Rational(*pair) for pair in ((2, 1), (-2, 1), (1, 2), (-1, 2), (4, 1), (1, 4))))
+FEW_SYMBOLS = 3
+"""A formula of so few symbols is recognised only in the letters that books use for its quantities."""
 LAST_FIRST = (3, 0, 1, 2)
 """The order of the rows of a scalar-last quaternion that puts the scalar first."""
 
@@ -144,10 +147,13 @@ def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
             yield name, claim.definitions.values[name]
 
 
-def identified(value: Any, steps: bool = True, named: bool = False) -> Iterator[Identification]:
+def identified(
+    value: Any, steps: bool = True, named: bool = False, quantity: str | None = None
+) -> Iterator[Identification]:
     """Yield the identifications of a SymPy value, nearest names first.
 
-    Steps of derivations are among them only if ``steps``, products of few symbols only if the value is ``named``.
+    Steps of derivations are among them only if ``steps``, products of few symbols only if the value is ``named``. In a
+    formula for a ``quantity``, given by its name, the axes and angles in the names of symbols keep their places.
     """
     entries, shape = flatten(value)
     try:
@@ -161,7 +167,7 @@ def identified(value: Any, steps: bool = True, named: bool = False) -> Iterator[
             for known in by_fingerprint().get(own.key(view.shape, view.order), ())
             if (steps or not known.is_step)
             and (named or not known.only_named)
-            and (match := _matched(known, own, entries, view)) is not None
+            and (match := _matched(known, own, entries, view, quantity)) is not None
         ]
         if matches:
             break
@@ -212,12 +218,18 @@ def _known_value(text: str) -> tuple[tuple[Expr, ...], Fingerprint]:
     return tuple(entries), fingerprint(entries)
 
 
-def _matched(known: Known, own: Fingerprint, entries: Sequence[Expr], view: View) -> Identification | None:
+def _matched(
+    known: Known, own: Fingerprint, entries: Sequence[Expr], view: View, quantity: str | None
+) -> Identification | None:
     """Return the identification if the formula is proven to be the known one."""
     theirs, print_of = _known_value(known.text)
     ordered = [entries[n] for n in view.order]
     for pairing in islice(_pairings(print_of, own, view.order), MOST_TRIES):
-        if known.only_named and not all(_is_usual(*pair) for pair in pairing.items()):
+        few = quantity is not None and len(pairing) <= FEW_SYMBOLS
+        if (known.only_named or few) and not all(_is_usual(*pair) for pair in pairing.items()):
+            continue
+        pairs = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
+        if quantity is not None and not is_consistent([*pairs, *component(known.name, quantity)]):
             continue
         factor = _factor(theirs, ordered, pairing, own.idle, SCALES if known.scaled else FACTORS)
         if factor is None:

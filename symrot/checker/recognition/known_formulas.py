@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from sympy import Expr, ImmutableMatrix, Matrix, Mul, diag
+from sympy import Expr, ImmutableMatrix, Matrix, Mul, Symbol, diag
 
 from symrot import catalogue, symbols
 from symrot.checker.recognition.fingerprint import NotInField, fingerprint
@@ -164,6 +164,26 @@ def _solids() -> Iterator[Named]:
                 yield f"moment of inertia of a {title} about {where}, {axis} axis", source, matrix[place, place]
 
 
+def _thin_bodies() -> Iterator[Named]:
+    """Yield the moments of bodies that are limits of solids, or made of rings: annulus, thin tube, conical shell."""
+    inner, outer, length, mass = (Symbol(name, positive=True) for name in ("R_1", "R_2", "L", "m"))
+    hollow = solid("hollow_cylinder")
+    tensor_of = hollow.inertia_about(tuple(hollow.center_of_mass))
+    radius = Symbol("R", positive=True)
+    source = 'symrot.solid("hollow_cylinder")'
+    flat, tube = tensor_of.subs(length, 0), tensor_of.subs({inner: radius, outer: radius})
+    height, part = Symbol("h", positive=True), Symbol("s", positive=True)
+    ring = diag(radius**2 / 2, radius**2 / 2, radius**2) * part**2 + diag(1, 1, 0) * height**2 * part**2
+    cone = (mass * 2 * part * ring).applyfunc(lambda entry: entry.integrate((part, 0, 1)))  # rings of mass 2 m s ds
+    for title, origin, matrix in (
+        ("annulus about its centre of mass", source, flat),
+        ("thin tube about its centre of mass", source, tube),
+        ("conical shell about its tip", "rings from the tip, of mass 2 m s ds", cone),
+    ):
+        for place, axis in enumerate("xyz"):
+            yield f"moment of inertia of a {title}, {axis} axis", origin, matrix[place, place]
+
+
 def _mechanics() -> Iterator[Named]:
     omega, moments = Matrix(symbols.omega_b), symbols.principal
     (xx, yy, zz), (xy, xz, yz) = symbols.moments, symbols.products
@@ -213,7 +233,18 @@ def _torques() -> Iterator[Named]:
 def stated() -> Iterator[Named]:
     """Yield the formulas of kinematics, inertia and dynamics in a fixed order, then the components of columns."""
     columns: list[Named] = []
-    for group in (_axes, _sequences, _quaternions, _vectors, _solids, _mechanics, _torques, one_axis, tops):
+    for group in (
+        _axes,
+        _sequences,
+        _quaternions,
+        _vectors,
+        _solids,
+        _thin_bodies,
+        _mechanics,
+        _torques,
+        one_axis,
+        tops,
+    ):
         for name, source, value in group():
             yield name, source, value
             if getattr(value, "shape", None) in COMPONENTS:

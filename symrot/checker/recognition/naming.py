@@ -50,7 +50,7 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"T(_?rot)?|K|K_?E|E(_?(k|kin|rot))?|KE", ("kinetic energy", "torque", "rotation matrix", "period", "energy of")),
     (r"(V|U)_?eff", ("effective potential",)),
     (r"V|U|E_?p|PE", ("potential",)),
-    (r"[HLh](_?[xyzO1-3])?", ("angular momentum", "Lagrangian", "torque")),
+    (r"[HLh](_?([xyzOGCPAB0-3]|cm))?", ("angular momentum", "Lagrangian", "torque")),
     (r"p_?(phi|theta|psi|varphi)|P_?(phi|theta|psi)", ("momentum of",)),
     (r"(M|N|tau|Gamma|Q)(_?[a-zA-Z1-3]+)?", ("torque",)),
     (r"P(_?rot)?", ("power",)),
@@ -66,6 +66,9 @@ PLUS_PRODUCTS = "for products of inertia without the minus sign, I_xy = integral
 
 SQUARED = ", squared"
 """The end of the names of those known formulas whose root has the name."""
+
+RARE = ("annulus", "thin tube", "conical shell")
+"""Bodies whose moments are not what a faulty formula is likely to mean."""
 
 COMPONENTS = {
     "first": "x1Ap", "second": "y2Bq", "third": "z3Cr", "scalar": "04sw", "x": "x1Ap", "y": "y2Bq", "z": "z3Cr",
@@ -91,7 +94,7 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     readings = _readings(claim, named, named.formula, LEAST_SYMBOLS) or _with_other_products(claim, named)
     if readings:
         return Verdict("recognised", recognised_as=readings)
-    edited = _nearest(claim, named) if repair else None
+    edited = _nearest(claim, named) if repair and _words(named) is not None else None
     if edited is not None:
         return edited
     if named.solve is None:
@@ -116,8 +119,12 @@ def _with_other_products(claim: Claim, named: NamedFormula) -> tuple[Identificat
 def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
     """Return the verdict "doubtful" if an edit of the formula is a known one, else None."""
     nearest: tuple[tuple[int, int, int], Verdict] | None = None
+    letters = _letters(named.formula)
     for edit in _edits(claim, named.formula):
-        readings = _readings(claim, named, edit.tree, LEAST_SYMBOLS_EDITED)
+        if _letters(edit.tree) < letters:  # the formula may be a more general one, with a letter of its own
+            continue
+        all_readings = _readings(claim, named, edit.tree, LEAST_SYMBOLS_EDITED)
+        readings = tuple(known for known in all_readings if not any(body in known.name for body in RARE))
         if not readings:
             continue
         strangeness = _strangeness(named, readings[0])
@@ -128,6 +135,11 @@ def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
         if not any(strangeness):
             break
     return nearest and nearest[1]
+
+
+def _letters(formula: Node) -> set[str]:
+    """Return the names in a formula."""
+    return {str(node.value) for _, node in walk(formula) if node.kind == "name"}
 
 
 def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
@@ -150,7 +162,9 @@ def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int)
     if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < least_symbols:
         return ()
     root = not is_matrix(value) and any(power.exp == Rational(1, 2) for power in Mul.make_args(value) if power.is_Pow)
-    looked_up = identified(value**2 if root else value, steps=False, named=_words(named) is not None)
+    looked_up = identified(
+        value**2 if root else value, steps=False, named=_words(named) is not None, quantity=_plain(named)
+    )
     fitting = [
         replace(known, name=known.name.removesuffix(SQUARED))
         for known in looked_up

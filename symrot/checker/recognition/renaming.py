@@ -1,0 +1,65 @@
+"""Renamings of the symbols of a known formula that keep the axes and the angles which the names say.
+
+``I_1*omega_1' = (I_3 - I_2)*omega_2*omega_3`` is Euler's equation if I_2 is renamed I_3 and I_3 is renamed I_2, but no
+reader means that: omega_2 and omega_3 keep their axes.
+"""
+
+import re
+from collections.abc import Sequence
+
+__all__ = ["component", "is_consistent"]
+
+AXIS = {letter: axis for axis, letters in ((0, "0sw"), (1, "1x"), (2, "2y"), (3, "3z")) for letter in letters}
+"""Last letter of a name -> its axis; 0 is the scalar part of a quaternion."""
+
+LETTERS = {"A": 1, "B": 2, "C": 3, "p": 1, "q": 2, "r": 3}
+"""Single letter -> its axis: principal moments, and the angular velocity of an aircraft."""
+
+CYCLIC = ((1, 2, 3), (2, 3, 1), (3, 1, 2))
+"""The orders of axes that keep right-handed axes right-handed; Euler's equations change signs under the others."""
+
+COMPONENTS = {"first": "1", "second": "2", "third": "3", "scalar": "0"}
+
+MIDDLE, OUTER = ("theta",), ("phi", "psi", "varphi")
+"""Names of the second of three Euler angles, and of the first or third."""
+
+
+def is_consistent(renaming: Sequence[tuple[str, str]]) -> bool:
+    """Return whether a renaming, pairs of a known and a new name, keeps axes together and angles with their rates."""
+    pairs = [(_angle(known), _angle(new)) for known, new in renaming]
+    if len({*pairs}) != len({known for known, _ in pairs}) or len({*pairs}) != len({new for _, new in pairs}):
+        return False
+    angles = [pair for pair in pairs if {*pair} <= {*MIDDLE, *OUTER}]
+    if len(angles) > 1 and any((known in MIDDLE) != (new in MIDDLE) for known, new in angles):
+        return False
+    axes = [(_axes(known), _axes(new)) for known, new in pairs]
+    return any(_keeps(axes, order) for order in CYCLIC)
+
+
+def component(known: str, quantity: str) -> list[tuple[str, str]]:
+    """Return the component of a known formula with the name of a quantity, as a pair of a renaming; or no pair."""
+    word, _, rest = known.partition(" ")
+    if word not in COMPONENTS or not rest.startswith("component") or not _axes(quantity):
+        return []
+    return [(f"component_{COMPONENTS[word]}", quantity)]
+
+
+def _angle(name: str) -> str:
+    """Return the name of the quantity of which a name is a rate or a value in time; any other name as it is."""
+    while (inner := re.fullmatch(r"diff\((.+?)(?:, t)+\)|(.+)\(t\)|d{1,2}(phi|theta|psi)", name)) is not None:
+        name = next(part for part in inner.groups() if part)
+    return name
+
+
+def _axes(name: str) -> frozenset[int]:
+    """Return the axes in the index of a name: {1, 2} for I_xy, {3} for omega_3 and for C; empty without an index."""
+    if name in LETTERS:
+        return frozenset({LETTERS[name]})
+    index = re.fullmatch(r"[A-Za-z]+?_?([0-3]|[xyz]|11|22|33|12|13|23|21|31|32|[xyz]{2})", name)
+    return frozenset(AXIS[letter] for letter in index[1]) if index else frozenset()
+
+
+def _keeps(axes: Sequence[tuple[frozenset[int], frozenset[int]]], order: Sequence[int]) -> bool:
+    """Return whether the new axes are the known ones in another order of all three."""
+    places = {0: 0, **dict(zip((1, 2, 3), order, strict=True))}
+    return all(not known or not new or {places[axis] for axis in known} == new for known, new in axes)

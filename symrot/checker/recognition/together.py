@@ -1,0 +1,50 @@
+"""Formulas for the components of one vector or tensor, line by line: are they of one body, frame and sequence?"""
+
+import re
+from collections.abc import Collection, Iterator, Sequence
+from itertools import product
+
+from symrot.checker.verdict import Identification, Verdict
+
+__all__ = ["fit_together"]
+
+PLACE = re.compile(r"(first|second|third|scalar) component of the |, ([xyz]) axis$")
+"""The words in the name of a known formula that say which component or axis it is."""
+
+
+def fit_together(lines: Sequence[tuple[str, Collection[str], Verdict]]) -> bool:
+    """Return whether recognised lines have readings as components of one quantity.
+
+    A line is given by the name of its left side, the names in its formula, and its verdict. Lines for omega_x, omega_y,
+    .. fit together if the names of their readings differ in the component alone, no two lines name the same component,
+    and each letter stands for the same quantity in all of them.
+    """
+    groups: dict[str, list[list[tuple[Identification, dict[str, str]]]]] = {}
+    for name, letters, verdict in lines:
+        base = re.sub(r"_?([0-3]|[xyz]|[xyz]{2})$", "", name)
+        if verdict.recognised_as and base != name:
+            readings = [(known, _meanings(known, letters)) for known in verdict.recognised_as]
+            groups.setdefault(base, []).append(readings)
+    return all(any(_fit(choice) for choice in product(*group)) for group in groups.values())
+
+
+def _meanings(known: Identification, letters: Collection[str]) -> dict[str, str]:
+    """Return, for each letter of a formula, the letter of the known formula that it stands for."""
+    renamed = {new: mine for mine, new in known.mapping.items()}
+    return {letter: letter for letter in letters} | renamed
+
+
+def _fit(choice: Sequence[tuple[Identification, dict[str, str]]]) -> bool:
+    """Return whether formulas, one from each line, are different components of one quantity."""
+    places = [tuple(_places(known.name)) for known, _ in choice]
+    if not all(places):
+        return True
+    wholes = {PLACE.sub("", known.name) for known, _ in choice}
+    meanings: dict[str, str] = {}
+    same = all(meanings.setdefault(new, mine) == mine for _, own in choice for new, mine in own.items())
+    return same and len(wholes) == 1 and len({*places}) == len(places)
+
+
+def _places(name: str) -> Iterator[str]:
+    for match in PLACE.finditer(name):
+        yield match[1] or match[2]
