@@ -14,6 +14,7 @@ import symrot
 
 ROOT = Path(symrot.__file__).parents[1]
 SECONDS = 20  # a command that swallows the signal, or waits for another process, takes longer on any machine
+AT_ITS_END = 0.3  # s after the signal: a command that ends by itself so soon has printed its result already
 KERNELS = [str(path) for path in sorted((ROOT / "generated" / "c").glob("*.cert.json"))[:30]]
 INTERRUPTED = (130, -signal.SIGINT)  # a shell shows 130 for both; the second where Python was about to end anyway
 COMMANDS = {
@@ -73,7 +74,10 @@ def test_a_command_ends_when_it_is_interrupted(command, to_group, tmp_path):
     if process.poll() is not None:
         process.communicate()
         pytest.skip("it was done before")
+    sent = time.monotonic()
     assert interrupted(process, to_group) == ""
+    if process.returncode == 0 and time.monotonic() - sent < AT_ITS_END:
+        pytest.skip("it was done when the signal arrived")
     assert process.returncode in INTERRUPTED
     with pytest.raises(ProcessLookupError):
         for _ in range(100):  # a process that was killed may still have to be collected
