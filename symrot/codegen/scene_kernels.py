@@ -105,7 +105,7 @@ def rates_source(rates: Lowered) -> str:
 
 
 def with_values(program: Program, parameters: Parameters, constants: Mapping[str, Fraction]) -> Program:
-    """Return a program in which the meaning of each parameter is its formula and value, for the head of its file."""
+    """Return a program whose parameters are described by formula and value, for the head comment of its C."""
     values = bind(parameters, constants)
     described = tuple(
         (name, "", f"{text(formula)} = {value!r}") for (name, formula), value in zip(parameters, values, strict=True)

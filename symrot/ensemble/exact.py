@@ -291,7 +291,7 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
 
 
 def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
-    """Yield the trajectories of one closed form in parts that share an axis.
+    """Yield the trajectories of one closed form in groups with the same symmetry axis of the body.
 
     Heavy tops are split by the side of the fixed point on which their centre of mass lies.
     """

@@ -267,7 +267,7 @@ class Derivation(PrintedPage):
         return values
 
     def _note(self, left: Any, right: Any) -> None:
-        """Store the meaning of a name on the page, if its value is a formula or LaTeX that can be read."""
+        """Record that the name ``left`` stands for ``right`` in the printed derivation, if ``right`` is a formula."""
         if isinstance(right, str):
             try:
                 right = self._read(right)[-1]

@@ -77,7 +77,7 @@ class Setup:
     Attributes
     ----------
     plan : Plan
-        With any start of the structure.
+        The plan of the scene, with any initial state of the same form: each motion has its own.
     choice : Choice
         The method, and why.
     tolerance : float
@@ -89,7 +89,7 @@ class Setup:
     epoch : float
         Time of the scene, s, at which the clock of the motions shows 0.
     allows_time_shift : bool
-        Whether stepped motions may take another clock.
+        Whether the origin of time of stepped motions may be moved.
     warnings : tuple of str
         Sentences about accuracy that cannot be guaranteed.
     """

@@ -286,7 +286,7 @@ class LawProver(FormulaReader):
                 self.step("sum", str(angle_so_far), str(coefficient * unit))
             angle_so_far, result = angle_so_far + coefficient * unit, self._sum_of_angles(result, pair)
         if right_angles.denominator != 1:
-            raise CertificateError(f"{self.name}: expected a sine of angles plus whole right angles, got {above}")
+            raise CertificateError(f"{self.name}: expected the sine of angles and a multiple of pi/2, got {above}")
         for _ in range(abs(int(right_angles))):
             direction = 1 if right_angles > 0 else -1
             self.step("quarter" if direction > 0 else "quarter back", str(angle_so_far))

@@ -222,7 +222,7 @@ def _constants(path: Path, where: str) -> dict[str, bytes]:
             row = _BYTES.match(dumped)
             if row is not None:
                 if int(row["address"], 16) != len(content):
-                    raise CertificateError(f"{where}: expected the bytes of {name} in order")
+                    raise CertificateError(f"{where}: expected the bytes of {name} at consecutive addresses")
                 content += bytes.fromhex(row["words"])
         if len(content) != size:
             raise CertificateError(f"{where}: expected {size} bytes in {name}, objdump shows {len(content)}")

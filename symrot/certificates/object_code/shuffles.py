@@ -144,7 +144,7 @@ def _shift_bytes(left: bool) -> Shuffle:
 def _constant(state: MachineState, word: int) -> int:
     value = state.context.terms.constant(word)
     if value is None:
-        raise NotUnderstood("a shuffle by places that are not constant")
+        raise NotUnderstood("a shuffle whose lane numbers are not constants")
     return value
 
 

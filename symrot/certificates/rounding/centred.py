@@ -1,8 +1,8 @@
 """Enclosures of polynomials by mean value forms, from the value at the middle of a box and derivatives on the box.
 
 Plain intervals of ``x*y - x*z`` ignore that both factors x are the same number. The mean value form
-``f(c) + sum of f_k'(box)*(x_k - c_k)`` accounts for it, to first order in the width. The enclosed values are those
-between exact and computed: values of the polynomial, plus at most the rounding errors of the operations so far.
+``f(c) + sum of f_k'(box)*(x_k - c_k)`` accounts for it, to first order in the width. An enclosure contains
+the exact value, the computed value and all between: values of the polynomial, plus the rounding errors made so far.
 """
 
 from collections.abc import Sequence

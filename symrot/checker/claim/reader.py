@@ -35,7 +35,7 @@ Relation = tuple[str, Node, Node]
 
 @dataclass(frozen=True)
 class Declared:
-    """The names that a claim declares or defines: symbols and functions of time. They are never split."""
+    """The names that a claim declares: symbols and functions of time. None is read as a product, ``ab`` as ``a*b``."""
 
     symbols: Collection[str] = ()
     functions: Collection[str] = ()

@@ -56,7 +56,7 @@ def point_of_quadric(poly: PolyElement, places: Sequence[int], source: Random) -
 
 
 def _simple_point(poly: PolyElement, places: Sequence[int], source: Random) -> dict[int, Any] | None:
-    """Return a rational point all of whose coordinates but one are simple, or None."""
+    """Return a rational point where a polynomial is zero, or None; all unknowns but one have numbers of few digits."""
     for attempt in range(TRIES):
         last = source.choice(places)
         pool = SIMPLE[: 3 + attempt // 4]

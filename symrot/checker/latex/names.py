@@ -177,7 +177,7 @@ class NamesPart(SumsPart):
 
 
 def appended(node: Node, variable: Node) -> Node:
-    """Return the derivative of a tree with respect to one more variable."""
+    """Return the derivative of a formula; if it is a derivative already, the variable is added to its variables."""
     if node.kind == "call" and node.value == "diff" and node.args[-1] == variable == TIME:
         return Node("call", "diff", (*node.args, variable))
     return Node("call", "diff", (node, variable))

@@ -44,7 +44,7 @@ class Candidate(NamedTuple):
 
 
 class NumericFilter:
-    """A fast test of repairs: the claim is evaluated at points that obey its hypotheses, after changes of its trees."""
+    """A fast test of proposed repairs: the repaired claim is evaluated at points that obey its hypotheses."""
 
     def __init__(self, claim: Claim) -> None:
         assert claim.relation is not None

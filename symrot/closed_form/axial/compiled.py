@@ -138,8 +138,8 @@ class Constants:
     def moving(self, rate: Fraction | float, turned: bool) -> list[float]:
         """Return the numbers of the C struct `axial` (axial.h) for an initial rate about the axis, rad/s.
 
-        They include one struct `turning`: `half` (half the angle, for the attitude), or, if ``turned``, `lag` (the
-        rotation of the transverse angular velocity in the body).
+        One is a struct `turning`: with ``turned`` it is `lag`, the rotation of the transverse angular velocity in
+        the body; otherwise it is `half`, half the rotation angle, for the attitude.
         """
         turn, bits, fixed = self._turns.get(turned) or self._turning(turned)
         top, bottom = rate.as_integer_ratio()

@@ -327,7 +327,7 @@ class _Jet:
     def loops(self) -> list[str]:
         """Return the C loops over known coefficients for the orders n (even) and m = n + 1.
 
-        The sums a run over k + j = n, the sums b over k + j = m.
+        The sums named ``a`` collect the products with k + j = n, those named ``b`` the products with k + j = m.
         """
         return [line for group in self._groups() for line in self._loop(group)]
 

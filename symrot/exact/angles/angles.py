@@ -88,7 +88,7 @@ def constant_cosine_sine(half_turns: Fraction) -> tuple[Expr, Expr]:
 
 
 def base_angle(atom: Expr, coefficient: Fraction) -> Expr:
-    """Return the base angle of an atom as an expression, rad."""
+    """Return the angle, rad, of which all multiples of an atom are whole multiples: a coefficient times the atom."""
     return Rational(coefficient.numerator, coefficient.denominator) * atom
 
 

@@ -200,7 +200,7 @@ class _Interpreter(Cursor):
             first, *others = [self.value(side) for side in divided(equation, "=")]
             places += [(first, others[0])] if len(others) == 1 else [(other, first) for other in others]
             if not others or not all(getattr(variable, "is_Symbol", False) for variable, _ in places):
-                raise Unread("a place other than of a symbol")
+                raise Unread("the value of something other than a symbol as the place of evaluation")
         return value.subs(dict(places), simultaneous=True)
 
     def function(self, function: Callable[[Any], Any]) -> Any:
