@@ -119,7 +119,7 @@ class _Jet:
         return f"x[{row}]" if row < self.own_rows else f"u{row}"
 
     def newest(self, pack: Pack) -> str:
-        """Return the C expression for the coefficient of a pack (series in one SIMD register) that is not stored yet."""
+        """Return the C expression for the newest coefficient of a pack: of the series in one SIMD register."""
         return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
 
     def picked(self, pack: Pack) -> str:
