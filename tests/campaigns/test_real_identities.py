@@ -137,11 +137,13 @@ WRONG = (
 )  # fmt: skip
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(("claim", "verdict", "words"), [row for row in WRONG if row[2]], ids=str)
 def test_the_judge_refuses_a_wrong_verdict(claim, verdict, words):
     assert words in fault(claim, verdict, Random(1))
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(("claim", "verdict"), [
     ("sqrt(x**2) == abs(x)", Verdict("true")), ("log(log(x)**(1/5) - 2) == log(log(x)**(1/5) - 2)", Verdict("true")), ("sqrt(x**2) == x", Verdict("conditional", requires=("x >= 0",))),
     ("sqrt(x) == x", Verdict("false", counterexample=AT_HALF)), ("sqrt(x) == x", Verdict("undecided")),

@@ -226,6 +226,7 @@ def test_the_wide_constants_are_needed(monkeypatch):
     assert worst([motion])[1] > 1e9 * BAR
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     "motion", [(1e3, 0.25, 1e-12, [1e3, 1e11]), (1e4, 1e4, 0, [1e15, -1e16]), (1.0, 0.0, 2.0, [-30.0, 1.0, -200.0])]
 )

@@ -128,6 +128,7 @@ def test_errors_are_seen():
     assert 1e-14 < apart < 1e-11
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     "omega, q0",
     [((F(3, 10), F(4, 5), 0), tilted(F(3, 2))), ((F(1, 2), 0, 0), tilted(2)), ((3, 0, 0), tilted(2)),

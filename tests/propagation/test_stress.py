@@ -19,6 +19,7 @@ def test_the_list_is_complete():
     assert [each.id for each in stress.STRESSES] == [f"S{k}" for k in range(1, 43)]
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=[pytest.mark.long_motion] * (name in FLAGS_THAT_SHIP)) for name in SUITE]
 )
