@@ -132,8 +132,13 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
 
 def _on_latex(source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool) -> Verdict:
     """Return the verdict on a claim in LaTeX, with its reading and its repairs in LaTeX."""
+    from symrot.checker.latex.reader import latex_sides
     from symrot.checker.latex.writing import latex_of, latex_of_text
 
+    if source.count("=") > 1 and len(sides := latex_sides(source)) > 2:
+        verdict = verdict_on_text(" = ".join(sides), assume, units, repair)
+        repairs = tuple(replace(near, text=latex_of_text(near.text)) for near in verdict.repairs)
+        return replace(verdict, text=source.strip(), reading="", repairs=repairs)
     claim = claim_of_text(source, assume, units or {})
     assert claim.relation is not None
     verdict = check_claim(claim, repair)

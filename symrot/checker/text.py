@@ -141,12 +141,13 @@ def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], not
                 counted.append(verdict)
     counted = counted or list(verdicts)
     worst = min(counted, key=lambda verdict: WORST_FIRST.index(verdict.verdict))
-    by_line = [
-        (str(line[0].relation[1].value), _names(line[0].relation[2]), verdict)
-        for line, verdict in zip(lines, verdicts, strict=False)
-        if total == len(lines) and line[0].relation is not None
+    claims = [claim for line in lines for claim in line]
+    by_name = [
+        (str(claim.relation[1].value), _names(claim.relation[2]), verdict)
+        for claim, verdict in zip(claims, verdicts, strict=True)
+        if claim.relation is not None and claim.relation[1].kind == "name"
     ]
-    if worst.verdict == "recognised" and not fit_together(by_line):
+    if worst.verdict == "recognised" and not fit_together(by_name):
         worst = replace(worst, verdict="doubtful", recognised_as=(), reason=APART)
     claim_notes = [note for line in lines for claim in line for note in claim.notes]
     seconds = sum(verdict.seconds for verdict in verdicts)

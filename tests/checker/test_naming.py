@@ -212,3 +212,11 @@ def test_a_constraint_of_quantities_is_not_called_false(claim):
 @pytest.mark.parametrize("claim", ["x*y == 0", "sin(x)^2 + cos(y)^2 = 1", "Rx(a)*Ry(b) == Rx(c)*Ry(b)"])
 def test_a_wrong_identity_in_letters_of_one_side_stays_false(claim):
     assert symrot.check(claim).verdict == "false"
+
+
+def test_chains_in_latex_are_decided_link_by_link():
+    assert symrot.check(r"\cos 2\theta = \cos^2\theta - \sin^2\theta = 1 - 2\sin^2\theta").verdict == "true"
+    wrong = symrot.check(r"\cos 2\theta = \cos^2\theta - \sin^2\theta = 2\cos^2\theta + 1")
+    assert (wrong.verdict, wrong.repairs[0].text) == ("false", r"\cos^2(\theta) - \sin^2(\theta) = 2 \cos^2(\theta) - 1")
+    assert symrot.check(r"I_{xx} = I_{yy} = \frac{1}{2} m r^2").verdict == "recognised"
+    assert symrot.check(r"I_{xx} = I_{yy} = \frac{1}{12} m (2 r^2 + h^2)").verdict == "doubtful"  # no body has both

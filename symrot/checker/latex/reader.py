@@ -15,7 +15,7 @@ from symrot.checker.latex.cursor import TIME, UPRIGHT, Names
 from symrot.checker.latex.names import NAME_MARKS, OPERATORS, VECTOR_MARKS
 from symrot.checker.latex.sums import FUNCTIONS
 
-__all__ = ["Names", "Reading", "read_latex", "read_latex_formula"]
+__all__ = ["Names", "Reading", "latex_sides", "read_latex", "read_latex_formula"]
 
 
 @dataclass(frozen=True)
@@ -58,6 +58,23 @@ def read_latex(source: str, where: str = "", names: Names | None = None) -> Read
         raise reader.fail("one '=' in a claim, not a chain of them" if reader.at("=") else "an operator or the end")
     claim = " == ".join(text(_timed(side, reader.timed)) for side in (left, right))
     return Reading(read_relation(claim, where), claim)
+
+
+def latex_sides(source: str, where: str = "") -> list[str]:
+    """Return the sides of a chain ``a = b = c`` in LaTeX, each in the language of claims.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_latex`.
+    """
+    reader = _Interpreter(source, where, Names())
+    sides = [reader.expression()]
+    while reader.take("="):
+        sides.append(reader.expression())
+    if reader.peek().kind != "end":
+        raise reader.fail("an operator or '='")
+    return [text(_timed(side, reader.timed)) for side in sides]
 
 
 def read_latex_formula(source: str, where: str = "") -> str:

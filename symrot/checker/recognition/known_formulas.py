@@ -155,7 +155,8 @@ def _solids() -> Iterator[Named]:
         body, title = solid(name), name.replace("_", " ")
         places = [("its centre of mass", tuple(body.center_of_mass))]
         if any(body.center_of_mass):
-            places.append((shape.axes.split(",")[0].removeprefix("origin at ").removeprefix("corners "), (0, 0, 0)))
+            origin = shape.axes.partition(",")[0].removeprefix("origin at ")
+            places.append(("the corner at (0, 0)" if origin.startswith("corners ") else origin, (0, 0, 0)))
         for where, point in [*places, *PLACES.get(name, ())]:
             matrix = body.inertia_about(point)
             source = f'symrot.solid("{name}").inertia_about(({", ".join(map(str, point))}))'
