@@ -1,8 +1,4 @@
-"""Definite integrals of polynomials times sines and cosines of linear angles: by parts, exactly.
-
-``v^n exp(i (k v + c))`` has a closed antiderivative; every sine and cosine is a sum of two such exponentials. The
-integrand is real, so the terms with ``i`` in the result cancel and are left out.
-"""
+"""Definite integrals of polynomials times sines and cosines of angles linear in the variable: exactly, by parts."""
 
 from functools import lru_cache
 
@@ -18,7 +14,9 @@ MOST_TERMS = 2000
 
 @lru_cache(maxsize=64)
 def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Expr) -> tuple[Expr, tuple[Expr, ...]]:
-    """Return the integral over an interval, and the coefficients that it divides by.
+    """Return the integral over an interval, and the coefficients of the variable that its value divides by.
+
+    The integral of cos(k x), for example, divides by k.
 
     Parameters
     ----------
