@@ -45,7 +45,7 @@ def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
 
 
 def _is_imaginary(product: Node, letter: str) -> bool:
-    """Return whether a product holds only the letter, numbers and sines, as ``I*sin(theta)`` with the imaginary unit."""
+    """Return whether a product holds only the letter, numbers and sines: in ``I*sin(theta)``, I is imaginary."""
     others = [factor for factor in product.args if (factor.kind, factor.value) != ("name", letter)]
     pure = all(
         factor.kind == "number" or (factor.kind == "call" and factor.value in ("sin", "cos", "sinh"))

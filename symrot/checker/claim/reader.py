@@ -200,7 +200,7 @@ class _Text:
     def words(
         self, alone: Collection[str], flips: Collection[tuple[str, int]]
     ) -> tuple[dict[str, tuple[str, ...]], list[str], list[Doubt]]:
-        """Return the words that are several names (``mgl`` is m g l), with sentences about them, and the doubtful words."""
+        """Return the words that are several names (``mgl`` is m g l), sentences about them, and the doubtful words."""
         words: dict[str, tuple[str, ...]] = {}
         notes, doubts = [], []
         alone = {*alone}

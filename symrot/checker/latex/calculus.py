@@ -48,7 +48,7 @@ class CalculusPart(NamesPart):
         return product(factors)
 
     def is_spaced(self) -> bool:
-        """Return whether a LaTeX command for a space, such as ``\,``, is directly before the cursor."""
+        r"""Return whether a LaTeX command for a space, such as ``\,``, is directly before the cursor."""
         return self.peek().start in self.after_space
 
     def root(self, root: tree.Root) -> Node:

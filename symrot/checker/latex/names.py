@@ -109,7 +109,7 @@ class NamesPart(SumsPart):
         self.refuse_call()
 
     def marked(self, mark: tree.Accent | tree.Font) -> Node:
-        """Read a defined vector or matrix with a mark, such as ``\vec{r}``, ``\mathbf R`` or ``\hat n``."""
+        r"""Read a defined vector or matrix with a mark, such as ``\vec{r}``, ``\mathbf R`` or ``\hat n``."""
         inside = tree.alone(mark.inside)
         if inside.kind == "number" and mark.text in BOLD:
             raise self.fail("eye(n) among the definitions for a unit matrix", inside)
@@ -126,7 +126,7 @@ class NamesPart(SumsPart):
         return node
 
     def under(self, mark: tree.Accent | tree.Font, read: Callable[[], Node]) -> Node:
-        """Read the formula under a mark, with the subscript and primes after the mark, as in ``\dot{\mathbf{H}}_G``."""
+        r"""Read the formula under a mark, with the subscript and primes after the mark: ``\dot{\mathbf{H}}_G``."""
         scripts = []
         while script := self.script("_") or self.script("'"):
             scripts.append(script)

@@ -198,7 +198,7 @@ class Cursor(ABC):
         return token.kind == "name" or token.text in FACTOR_MARKS or (token.text == "|" and not self.bars)
 
     def end_of_run(self) -> int:
-        """Return the number of the token after the factor at the cursor."""
+        """Return the position in the text at which the factor at the cursor ends."""
         depth = 0
         for token in self.tokens[self.index :]:
             depth += (token.text in ("(", "[")) - (token.text in (")", "]"))

@@ -30,7 +30,7 @@ class Parser(PiecesPart):
         return node
 
     def relation(self) -> tuple[list[str], list[Node]]:
-        """Read the sides of an equation or of a chain ``a = b = c``; return the signs between the sides, and the sides."""
+        """Read the sides of an equation, or of a chain ``a = b = c``; return the signs between them, and the sides."""
         if self.token().text == "Eq" and self.token(1).text == "(":
             self.index += 2
             sides = self.members(")")

@@ -51,7 +51,7 @@ class OpenFunctionsPart(Cursor):
         return Node("neg", None, (value,), value.span) if negative else value
 
     def open_call(self, function: str, token: Token, exponent: Node | None) -> tuple[Node, Node | None]:
-        """Read the argument of a function without brackets; return the call, and an exponent that applies to the call."""
+        """Read the argument of a function without brackets; return the call, and an exponent of the whole call."""
         self.plain = True
         first = self.token()
         if first.kind not in ("number", "name", "fraction") and first.text not in ("√", "-", "[", "|"):
@@ -96,7 +96,7 @@ class OpenFunctionsPart(Cursor):
         return last.args[1]
 
     def absorbs(self, function: Token, factors: list[Node]) -> bool:
-        """Return whether the next factor belongs to the argument of a function without brackets, as x in ``sin 2 x``."""
+        """Return whether the next factor belongs to the argument of a function without brackets: x in ``sin 2 x``."""
         token = self.token()
         if token.text in ("*", "·") and token.kind == "mark":
             if self.other_reading("product after argument", token.start, function.start, self.token(1).end):
@@ -116,7 +116,7 @@ class OpenFunctionsPart(Cursor):
         return self.other_reading("argument", token.start, function.start, self.end_of_run()) != usual
 
     def slash_belongs(self, function: Token, factors: list[Node]) -> bool:
-        """Return whether a slash after a function without brackets divides the argument: ``sin x/2`` read as sin(x/2)."""
+        """Return whether a slash after a function without brackets divides the argument: ``sin x/2`` as sin(x/2)."""
         slash, below = self.token(), self.token(1)
         if below.kind == "name" and (self.vocabulary.function(below.text) or below.text in SINGLE_ARGUMENT):
             return False

@@ -160,7 +160,7 @@ class PiecesPart(OpenFunctionsPart):
         return product([above, Node("inv", None, (below,), below.span)], call.span)
 
     def symbol(self, token: Token) -> Node:
-        """Read a name that is not a built-in function: a symbol, perhaps with a factor in brackets, or a function of time."""
+        """Read a name that is not a built-in function: a symbol, perhaps before a bracket, or a function of time."""
         word = token.text
         inside = [self.token(n).text for n in range(1, 3)]
         if self.peek() == "(" and (inside == ["t", ")"] or not self.is_factor(word)):
