@@ -75,7 +75,7 @@ def related_formula(claim: Claim) -> NamedFormula | None:
 
 
 def _known(claim: Claim) -> set[str]:
-    """Return the names that a hypothesis or a definition of the claim gives a value."""
+    """Return the names that need no formula: pi, the time t, and the names that the claim defines."""
     return {"pi", "t", *(name for name, _ in claim.define)}
 
 

@@ -60,7 +60,7 @@ class Notation:
         return replace(node, args=tuple(args))
 
     def _in_full(self, node: Node) -> Node:
-        """Return the tree of a formula to be differentiated, with its functions of time in full: ``f(t)``, not ``f``."""
+        """Return the tree of a formula to be differentiated, with functions of time in full: ``f(t)``, not ``f``."""
         name = self.spelling.get(str(node.value), node.value) if node.kind in ("name", "call") else node.value
         return replace(node, value=name, args=tuple(map(self._in_full, node.args)))
 

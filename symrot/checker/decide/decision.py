@@ -169,9 +169,9 @@ class _ClaimCase(Case):
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
     def within_domain(self, search: Search) -> Search:
-        """Return a search for points that skips those where the sides as written have no value, say since a divisor is zero.
+        """Return a search for points that skips the points where a side, as it is written, has no value.
 
-        SymPy may have cancelled such a divisor.
+        An example is a point where a divisor that SymPy has cancelled is zero.
         """
 
         def searched(
@@ -184,7 +184,7 @@ class _ClaimCase(Case):
         return searched if self.ring.domain else search
 
     def conditions_of(self, rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
-        """Return the conditions of a proof, sorted by their texts, without those that assumptions or hypotheses grant."""
+        """Return the conditions of a proof in alphabetical order, without those that the hypotheses grant."""
         ring, granted = self.ring, self.nonzero_factors
         forms = [*domain.divisors(ring, granted), *(pair for other in rings for pair in domain.divisors(other))]
         free = set(domain.divisors(ring)) - set(domain.divisors(ring, granted))
@@ -243,7 +243,10 @@ def nearby_witness(case: _ClaimCase) -> None:
 
 
 def branch(case: _ClaimCase) -> Decision | None:
-    """Decide a claim that is true for one sign of a root or one branch of an inverse function, if its domain allows no other."""
+    """Decide a claim that is true for one sign of a root, or on one branch of an inverse function such as asin.
+
+    It is true if the domain of the claim allows no other sign or branch.
+    """
     case.branches, rings = _branches(case.ring, case.numerators)
     case.rely_on((*case.proof_rings, *rings))
     if case.branches is None:
@@ -302,7 +305,7 @@ STAGES = (
 
 
 def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision:
-    """Return "conditional" instead of "true" if the sides differ at a point that the conditions of the decision exclude.
+    """Return a decision that is conditional if the sides differ at a point that its conditions exclude.
 
     All functions but atan2 are continuous where they are defined: sides that are equal where no divisor of the proof
     vanishes are equal in between too. atan2 jumps where its first argument is zero and its second argument is negative.
@@ -386,7 +389,10 @@ def _degree(node: Expr, known: dict[Expr, int]) -> int:
 
 
 def _multiple(argument: Expr) -> int:
-    """Return roughly by which factor the argument of a sine exceeds the simplest angle in it: 3 for sin(3*x)."""
+    """Return the sum of numerator times denominator of the coefficients in an angle: 5 for 3*x + y/2.
+
+    It estimates the degree of the sine of the angle in the sines and cosines of x and y/2.
+    """
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
         number, atom = term.as_coeff_Mul()

@@ -120,7 +120,7 @@ class Hypotheses:
         return bool(self.ring.hypotheses and not zeros and self._drawn_point(needs, ATTEMPTS))
 
     def _refuse_if_excluded(self) -> None:
-        """Raise InputError if, under the hypotheses, a divisor is the number zero or a radicand is a negative number."""
+        """Raise InputError if the hypotheses make a divisor the number zero, or a radicand a negative number."""
         for need in self.needs if self.ring.hypotheses else ():
             try:
                 reduced = normal_form(need.formula, self.ring.hypotheses)
@@ -158,7 +158,7 @@ class Hypotheses:
         return zero or holds(need, {})
 
     def _drawn_point(self, needs: Sequence[Need], attempts: int) -> bool:
-        """Return whether one of the exact points that obey the hypotheses provably satisfies the conditions ``needs``."""
+        """Return whether an exact point that obeys the hypotheses is found that provably meets the conditions ``needs``."""
         if not self.constraints.complete:
             return False
         formulas = [need.formula for need in needs]

@@ -132,7 +132,7 @@ class _Prover:
         ]
 
     def parts(self, poly: PolyElement) -> list[PolyElement]:
-        """Return polynomials that vanish wherever ``poly`` vanishes: each term if all terms have one sign, else ``poly``."""
+        """Return polynomials that vanish wherever ``poly`` does: its terms if all have one sign, else ``poly`` itself."""
         signs = {self.sign_of_term(mono, coefficient) for mono, coefficient in poly.items()}
         if len(poly) > 1 and (signs <= {1} or signs <= {-1}):
             radicals = [tuple(min(power, 1) for power in mono) for mono in poly]
@@ -143,7 +143,7 @@ class _Prover:
     # -- signs --------------------------------------------------------------------------------------------------------
 
     def sign_of_term(self, mono: tuple[int, ...], coefficient: Any) -> int:
-        """Return +1 for a term that is never negative, -1 for a term that is never positive, and 0 for any other term."""
+        """Return +1 for a term that is never negative, -1 for one that is never positive, 0 for any other term."""
         sign = 1 if coefficient > 0 else -1
         for place, power in enumerate(mono):
             if power % 2 and place in self.constraints.negative:
@@ -165,7 +165,10 @@ class _Prover:
         return self.one_signed(poly) or self.rootless(poly) or self.out_of_range(poly, zeros)
 
     def rootless(self, poly: PolyElement) -> bool:
-        """Return whether a polynomial in one unknown has no real root of the sign that the unknown has (Sturm's theorem)."""
+        """Return whether a polynomial in one unknown has no real root of the sign that the unknown has.
+
+        The roots are counted by Sturm's theorem.
+        """
         places = occurring([poly])
         if len(places) != 1:
             return False

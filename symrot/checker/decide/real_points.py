@@ -48,7 +48,7 @@ class _DeadEnd(Exception):
 
 @dataclass(frozen=True)
 class RealPoint:
-    """Values of the generators (the unknowns of a ring) in one field: rational numbers, or real algebraic numbers too."""
+    """Values of the generators (the unknowns of a ring) in one field: the rational or some real algebraic numbers."""
 
     values: dict[int, Any]
     field: Any = QQ
@@ -157,7 +157,7 @@ class _Drawing:
         raise _DeadEnd
 
     def completed(self) -> RealPoint:
-        """Give values to the unknowns that no equation restricts, then to the unknowns that equations express by others."""
+        """Give values to the unknowns that no equation restricts, then to those that equations express by other unknowns."""
         later = {place for place, _, _ in self.solved}
         for place in sorted(self.constraints.free - later - self.values.keys()):
             self.values[place] = self.field.convert(self.drawn(place), QQ)
@@ -327,7 +327,7 @@ def _as_rational(value: Any, field: Any) -> Any:
 
 
 def _eliminated(poly: PolyElement, place: int, above: PolyElement, below: PolyElement) -> PolyElement:
-    """Return a polynomial with ``above/below`` in place of a generator (unknown), multiplied by a power of ``below``."""
+    """Return a polynomial with ``above/below`` in place of an unknown, multiplied by a power of ``below``."""
     degree = poly.degrees()[place]
     if not degree:
         return poly

@@ -98,7 +98,7 @@ class Point:
     lifted: dict[Any, "Point"] = field(default_factory=dict)
 
     def value(self, node: Node) -> Any:
-        """Return a number or the rows of a matrix.
+        """Return the value of a tree at the point: a number, or the rows of a matrix.
 
         Raises
         ------
@@ -121,11 +121,11 @@ class Point:
         return value
 
     def redefined(self, name: str, node: Node) -> "Point":
-        """Return the point with one definition replaced."""
+        """Return a copy of the point with one definition replaced."""
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
     def raised(self, variable: Node) -> "Point":
-        """Return the point lifted to dual numbers along a variable: a symbol, ``f(t)``, or ``diff(f(t), t)``."""
+        """Return the point with a dual number for a variable (a symbol, ``f(t)``, or ``diff(f(t), t)``), to differentiate by it."""
         order = 0
         inner = variable
         while inner.kind == "call" and inner.value == "diff":
@@ -241,7 +241,7 @@ def _differentiated(point: Point, formula: Node, variables: Sequence[Node]) -> A
 
 
 def _integrated(point: Point, integrand: Node, ranges: Sequence[Node]) -> Any:
-    """Return an integral over a box by Gauss-Legendre quadrature, on all nodes at once; outer variables come first."""
+    """Return an integral over a box by Gauss-Legendre quadrature, at all nodes together; outer variables come first."""
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS[min(len(ranges), 3)])
     inner, total = point, np.ones((1,) * len(ranges))
     for axis, part in enumerate(ranges):
@@ -326,8 +326,8 @@ def points(
 ) -> list[Point]:  # fmt: skip
     """Return random points, the same in every run, that obey the hypotheses to double precision.
 
-    Symbols lie between 0.3 and ``most`` before Newton's method moves them onto the hypotheses. There are fewer than
-    ``count`` points if it fails. Values of the trees in ``remembered``, by identity, are stored.
+    Symbols lie between 0.3 and ``most`` before Newton's method moves them until the hypotheses hold; if that fails,
+    there are fewer than ``count`` points. The values of the trees in ``remembered`` (their ids) are stored.
     """
     accepted = []
     for seed in range(3 * count):
@@ -347,7 +347,7 @@ def points(
 
 
 def _onto_hypotheses(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> Point | None:
-    """Return a point moved onto the hypotheses by Newton's method with least-squares steps; None if it fails."""
+    """Return a point moved by Newton's method (least-squares steps) until the hypotheses hold; None if that fails."""
     variables = [Node("name", name) for name in point.symbols]
     variables += [Node("call", name, (Node("name", "t"),)) for name in point.functions]
     for _ in range(30 if hypotheses else 0):

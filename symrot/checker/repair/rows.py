@@ -1,4 +1,4 @@
-"""Small matrices as tuples of rows of any kind of number: sums, products, rotations, quaternions."""
+"""Small matrices as tuples of rows, for entries of any kind of number: sums, products, rotations, quaternions."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -48,7 +48,7 @@ def shape_of(value: Any) -> tuple[int, int] | None:
 
 
 def mapped(function: Callable[[Any], Any], value: Any) -> Any:
-    """Return a value with a function applied to every entry."""
+    """Return a scalar or matrix with a function applied to every entry."""
     return tuple(tuple(function(entry) for entry in row) for row in value) if is_matrix(value) else function(value)
 
 
@@ -82,12 +82,12 @@ def dot(left: Sequence[Any], right: Sequence[Any]) -> Any:
 
 
 def transposed(value: Any) -> Rows:
-    """Return the transpose."""
+    """Return the transpose of a matrix."""
     return tuple(zip(*needed(value), strict=True))
 
 
 def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> Rows:
-    """Return a matrix unchanged; raise UndefinedValue for a scalar or a matrix of another shape."""
+    """Return a matrix unchanged; raise UndefinedValue for a scalar, and for a matrix of another shape."""
     actual = shape_of(value)
     if actual is None or any(size not in (None, got) for size, got in zip(shape, actual, strict=True)):
         raise UndefinedValue("a matrix of another shape")
@@ -109,7 +109,7 @@ def determinant(rows: Rows) -> Any:
 
 
 def inverted(rows: Rows) -> Rows:
-    """Return the inverse of a matrix, computed by minors."""
+    """Return the inverse of a matrix, computed from the determinants of its submatrices."""
     below = inverse(determinant(rows))
     size = range(len(rows))
     if len(rows) == 1:
@@ -147,7 +147,7 @@ def rotation(axis: int) -> Callable[[Any], Rows]:
 
 
 def rotation_of_quaternion(*q: Any) -> Rows:
-    """Return the matrix of v -> q v q*, which is a rotation matrix times the square of the norm of q."""
+    """Return the matrix that rotates a vector v into q v q*: a rotation matrix times the squared length of q."""
     a, b, c, d = q
     conjugate = [a, -b, -c, -d]
     columns = [hamilton(hamilton(q, [0.0, *(float(i == j) for j in range(3))]), conjugate)[1:] for i in range(3)]

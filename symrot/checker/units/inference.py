@@ -141,12 +141,12 @@ class UnitInference:
         return dimension
 
     def physical(self) -> bool:
-        """Return whether letters such as m and t mean mass and time: if units are stated, or a longer name has a unit."""
+        """Return whether letters such as m and t mean mass and time: if units are stated, or longer names have one."""
         units = (conventional_unit(name) for name in self.names if len(name) > 1)
         return bool(self.units) or any(unit not in (None, "rad") for unit in units)
 
     def values_of(self, rows: Rows, node: Node) -> Rows:
-        """Return the dimensions of a matrix of numbers: pure numbers if all are 0 and 1 (unit vectors), else unknown."""
+        """Return the dimensions of a matrix of numbers: pure numbers if all are 0 and 1, otherwise unknown ones."""
         if _is_unit(node):
             return rows
         return tuple(tuple(ZERO if entry is ZERO else self.unknown() for entry in row) for row in rows)
