@@ -30,7 +30,7 @@ __all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_reading
 
 
 class RefusedClaims(InputError):
-    """Some claims of a file cannot be read.
+    """Error raised if some claims of a file cannot be read.
 
     Attributes
     ----------
@@ -131,7 +131,7 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
 
 
 def _on_latex(source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool) -> Verdict:
-    """Return the verdict on a claim in LaTeX, with its reading and its repairs in LaTeX."""
+    """Return the verdict on a claim in LaTeX, with the interpretation of the claim and its repairs in LaTeX too."""
     from symrot.checker.latex.writing import latex_of, latex_of_text
 
     claim = claim_of_text(source, assume, units or {})
@@ -201,7 +201,7 @@ def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
 def verdicts_of_file(
     path: str | Path, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Iterator[Verdict]:
-    """Yield the verdicts on the claims of a file; ``"refused"``, with the reason, on a claim that cannot be read."""
+    """Yield the verdict on each claim of a file; for a claim that cannot be read it is ``"refused"``, with the reason."""
     for entry in read_entries(path):
         if isinstance(entry, Refusal):
             yield Verdict("refused", reason=entry.reason, id=entry.id, where=entry.where, text=entry.text)

@@ -158,7 +158,7 @@ class Hypotheses:
         return zero or holds(need, {})
 
     def _drawn_point(self, needs: Sequence[Need], attempts: int) -> bool:
-        """Return whether an exact point that obeys the hypotheses is found that provably meets the conditions ``needs``."""
+        """Return whether an exact point is found that obeys the hypotheses and meets the conditions ``needs``."""
         if not self.constraints.complete:
             return False
         formulas = [need.formula for need in needs]

@@ -132,7 +132,10 @@ class _Prover:
         ]
 
     def parts(self, poly: PolyElement) -> list[PolyElement]:
-        """Return polynomials that vanish wherever ``poly`` does: its terms if all have one sign, else ``poly`` itself."""
+        """Return polynomials that vanish wherever ``poly`` does.
+
+        They are its terms if all of them have one sign, otherwise ``poly`` itself.
+        """
         signs = {self.sign_of_term(mono, coefficient) for mono, coefficient in poly.items()}
         if len(poly) > 1 and (signs <= {1} or signs <= {-1}):
             radicals = [tuple(min(power, 1) for power in mono) for mono in poly]

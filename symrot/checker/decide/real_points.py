@@ -157,7 +157,7 @@ class _Drawing:
         raise _DeadEnd
 
     def completed(self) -> RealPoint:
-        """Give values to the unknowns that no equation restricts, then to those that equations express by other unknowns."""
+        """Give values to the unknowns that no equation restricts, then to those expressed by other unknowns."""
         later = {place for place, _, _ in self.solved}
         for place in sorted(self.constraints.free - later - self.values.keys()):
             self.values[place] = self.field.convert(self.drawn(place), QQ)

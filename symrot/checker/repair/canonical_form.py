@@ -9,7 +9,7 @@ __all__ = ["canonical"]
 
 
 def canonical(node: Node, is_matrix: Callable[[Node], bool]) -> Node:
-    """Return a tree with its terms and scalar factors sorted, numbers in front of factors, and signs in front of products.
+    """Return a tree with sorted terms and scalar factors; numbers come first, with the signs in front of them.
 
     Parameters
     ----------

@@ -137,7 +137,10 @@ class _Search:
                     yield Change(place, edit)
 
     def pairs(self, changes: Sequence[Change]) -> Iterator[Candidate]:
-        """Yield pairs of edits in different parts of the claim that make it true at the test points, within the budget."""
+        """Yield pairs of edits in different parts of the claim that make it true at the test points.
+
+        Their number is limited by the budget of the search.
+        """
         cheap = list(changes)[:MOST_PAIRS_OF]
         ordered = sorted(combinations(cheap, 2), key=lambda pair: pair[0].cost + pair[1].cost)
         for first, second in ordered:

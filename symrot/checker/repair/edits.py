@@ -341,7 +341,10 @@ def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
 
 
 def _substituted(tree: Node, old: Node, new: Node, inside: Collection[str] | None = None) -> Node:
-    """Return a tree with ``new`` in place of each ``old``; with ``inside``, only in the arguments of these functions."""
+    """Return a tree with ``new`` in place of each ``old``.
+
+    With ``inside``, only the arguments of these functions are changed.
+    """
     if tree == old and inside is None:
         return new
     direct = inside is not None and tree.kind == "call" and tree.value in inside and tree.args[0] == old
@@ -352,7 +355,7 @@ def _substituted(tree: Node, old: Node, new: Node, inside: Collection[str] | Non
 
 
 def _rebuilt(node: Node) -> Node:
-    """Return a node with the signs of its factors moved to the front, in the form that the reader of claims produces."""
+    """Return a node with the signs of its factors moved to the front, as the reader of claims builds it."""
     if node.kind == "product":
         return product(list(node.args), node.span)
     if node.kind == "neg":

@@ -103,7 +103,10 @@ class NumericFilter:
         return node.kind not in ("index", "list", "number") and any(map(self.is_matrix, node.args))
 
     def sensible(self, place: str, tree: Node) -> bool:
-        """Return whether an edited tree says something: a side is no bare number, a definition does not use its own name."""
+        """Return whether an edited tree says something.
+
+        A side must be more than a number, and a definition must not use its own name.
+        """
         if place in SIDES:
             return is_nontrivial(tree) or not is_nontrivial(self.tree_at(place))
         order = list(self.definitions)

@@ -163,7 +163,10 @@ def _term(residual: Any, piece: Node | None) -> Node | None:
 
 
 def _linear_pieces(tree: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
-    """Yield the parts, with their paths, to which a term may be added and on which the value of a tree depends linearly."""
+    """Yield the parts, with their paths, to which a term may be added.
+
+    The value of the tree depends linearly on each of them.
+    """
     yield path, tree
     for place, child in enumerate(tree.args if tree.kind in ("sum", "product", "neg") else ()):
         if child.kind not in ("inv", "number") and (tree.kind != "product" or child.kind in ("sum", "name", "call")):

@@ -125,7 +125,10 @@ class Point:
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
     def raised(self, variable: Node) -> "Point":
-        """Return the point with a dual number for a variable (a symbol, ``f(t)``, or ``diff(f(t), t)``), to differentiate by it."""
+        """Return the point with a dual number as the value of a variable, to differentiate by this variable.
+
+        The variable is a symbol, ``f(t)``, or ``diff(f(t), t)``.
+        """
         order = 0
         inner = variable
         while inner.kind == "call" and inner.value == "diff":

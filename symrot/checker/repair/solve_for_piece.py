@@ -332,7 +332,7 @@ def _readings(
 
 
 def _is_there(vocabulary: Vocabulary, piece: Node, lacking: Values) -> bool:
-    """Return whether the missing value is a multiple of a term of the part: then this term is wrong, and none is lost."""
+    """Return whether the missing value is a multiple of a term of the part; then the term is wrong, not lost."""
     for node in piece.args if piece.kind == "sum" else (piece,):
         values = vocabulary.values(node)
         if values and _rational([a / b for a, b in zip(lacking, values, strict=True)]) is not None:
