@@ -201,7 +201,7 @@ def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
 def verdicts_of_file(
     path: str | Path, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Iterator[Verdict]:
-    """Yield the verdict on each claim of a file; for a claim that cannot be read it is ``"refused"``, with the reason."""
+    """Yield the verdict on each claim of a file; a claim that cannot be read is ``"refused"``, with the reason."""
     for entry in read_entries(path):
         if isinstance(entry, Refusal):
             yield Verdict("refused", reason=entry.reason, id=entry.id, where=entry.where, text=entry.text)

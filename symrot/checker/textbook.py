@@ -33,7 +33,7 @@ EXPLAINS = {
 
 @dataclass(frozen=True)
 class Finding:
-    """The result of checking one claim of a document: its data, its verdict, a true alternative reading, the outcome."""
+    """The result of checking one claim of a document: data, verdict, an alternative reading that is true, outcome."""
 
     claim: dict[str, Any]
     verdict: Verdict

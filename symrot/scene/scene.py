@@ -1,8 +1,4 @@
-"""Scenes: a problem as data, read from a TOML file (or a dict) into exact numbers. Does not use SymPy.
-
-The format is the table :data:`TOP` with the readers that it names. Everything in a scene is checked here, and every
-error is one sentence with file, key, expectation and value (:class:`symrot.errors.InputError`).
-"""
+"""Scenes: problems of rotation as data, read from a TOML file (or a dict) into exact numbers. Does not use SymPy."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -225,7 +221,9 @@ def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str |
 
 
 def shipped_scenes() -> list[tuple[str, str, str]]:
-    """Return the name, the title and the source of every scene that comes with symrot, without reading their bodies.
+    """Return the name, the title and the source of every scene that comes with symrot.
+
+    Only these three values are read from the files.
 
     Returns
     -------
