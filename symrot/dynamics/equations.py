@@ -1,4 +1,4 @@
-"""Equations of motion of a plan: Euler's equations and the quaternion rates, for the states (variables) of the plan only.
+"""Equations of motion of a plan: Euler's equations and the quaternion rates, for the variables of the plan only.
 
 The equations are derived from the plan's structure (what is zero, equal or constant): ``I domega/dt = tau - omega x (I
 omega + h)`` in body axes about the centre of mass or a fixed point, and ``dq/dt = 1/2 q (0, omega_b)``. Proof:

@@ -1,4 +1,4 @@
-"""Conserved quantities: quantities that symmetries suggest, such as the energy, each proven along the equations of motion.
+"""Conserved quantities: quantities that symmetries suggest, such as the energy, and the proof of each.
 
 A candidate F(t, states) is conserved if and only if ``dF/dt = dF/dt|_t + grad F . rates`` has normal form zero; no list
 of known integrals is used. A candidate that is not conserved is reported as lost, with the torques that change it.

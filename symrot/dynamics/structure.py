@@ -192,7 +192,7 @@ class Structure:
 
     @property
     def reductions(self) -> tuple[object, ...]:
-        """The parts of the structure that remove states: rotation about one axis only, constant components of omega_b."""
+        """The parts of the structure that remove states: rotation about one axis, constant components of omega_b."""
         return self.planar, self.initial_quaternion, self.constant
 
     def unreduced(self) -> "Structure":

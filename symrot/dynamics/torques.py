@@ -66,7 +66,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class TorqueLaw:
-    """The formula of a torque (N m, body components) with its potential, its momentum, and the quantities that it names."""
+    """The formula of a torque (N m, body components) with its potential, momentum and named quantities."""
 
     torque: Matrix = field(default_factory=lambda: zeros(3, 1))
     potential: Expr | None = None  # J; None where the torque has none

@@ -255,7 +255,7 @@ _length = number("a number in m")
 
 
 def _bounded(value: Any, where: str) -> None:
-    """Raise InputError for a dimension that is not a number or is out of range, before it is used to compute anything."""
+    """Raise InputError for a dimension that is not a number or is out of range, before it is used."""
     if isinstance(value, list | tuple):
         for index, item in enumerate(value):
             _bounded(item, f"{where}[{index}]")

@@ -126,7 +126,10 @@ def vector(unit: str, sign: str = "any") -> Reader:
 
 
 def text(value: Any, where: str) -> str:
-    """Return the value if it is a line of at most 1000 characters without control characters, which disturb a terminal."""
+    """Return the value if it is a line of at most 1000 printable characters.
+
+    Control characters, which may disturb a terminal, are refused.
+    """
     if not isinstance(value, str) or len(value) > 1000 or not value.isprintable():
         fail(where, "a line of text of at most 1000 characters", value)
     return value

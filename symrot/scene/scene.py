@@ -223,7 +223,7 @@ def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str |
 def shipped_scenes() -> list[tuple[str, str, str]]:
     """Return the name, the title and the source of every scene that comes with symrot.
 
-    Only these three values are read from the files.
+    The rest of the files, such as bodies and torques, is not checked.
 
     Returns
     -------

@@ -191,7 +191,7 @@ def _entries(kind: TorqueKind) -> dict[str, Entry]:
 
 
 def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
-    """Return weight, centre of mass and unit direction of gravity; the body provides the values that the scene lacks."""
+    """Return weight, centre of mass and unit direction of gravity; the body provides values missing in the scene."""
     weight, acceleration, center = values["weight"], values["gravity"], values["center_of_mass"]
     if weight is not None and acceleration is not None:
         fail(f"{where}.gravity", "weight or gravity, not both", acceleration)

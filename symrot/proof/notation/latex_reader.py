@@ -34,7 +34,7 @@ UNMARKED = str.maketrans("", "", "{} \t\n\r\f\v")
 
 
 class Unread(InputError):
-    """Signal that LaTeX text contains a name without a meaning, or an unsupported notation."""
+    """Exception raised if LaTeX text contains a name without a meaning, or a notation that is not supported."""
 
 
 def key(latex: str) -> str:
@@ -91,7 +91,7 @@ class _Interpreter(Cursor):
         self.time = names.get(TIME, "t")
 
     def value(self, node: Node) -> Any:
-        """Return the value of a whole row, or of an argument."""
+        """Return the value of a complete row of LaTeX, or of the argument of a command."""
         return self.inside(node, self.sum)
 
     # -- sums and products ------------------------------------------------------------------------------------------
@@ -150,7 +150,7 @@ class _Interpreter(Cursor):
         return value.inv() ** -exponent if matrix and exponent < 0 else value**exponent
 
     def norm(self) -> Any:
-        """Read the length of a vector, after the first bar."""
+        """Read the length of a vector, such as ``|v|``, from after its first bar."""
         inner = self.barred(self.sum, "|")
         square = inner.dot(inner) if isinstance(inner, MatrixBase) and 1 in inner.shape else None
         if square is None:
@@ -184,12 +184,12 @@ class _Interpreter(Cursor):
         return values[0] if len(values) == 1 else Matrix.vstack(*map(_as_matrix, values))
 
     def at_skew(self) -> bool:
-        """Return whether the index that makes a cross-product matrix of a vector is next."""
+        r"""Return whether the next item is the index ``\times``, which makes the cross-product matrix of a vector."""
         item = self.peek()
         return isinstance(item, Script) and item.text == "_" and alone(item.inside).text == "\\times"
 
     def evaluated(self, dot: Node) -> Any:
-        r"""Return the value of ``\left. X \right|_{a = b, ...}``, which is X with a replaced by b."""
+        r"""Return the value of ``\left. X \right|_{a = b, ...}``: the formula X with ``a`` replaced by ``b``."""
         value = self.barred(self.sum, "|")
         script = self.script("_")
         if script is None:
@@ -218,7 +218,7 @@ class _Interpreter(Cursor):
         return _multiplied(self.value(above), _inverted(self.value(below)))
 
     def differentiated(self, operand: Row | None) -> Any:
-        """Read what is differentiated: the rest of the numerator, or the term after the fraction."""
+        """Read the formula to differentiate: the rest of the numerator of d/dt, or the term after the fraction."""
         if operand is None:
             raise self.fail("the sign of a derivative above the line")
         return self.value(operand) if operand.items else self.term()
@@ -229,8 +229,9 @@ class _Interpreter(Cursor):
         return sqrt(self.value(root.inside))
 
     def font(self, font: Font) -> Any:
-        r"""Return the value of a name in a font: a function of a matrix, ``\mathbf{1}``, or a name with a declared
-        meaning.
+        r"""Return the value of a name in a special font.
+
+        It is a function of a matrix, the identity ``\mathbf{1}``, or a name with a declared meaning.
         """
         word, place = _text(font.inside), self.index
         if word == "1":
@@ -287,7 +288,7 @@ class _Interpreter(Cursor):
         raise Unread(text)
 
     def name_parts(self) -> Iterator[str]:
-        """Yield the pieces of a name: a letter, a command or a letter with a mark, then indices and primes."""
+        """Yield the parts of a name: a letter, a command or a letter with a mark, then its indices and primes."""
         item = self.next()
         if not isinstance(item, Token | Accent | Font) or item.text in ENDS:
             raise self.fail("a name", item)
@@ -308,7 +309,7 @@ READERS: dict[str, Callable[[_Interpreter, Any], Any]] = {
 
 
 def _text(node: Node) -> str:
-    """Return a piece as the key of a name; braces are left out."""
+    """Return a part of a name as text for looking the name up; braces are left out."""
     if isinstance(node, Row):
         return "".join(map(_text, node.items))
     if isinstance(node, Scripts):
@@ -319,7 +320,7 @@ def _text(node: Node) -> str:
 
 
 def _after(node: Node, mark: str) -> Row | None:
-    """Return a group, or a token, without the mark it starts with; None if it does not start with it."""
+    """Return the rest of a group or token that starts with a mark; None if it does not start with the mark."""
     row = node if isinstance(node, Row) else Row((node,), node.start, node.start)
     return Row(row.items[1:], row.start, row.end) if row.items and row.items[0].text == mark else None
 
@@ -336,7 +337,7 @@ def _as_matrix(value: Any) -> Matrix:
 
 
 def _added(left: Any, right: Any) -> Any:
-    """Return the sum of two values; a number added to a matrix means that multiple of the unit matrix."""
+    """Return the sum of two values; a number added to a matrix means that multiple of the identity matrix."""
     if isinstance(left, MatrixBase) != isinstance(right, MatrixBase):
         matrix, scalar = (left, right) if isinstance(left, MatrixBase) else (right, left)
         if scalar == 0:
