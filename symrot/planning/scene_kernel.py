@@ -1,4 +1,4 @@
-"""Kernels of a plan (its equations, ready to be evaluated) as saved data: programs for rates and quantities, and C text.
+"""Kernels of a plan (its equations, ready to be evaluated) as saved data: programs and C text.
 
 :mod:`symrot.codegen.scene_kernels` derives them, the cache stores them as JSON, and the propagator binds them to
 numbers. This module does not use SymPy.

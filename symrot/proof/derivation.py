@@ -119,7 +119,10 @@ class Derivation(PrintedPage):
         self.items.append(Section(title))
 
     def passage(self, text: str, *equations: tuple[Any, Any]) -> None:
-        """Add a paragraph of assumptions or definitions to the page, and equations ``(left, right)`` if there are any."""
+        """Add a paragraph of assumptions or definitions to the page, optionally with equations ``(left, right)``.
+
+        A side that is a str is LaTeX.
+        """
         self.items.append(Passage(text, tuple(equations)))
         for left, right in equations:
             self._note(left, right)
@@ -310,7 +313,7 @@ def _tidied(conditions: Sequence[Any]) -> list[Any]:
 
 
 def _factors(expression: Expr) -> list[Expr]:
-    """Return the factors of an expression that must all be nonzero for it to be nonzero; the expression if it has none."""
+    """Return the factors that must all be nonzero for an expression to be nonzero; or the expression itself."""
     plain = not expression.is_number and expression.is_polynomial(*expression.free_symbols)
     factors = [base for base, _ in factor_list(expression)[1]] if plain else []
     return factors if len(factors) > 1 else [expression]
@@ -321,7 +324,10 @@ def _shape(side: Any) -> Any:
 
 
 def _as_side(display: Any, side: Any) -> Any:
-    """Return a displayed value in the shape of its side: for a square matrix, a number becomes a multiple of the identity."""
+    """Return a displayed value in the shape of its side.
+
+    Where the side is a square matrix, a number becomes that multiple of the identity matrix.
+    """
     display = _frozen(display)
     if isinstance(side, MatrixBase) and not isinstance(display, MatrixBase):
         if display == 0:

@@ -241,7 +241,10 @@ def read(latex: str) -> list[Item]:
 
 
 def rows(latex: str, width: float) -> list[list[Item]]:
-    """Return a formula broken into lines of a given width where possible: before relations, then before plus and minus."""
+    """Return a formula broken into lines of a given width where possible.
+
+    Lines are broken before relations such as ``=``, and if that is not enough, before plus and minus.
+    """
     return _broken(read(latex), width)
 
 

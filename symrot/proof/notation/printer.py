@@ -57,7 +57,7 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
         return rf"{self._print(scale)} {super()._print_MatrixBase(scaled)}"
 
     def _print_Add(self, expr: Expr, order: str | None = None) -> str:
-        """Return the LaTeX of a sum with a positive term first where possible, so that few sums begin with a minus sign."""
+        """Return the LaTeX of a sum with its positive terms first, so that few sums begin with a minus sign."""
         terms = self._as_ordered_terms(expr, order=order)
         terms = sorted(terms, key=lambda term: term.could_extract_minus_sign())  # stable
         text = ""
@@ -73,7 +73,10 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
 
 
 def _common_scale(matrix: MatrixBase) -> Any:
-    """Return 1/D if D is the denominator of all nonzero entries of a matrix, and no entry has a fraction inside; else 1."""
+    """Return 1/D if D is the denominator of all nonzero entries of a matrix; otherwise 1.
+
+    It is also 1 if an entry has a fraction in its numerator or denominator.
+    """
     denominators = {entry.as_numer_denom()[1] for entry in matrix if entry != 0}
     if len(denominators) != 1 or len(matrix) < 2:
         return 1
