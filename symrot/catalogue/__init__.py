@@ -146,7 +146,10 @@ def _quiet(text: str) -> None:
 
 
 def pages(say: Say = _quiet) -> dict[str, str]:
-    """Return the printed page of every derivation, as file name -> text; the table of contents (``README.md``) comes first."""
+    """Return file name -> text of the printed page of every derivation.
+
+    The table of contents (``README.md``) comes first.
+    """
     derived = {}
     for name in names():
         say(f"deriving {name} ..")

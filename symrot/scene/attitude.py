@@ -108,7 +108,7 @@ def _of_dcm(rows: Matrix, value: object, where: str) -> Attitude:
     product = _matrix_product(rows, tuple(zip(*rows, strict=True)))  # type: ignore[arg-type]
     worst = max(abs(product[i][j] - (i == j)) for i in range(3) for j in range(3))
     if worst > ORTHOGONAL:
-        fail(where, "a rotation: orthonormal rows, to 1e-9", value, f"its rows miss that by {float(worst):.2g}")
+        fail(where, "a rotation: orthonormal rows, to 1e-9", value, f"its rows deviate from that by {float(worst):.2g}")
     (a, b, c), (d, e, f), (g, h, i) = rows
     if a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0:
         fail(where, "a rotation, of determinant +1", value, "this is a reflection, of determinant -1")

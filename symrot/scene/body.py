@@ -267,7 +267,11 @@ def _placed(properties: MassProperties, values: Mapping[str, Any], where: str, s
     """Return a composed body about its centre of mass, or about a fixed point given in the axes of the body."""
     about, point = values["about"], values["fixed_point"]
     if about == "center_of_mass" and point is not None:
-        fail(f"{where}.fixed_point", 'about = "fixed_point" beside it, for the body to turn about it', point)
+        fail(
+            f"{where}.fixed_point",
+            'about = "fixed_point" in the same table, since a body rotates about a fixed point only then',
+            point,
+        )
     if about == "fixed_point" and point is None:
         fail(f"{where}.fixed_point", "three numbers [x, y, z] in m, in the axes of the body: it turns "
                  "about a fixed point, the key is missing")  # fmt: skip

@@ -128,7 +128,7 @@ def read_samples(
     written = [key for key in ("t", "moment") if values[key] is not None]
     if (values["file"] is None) == (not written) or len(written) == 1:
         present = [key for key in ("t", "moment", "file") if values[key] is not None]
-        fail(where, f"t and moment, or file, got {' and '.join(present) or 'none of them'}")
+        fail(where, f"the keys t and moment, or the key file, got {' and '.join(present) or 'none of them'}")
     if written:
         times, moments, place, rows = values["t"], values["moment"], f"{where}.t", 0
         if len(times) != len(moments):

@@ -315,7 +315,7 @@ def _read_output(value: Any, where: str) -> Output:
         fail(f"{where}.sequence", 'an Euler sequence for the quantity euler, such as "ZXZ", the key is missing')
     for key in ("sequence", "degrees"):
         if "euler" not in values["quantities"] and key in value:
-            fail(f"{where}.{key}", "euler among the quantities, which alone uses it", value[key])
+            fail(f"{where}.{key}", "euler among the quantities, since nothing else uses this key", value[key])
     return Output(values["quantities"], values["sequence"], values["degrees"])
 
 

@@ -173,7 +173,7 @@ def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
 
 
 def _between(body: Solid, axes: Sequence[int]) -> list[tuple[str, Expr, Expr]]:
-    """Return, for each integration of an integral, its words, and its antiderivative between the limits as an equation."""
+    """Return, for each integration, words and an equation for the antiderivative between its limits."""
     equations = []
     for stage in _stages(body, axes)[1]:
         upper, lower = (stage.antiderivative.subs(stage.variable, end) for end in (stage.upper, stage.lower))

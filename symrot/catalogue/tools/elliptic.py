@@ -19,7 +19,7 @@ def imaginary() -> Expr:
 
 
 def derivatives(speed: Expr = S.One, parameter: Expr = MU) -> dict[Symbol, Expr]:
-    """Return the time derivatives of sn, cn and dn, as symbol -> derivative, for an argument that grows at ``speed``."""
+    """Return the time derivatives of sn, cn and dn, by symbol, for an argument that grows at ``speed``."""
     return {SN: speed * CN * DN, CN: -speed * SN * DN, DN: -speed * parameter * SN * CN}
 
 

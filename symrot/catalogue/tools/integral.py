@@ -64,7 +64,7 @@ def antiderivative(integrand: Expr, variable: Symbol) -> Expr:
 
 @cache
 def iterated(integrand: Any, limits: tuple[tuple[Symbol, Expr, Expr], ...]) -> tuple[Stage, ...]:
-    """Return all integrations of an iterated integral over (variable, lower, upper); the first variable is innermost."""
+    """Return all integrations of an iterated integral over (variable, lower, upper); the first is innermost."""
     stages = []
     for variable, lower, upper in limits:
         primitive = antiderivative(expand(integrand), variable)

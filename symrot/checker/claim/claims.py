@@ -207,7 +207,7 @@ def _differences(left: Any, right: Any, where: str) -> list[Expr]:
     try:
         lefts, rights, _ = matched_sides(left, right)
     except ShapeMismatch:
-        raise InputError(f"{where}: expected a hypothesis with two sides of one shape") from None
+        raise InputError(f"{where}: expected a hypothesis whose two sides have the same shape") from None
     return [a - b for a, b in zip(lefts, rights, strict=True)]
 
 
@@ -385,7 +385,7 @@ def read_entries(path: str | Path) -> list[Claim | Refusal]:
 def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
     name = entry.get("id", f"claim-{number}")
     if not isinstance(name, str):
-        raise InputError(f"{label}: claim {number}: expected text as id, got {name!r}")
+        raise InputError(f"{label}: claim {number}: expected a text as the value of id, got {name!r}")
     place = f"{label}: {name}"
     for key, value in entry.items():
         _check_key(key, value, place)
@@ -419,7 +419,7 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
         raise InputError(f"{place}: expected exactly one of claim, latex and value, got {', '.join(kinds) or 'none'}")
     if kinds == ["value"]:
         if "printed_value" not in entry:
-            raise InputError(f"{place}: expected printed_value together with value, the key is missing")
+            raise InputError(f"{place}: expected the key printed_value together with the key value, got value alone")
         if others:
             raise InputError(
                 f"{place}: alternatives: expected other readings of a claim, got them together with a value"

@@ -50,10 +50,10 @@ def _rewritten(integrand: Expr, variable: Symbol) -> Expr:
         exponentials[node] = (forward + backward) / 2 if node.func is cos else (forward - backward) / (2 * I)
     plain = integrand.xreplace(exponentials)
     if any(node.exp.is_Integer and node.exp > LARGEST_DEGREE for node in plain.atoms() if node.is_Pow):
-        raise InputError(f"integrate takes degrees up to {LARGEST_DEGREE}, got {integrand}")
+        raise InputError(f"expected an integrand of degree at most {LARGEST_DEGREE}, got {integrand}")
     expanded = plain.expand()
     if len(Add.make_args(expanded)) > MOST_TERMS:
-        raise InputError(f"integrate takes an integrand of at most {MOST_TERMS} terms")
+        raise InputError(f"expected an integrand of at most {MOST_TERMS} terms, got more")
     return expanded
 
 

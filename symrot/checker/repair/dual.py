@@ -135,5 +135,5 @@ def power(x: Any, exponent: float) -> Any:
     if isinstance(x, Dual):
         return Dual(power(x.value, exponent), exponent * power(x.value, exponent - 1) * x.slope)
     if np.any(x < 0):
-        raise UndefinedValue("a fractional power of a negative number")
+        raise UndefinedValue("expected a positive base of a fractional power, got a negative number")
     return x**exponent

@@ -222,7 +222,7 @@ class NumericFilter:
         size = max(len(left), len(right))
         left, right = (side * size if side == [0.0] else side for side in (left, right))
         if len(left) != len(right):
-            raise UndefinedValue("sides of different shapes")
+            raise UndefinedValue("expected sides of the same shape, got sides of different shapes")
         return [a - b for a, b in zip(left, right, strict=True)]
 
     def fingerprint(self, changes: Sequence[Change]) -> tuple[float, ...]:

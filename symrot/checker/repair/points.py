@@ -137,11 +137,11 @@ class Point:
         name = inner.value
         key = (name, order)
         if self.weight > HEAVIEST:
-            raise UndefinedValue("derivatives of too high an order")
+            raise UndefinedValue("expected derivatives of low order, got one of too high an order")
         if key not in self.lifted:
             in_time = name == "t" and not order
             if not in_time and name not in self.symbols and name not in self.functions:
-                raise UndefinedValue("a variable to differentiate by")
+                raise UndefinedValue("expected a variable to differentiate by that has a value, got another one")
             self.lifted[key] = Point(
                 {s: Dual(v, float(s == name)) for s, v in self.symbols.items()},
                 {
@@ -208,7 +208,7 @@ def _list(point: Point, node: Node) -> Any:
     rows = [point._value(member) for member in node.args]
     if all(isinstance(row, list) for row in rows):
         if len({len(row) for row in rows}) > 1:
-            raise UndefinedValue("rows of unequal length")
+            raise UndefinedValue("expected rows of equal length in a matrix, got unequal ones")
         return tuple(map(tuple, rows))
     if node.value == ("(", ")"):
         return column(rows)

@@ -55,7 +55,7 @@ def mapped(function: Callable[[Any], Any], value: Any) -> Any:
 def plus(left: Any, right: Any) -> Any:
     """Return the sum of two scalars or matrices; raise UndefinedValue if their shapes differ."""
     if shape_of(left) != shape_of(right):
-        raise UndefinedValue("shapes in a sum")
+        raise UndefinedValue("expected terms of the same shape in a sum, got different shapes")
     if is_matrix(left):
         return tuple(tuple(a + b for a, b in zip(x, y, strict=True)) for x, y in zip(left, right, strict=True))
     return left + right
@@ -68,7 +68,7 @@ def times(left: Any, right: Any) -> Any:
     if not is_matrix(right):
         return mapped(lambda entry: entry * right, left)
     if len(left[0]) != len(right):
-        raise UndefinedValue("shapes in a product")
+        raise UndefinedValue("expected factors with fitting shapes in a product, got others")
     columns = tuple(zip(*right, strict=True))
     return tuple(tuple(dot(row, column) for column in columns) for row in left)
 
@@ -90,7 +90,7 @@ def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> R
     """Return a matrix unchanged; raise UndefinedValue for a scalar, and for a matrix of another shape."""
     actual = shape_of(value)
     if actual is None or any(size not in (None, got) for size, got in zip(shape, actual, strict=True)):
-        raise UndefinedValue("a matrix of another shape")
+        raise UndefinedValue("expected a matrix of the shape needed here, got another value")
     rows: Rows = value
     return rows
 
@@ -98,7 +98,7 @@ def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> R
 def determinant(rows: Rows) -> Any:
     """Return the determinant of a matrix of at most 6 rows, by minors."""
     if len(rows) != len(rows[0]) or len(rows) > 6:
-        raise UndefinedValue("a determinant")
+        raise UndefinedValue("expected a square matrix of at most 6 rows in a determinant, got another one")
     if len(rows) == 1:
         return rows[0][0]
     total: Any = 0.0

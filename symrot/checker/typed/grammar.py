@@ -35,7 +35,7 @@ class Parser(PiecesPart):
             self.index += 2
             sides = self.members(")")
             if len(sides) != 2:
-                raise self.fail("two sides in Eq(..)")
+                raise self.fail("two arguments in Eq(left, right)")
             signs = ["=="]
         else:
             sides, signs = [self.expression()], []

@@ -50,7 +50,7 @@ class PiecesPart(OpenFunctionsPart):
                 node = self.rate(node, self.next(), start)
             elif token.text == "°":
                 if self.tokens[self.index - 1].text == "°":
-                    raise self.fail("one sign of degrees")
+                    raise self.fail("a single degree sign")
                 self.plain = True
                 self.next()
                 degrees = [node, Node("name", "pi"), Node("inv", None, (number(180),))]
@@ -97,7 +97,7 @@ class PiecesPart(OpenFunctionsPart):
         self.plain = True
         order = int(mark.text) if mark.kind == "dots" else len(mark.text)
         if order > MOST_DOTS:
-            raise self.fail(f"a rate of order {MOST_DOTS} at most", mark.start)
+            raise self.fail(f"a time derivative of order at most {MOST_DOTS}", mark.start)
         if node.kind == "name":
             name = str(node.value)
             doubtful = mark.kind == "prime" and name not in self.vocabulary.functions

@@ -134,7 +134,7 @@ class _Interpreter(Cursor):
             return self.raised(value, script.inside)
         power = self.value(script.inside)
         if isinstance(power, MatrixBase):
-            raise Unread("the exponential of a matrix")
+            raise Unread("expected readable LaTeX, got the exponential of a matrix")
         return sympy.exp(power)
 
     def raised(self, value: Any, inside: Node) -> Any:
@@ -146,7 +146,7 @@ class _Interpreter(Cursor):
         if matrix and value.cols == 1 and exponent == 2:
             return value.dot(value)
         if isinstance(exponent, MatrixBase) or (matrix and not exponent.is_Integer):
-            raise Unread("a power of a matrix")
+            raise Unread("expected readable LaTeX, got a power of a matrix")
         return value.inv() ** -exponent if matrix and exponent < 0 else value**exponent
 
     def norm(self) -> Any:
@@ -154,7 +154,7 @@ class _Interpreter(Cursor):
         inner = self.barred(self.sum, "|")
         square = inner.dot(inner) if isinstance(inner, MatrixBase) and 1 in inner.shape else None
         if square is None:
-            raise Unread("an absolute value")
+            raise Unread("expected readable LaTeX, got an absolute value")
         script = self.script("^")
         if script is None:
             return sqrt(square)
@@ -178,7 +178,7 @@ class _Interpreter(Cursor):
         values = self.listed(self.sum, CLOSING[opening])
         if opening == "[" and self.at_skew():
             if not isinstance(values[0], MatrixBase) or values[0].shape != (3, 1):
-                raise self.fail("no cross-product matrix of this")
+                raise self.fail("a vector before the index \\times, which makes its cross-product matrix")
             self.next()
             return Matrix(values[0].hat())
         return values[0] if len(values) == 1 else Matrix.vstack(*map(_as_matrix, values))
@@ -193,14 +193,14 @@ class _Interpreter(Cursor):
         value = self.barred(self.sum, "|")
         script = self.script("_")
         if script is None:
-            raise self.fail("the place of the value")
+            raise self.fail("an index such as _{x = 0} after the bar, the place of the value")
         places: list[tuple[Any, Any]] = []
         inside = script.inside if isinstance(script.inside, Row) else Row((script.inside,), dot.start, dot.start)
         for equation in divided(inside, ","):
             first, *others = [self.value(side) for side in divided(equation, "=")]
             places += [(first, others[0])] if len(others) == 1 else [(other, first) for other in others]
             if not others or not all(getattr(variable, "is_Symbol", False) for variable, _ in places):
-                raise Unread("a place other than of a symbol")
+                raise Unread("expected a symbol before = in the index of a bar, got a formula")
         return value.subs(dict(places), simultaneous=True)
 
     def function(self, function: Callable[[Any], Any]) -> Any:
@@ -220,7 +220,7 @@ class _Interpreter(Cursor):
     def differentiated(self, operand: Row | None) -> Any:
         """Read the formula to differentiate: the rest of the numerator of d/dt, or the term after the fraction."""
         if operand is None:
-            raise self.fail("the sign of a derivative above the line")
+            raise self.fail("d or \\partial in the numerator of a derivative")
         return self.value(operand) if operand.items else self.term()
 
     def root(self, root: Root) -> Any:
@@ -253,7 +253,7 @@ class _Interpreter(Cursor):
         if table.name not in ("bmatrix", "pmatrix", "matrix"):
             raise self.fail("a matrix", table)
         if self.at("_") and not self.at_skew():
-            raise self.fail("no index of a matrix")
+            raise self.fail("an operator or the end instead of an index after the matrix")
         return value
 
     # -- names ------------------------------------------------------------------------------------------------------
@@ -362,23 +362,23 @@ def _dotted(left: Any, right: Any) -> Any:
 
 def _crossed(left: Any, right: Any) -> Any:
     if not all(isinstance(side, MatrixBase) and side.shape == (3, 1) for side in (left, right)):
-        raise Unread("a cross product of values that are not vectors of three")
+        raise Unread("expected a cross product of two vectors with three components, got other values")
     return Matrix(left).cross(Matrix(right))
 
 
 def _inverted(value: Any) -> Any:
     if isinstance(value, MatrixBase):
-        raise Unread("division by a matrix")
+        raise Unread("expected a number as divisor, got a matrix")
     if value == 0:
-        raise Unread("division by zero")
+        raise Unread("expected a divisor that is not zero, got 0")
     return 1 / value
 
 
 def _gradient(value: Any, variable: Any) -> Any:
     if isinstance(variable, MatrixBase):
         if isinstance(value, MatrixBase) or not all(entry.is_Symbol for entry in variable):
-            raise Unread("a derivative with respect to a vector")
+            raise Unread("expected a derivative with respect to a symbol, got one with respect to a vector")
         return Matrix([diff(value, entry) for entry in variable])
     if not getattr(variable, "is_Symbol", False):
-        raise Unread("a derivative with respect to a formula instead of a symbol")
+        raise Unread("expected a derivative with respect to a symbol, got one with respect to a formula")
     return diff(value, variable)
