@@ -241,7 +241,7 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
     determinant = matrix.det().expand()
     if matrix.free_symbols & set(names) or determinant == 0:
         raise InputError(
-            "torque: expected jumps along which the motion can slide in exactly one way, got jumps that do not determine one"
+            "torque: expected jumps along which the motion can slide in exactly one way, got others"
         )
     modes = tuple(zip(names, -(matrix.adjugate() * rest) / determinant, strict=True))
     still = [S.Zero if state in guards else rate for state, rate in zip(equations.states, equations.rates, strict=True)]

@@ -222,8 +222,8 @@ def make_plan(
         scene = replace(scene, initial=initial)
     if not switched and (name := _switching_function(scene)):
         raise InputError(
-            f"{scene.name}: expected torques without switches (jumps or kinks), got the function {name}: the equations change from one "
-            "mode to the next; symrot run, symrot.propagator and symrot.propagate_ensemble follow them"
+            f"{scene.name}: expected torques without switches (jumps or kinks), got the function {name}: the equations "
+            "change from one mode to the next; symrot run, symrot.propagator and symrot.propagate_ensemble follow them"
         )
     structure = general_structure(scene, switched)
     rows = []

@@ -209,7 +209,7 @@ def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, An
         fail(f"{where}.center_of_mass", "three numbers [x, y, z] in m from the fixed point: the moments of the "
                  "body were typed, its centre of mass is unknown")  # fmt: skip
     if not any(center):
-        fail(where, "a fixed point away from the centre of mass, since the weight has no torque about the centre of mass",
+        fail(where, "a fixed point away from the centre of mass, since the weight has no torque about that centre",
                  [float(item) for item in center])  # fmt: skip
     x, y, z = values["direction"]
     length = sqrt(x * x + y * y + z * z)
