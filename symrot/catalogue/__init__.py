@@ -93,7 +93,7 @@ def names() -> tuple[str, ...]:
 
 
 def module_of(name: str) -> str:
-    """Return the module of a derivation: ``symrot.catalogue.free_bodies.poinsot`` for ``poinsot``."""
+    """Return the name of the module of a derivation: ``symrot.catalogue.free_bodies.poinsot`` for ``poinsot``."""
     chapter = next(chapter for chapter, members in READING_ORDER.items() if name in members)
     return f"{__name__}.{chapter.lower().replace(' ', '_')}.{name}"
 
@@ -142,11 +142,14 @@ Say = Callable[[str], object]
 
 
 def _quiet(text: str) -> None:
-    """Ignore a progress message."""
+    """Ignore a message on progress (the default for the parameter ``say``)."""
 
 
 def pages(say: Say = _quiet) -> dict[str, str]:
-    """Return file name -> text of every printed page; the table of contents (``README.md``) comes first."""
+    """Return file name -> text of the printed page of every derivation.
+
+    The table of contents (``README.md``) comes first.
+    """
     derived = {}
     for name in names():
         say(f"deriving {name} ..")
@@ -214,7 +217,10 @@ def derive_all(directory: Path | str, say: Say = _quiet) -> list[Path]:
 
 
 def check(directory: Path | str, say: Say = _quiet) -> list[tuple[Path, str]]:
-    """Return the outdated pages, each with a unified diff; an empty list if all are current."""
+    """Return the pages in a directory that differ from newly printed ones, each with a unified diff.
+
+    The list is empty if all pages are up to date.
+    """
     directory = Path(directory)
     printed = pages(say)
     stale = []
@@ -230,7 +236,7 @@ def check(directory: Path | str, say: Say = _quiet) -> list[tuple[Path, str]]:
 
 
 def _left_over(directory: Path, printed: dict[str, str]) -> list[Path]:
-    """Return the pages in a directory that symrot printed earlier but no longer prints."""
+    """Return the pages in a directory that symrot printed earlier and whose derivation no longer exists."""
     others = (path for path in sorted(directory.glob("*.md")) if path.name not in printed and path.is_file())
     return [path for path in others if _mark(path.stem).encode() in path.read_bytes()]
 

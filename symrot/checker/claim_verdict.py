@@ -1,4 +1,4 @@
-"""The verdict on one claim: decided, or recognised by its name, and diagnosed if it is not true."""
+"""The verdict on one claim: it is decided or recognised by its name, and diagnosed if it is not true."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -23,7 +23,7 @@ MOST_SECONDS = 20
 
 
 def check_claim(claim: Claim, repair: bool = True) -> Verdict:
-    """Return the verdict on a claim: on its first reading, or on another reading if only that one is true."""
+    """Return the verdict on a claim: on its usual reading, or on another reading if that one alone is true."""
     try:
         verdict, other = check_readings(claim, repair)
     except RecursionError:
@@ -35,9 +35,9 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
 
 
 def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict | None]:
-    """Return the verdict on the first reading of a claim, and the verdict on the first other one that is true, or None.
+    """Return the verdict on the usual reading of a claim, and the verdict on the first other true reading, or None.
 
-    A claim of which no reading is true is diagnosed.
+    A claim of which no reading (interpretation of its text) is true is diagnosed.
     """
     start = perf_counter()
     verdict: Verdict | None = None
@@ -64,7 +64,7 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
 
 
 def unfinished() -> Decision:
-    """Return the decision on a claim that needs more processor time than it may have."""
+    """Return the decision "undecided" on a claim that needs more processor time than it may have."""
     reason = (
         f"SymPy needs more than {MOST_SECONDS} s of processor time for these formulas; "
         "check the claim with a letter in place of one of the inner functions"
@@ -73,7 +73,7 @@ def unfinished() -> Decision:
 
 
 def _of_another_reading(claim: Claim) -> Verdict | None:
-    """Return the verdict on the first other reading of a claim that is true."""
+    """Return the verdict on the first true reading of a claim other than the usual one; None if there is none."""
     for relation in claim.alternatives:
         source = relation_text(relation)
         other = claim.with_relation(relation, alternatives=(), sources={**claim.sources, "claim": source})
@@ -86,9 +86,9 @@ def _of_another_reading(claim: Claim) -> Verdict | None:
 def _on_name(
     claim: Claim, repair: bool, formula_of: Callable[[Claim], NamedFormula | None]
 ) -> tuple[None, Verdict] | None:
-    """Return the verdict on a claim about a quantity that nothing defines; None for any other claim.
+    """Return the verdict on a claim that gives a formula for a quantity without a definition; None for other claims.
 
-    The function ``formula_of`` returns the quantity and its formula. There is no decision on such a claim.
+    The function ``formula_of`` returns the quantity and its formula. Such a claim can be recognised, but not decided.
     """
     named = formula_of(claim) if claim.relation is not None else None
     if named is None:
@@ -110,7 +110,7 @@ def _decide(claim: Claim) -> tuple[Decision, Verdict]:
 
 @contextmanager
 def _place_of(claim: Claim) -> Iterator[None]:
-    """Run a block, and put the name of the claim in front of an InputError that the block raises."""
+    """Run a block of code; if it raises InputError, put the name of the claim in front of the message."""
     try:
         yield
     except InputError as reason:
@@ -129,7 +129,7 @@ def _completed(claim: Claim, verdict: Verdict, start: float) -> Verdict:
 
 
 def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
-    """Return the verdict with a diagnosis: of the fault, or of the side that is not defined everywhere."""
+    """Return the verdict with a diagnosis: the probable fault, or the side that is not defined everywhere."""
     if claim.relation is None:
         return verdict
     if decision.verdict not in ("false", "conditional"):

@@ -30,7 +30,7 @@ __all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_reading
 
 
 class RefusedClaims(InputError):
-    """Some claims of a file cannot be read.
+    """Error raised if some claims of a file cannot be read.
 
     Attributes
     ----------
@@ -206,7 +206,7 @@ def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
 def verdicts_of_file(
     path: str | Path, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Iterator[Verdict]:
-    """Yield the verdicts on the claims of a file; ``"refused"``, with the reason, on a claim that cannot be read."""
+    """Yield the verdict on each claim of a file; a claim that cannot be read is ``"refused"``, with the reason."""
     for entry in read_entries(path):
         if isinstance(entry, Refusal):
             yield Verdict("refused", reason=entry.reason, id=entry.id, where=entry.where, text=entry.text)

@@ -1,4 +1,4 @@
-"""Claims with a rounded decimal number, ``1500*2*pi/60 == 157.08``: compared with what the value rounds to."""
+"""Claims with a rounded decimal number, such as ``1500*2*pi/60 == 157.08``: true if the value rounds to the number."""
 
 from dataclasses import replace
 
@@ -12,10 +12,10 @@ __all__ = ["with_rounding"]
 
 
 def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on a false claim that compares a value with a decimal number, as true to the digits given.
+    """Return the verdict "true" for a claim that equates a value and a decimal number to which the value rounds.
 
-    A value that does not round to the number gets a note with the digits to which it does. Every other verdict is
-    returned unchanged.
+    If the value does not round to the number, a note gives the correct digits. Every other verdict is returned
+    unchanged.
     """
     if verdict.verdict not in ("false", "undecided") or claim.relation is None or claim.hypotheses or claim.define:
         return verdict
@@ -28,7 +28,7 @@ def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _decimal(node: Node, source: str) -> str:
-    """Return the digits of a tree that is a decimal number as they are typed, an empty text for any other tree."""
+    """Return the digits, as typed, of a tree that is a decimal number; an empty text for any other tree."""
     sign, inner = ("-", node.args[0]) if node.kind == "neg" else ("", node)
     digits = source[inner.span[0] : inner.span[1]]
     return sign + digits if inner.kind == "number" and "." in digits else ""

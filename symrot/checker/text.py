@@ -1,7 +1,7 @@
-"""The verdict on a text as people type it: on its usual reading, with a sentence on each reading with another verdict.
+"""The verdict on a text as people type it, on its usual interpretation (reading).
 
-A chain ``a = b = c`` is decided link by link, and several lines one by one; lines that name a formula define it for the
-lines after them.
+A sentence reports each reading with another verdict. A chain ``a = b = c`` is decided link by link, and several lines
+one by one; a line that gives a name to a formula defines the name for the lines after it.
 """
 
 from collections.abc import Mapping, Sequence
@@ -77,7 +77,7 @@ def verdict_on_text(
 
 
 def _on_reading(usual: Reading, reading: Reading, verdict: Verdict) -> str:
-    """Return the sentence on a reading that is not the usual one."""
+    """Return the sentence that reports the verdict on a reading of the text other than the usual one."""
     places = reading.flipped
     changed = _text_of(reading, replace(notation_of(reading), plain=usual.plain or reading.plain))
     excerpts = " and ".join(repr(place) for place in dict.fromkeys(places[:3]))
@@ -117,7 +117,7 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
 
 
 def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], notation: Notation) -> Verdict:
-    """Return the verdict on a chain or on several lines: the worst of its parts, and what each part is."""
+    """Return the verdict on a chain or on several lines: the worst verdict on a part, and a note on each part."""
     remaining = iter(verdicts)
     counted, notes = [], []
     total = sum(map(len, lines))
@@ -157,8 +157,8 @@ def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], not
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
     """Return the verdicts on the links of a chain ``name = a = b``.
 
-    The formulas need not be identical if each has letters of its own: the energies I*omega^2/2 and L^2/(2*I) of one
-    body are equal by what L is. Such a link is decided as ``name = b``.
+    The formulas a and b need not be identical if each has letters that the other lacks: the energies I*omega^2/2 and
+    L^2/(2*I) of one body are equal by what L is. Such a link is decided as ``name = b``.
     """
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:

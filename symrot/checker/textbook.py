@@ -33,7 +33,7 @@ EXPLAINS = {
 
 @dataclass(frozen=True)
 class Finding:
-    """The result of checking one claim: its data, the verdict, another reading that holds, and the outcome."""
+    """The result of checking one claim of a document: data, verdict, an alternative reading that is true, outcome."""
 
     claim: dict[str, Any]
     verdict: Verdict
@@ -54,7 +54,7 @@ class Finding:
 def findings(
     document: Document, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Iterator[Finding]:
-    """Yield the finding on each claim of a document, in its order."""
+    """Yield the result of checking each claim of a document, in the order of the document."""
     for claim in read_claims(document.path):
         progress(f"checking {claim.id} ..")
         yield _finding(document.claims[claim.id], claim, repair)
@@ -73,7 +73,7 @@ def _finding(data: dict[str, Any], claim: Claim, repair: bool) -> Finding:
 
 
 def _right_form(claim: Claim, verdict: Verdict) -> str:
-    """Return the right formula: the exact value, the nearest proven repair, or the derived side of the claim."""
+    """Return the corrected formula: the exact value, the nearest proven repair, or the side that symrot derived."""
     if claim.relation is None:
         return verdict.counterexample.lhs if verdict.counterexample else ""
     if verdict.repairs:

@@ -12,7 +12,10 @@ AGAIN = 0.5  # seconds until TimeUp is raised once more, if a callback discarded
 
 
 class TimeUp(BaseException):
-    """The processor time is used up. No Exception, so that SymPy, which catches those, does not go on."""
+    """Exception raised when the processor time is used up.
+
+    It is not derived from ``Exception``, because SymPy catches such exceptions and goes on.
+    """
 
 
 @contextmanager

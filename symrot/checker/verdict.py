@@ -1,4 +1,4 @@
-"""The verdict on a claim, with its conditions, its evidence, a diagnosis, and true formulas near it."""
+"""The verdict on a claim: its conditions, its evidence, a diagnosis, and true formulas near the claim."""
 
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -117,7 +117,7 @@ class Identification:
 
     @property
     def renaming(self) -> str:
-        """The symbols that differ as text, ``"with a for dphi"``; empty if none differs."""
+        """The pairs of symbols with different names as text, ``"with a for dphi"``; empty if all names agree."""
         pairs = ", ".join(f"{other} for {own}" for own, other in self.mapping.items())
         return f"with {pairs}" if pairs else ""
 
@@ -199,7 +199,7 @@ class Verdict:
         return "\n".join([self.verdict, *(f"  {name}: {text}" for name, text in self.facts())])
 
     def facts(self) -> list[tuple[str, str]]:
-        """Return the rest of the verdict for a reader, as pairs (name, text)."""
+        """Return everything else that the verdict says, for printing, as pairs (name, text)."""
         defined = [condition for condition in self.conditions if condition not in self.requires]
         wrong = self.diagnosis.code != "none"
         near = self.verdict == "doubtful"

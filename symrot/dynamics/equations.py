@@ -1,8 +1,8 @@
-"""Equations of motion of a plan: Euler's equations and the quaternion rates, for the states of the plan only.
+"""Equations of motion of a plan: Euler's equations and the quaternion rates, for the variables of the plan only.
 
-The equations are derived from the plan's structure: ``I domega/dt = tau - omega x (I omega + h)`` in body axes about
-the centre of mass or a fixed point, and ``dq/dt = 1/2 q (0, omega_b)``. Proof: ``derivations/euler_equations.md``,
-``derivations/quaternion_rates.md``.
+The equations are derived from the plan's structure (what is zero, equal or constant): ``I domega/dt = tau - omega x (I
+omega + h)`` in body axes about the centre of mass or a fixed point, and ``dq/dt = 1/2 q (0, omega_b)``. Proof:
+``derivations/euler_equations.md``, ``derivations/quaternion_rates.md``.
 """
 
 from dataclasses import dataclass, replace
@@ -29,7 +29,7 @@ TENSOR_NAMES = (("I_xx", "I_xy", "I_xz"), ("I_xy", "I_yy", "I_yz"), ("I_xz", "I_
 
 @dataclass(frozen=True)
 class AngleMotion(Motion):
-    """Motion whose attitude is a set of Euler angles: the matrix of the sequence rotates vectors."""
+    """Motion whose attitude is given by Euler angles, and by the matrix that rotates vectors by these angles."""
 
     sequence: str
 
@@ -73,7 +73,7 @@ class Equations:
 
 
 def inertia_matrix(inertia: PrincipalInertia | InertiaTensor) -> Matrix:
-    """Return the inertia tensor of a plan in symbols: one symbol for equal moments, zero for entries that vanish."""
+    """Return the inertia tensor of a plan in symbols: equal moments share a symbol, entries that vanish are zero."""
     if isinstance(inertia, PrincipalInertia):
         moments = dict(zip("ABC", symbols.principal, strict=True))
         return diag(*(moments[name] for name in inertia.moments))
@@ -148,7 +148,7 @@ def _read(values: Any, expectation: str) -> Matrix:
 
 
 def inverse(tensor: Matrix) -> Matrix:
-    """Return the inverse of a symbolic tensor, shape (3, 3), from the cross products of its columns."""
+    """Return the inverse of a symbolic 3 x 3 matrix, computed from the cross products of its columns."""
     if tensor.is_diagonal():
         return diag(*(1 / entry for entry in tensor.diagonal()))
     first, second, third = (tensor.col(i) for i in range(3))
@@ -157,7 +157,10 @@ def inverse(tensor: Matrix) -> Matrix:
 
 
 def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr]]:
-    """Return the motion of a plan in symbols, its attitude states, and the relations between them."""
+    """Return the motion of a plan in symbols, its attitude states, and the relations between the states.
+
+    An example of a relation is that the quaternion has unit norm.
+    """
     inertia, axis = inertia_matrix(structure.inertia), structure.planar
     turning = [
         S.Zero if pattern is Pattern.ZERO else w for w, pattern in zip(symbols.omega_b, structure.constant, strict=True)
@@ -184,7 +187,7 @@ def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr
 
 
 def equations_of_motion(structure: Structure) -> Equations:
-    """Return the equations of motion of a plan's structure."""
+    """Return the equations of motion of a structure, which says what is zero, equal or constant in a scene."""
     motion, attitude, relations = _motion(structure)
     laws = tuple(torque_law(torque, motion) for torque in structure.torques)
     torque = reduce(add, (law.torque for law in laws), zeros(3, 1))
@@ -212,9 +215,10 @@ def equations_of_motion(structure: Structure) -> Equations:
 
 
 def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equations:
-    """Return the equations of a motion that slides along the guards of some modes: each guard stays at zero.
+    """Return the equations of a motion that slides along surfaces at which the torque jumps: each guard stays at zero.
 
-    The modes take the values that keep them there: with rates linear in the modes s, ``dg/dt = a + B s = 0`` gives
+    A guard is the formula whose sign selects the branch of the torque, and its mode is the value of that sign. The
+    modes get the values that keep the guards at zero: with rates linear in the modes s, ``dg/dt = a + B s = 0`` gives
     ``s = -B^-1 a`` (V. I. Utkin's equivalent control; for one guard, A. F. Filippov's convex combination). They are
     definitions that the rates use. Motions near the guards return to them while all eigenvalues of B have negative real
     parts; A. Hurwitz's determinants of B say when they do.
@@ -236,7 +240,7 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
     rest = Matrix(pace).subs(dict.fromkeys(names, S.Zero))
     determinant = matrix.det().expand()
     if matrix.free_symbols & set(names) or determinant == 0:
-        raise InputError("torque: expected jumps along which the motion can slide in exactly one way")
+        raise InputError("torque: expected jumps along which the motion can slide in exactly one way, got others")
     modes = tuple(zip(names, -(matrix.adjugate() * rest) / determinant, strict=True))
     still = [S.Zero if state in guards else rate for state, rate in zip(equations.states, equations.rates, strict=True)]
     return replace(equations, rates=tuple(still), definitions=(*modes, *equations.definitions), modes=modes,
@@ -246,8 +250,8 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
 def hurwitz_determinants(matrix: Matrix) -> tuple[Expr, ...]:
     """Return numbers that are all positive if and only if all eigenvalues of a matrix have negative real parts.
 
-    They are the leading minors of Hurwitz's matrix of the characteristic polynomial (F. R. Gantmacher, The Theory of
-    Matrices, vol. 2, ch. XV).
+    The numbers are the leading minors of Hurwitz's matrix of the characteristic polynomial (F. R. Gantmacher, The
+    Theory of Matrices, vol. 2, ch. XV).
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Conserved quantities: candidates from the symmetries of mechanics, each proven along the equations of motion.
+"""Conserved quantities: quantities that symmetries suggest, such as the energy, and the proof of each.
 
 A candidate F(t, states) is conserved if and only if ``dF/dt = dF/dt|_t + grad F . rates`` has normal form zero; no list
-of known integrals is used. The other candidates are reported as lost, with the torques that change them.
+of known integrals is used. A candidate that is not conserved is reported as lost, with the torques that change it.
 """
 
 from collections.abc import Iterable, Sequence
@@ -31,7 +31,7 @@ TORQUE_PHRASES = {
 
 @dataclass(frozen=True)
 class Invariant:
-    """Candidate for a conserved quantity; ``holds`` says whether it is conserved, ``reason`` why or why not."""
+    """A quantity that may be conserved; ``holds`` says whether it is, and ``reason`` why or why not."""
 
     name: str
     unit: str
@@ -41,16 +41,13 @@ class Invariant:
 
 
 def rate_along(expression: Expr, equations: Equations) -> Expr:
-    """Return the rate of change of a quantity along the motion."""
+    """Return the rate of change of a quantity along the motion that the equations describe."""
     rates = zip(equations.states, equations.explicit_rates, strict=True)
     return expression.diff(symbols.t) + sum(expression.diff(state) * rate for state, rate in rates)
 
 
 def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield candidates for conserved quantities: (name, unit, value, formula to differentiate).
-
-    The formula to differentiate is the value itself, or its square if the value is a square root.
-    """
+    """Yield quantities that may be conserved, as (name, unit, value, formula to differentiate)."""
     momentum, energy = equations.momentum_b, equations.kinetic_energy + equations.potential
     yield "energy", "J", energy, energy
     if equations.motion.quaternion is None:
@@ -71,7 +68,7 @@ def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[st
 
 
 def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield the candidates that follow from a torque's special direction: the vertical, the normal of an orbit."""
+    """Yield candidates that follow from a special direction of a torque: the vertical, or the normal of an orbit."""
     if not isinstance(torque, FieldTorque):
         return
     if torque.kind == "gravity" and (direction := torque.vector("direction")).count(Pattern.ZERO) < 2:
@@ -103,14 +100,14 @@ def _reason(name: str, holds: bool, equations: Equations, kinds: Sequence[str]) 
 
 
 def _listed(kinds: Sequence[str]) -> str:
-    """Return kinds of torque in words, separated by commas, each once."""
+    """Return the kinds of the torques as text, without repetition and separated by commas."""
     return " and ".join(TORQUE_PHRASES.get(kind, kind.replace("_", " ")) for kind in dict.fromkeys(kinds))
 
 
 def find_invariants(equations: Equations, structure: Structure) -> tuple[Invariant, ...]:
     """Return the conserved quantities of a motion, followed by the candidates that are not conserved.
 
-    The components that the plan treats as constant are among the conserved quantities.
+    Components of omega that the plan treats as constant are among the conserved quantities.
     """
     kinds = [torque.kind for torque in structure.torques]
     candidates = []

@@ -1,9 +1,11 @@
-"""The structure of a motion: the form of its equations, independent of their numbers. Standard library only.
+"""The structure of a motion: which constants are zero, equal or free, so which equations it obeys.
 
-A plan (:mod:`symrot.planning.plan`) finds the structure of a scene, and :mod:`symrot.dynamics.equations` derives its
-equations of motion. Scenes of the same structure share one kernel; only the numbers that it is bound to differ.
+The values of free constants are not part of it. A plan (:mod:`symrot.planning.plan`) finds the structure of a scene,
+and :mod:`symrot.dynamics.equations` derives its equations of motion. Scenes of the same structure share one kernel
+(compiled equations) and differ only in its numbers.
 
-The parts of a structure are NamedTuples: to define a dataclass takes six times as long, at every start of symrot.
+The parts of a structure are NamedTuples, since to define a dataclass takes six times as long, at every start of symrot.
+The module uses the standard library only.
 """
 
 from collections.abc import Iterator
@@ -18,7 +20,7 @@ __all__ = [
 
 
 class Pattern(Enum):
-    """The value of a constant on which the equations may rely: 0, 1 or -1, or free if they may rely on no value."""
+    """The fact about a constant that the equations use: that it is 0, 1 or -1, or nothing if it is free."""
 
     ZERO = "0"
     ONE = "1"
@@ -33,26 +35,26 @@ FieldPattern = Pattern | tuple[Pattern, ...]
 
 
 def component_names(name: str, pattern: FieldPattern) -> list[str]:
-    """Return the names of the constants of one field: a vector is numbered from 1, a quaternion from 0."""
+    """Return the names of the components of a field: ``c_1 .. c_3`` of a vector, ``c_0 .. c_3`` of a quaternion."""
     if isinstance(pattern, Pattern):
         return [name]
     return [f"{name}_{index}" for index, _ in enumerate(pattern, start=0 if len(pattern) == 4 else 1)]
 
 
 class PrincipalInertia(NamedTuple):
-    """Principal moments about the body axes 1, 2, 3: one of A, B, C each, the same letter for equal moments."""
+    """Principal moments of inertia about the body axes 1, 2, 3, each named A, B or C; equal moments share a letter."""
 
     moments: str = "ABC"
 
 
 class InertiaTensor(NamedTuple):
-    """A tensor with products of inertia: the sorted names of the entries that are not zero, such as ``I_xy``."""
+    """An inertia tensor with products of inertia: the sorted names of its nonzero entries, such as ``I_xy``."""
 
     entries: tuple[str, ...]
 
 
 class TorqueSwitch(NamedTuple):
-    """A switch in the formulas of a torque: :class:`symrot.formula.switches.Switch` with its formulas as text."""
+    """A jump or kink in the formulas of a torque: :class:`symrot.formula.switches.Switch` with its formulas as text."""
 
     mode: str
     kind: str
@@ -64,7 +66,7 @@ class TorqueSwitch(NamedTuple):
 
 
 class FieldTorque(NamedTuple):
-    """Torque of a kind whose fields are numbers: all kinds but ``expression``.
+    """A torque of a kind that has numbers as fields: every kind but ``expression``, which has formulas.
 
     Attributes
     ----------
@@ -81,13 +83,13 @@ class FieldTorque(NamedTuple):
     fields: tuple[tuple[str, FieldPattern], ...]
 
     def number(self, name: str) -> Pattern:
-        """Return the pattern of a field that is a number."""
+        """Return the pattern (zero, one or free) of a field that is a number."""
         pattern = dict(self.fields)[name]
         assert isinstance(pattern, Pattern)
         return pattern
 
     def vector(self, name: str) -> tuple[Pattern, ...]:
-        """Return the patterns of the components of a field that is a vector or a quaternion."""
+        """Return the patterns (zero, one or free) of the components of a field that is a vector or a quaternion."""
         pattern = dict(self.fields)[name]
         assert isinstance(pattern, tuple)
         return pattern
@@ -124,12 +126,12 @@ class FormulaTorque(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """The kind of every torque of this class, as :class:`FieldTorque` has it."""
+        """The kind of the torque, which is always ``"expression"``; :class:`FieldTorque` has the same attribute."""
         return "expression"
 
     @property
     def has_choices(self) -> bool:
-        """Whether a ``where`` in the formulas has a part that must not be evaluated outside its condition."""
+        """Whether a formula has a ``where`` with a part that must not be evaluated unless its condition holds."""
         return bool(self.choices) or any(switch.choices for switch in self.switches)
 
 
@@ -141,7 +143,7 @@ MOVING = (None, None, None)
 
 @dataclass(frozen=True, slots=True)
 class Structure:
-    """The structure that determines the equations of a motion.
+    """What determines the equations of a motion: which of its constants are zero, equal or free.
 
     Attributes
     ----------
@@ -180,12 +182,12 @@ class Structure:
 
     @property
     def formula_torques(self) -> Iterator[FormulaTorque]:
-        """The torques that are given by formulas, one after the other."""
+        """The torques that are given by formulas, in the order of the scene."""
         return (torque for torque in self.torques if isinstance(torque, FormulaTorque))
 
     @property
     def moving(self) -> list[int]:
-        """The components of omega_b that are states, 0 to 2."""
+        """The indices, 0 to 2, of the components of omega_b that are states (variables of the equations)."""
         return [i for i in range(3) if self.constant[i] is None and self.planar in (None, i)]
 
     @property
@@ -198,7 +200,7 @@ class Structure:
         return replace(self, planar=None, initial_quaternion=None, constant=MOVING)
 
     def to_json(self) -> dict[str, object]:
-        """Return the structure as data for JSON: structures are equal if and only if these data are."""
+        """Return the structure as data for JSON; two structures are equal if and only if these data are equal."""
         return {field.name: _plain(getattr(self, field.name)) for field in fields(self)}
 
 

@@ -1,7 +1,7 @@
-"""Table of the torques of a scene: one entry per ``kind``, with its fields, units and defaults. Standard library only.
+"""Table of the kinds of torque that a scene may have, each with its fields, units and default values.
 
 :mod:`symrot.dynamics.torques` has the torques as formulas, with potentials and conserved quantities. The reader of
-scenes uses this table alone.
+scenes uses this table alone, which needs only the standard library.
 """
 
 from fractions import Fraction
@@ -14,7 +14,7 @@ EXPRESSION_NAMES = ("t", "omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3"
 
 
 class Field(NamedTuple):
-    """One field of a kind of torque: shape and sign of its value, and the default."""
+    """One value that describes a torque, such as a stiffness: its shape, unit, meaning, sign and default value."""
 
     name: str
     shape: str  # scalar | vector | scalar or vector | attitude | formulas | parameters | a choice "x|y"
@@ -26,8 +26,9 @@ class Field(NamedTuple):
 
 
 class TorqueKind(NamedTuple):
-    """One kind of torque. ``about`` is the point of rotation it needs: ``any``, ``fixed_point`` or
-    ``center_of_mass``.
+    """One kind of torque: its name, its fields, and the point of rotation that it needs.
+
+    ``about`` names the point: ``any``, ``fixed_point`` or ``center_of_mass``.
     """
 
     kind: str

@@ -1,8 +1,4 @@
-"""The torques of :mod:`symrot.dynamics.torque_kinds` as formulas: one law per kind, in a table.
-
-Each law gives the torque in body components and, if it has one, its potential; :func:`torque_of_potential` derives the
-torque from the potential, which is a check of each law.
-"""
+"""The torques of :mod:`symrot.dynamics.torque_kinds` as formulas: a table with one function (law) for each kind."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -70,7 +66,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class TorqueLaw:
-    """A torque (N m, body components) with its potential, momentum and named quantities."""
+    """The formula of a torque (N m, body components) with its potential, momentum and named quantities."""
 
     torque: Matrix = field(default_factory=lambda: zeros(3, 1))
     potential: Expr | None = None  # J; None where the torque has none
@@ -134,8 +130,9 @@ def _expression(motion: Motion, torque: Matrix, frame: str) -> TorqueLaw:
 
 
 def collected_cross(left: Matrix, right: Matrix, variables: Matrix) -> Matrix:
-    """Return ``left x right`` with products of two variables collected, as in (C - B) r_2 r_3, zero for equal
-    moments.
+    """Return ``left x right`` with products of the same two variables collected, as in (C - B) r_2 r_3.
+
+    For equal moments of inertia such a component is zero at once.
     """
     return _collected_cross(ImmutableMatrix(left), ImmutableMatrix(right), ImmutableMatrix(variables)).as_mutable()
 
@@ -166,8 +163,9 @@ _FUNCTIONS: dict[str, Callable[..., Expr]] = {
 
 
 def formula(node: Node, values: Mapping[str, Expr]) -> Expr:
-    """Return a formula tree as an exact SymPy expression; ``values`` gives the expressions of its names, pi is
-    known.
+    """Return a formula tree as an exact SymPy expression; ``values`` gives the expression of each name.
+
+    The name pi is known.
     """
     known = {"pi": sympy.pi, **values}
     node = _with_brackets(node, known)
@@ -179,10 +177,10 @@ def _rational(value: Fraction) -> Rational:
 
 
 def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
-    """Return a formula with a new name for each product of a number and a sum such as 1 + tanh(u).
+    """Return a formula with a new name in place of each product of a number and a sum, such as 2*(1 + tanh(u)).
 
-    The values of the new names are added to ``known``. SymPy would expand such a product and combine its
-    constant with others; where the sum is zero, a rounding error would remain.
+    The values of the new names are added to ``known``. SymPy would expand such a product and combine its constant with
+    other constants; a rounding error would remain where the sum is zero.
     """
     if node[0] in ("number", "symbol"):
         return node
@@ -203,7 +201,7 @@ def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
 
 
 def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:
-    """Return the law of one torque of a plan, for the quantities of a motion."""
+    """Return the formula, the potential and the other data of one torque, in the quantities of a motion."""
     if isinstance(structure, FormulaTorque):
         values = formula_values(structure, motion)
         torque = Matrix([_finite_formula(source, values) for source in structure.formulas])
@@ -213,7 +211,7 @@ def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:
 
 
 def formula_values(structure: FormulaTorque, motion: Motion) -> dict[str, Expr]:
-    """Return the values of all names in the formulas of an ``expression`` torque, for the quantities of a motion."""
+    """Return the values of all names in the formulas of an ``expression`` torque, in the quantities of a motion."""
     values = dict(zip(EXPRESSION_NAMES[:4], (symbols.t, *motion.omega_b), strict=True))
     values.update(zip(EXPRESSION_NAMES[4:], motion.quaternion or (), strict=False))
     values.update({name: constant(f"{structure.prefix}{name}") for name in structure.parameters})
@@ -236,17 +234,17 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
 
 
 def field_value(name: str, pattern: FieldPattern) -> Any:
-    """Return the symbols or exact numbers of a field: a scalar, a vector (numbered from 1) or a quaternion (from 0)."""
+    """Return a field of a torque as symbols or exact numbers: a scalar, a vector or a quaternion.
+
+    Components of a vector are numbered from 1, and those of a quaternion from 0.
+    """
     if isinstance(pattern, Pattern):
         return constant(name) if pattern is Pattern.FREE else Integer(pattern.value)
     return Matrix(list(map(field_value, component_names(name, pattern), pattern)))
 
 
 def torque_of_potential(law: TorqueLaw) -> Matrix:
-    """Return the torque that follows from the potential of a law, body components: minus its rotational gradient.
-
-    With ``dq = 1/2 q (0, omega_b) dt`` the work of the torque is ``tau . omega_b dt = -dV``, for every omega_b.
-    """
+    """Return the torque that the potential of a law implies, in body components: minus its gradient for rotations."""
     rates = quaternion_rates("body") * Matrix(symbols.omega_b)
     gradient = Matrix([sympy.S.Zero if law.potential is None else law.potential]).jacobian(symbols.quaternion)
     return -ImmutableMatrix((gradient * rates).jacobian(symbols.omega_b).T)

@@ -1,9 +1,9 @@
-"""The plan of a scene: the least set of equations that gives the requested output. Does not use SymPy.
+"""The plan of a scene: the smallest set of equations that gives the requested output. Does not use SymPy.
 
-A plan starts from the most general structure (full tensor, every constant free, full attitude) and applies a table of
-rules. Each rule looks at exact numbers, changes the structure or leaves it unchanged, and names the derivation that
-justifies the change. The structure, not the numbers, decides which kernel is needed, so that scenes of the same
-structure share a kernel.
+A plan starts from the most general structure (full inertia tensor, every constant free, full attitude) and applies a
+table of rules. Each rule looks at exact numbers, simplifies the structure or leaves it unchanged, and names the
+derivation that justifies the change. The structure (what is zero, equal or constant) decides which kernel, that is
+which compiled equations, is needed: scenes of the same structure share a kernel.
 """
 
 from collections.abc import Callable, Hashable
@@ -60,7 +60,7 @@ STATES = ("omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3", "theta")
 
 
 class RuleOutcome(NamedTuple):
-    """The decision of one rule of a plan: a line of the explained plan.
+    """The decision of one rule of a plan, printed as one line when a plan is explained.
 
     Attributes
     ----------
@@ -91,7 +91,7 @@ class RuleOutcome(NamedTuple):
 
 @dataclass(frozen=True)
 class Plan:
-    """The least set of equations for a scene, with the numbers that go into it.
+    """The smallest set of equations that gives the output of a scene, with the numbers that go into them.
 
     Attributes
     ----------
@@ -115,7 +115,7 @@ class Plan:
 
     @cached_property
     def constants(self) -> dict[str, Fraction]:
-        """The physical constants of the structure by name, exact; modes of switches are 1."""
+        """The physical constants of the equations by name, exact. The modes of torques with jumps have the value 1."""
         return self.scene_constants | self.start_constants
 
     @cached_property
@@ -125,13 +125,13 @@ class Plan:
 
     @property
     def start_constants(self) -> dict[str, Fraction]:
-        """The part of :attr:`constants` that are numbers of the initial state."""
+        """The part of :attr:`constants` that belongs to the initial state."""
         initial = self.scene.initial
         return {name: initial[part][place] for name, part, place in self._start_places}
 
     @cached_property
     def _start_places(self) -> tuple[tuple[str, int, int], ...]:
-        """The names of the constants that are numbers of the initial state, each with its place there."""
+        """The names of the constants that belong to the initial state, each with its field and index in that state."""
         rates = enumerate(self.structure.constant)
         quaternion = enumerate(self.structure.initial_quaternion or ())
         return (
@@ -141,7 +141,10 @@ class Plan:
 
     @property
     def switches(self) -> list[str]:
-        """The functions with jumps or kinks in the torques, as the scene writes them; empty if modes are not used."""
+        """The functions with jumps or kinks in the torques, as the scene writes them.
+
+        It is empty if the plan follows no jumps or kinks.
+        """
         return [switch.label for torque in self.structure.formula_torques for switch in torque.switches]
 
     @cached_property
@@ -166,13 +169,13 @@ class Plan:
 
     @cached_property
     def _places(self) -> tuple[int, ...]:
-        """The index of each state among omega, attitude and the angle of a planar rotation."""
+        """The index of each state (variable) among angular velocity, attitude and angle of a planar rotation."""
         return tuple([STATES.index(name) for name in self.states])
 
     def from_start(self, initial: Initial) -> "Plan":
-        """Return the plan of the same scene and structure from another initial state.
+        """Return the plan of the same scene and structure for another initial state, without applying the rules again.
 
-        ``initial`` must have the :func:`structure_key` of the plan's own start: the rules are not applied again.
+        ``initial`` must have the same :func:`structure_key` as the initial state of this plan.
         """
         scene, plan = object.__new__(Scene), object.__new__(Plan)
         scene.__dict__.update(self.scene.__dict__, initial=initial)
@@ -181,7 +184,7 @@ class Plan:
 
     @cached_property
     def _shared(self) -> dict[str, Any]:
-        """Attributes, by name, that plans of the same structure from other initial states share."""
+        """The attributes, by name, that a plan shares with plans of the same structure and another initial state."""
         names = ("structure", "rows", "scene_constants", "states", "_places", "_start_places")
         attributes: dict[str, Any] = {name: getattr(self, name) for name in names}
         attributes["_shared"] = attributes
@@ -191,7 +194,7 @@ class Plan:
 def make_plan(
     scene: Scene, initial: Initial | None = None, external_torque: bool = False, switched: bool = False
 ) -> Plan:
-    """Return the plan of a scene, perhaps with another initial state.
+    """Return the plan of a scene, or of the scene with another initial state.
 
     Parameters
     ----------
@@ -219,8 +222,8 @@ def make_plan(
         scene = replace(scene, initial=initial)
     if not switched and (name := _switching_function(scene)):
         raise InputError(
-            f"{scene.name}: expected torques without switches, got the function {name}: the equations change from one "
-            "mode to the next; symrot run, symrot.propagator and symrot.propagate_ensemble follow them"
+            f"{scene.name}: expected torques without switches (jumps or kinks), got the function {name}: the equations "
+            "change from one mode to the next; symrot run, symrot.propagator and symrot.propagate_ensemble follow them"
         )
     structure = general_structure(scene, switched)
     rows = []
@@ -235,10 +238,11 @@ def make_plan(
 
 
 def structure_key(scene: Scene, initial: Initial) -> Hashable:
-    """Return a key of an initial state: plans of starts with the same key differ in numbers alone.
+    """Return the facts about an initial state on which the plan depends, as a key for comparison.
 
-    The key says which components of omega are zero. If the body may rotate about a single axis, it also says which
-    components of the attitude are zero or one, and along which body axes the torques fixed in space lie.
+    Plans of initial states with the same key differ in numbers alone. The key says which components of omega are zero.
+    If the body may rotate about a single axis, it also says which components of the attitude are zero or one, and along
+    which body axes the torques fixed in space lie.
     """
     rotates_about = tuple([x.numerator != 0 for x in initial.omega_b])
     if rotates_about.count(True) > 1:
@@ -253,7 +257,7 @@ def structure_key(scene: Scene, initial: Initial) -> Hashable:
 
 
 def switched(scene: Scene) -> bool:
-    """Return whether a torque of a scene has a jump or a kink that the motion may reach."""
+    """Return whether a torque of a scene has a jump or a kink (as ``sign`` or ``abs``) that the motion may reach."""
     return any(
         has_switches(expression.parse(formula, switching=True))
         for torque in scene.torques
@@ -262,7 +266,7 @@ def switched(scene: Scene) -> bool:
 
 
 def _switching_function(scene: Scene) -> str:
-    """Return the name of a function with jumps or kinks in the torques of a scene, or an empty text."""
+    """Return the name of a function with a jump or kink in the torques of a scene; an empty text if there is none."""
     calls = {
         name
         for torque in scene.torques
@@ -280,7 +284,7 @@ def general_structure(scene: Scene, switched: bool = False) -> Structure:
 
 
 def _general_torque(number: int, torque: Torque, known: set[str], switched: bool) -> TorqueStructure:
-    """Return the structure of one torque with free constants; their names are added to ``known``."""
+    """Return the structure of one torque with all constants free; the constants' names are added to ``known``."""
     if torque.formulas:
         general = _formula_torque(torque, switched)
         prefix = _prefix(number, list(general.parameters), known)
@@ -293,7 +297,7 @@ def _general_torque(number: int, torque: Torque, known: set[str], switched: bool
 
 
 def _formula_torque(torque: Torque, switched: bool) -> FormulaTorque:
-    """Return the structure of a torque given by formulas; its constants keep the names of the scene."""
+    """Return the structure of a torque given by formulas; its constants keep the names that the scene gives them."""
     formulas, parameters, frame = torque.formulas, tuple(torque.values), torque.frame
     if not (switched and any(has_switches(expression.parse(text, switching=True)) for text in formulas)):
         return FormulaTorque("", formulas, parameters, frame)
@@ -415,7 +419,7 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
-    """Return a sentence that names the axes about which formulas give no torque, in a list that may be empty."""
+    """Return a list with one sentence that names the axes about which formulas give no torque; empty without any."""
     axes = [str(i + 1) for i, formula in enumerate(scene_torque.formulas) if _is_zero(formula)]
     if not axes:
         return []
@@ -454,12 +458,12 @@ def _attitude(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _only_along(vector: tuple[Pattern, ...], axis: int) -> bool:
-    """Return whether the components of a vector about the other two axes are zero."""
+    """Return whether a vector lies along a body axis: its other two components are zero."""
     return all(vector[i] is ZERO for i in range(3) if i != axis)
 
 
 def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque: Torque) -> bool:
-    """Return whether a torque stays along a body axis while the body rotates about that axis alone."""
+    """Return whether a torque always lies along a body axis while the body rotates about that axis alone."""
     if isinstance(torque, FormulaTorque):
         return False
     if torque.kind == "constant_body":
@@ -494,7 +498,10 @@ def _negligible(value: Fraction, vector: tuple[Fraction, ...]) -> bool:
 
 
 def _small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[bool, ...]:
-    """Return, for a vector given in space components, which body components are zero at the start, to 2^-200."""
+    """Return which body components of a vector are zero, to 2^-200, at the initial attitude.
+
+    The vector is given in space components.
+    """
     if _all_large(vector_s, initial):
         return False, False, False
     vector = _in_body(vector_s, initial)
@@ -502,7 +509,10 @@ def _small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple
 
 
 def _all_large(vector_s: tuple[Fraction, ...], initial: Initial) -> bool:
-    """Return whether doubles already prove that no body component is zero, in a tenth of the time of exact numbers."""
+    """Return whether double precision already proves that no body component of a vector is zero.
+
+    That takes a tenth of the time of exact numbers.
+    """
     ratios = [x.as_integer_ratio() for x in (*initial.quaternion, *vector_s)]
     q0, q1, q2, q3, x, y, z = [top / bottom for top, bottom in ratios]
     along, scalar = 2 * (q1 * x + q2 * y + q3 * z), q0 * q0 - q1 * q1 - q2 * q2 - q3 * q3
@@ -563,9 +573,9 @@ def _constant_spin(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None, Pattern | None]:
-    """Return for each component of omega_b its pattern (zero or free) if it is constant, None if it changes.
+    """Return a pattern (zero or free) for each component of omega_b that is constant, and None for the others.
 
-    ``axes`` are the constant components.
+    ``axes`` are the indices of the constant components.
     """
     first, second, third = (
         _pattern(w, unit=False) if axis in axes else None for axis, w in enumerate(scene.initial.omega_b)
@@ -574,7 +584,7 @@ def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None,
 
 
 def _no_moment_about(torque: TorqueStructure, axis: int) -> bool:
-    """Return whether a torque never has a component along the symmetry axis of the body, whatever the motion."""
+    """Return whether a torque has no component along the symmetry axis of the body in any motion."""
     if isinstance(torque, FormulaTorque):
         return torque.frame == "body" and torque.formulas[axis].strip() in ("0", "0.0")
     if torque.kind == "constant_body":

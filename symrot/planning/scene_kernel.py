@@ -1,6 +1,7 @@
-"""Kernels of a plan as saved data: rates, quantities, conserved quantities, and C text. Does not use SymPy.
+"""Kernels of a plan (its equations, ready to be evaluated) as saved data: programs and C text.
 
-:mod:`symrot.codegen.scene_kernels` derives them, the cache stores them as JSON, the propagator binds them to numbers.
+:mod:`symrot.codegen.scene_kernels` derives them, the cache stores them as JSON, and the propagator binds them to
+numbers. This module does not use SymPy.
 """
 
 from collections.abc import Mapping
@@ -21,7 +22,7 @@ Parameters = tuple[tuple[str, Node], ...]  # name in the kernel, formula over th
 
 
 class Conserved(NamedTuple):
-    """Candidate for a conserved quantity: whether it is conserved, and why.
+    """A quantity that may be conserved: whether it is, and why.
 
     Attributes
     ----------
@@ -56,9 +57,10 @@ class KernelRecord(TypedDict):
 
 
 class SceneKernel:
-    """The kernels derived once for a structure and used for every scene that has it.
+    """The equations of a structure, ready to be evaluated: derived once and used for every scene of that structure.
 
-    Programs are made from the saved data when they are first used: a propagation in C never needs the rates.
+    Programs are made from the saved data when they are first used: a propagation in C never needs the program of the
+    rates.
 
     Examples
     --------
@@ -75,7 +77,7 @@ class SceneKernel:
         cls, rates: Program, rate_parameters: Parameters, quantities: Program, quantity_parameters: Parameters,
         conserved: tuple[Conserved, ...], source: str,
     ) -> "SceneKernel":  # fmt: skip
-        """Return the kernel made of newly derived programs."""
+        """Return the kernel that consists of newly derived programs."""
         return cls(
             {
                 "rates": rates.to_json(),
@@ -132,6 +134,9 @@ def _loaded(saved: SavedParameters) -> Parameters:
 
 
 def bind(parameters: Parameters, constants: Mapping[str, Fraction]) -> list[float]:
-    """Return the values of a kernel's parameters from the constants of a scene: exact arithmetic, one rounding each."""
+    """Return the values of a kernel's parameters from the constants of a scene.
+
+    The arithmetic is exact, with one rounding of each value.
+    """
     values = {"pi": number.PI, **constants}
     return [float(evaluate(node, values, EXACT_FUNCTIONS)) for _, node in parameters]

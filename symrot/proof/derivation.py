@@ -64,7 +64,9 @@ class PrintedPage(Page):
         return html_document(self)
 
     def part(self, number: int, detail: bool = False) -> "PrintedPage":
-        """Return a page with one step (the first is 1); in detail, with every expression between its two sides.
+        """Return a page with one step, counted from 1.
+
+        With ``detail``, it shows every expression between the two sides.
 
         Raises
         ------
@@ -77,7 +79,7 @@ class PrintedPage(Page):
 
 @dataclass
 class Derivation(PrintedPage):
-    """Derivation of a result as a page of a textbook in code, proven while it is built.
+    """Derivation of a result, built like a page of a textbook: every step is proven when it is added.
 
     Parameters
     ----------
@@ -126,7 +128,10 @@ class Derivation(PrintedPage):
             self._note(left, right)
 
     def nonzero(self, text: str, expression: Expr, named: str) -> None:
-        """State that an expression (LaTeX ``named``) is not zero; later steps do not repeat this condition."""
+        """State that an expression, printed as the LaTeX ``named``, is not zero.
+
+        Later steps need not repeat this condition.
+        """
         self.items.append(Passage(f"{text} ${named} \\neq 0$."))
         self.assumed += [part.expand() for part in (expression, *_factors(expression))]
 
@@ -219,7 +224,7 @@ class Derivation(PrintedPage):
     def _is_read_back(
         self, claim: str, display: Any, side: Any, sides: tuple[Any, Any], relations: Sequence[Any]
     ) -> bool:
-        """Return whether the displayed form of a side can be read back as mathematics, and prove it equal to the side.
+        """Prove that the LaTeX displayed for a side is equal to the side; return False if the LaTeX cannot be read.
 
         Raises
         ------
@@ -241,10 +246,7 @@ class Derivation(PrintedPage):
         return True
 
     def _read(self, text: str, sides: tuple[Any, Any] = (S.Zero, S.Zero)) -> list[Any]:
-        """Return the values of a LaTeX text for one side: several if it is a chain ``X = Y``.
-
-        Further equations in the text, after ``, \\quad``, define a name, or else must hold.
-        """
+        """Return the values of a LaTeX text that is displayed for one side: two or more if it is a chain ``X = Y``."""
         used = {symbol for side in sides for symbol in side.free_symbols}
         names = {key(formula(symbol)): symbol for symbol in used} | self.names
         chains = parts(text)
@@ -291,7 +293,10 @@ class Derivation(PrintedPage):
 
 
 def _tidied(conditions: Sequence[Any]) -> list[Any]:
-    """Return conditions of a step split into factors, without repetitions; a root is nonzero where its radicand is."""
+    """Return the conditions of a step, split into factors and without repetitions.
+
+    The condition that a root is not zero becomes the condition that its radicand is not zero.
+    """
     independent: dict[Any, Any] = {}
     for condition in conditions:
         if not isinstance(condition, Ne):
@@ -308,7 +313,7 @@ def _tidied(conditions: Sequence[Any]) -> list[Any]:
 
 
 def _factors(expression: Expr) -> list[Expr]:
-    """Return the factors of an expression, all of which must be nonzero for it to be nonzero; or the expression."""
+    """Return the factors that must all be nonzero for an expression to be nonzero; or the expression itself."""
     plain = not expression.is_number and expression.is_polynomial(*expression.free_symbols)
     factors = [base for base, _ in factor_list(expression)[1]] if plain else []
     return factors if len(factors) > 1 else [expression]
@@ -319,7 +324,10 @@ def _shape(side: Any) -> Any:
 
 
 def _as_side(display: Any, side: Any) -> Any:
-    """Return a displayed value in the shape of its side: opposite a square matrix, a number means a multiple of I."""
+    """Return a displayed value in the shape of its side.
+
+    Where the side is a square matrix, a number becomes that multiple of the identity matrix.
+    """
     display = _frozen(display)
     if isinstance(side, MatrixBase) and not isinstance(display, MatrixBase):
         if display == 0:

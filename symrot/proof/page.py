@@ -10,7 +10,7 @@ __all__ = ["Page", "Passage", "Section", "Step"]
 
 @dataclass(frozen=True)
 class Section:
-    """Heading on a page."""
+    """Heading of a section on the page (the printed form) of a derivation."""
 
     title: str
 

@@ -27,7 +27,7 @@ Matrix = tuple[Vector, Vector, Vector]
 
 
 class Attitude(NamedTuple):
-    """An attitude in two forms: the unit quaternion and the matrix ``dcm_sb``, which is exact if the angles are."""
+    """An attitude as a unit quaternion and as the matrix ``dcm_sb``; the matrix is exact if the angles are."""
 
     quaternion: Quaternion
     dcm: Matrix
@@ -60,7 +60,7 @@ def _unit(q: Quaternion) -> Quaternion:
 
 
 def _dcm(q: Quaternion) -> Matrix:
-    """Return the matrix ``dcm_sb`` of a quaternion of any length; it is rational if the quaternion is."""
+    """Return the matrix ``dcm_sb`` of a quaternion that need not have unit length; rational numbers stay rational."""
     w, x, y, z = q
     s = 2 / sum(map(Fraction.__mul__, q, q), Fraction(0))
     return (
@@ -71,7 +71,7 @@ def _dcm(q: Quaternion) -> Matrix:
 
 
 def _about(axis: Vector, angle: Angle) -> Attitude:
-    """Return the rotation by an angle about an axis of any length (Rodrigues' formula)."""
+    """Return the rotation by an angle about an axis, which need not be a unit vector (Rodrigues' formula)."""
     x, y, z = axis
     square = x * x + y * y + z * z
     length = sqrt(square)
@@ -101,11 +101,14 @@ def _of_sequence(name: str, angles: tuple[Angle, ...]) -> Attitude:
 
 
 def _of_dcm(rows: Matrix, value: object, where: str) -> Attitude:
-    """Return the attitude of a typed matrix, by way of the quaternion (Shepperd: from its largest component)."""
+    """Return the attitude of a matrix in a scene, by way of its quaternion.
+
+    The quaternion is computed from its largest component (Shepperd's method).
+    """
     product = _matrix_product(rows, tuple(zip(*rows, strict=True)))  # type: ignore[arg-type]
     worst = max(abs(product[i][j] - (i == j)) for i in range(3) for j in range(3))
     if worst > ORTHOGONAL:
-        fail(where, "a rotation: orthonormal rows, to 1e-9", value, f"its rows miss that by {float(worst):.2g}")
+        fail(where, "a rotation: orthonormal rows, to 1e-9", value, f"its rows deviate from that by {float(worst):.2g}")
     (a, b, c), (d, e, f), (g, h, i) = rows
     if a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0:
         fail(where, "a rotation, of determinant +1", value, "this is a reflection, of determinant -1")
@@ -140,7 +143,7 @@ def _four(value: Any, where: str) -> Quaternion:
 
 
 def _read_quaternion(value: Any, where: str) -> Attitude:
-    """Return the attitude of a quaternion (q0, q1, q2, q3) in a scene, scalar first, of any length but zero."""
+    """Return the attitude of a quaternion (q0, q1, q2, q3) in a scene: scalar first, and not zero."""
     q = _four(value, where)
     return Attitude(_unit(q), _dcm(q))
 
@@ -154,7 +157,7 @@ def _rows(value: Any, where: str) -> Matrix:
 
 
 def read_sequence(value: Any, where: str) -> str:
-    """Return the name of an Euler sequence in a scene; raise InputError if it is no such name."""
+    """Return the name of an Euler sequence in a scene, such as ``"ZXZ"``; raise InputError for any other value."""
     try:
         parse_sequence(value)
     except InputError:
@@ -218,7 +221,7 @@ _FORMS: dict[str, Callable[[Mapping[str, Any], str], Attitude]] = {
 
 
 def read_attitude(value: Any, where: str) -> Attitude:
-    """Return the attitude that a table of a scene describes; exactly one form is allowed."""
+    """Return the attitude that a table of a scene describes, in exactly one of the supported forms."""
     entries = table(value, where, f"an attitude: {FORMS}")
     form = next((reader for key, reader in _FORMS.items() if key in entries), None)
     if form is None:

@@ -1,7 +1,8 @@
-"""Bodies of scenes: exactly one source of the inertia, the point of rotation, and a check that such a body exists.
+"""Bodies of scenes: their inertia from exactly one source, their point of rotation, and a check that they can exist.
 
-The sources are ``shape`` with dimensions and mass or density; ``[[body.part]]``, a composite; ``principal`` moments;
-and ``inertia``, the tensor. The result is exact (Fractions) and in the axes in which the body was given.
+The sources are ``shape`` with dimensions and mass or density; ``[[body.part]]``, a body composed of parts;
+``principal`` moments; and ``inertia``, the tensor. The result is exact (Fractions) and in the axes in which the body
+was given.
 """
 
 from collections.abc import Callable, Mapping
@@ -98,7 +99,7 @@ def _nearest_source(entries: Mapping[str, Any]) -> str:
 
 
 def _settled(inertia: Matrix) -> Matrix:
-    """Return an inertia tensor with negligible products of inertia, rounding errors of rotations, set to zero."""
+    """Return an inertia tensor with negligible products of inertia, which are rounding errors, replaced by zero."""
     limit = max(abs(inertia[i][i]) for i in range(3)) * NEGLIGIBLE
     first, second, third = (tuple(Fraction(0) if abs(x) <= limit else x for x in row) for row in inertia)
     return first, second, third  # type: ignore[return-value]
@@ -144,7 +145,7 @@ def _tensor(value: Any, where: str) -> Matrix:
 
 
 def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return a body from moments of inertia in a scene, which are about its point of rotation."""
+    """Return a body from the moments of inertia in a scene, which refer to the point about which the body rotates."""
     about, center = values["about"], values["center_of_mass"]
     if about == "center_of_mass":
         if center is not None and any(center):
@@ -192,7 +193,10 @@ def _any_value(value: Any, where: str) -> Any:
 
 
 def _amount(shape: Shape) -> dict[str, Entry]:
-    """Return the readers of mass and density for a shape; separate points have their masses among the dimensions."""
+    """Return the readers of mass and density for a shape.
+
+    Point masses have no such keys: each has a mass of its own.
+    """
     if shape.kind == "points":
         return {}
     return {
@@ -202,7 +206,7 @@ def _amount(shape: Shape) -> dict[str, Entry]:
 
 
 def _density(unit: str) -> Reader:
-    """Return a reader of a density: a positive number, or a polynomial in x, y, z, which stays text."""
+    """Return a reader of a density: a positive number, or a polynomial in x, y, z, which is returned as text."""
     uniform = number(f"a density in {unit}", "positive")
 
     def reader(value: Any, where: str) -> Any:
@@ -217,7 +221,7 @@ def _density(unit: str) -> Reader:
 
 
 def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str, Entry]) -> tuple[Part, dict[str, Any]]:
-    """Return the solid that a table with the key ``shape`` describes, and the table's other values."""
+    """Return the solid that a table with the key ``shape`` describes, and the values of the other keys of the table."""
     if "shape" not in value:
         fail(f"{where}.shape", f"one of the shapes {', '.join(SHAPES)}, the key is missing")
     shape = _shape_name(value["shape"], f"{where}.shape")
@@ -251,7 +255,7 @@ _length = number("a number in m")
 
 
 def _bounded(value: Any, where: str) -> None:
-    """Raise InputError for a dimension that is not a number or is out of range, before anything is computed from it."""
+    """Raise InputError for a dimension that is not a number or is out of range, before it is used."""
     if isinstance(value, list | tuple):
         for index, item in enumerate(value):
             _bounded(item, f"{where}[{index}]")
@@ -260,10 +264,14 @@ def _bounded(value: Any, where: str) -> None:
 
 
 def _placed(properties: MassProperties, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return a composed body about its centre of mass, or about a fixed point that is given in the axes of the body."""
+    """Return a composed body about its centre of mass, or about a fixed point given in the axes of the body."""
     about, point = values["about"], values["fixed_point"]
     if about == "center_of_mass" and point is not None:
-        fail(f"{where}.fixed_point", 'about = "fixed_point" beside it, for the body to turn about it', point)
+        fail(
+            f"{where}.fixed_point",
+            'about = "fixed_point" in the same table, since a body rotates about a fixed point only then',
+            point,
+        )
     if about == "fixed_point" and point is None:
         fail(f"{where}.fixed_point", "three numbers [x, y, z] in m, in the axes of the body: it turns "
                  "about a fixed point, the key is missing")  # fmt: skip

@@ -28,10 +28,10 @@ def shipped_names() -> list[str]:
 
 
 def names_with_kernels() -> list[str]:
-    """Return the names of the shipped scenes that have a single set of equations.
+    """Return the names of the shipped scenes that have one set of equations of motion.
 
-    Such scenes can be emitted and certified. A scene with a table of samples has no equations; functions with jumps or
-    kinks have one set of equations in each mode.
+    Such scenes can be printed as C (``symrot emit``) and certified. A scene with a table of samples has no formula for
+    its torque. Functions with jumps or kinks have one set of equations in each mode.
     """
     return [name for name in shipped_names() if all(map(_has_kernel, _torques(name)))]
 
@@ -49,7 +49,8 @@ def _has_kernel(torque: dict[str, Any]) -> bool:
 def find_scene(source: str | Path) -> Path:
     """Return the path of a scene file, from the name of a shipped scene or from a path.
 
-    Text without a suffix and without a folder is a shipped name first, and a file in the current folder second.
+    Text without a suffix and without a folder is first taken for the name of a shipped scene, then for a file in the
+    current folder.
 
     Raises
     ------

@@ -33,7 +33,7 @@ LARGEST = Fraction(10) ** 100
 
 
 class Entry(NamedTuple):
-    """One key of a table: its reader, whether the key is required, and its default value."""
+    """The rules for one key of a table: its reader, whether the key is required, and its default value."""
 
     read: Reader
     required: bool = False
@@ -85,9 +85,9 @@ def read_table(value: object, where: str, entries: Mapping[str, Entry], what: st
 
 
 def number(expectation: str = "a number", sign: str = "any") -> Reader:
-    """Return a reader of one number; ``sign`` is any, positive or nonnegative.
+    """Return a reader of one number; ``sign`` is "any", "positive" or "nonnegative".
 
-    The text ``expectation`` begins with "a ".
+    The text ``expectation``, for error messages, begins with "a ".
     """
     expected_number = {
         "any": expectation,
@@ -107,7 +107,10 @@ def number(expectation: str = "a number", sign: str = "any") -> Reader:
 
 
 def vector(unit: str, sign: str = "any") -> Reader:
-    """Return a reader of three numbers; ``sign`` is any, nonzero (not all three zero) or nonnegative (each)."""
+    """Return a reader of three numbers; ``sign`` is "any", "nonzero" or "nonnegative".
+
+    "nonzero" excludes the zero vector alone; "nonnegative" applies to each component.
+    """
     expectation = f"three numbers [x, y, z] in {unit}" if unit != "1" else "three numbers [x, y, z]"
     component = number(f"a number in {unit}" if unit != "1" else "a number", "any" if sign == "nonzero" else sign)
 
@@ -123,7 +126,10 @@ def vector(unit: str, sign: str = "any") -> Reader:
 
 
 def text(value: Any, where: str) -> str:
-    """Return the value if it is a line of text of at most 1000 characters, none of which could disturb a terminal."""
+    """Return the value if it is a line of at most 1000 printable characters.
+
+    Control characters, which may disturb a terminal, are refused.
+    """
     if not isinstance(value, str) or len(value) > 1000 or not value.isprintable():
         fail(where, "a line of text of at most 1000 characters", value)
     return value
@@ -137,7 +143,7 @@ def flag(value: Any, where: str) -> bool:
 
 
 def choice(*options: str) -> Reader:
-    """Return a reader that accepts one of several words."""
+    """Return a reader that accepts any one of the given words."""
 
     def reader(value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in options:

@@ -55,7 +55,7 @@ class Table(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """The kind of this torque, ``"table"``, in the same place as for other torques."""
+        """The kind of this torque, which is always ``"table"``; other torques have the same attribute."""
         return TABLE_KIND.kind
 
 
@@ -64,7 +64,7 @@ _moment = vector("N m")
 
 
 def _plain(value: Any) -> bool:
-    """Return whether a number is a plain double that needs no further check, as most samples are."""
+    """Return whether a number is a float that needs no further check, as most samples are."""
     return type(value) is float and (1e-99 < abs(value) < 1e99 or value == 0.0)
 
 
@@ -103,7 +103,7 @@ def read_samples(
     span: tuple[Fraction, Fraction],
     table_folders: str | Path | Sequence[str | Path] = (),
 ) -> Table:
-    """Return the samples of a ``[[torque]]`` of kind table; they must cover the span of the scene.
+    """Return the samples of a ``[[torque]]`` of kind table; they must cover the time span of the scene.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def read_samples(
     written = [key for key in ("t", "moment") if values[key] is not None]
     if (values["file"] is None) == (not written) or len(written) == 1:
         present = [key for key in ("t", "moment", "file") if values[key] is not None]
-        fail(where, f"t and moment, or file, got {' and '.join(present) or 'none of them'}")
+        fail(where, f"the keys t and moment, or the key file, got {' and '.join(present) or 'none of them'}")
     if written:
         times, moments, place, rows = values["t"], values["moment"], f"{where}.t", 0
         if len(times) != len(moments):
@@ -153,8 +153,9 @@ def read_samples(
 
 
 def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, rows: int) -> None:
-    """Raise InputError unless times increase, only switching times occur twice, and each piece has two samples or
-    more.
+    """Raise InputError unless the times increase and each piece between switching times has at least two samples.
+
+    A switching time occurs twice: for the torque before and after its jump.
     """
     if len(times) < 2:
         fail(place, f"two samples or more, got {len(times)}")
@@ -174,7 +175,7 @@ def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, r
 
 
 def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ...], place: str) -> None:
-    """Raise InputError if a coefficient of the interpolating spline is too large to be a finite double."""
+    """Raise InputError if a coefficient of the interpolating spline would be too large for a double."""
     for (before, here), (after, there) in pairwise(zip(times, moments, strict=True)):
         gap, change = after - before, max(abs(y - x) for x, y in zip(here, there, strict=True))
         if gap and not (gap >= 1 / _STEEPEST and change <= gap * _STEEPEST):

@@ -1,8 +1,4 @@
-"""Scenes: a problem as data, read from a TOML file (or a dict) into exact numbers. Does not use SymPy.
-
-The format is the table :data:`TOP` with the readers that it names. Everything in a scene is checked here, and every
-error is one sentence with file, key, expectation and value (:class:`symrot.errors.InputError`).
-"""
+"""Scenes: problems of rotation as data, read from a TOML file (or a dict) into exact numbers. Does not use SymPy."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -225,7 +221,9 @@ def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str |
 
 
 def shipped_scenes() -> list[tuple[str, str, str]]:
-    """Return the name, the title and the source of every scene that comes with symrot, without reading their bodies.
+    """Return the name, the title and the source of every scene that comes with symrot.
+
+    The rest of the files, such as bodies and torques, is not checked.
 
     Returns
     -------
@@ -317,7 +315,7 @@ def _read_output(value: Any, where: str) -> Output:
         fail(f"{where}.sequence", 'an Euler sequence for the quantity euler, such as "ZXZ", the key is missing')
     for key in ("sequence", "degrees"):
         if "euler" not in values["quantities"] and key in value:
-            fail(f"{where}.{key}", "euler among the quantities, which alone uses it", value[key])
+            fail(f"{where}.{key}", "euler among the quantities, since nothing else uses this key", value[key])
     return Output(values["quantities"], values["sequence"], values["degrees"])
 
 

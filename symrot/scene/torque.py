@@ -1,5 +1,6 @@
-"""Torques of scenes: read according to the table of :mod:`symrot.dynamics.torque_kinds`, and completed from the
-body.
+"""Torques of scenes: read with the table of :mod:`symrot.dynamics.torque_kinds`.
+
+Values that a torque lacks, such as the weight, come from the body.
 """
 
 import math
@@ -113,7 +114,7 @@ def _depth(node: expression.Node) -> int:
 
 
 def _formula(value: Any, where: str) -> str:
-    """Return one component of a torque as formula text; the scene may give a formula or a plain number."""
+    """Return one component of a torque as the text of a formula; the scene may give a formula or a number."""
     if not isinstance(value, str):
         return str(read(value, where, 'a formula as text, such as "-k*omega_1", or a number'))
     if len(value) > LONGEST_FORMULA:
@@ -190,7 +191,7 @@ def _entries(kind: TorqueKind) -> dict[str, Entry]:
 
 
 def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
-    """Return weight, centre of mass and unit direction of gravity; values missing in the scene come from the body."""
+    """Return weight, centre of mass and unit direction of gravity; the body provides values missing in the scene."""
     weight, acceleration, center = values["weight"], values["gravity"], values["center_of_mass"]
     if weight is not None and acceleration is not None:
         fail(f"{where}.gravity", "weight or gravity, not both", acceleration)
@@ -208,7 +209,7 @@ def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, An
         fail(f"{where}.center_of_mass", "three numbers [x, y, z] in m from the fixed point: the moments of the "
                  "body were typed, its centre of mass is unknown")  # fmt: skip
     if not any(center):
-        fail(where, "a fixed point away from the centre of mass, where alone the weight has a torque",
+        fail(where, "a fixed point away from the centre of mass, since the weight has no torque about that centre",
                  [float(item) for item in center])  # fmt: skip
     x, y, z = values["direction"]
     length = sqrt(x * x + y * y + z * z)
@@ -250,7 +251,7 @@ def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str,
 
 
 def _check_clips(node: expression.Node, values: Mapping[str, float], where: str, index: int) -> None:
-    """Raise InputError for a ``clip`` whose lower limit is above its upper limit, if both are numbers or parameters."""
+    """Raise InputError for a ``clip(u, low, high)`` with low > high, if both limits are numbers or parameters."""
     for child in expression.children(node):
         _check_clips(child, values, where, index)
     if node[0] != "call" or node[1] != "clip":
@@ -282,7 +283,7 @@ _ABOUT_ADVICE = {
 
 
 def read_torque(value: Any, body: Body, where: str) -> Torque:
-    """Return the torque that one table ``[[torque]]`` describes by formulas, completed from the body.
+    """Return the torque that one table ``[[torque]]`` describes, with missing values filled in from the body.
 
     Raises
     ------

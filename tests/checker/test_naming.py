@@ -217,6 +217,9 @@ def test_a_wrong_identity_in_letters_of_one_side_stays_false(claim):
 def test_chains_in_latex_are_decided_link_by_link():
     assert symrot.check(r"\cos 2\theta = \cos^2\theta - \sin^2\theta = 1 - 2\sin^2\theta").verdict == "true"
     wrong = symrot.check(r"\cos 2\theta = \cos^2\theta - \sin^2\theta = 2\cos^2\theta + 1")
-    assert (wrong.verdict, wrong.repairs[0].text) == ("false", r"\cos^2(\theta) - \sin^2(\theta) = 2 \cos^2(\theta) - 1")
+    assert (wrong.verdict, wrong.repairs[0].text) == (
+        "false",
+        r"\cos^2(\theta) - \sin^2(\theta) = 2 \cos^2(\theta) - 1",
+    )
     assert symrot.check(r"I_{xx} = I_{yy} = \frac{1}{2} m r^2").verdict == "recognised"
     assert symrot.check(r"I_{xx} = I_{yy} = \frac{1}{12} m (2 r^2 + h^2)").verdict == "doubtful"  # no body has both

@@ -150,9 +150,9 @@ def test_folders_and_devices_are_no_files(tmp_path):
 
 
 @pytest.mark.parametrize("fields, said", [
-    ({"t": None}, "t and moment, or file, got moment"),
-    ({"file": "moments.csv"}, "t and moment, or file, got t and moment and file"),
-    ({"t": None, "moment": None}, "t and moment, or file, got none of them"),
+    ({"t": None}, "the keys t and moment, or the key file, got moment"),
+    ({"file": "moments.csv"}, "the keys t and moment, or the key file, got t and moment and file"),
+    ({"t": None, "moment": None}, "the keys t and moment, or the key file, got none of them"),
     ({"t": [0, 1, 2]}, "one torque for each of the 3 times, got 5"),
     ({"t": [0, 1, 3, 2, 4]}, r"torque\[0\].t\[3\]: expected rising times, got 2.0 s after 3.0 s"),
     ({"t": [0, 1, 1, 1, 4], "switching_times": [1]}, "two samples or more between switching times, got one at 1.0 s"),

@@ -1,4 +1,7 @@
-"""Euler angle rates, all 24 sequences, both frames (Landau & Lifshitz, Mechanics, 3rd ed., section 35, for ZXZ)."""
+"""Rates of Euler angles for all 24 sequences, from the angular velocity in body and in space components.
+
+For ZXZ: Landau & Lifshitz, Mechanics, 3rd ed., section 35.
+"""
 
 from sympy import MatMul, Matrix, eye
 
@@ -83,7 +86,7 @@ def _latex(expression: object) -> str:
 
 
 def _values(jacobian: object) -> str:
-    """Return the singular angles of an Euler sequence within one whole rotation, as LaTeX."""
+    """Return, as LaTeX, the angles from 0 to 2 pi at which an Euler sequence is singular."""
     singular = jacobian.singular_set  # type: ignore[attr-defined]
     points = ", ".join(_latex(point) for point in singular.points())
     return rf"at ${_latex(singular.variable)} \in \{{{points}\}}$ within one turn".replace(r"\{", r"\lbrace ").replace(

@@ -100,7 +100,7 @@ def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) 
 
 
 def _sign(strength: object) -> str:
-    """Return a factor in front of a product as LaTeX: empty for 1, a minus sign for -1."""
+    """Return a factor as LaTeX, to be printed in front of a product: empty for 1, and a minus sign for -1."""
     return {"1": "", "-1": "-"}.get(_latex(strength), _latex(strength))
 
 

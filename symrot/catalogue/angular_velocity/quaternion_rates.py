@@ -1,4 +1,4 @@
-"""Quaternion rates in both frames, from the rate of the direction cosine matrix."""
+"""Quaternion rates from the angular velocity in body and in space components, by the rate of the rotation matrix."""
 
 from sympy import Matrix, eye
 

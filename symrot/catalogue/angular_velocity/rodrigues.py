@@ -1,4 +1,4 @@
-"""Rodrigues parameters, classical and modified: projections of the quaternion sphere."""
+"""Rodrigues parameters, classical and modified: projections of the unit quaternions from a point onto a space."""
 
 from dataclasses import dataclass
 
@@ -16,7 +16,7 @@ ONE = eye(3)
 
 @dataclass(frozen=True)
 class ProjectionForm:
-    """The formulas claimed for one set of parameters, each as an expression and as LaTeX for a reader."""
+    """The formulas that hold for classical or modified Rodrigues parameters, each as an expression and as LaTeX."""
 
     title: str
     letter: str

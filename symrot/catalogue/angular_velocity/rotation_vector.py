@@ -1,4 +1,7 @@
-"""Rotation vector: the exponential map and its Jacobians in both frames."""
+"""The rotation vector (axis times angle): the exponential map to the rotation matrix, and the rates.
+
+The Jacobians relate the rate of the rotation vector to the angular velocity in body and in space components.
+"""
 
 from sympy import Matrix, eye
 

@@ -1,4 +1,4 @@
-"""Rodrigues' rotation formula, and the axis and angle back from the matrix (Goldstein, 3rd ed., section 4.7)."""
+"""Rodrigues' rotation formula, and the axis and angle of a given matrix (Goldstein, 3rd ed., section 4.7)."""
 
 from sympy import Matrix, cos, eye, pi, sin
 

@@ -1,6 +1,4 @@
-"""Rotation matrices: the matrices that preserve lengths (Goldstein et al., Classical Mechanics, 3rd ed., section
-4.2).
-"""
+"""Rotation matrices: the matrices that preserve lengths (Goldstein, Classical Mechanics, 3rd ed., section 4.2)."""
 
 from itertools import product
 
@@ -17,9 +15,9 @@ SIZES = (2, 3, 4, 5)
 
 
 def skew_dimension(size: int) -> int:
-    """Return the number of independent solutions S of ``S + S^T = 0`` for matrices of a given size.
+    """Return the dimension of the space of skew matrices, ``S + S^T = 0``, of a given size: 3 for size 3.
 
-    It is the dimension of the space of matrices minus the rank of the map S -> S + S^T.
+    It is computed as the dimension of the space of all matrices minus the rank of the map S -> S + S^T.
     """
     images = []
     for i, j in product(range(size), repeat=2):

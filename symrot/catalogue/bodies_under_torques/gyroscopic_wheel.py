@@ -33,7 +33,10 @@ def derive() -> Derivation:
 
 
 def _momentum() -> tuple[Matrix, dict]:  # type: ignore[type-arg]
-    """Return the angular momentum of the wheel in space at constant nutation, and the rates of its Euler angles."""
+    """Return the angular momentum of the wheel in space components, and the rates of its Euler angles.
+
+    The nutation angle is constant.
+    """
     omega = rate_jacobian("ZXZ") * Matrix([PRECESSION, 0, SPIN])
     return Matrix(dcm("ZXZ")) * diag(A, A, C) * omega, pairs((PHI, PSI), (PRECESSION, SPIN))
 

@@ -1,4 +1,4 @@
-"""Constant torque and linear damping about one axis, in closed form."""
+"""Rotation about one axis under a constant torque and linear damping, in closed form."""
 
 from sympy import Expr, Matrix, Rational, S, Symbol, cos, diag, exp, sin
 
@@ -81,7 +81,7 @@ def _pushed(d: Derivation) -> None:
 
 
 def _decay() -> tuple[Expr, Expr, Expr]:
-    """Return angular velocity and angle under damping, and the factor that decays in both."""
+    """Return angular velocity and angle of a damped rotation, and the exponential factor that occurs in both."""
     decay = exp(-DRAG * T / C)
     final = PUSH / DRAG
     return final + (START - final) * decay, final * T + (START - final) * C / DRAG * (1 - decay), decay

@@ -1,4 +1,4 @@
-"""Jacobi's elliptic functions by their derivatives: addition theorems, zeta and theta functions."""
+"""Jacobi's elliptic functions, defined by their derivatives: addition theorems, zeta and theta functions."""
 
 from sympy import Matrix, Symbol, cos, diff, sech, sin, tanh
 

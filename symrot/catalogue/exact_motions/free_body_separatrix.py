@@ -148,5 +148,5 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
 
 
 def _share(speed: Expr) -> dict[Symbol, Expr]:
-    """Return the value of the angle h's rate for a given frequency, as a substitution."""
+    """Return the time derivative of h = tanh(p t/2) for the frequency ``speed`` (p), as symbol -> derivative."""
     return {SHARE: speed * (1 - SHARE**2) * Rational(1, 2)}

@@ -78,9 +78,9 @@ def _plane(d: Derivation) -> None:
 def _holds(
     d: Derivation, claim: str, motion: tuple[Expr, ...], along: dict[Symbol, Expr], hypotheses: list[Expr]
 ) -> None:
-    """Add the step that a motion satisfies the equations of a pendulum.
+    """Add a step to the derivation ``d``: a given motion satisfies the equations of a pendulum.
 
-    The motion is given by sine and cosine of half the angle, and by the angular rate.
+    The motion is given by the sine and cosine of half the angle, and by the angular rate.
     """
     s, c, speed = motion
     half = Rational(1, 2)

@@ -1,4 +1,7 @@
-"""Heavy tops through the vertical, and into sleep (Klein & Sommerfeld, Theory of the Top, vol. 2, chapters 4 and 6)."""
+"""Heavy tops that pass through the vertical, and a top whose axis approaches the vertical (it falls asleep).
+
+Klein & Sommerfeld, Theory of the Top, vol. 2, chapters 4 and 6.
+"""
 
 from sympy import Integer, Matrix, Symbol, atan, sqrt, tanh
 

@@ -1,4 +1,4 @@
-"""A symmetric body with a rotor along its axis (Hughes, Spacecraft Attitude Dynamics, chapter 6)."""
+"""A symmetric gyrostat: a body with a rotor along its axis (Hughes, Spacecraft Attitude Dynamics, chapter 6)."""
 
 from sympy import Matrix, S, cos, diag, sin, sqrt
 

@@ -71,8 +71,9 @@ def _functions(d: Derivation) -> None:
 
 
 def _amplitudes() -> tuple[Matrix, object, object]:
-    """Return amplitudes, frequency and parameter of Jacobi's solution, from the first and third component at the
-    start.
+    """Return amplitudes, frequency and parameter of Jacobi's elliptic functions in the motion of a free body.
+
+    They are computed from the first and third component of the angular velocity at the start.
     """
     second = THIRD * sqrt(C * (A - C) / (B * (A - B)))
     p = (A - C) / B * FIRST * THIRD / second

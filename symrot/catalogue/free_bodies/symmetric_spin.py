@@ -1,4 +1,7 @@
-"""The spin of a symmetric body (Landau & Lifshitz, Mechanics, 3rd ed., section 36)."""
+"""The spin of a free symmetric body, its rate of rotation about its own axis.
+
+Landau & Lifshitz, Mechanics, 3rd ed., section 36.
+"""
 
 from sympy import Matrix, diag
 

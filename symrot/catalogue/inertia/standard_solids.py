@@ -1,4 +1,7 @@
-"""Inertia of the standard solids, by integration over their maps (Beer & Johnston, Vector Mechanics, appendix)."""
+"""Inertia of the standard solids (cylinder, sphere, ..), by integration in coordinates fitted to each solid.
+
+Beer & Johnston, Vector Mechanics, appendix.
+"""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -80,7 +83,7 @@ def _shape(d: Derivation, body: Solid) -> None:
 
 
 def _limits(body: Solid) -> str:
-    """Return the limits of all integration coordinates of a solid, as a sentence."""
+    """Return a sentence that gives the limits of the integration coordinates of a solid."""
     return ", ".join(f"${_latex(u)}$ from ${_latex(low)}$ to ${_latex(high)}$" for u, low, high in body.limits)
 
 
@@ -139,7 +142,7 @@ def _tensor(d: Derivation, body: Solid, moments: Moments) -> None:
 
 
 def _stages(body: Solid, axes: Sequence[int]) -> tuple[Expr, tuple[Stage, ...]]:
-    """Return the integral of a product of x, y, z over a solid: a constant factor, and the stages of integration.
+    """Return the integral of a product of x, y, z over a solid: a constant factor, and the integrations one by one.
 
     ``axes`` names the factors of the product.
     """
@@ -151,14 +154,15 @@ def _stages(body: Solid, axes: Sequence[int]) -> tuple[Expr, tuple[Stage, ...]]:
 
 
 def _integral(body: Solid, axes: Sequence[int]) -> Expr:
-    """Return the integral of a product of coordinates x, y, z over a solid, in closed form."""
+    """Return the value of the integral of a product of coordinates x, y, z over a solid, in closed form."""
     constant, stages = _stages(body, axes)
     return constant * stages[-1].value
 
 
 def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
-    """Return the antiderivatives of an integral as text for a reason, innermost first; only the last if they are
-    long.
+    """Return the antiderivatives of an integral as text for the reason of a step, the innermost first.
+
+    If they are long, only the last one is returned.
     """
     constant, stages = _stages(body, axes)
     formulas = [f"${_latex(factor_terms(stage.antiderivative))}$ in ${_latex(stage.variable)}$" for stage in stages]
@@ -169,7 +173,7 @@ def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
 
 
 def _between(body: Solid, axes: Sequence[int]) -> list[tuple[str, Expr, Expr]]:
-    """Return, for each stage of an integral, words and the equation for the antiderivative between its limits."""
+    """Return, for each integration, words and an equation for the antiderivative between its limits."""
     equations = []
     for stage in _stages(body, axes)[1]:
         upper, lower = (stage.antiderivative.subs(stage.variable, end) for end in (stage.upper, stage.lower))

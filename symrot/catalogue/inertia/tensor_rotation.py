@@ -1,4 +1,4 @@
-"""The inertia tensor in rotated axes."""
+"""The components of the inertia tensor in rotated axes."""
 
 from sympy import Matrix, eye
 

@@ -14,26 +14,26 @@ I = Symbol("i")  # noqa: E741
 
 
 def imaginary() -> Expr:
-    """Return the hypothesis i^2 + 1 = 0 about the symbol i, as an expression that is zero."""
+    """Return the expression i^2 + 1, which as a hypothesis is zero, for the symbol i."""
     return I**2 + 1
 
 
 def derivatives(speed: Expr = S.One, parameter: Expr = MU) -> dict[Symbol, Expr]:
-    """Return the time derivatives of sn, cn and dn, by symbol, for an argument that grows at a given speed."""
+    """Return the time derivatives of sn, cn and dn, by symbol, for an argument that grows at ``speed``."""
     return {SN: speed * CN * DN, CN: -speed * SN * DN, DN: -speed * parameter * SN * CN}
 
 
 def squares(parameter: Expr = MU, fixed: bool = False) -> list[Expr]:
-    """Return the two quadratic relations of sn, cn, dn as expressions that are zero.
+    """Return the two quadratic relations of sn, cn and dn, as expressions that are zero.
 
-    With ``fixed`` they are for the values of the functions at the fixed argument w.
+    With ``fixed`` they are relations of the values at the fixed argument w.
     """
     s, c, d = W_VALUES if fixed else (SN, CN, DN)
     return [c**2 - 1 + s**2, d**2 - 1 + parameter * s**2]
 
 
 def shifted(sign: int = 1, at: tuple[Expr, Expr, Expr] = W_VALUES, parameter: Expr = MU) -> tuple[Expr, Expr, Expr]:
-    """Return sn, cn, dn of u + w, or of u - w, by the addition theorems, from the values at w."""
+    """Return sn, cn and dn of u + w or u - w by the addition theorems, from their values at u and at w."""
     s, c, d = at
     s = sign * s
     below = 1 - parameter * SN**2 * s**2

@@ -14,7 +14,7 @@ __all__ = ["Stage", "antiderivative", "iterated"]
 
 @dataclass(frozen=True)
 class Stage:
-    """One stage of an iterated integral: variable, antiderivative, limits, and the value between them."""
+    """One integration of an iterated integral: variable, antiderivative, limits, and the integral between them."""
 
     variable: Symbol
     antiderivative: Expr
@@ -25,7 +25,7 @@ class Stage:
 
 @cache
 def _waves(cosines: int, sines: int) -> tuple[tuple[int, Expr, Expr], ...]:
-    """Return (k, a, b) with ``cos(x)^cosines sin(x)^sines = sum of a cos(k x) + b sin(k x)``, k >= 0."""
+    """Return the Fourier series of ``cos(x)^cosines sin(x)^sines``: (k, a, b) for each ``a cos(k x) + b sin(k x)``."""
     spectrum: dict[int, Expr] = {0: Integer(1)}
     for up, down, times in ((Rational(1, 2), Rational(1, 2), cosines), (-I / 2, I / 2, sines)):
         for _ in range(times):
@@ -64,7 +64,7 @@ def antiderivative(integrand: Expr, variable: Symbol) -> Expr:
 
 @cache
 def iterated(integrand: Any, limits: tuple[tuple[Symbol, Expr, Expr], ...]) -> tuple[Stage, ...]:
-    """Return all stages of an iterated integral over (variable, lower, upper); the first variable is innermost."""
+    """Return all integrations of an iterated integral over (variable, lower, upper); the first is innermost."""
     stages = []
     for variable, lower, upper in limits:
         primitive = antiderivative(expand(integrand), variable)

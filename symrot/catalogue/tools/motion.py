@@ -27,17 +27,17 @@ def pairs(variables: Sequence[Symbol], rates: Any) -> dict[Symbol, Expr]:
 
 
 def attitude_rates() -> dict[Symbol, Expr]:
-    """Return the rates of q0..q3 for the angular velocity ``OMEGA`` in body axes, by symbol."""
+    """Return the rates of the quaternion components q0..q3, by symbol, for the body angular velocity ``OMEGA``."""
     return pairs(symbols.quaternion, quaternion_rates("body") * OMEGA)
 
 
 def rate(quantity: Any, rates: Mapping[Symbol, Expr]) -> Any:
-    """Return d/dt of an expression or matrix whose variables have these rates (the chain rule)."""
+    """Return d/dt of an expression or matrix by the chain rule; ``rates`` gives the rate of each variable."""
     terms = (quantity.diff(variable) * speed for variable, speed in rates.items())
     first = next(terms)
     return sum(terms, first)
 
 
 def squared(vector: Matrix) -> Expr:
-    """Return the square of the length of a vector."""
+    """Return the square of the length of a vector, ``v . v``."""
     return vector.dot(vector)

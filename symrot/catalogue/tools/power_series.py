@@ -1,4 +1,4 @@
-"""Power series in linear differential equations: the coefficient of any power, for a symbolic index."""
+"""Power series that solve linear differential equations: the coefficient of any power, for a symbolic index."""
 
 from collections.abc import Mapping
 
@@ -13,7 +13,9 @@ def indexed(name: str, index: Symbol, shift: int = 0) -> Symbol:
 
 
 def coefficient(terms: Mapping[str, Mapping[int, Expr]], variable: Symbol, index: Symbol) -> Expr:
-    """Return the coefficient of ``variable^index`` in a sum of power series and their derivatives times polynomials.
+    """Return the coefficient of ``variable^index`` in a sum of power series multiplied by polynomials.
+
+    Derivatives of power series are allowed too.
 
     Parameters
     ----------

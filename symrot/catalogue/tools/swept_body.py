@@ -1,6 +1,6 @@
 """Formulas for a body swept through resonance: recurrences of series, and phases without cancellation.
 
-Such a body rotates at a constant rate across its axis and at a linearly growing rate about it.
+Such a body rotates at a constant rate about one axis, and at a linearly growing rate about an axis across it.
 """
 
 from sympy import Expr, Matrix, Rational, S, Symbol, sqrt
@@ -17,9 +17,9 @@ V, X, R, KAPPA = Symbol("v"), Symbol("x"), Symbol("r"), Symbol("kappa")
 
 
 def far(d: Derivation) -> None:
-    """Append steps on the coefficients of the series far from resonance to a derivation.
+    """Append steps to the derivation ``d`` on the coefficients of the series far from resonance.
 
-    They describe the vector at rest in space, and the small angle about this vector.
+    These series describe the vector at rest in space, and the small angle about this vector.
     """
     d.section("The coefficients far from resonance")
     _vector(d)
@@ -114,7 +114,7 @@ def _small_angle(d: Derivation) -> None:
 
 
 def near(d: Derivation) -> None:
-    """Append steps on the Taylor series of the attitude near resonance, and on its symmetry, to a derivation."""
+    """Append steps to the derivation ``d`` on the Taylor series of the attitude near resonance, and its symmetry."""
     d.section("Near resonance")
     place, step = Symbol("X"), Symbol("u")
     names = r"\alpha", r"\beta"
@@ -154,7 +154,7 @@ def near(d: Derivation) -> None:
 
 
 def weak(d: Derivation) -> None:
-    """Append steps on the phase under a weak torque, a power series of the time, to a derivation."""
+    """Append steps to the derivation ``d`` on the phase under a weak torque, a power series of the time."""
     d.section("A weak torque")
     h, c = Symbol("h"), Symbol("c")
     f = sqrt(1 + 2 * c * h + h**2)
@@ -228,7 +228,7 @@ def weak(d: Derivation) -> None:
 
 
 def _by_legendre(c: Expr) -> dict[Symbol, Expr]:
-    """Return the coefficients a_{k+1}, a_k, a_{k-1} as substitutions by Legendre polynomials P_k and P_{k-1}."""
+    """Return the coefficients a_{k+1}, a_k and a_{k-1} as formulas of the Legendre polynomials P_k and P_{k-1}."""
     above, below = Symbol("P_{k}"), Symbol("P_{k-1}")
     p = {0: above, -1: below, 1: (-(2 * K + 1) * c * above - K * below) / (K + 1)}
     for i in (-2, -3):  # the recurrence for the next higher index, solved for the lowest coefficient
@@ -237,7 +237,7 @@ def _by_legendre(c: Expr) -> dict[Symbol, Expr]:
 
 
 def between(d: Derivation) -> None:
-    """Append steps on the phase between two times, a sum of positive terms, to a derivation."""
+    """Append steps to the derivation ``d`` on the phase between two times, a sum of positive terms."""
     d.section("Between two times")
     omega, start, speed, there, across = (Symbol(name) for name in ("Omega", "Omega_0", "S", "S_0", "W"))
     together = there * speed + start * omega

@@ -1,4 +1,4 @@
-"""The atoms of formulas: symbols, functions of time and their derivatives."""
+"""The atoms of formulas: the symbols, functions of time and derivatives that a formula consists of."""
 
 from collections.abc import Iterable
 
@@ -9,7 +9,10 @@ __all__ = ["atoms_of"]
 
 
 def atoms_of(formulas: Iterable[Expr]) -> set[Expr]:
-    """Return symbols, functions of time and derivatives, but not the ``f(t)`` inside of ``diff(f(t), t)``."""
+    """Return the atoms of formulas: symbols, functions of time ``f(t)``, and derivatives.
+
+    The ``f(t)`` inside of a derivative ``diff(f(t), t)`` is not an atom by itself.
+    """
     atoms: set[Expr] = set()
     stack = list(formulas)
     while stack:

@@ -1,6 +1,7 @@
-"""Claims, read from a text or from a TOML file: first as trees, then as formulas of SymPy.
+"""Claims (equations to be checked), read from a text or a TOML file: first as syntax trees, then as formulas of SymPy.
 
-A claim keeps its trees because its diagnosis edits them. A file of claims says nothing about verdicts.
+A claim keeps its syntax trees because the search for its fault edits them. A file of claims does not say which of them
+are true.
 """
 
 from collections.abc import Mapping, Sequence
@@ -117,11 +118,14 @@ class Claim:
         return self.sources.get("claim") or relation_text(self.relation)
 
     def label(self, key: str) -> str:
-        """Return the place of a text for error messages."""
+        """Return the place of one text of the claim, such as its equation (``key`` "claim"), for error messages."""
         return f"{self.id}: {key}" if self.id else ""
 
     def with_relation(self, relation: Relation, **changes: Any) -> "Claim":
-        """Return the claim with another equation; ``changes`` are of fields on which its definitions do not depend."""
+        """Return the claim with another equation.
+
+        ``changes`` are new values of other fields; definitions must not depend on these.
+        """
         other = replace(self, relation=relation, **changes)
         if "definitions" in self.__dict__:
             other.__dict__["definitions"] = self.definitions
@@ -156,7 +160,7 @@ class Claim:
         )
 
     def interpreter(self) -> Interpreter:
-        """Return a new interpreter that knows the names of the claim, to read further trees."""
+        """Return a new interpreter, which turns further syntax trees that use the names of the claim into SymPy."""
         known = self.definitions
         return Interpreter(
             values=dict(known.values), functions=set(known.functions), implied=self.implied,
@@ -193,22 +197,22 @@ class Claim:
 
 
 def relation_text(relation: Relation) -> str:
-    """Return a relation as text."""
+    """Return a relation, such as ``left == right`` or ``x > 0``, as text."""
     sign, left, right = relation
     return f"{text(left)} {sign} {text(right)}"
 
 
 def _differences(left: Any, right: Any, where: str) -> list[Expr]:
-    """Return left - right of a hypothesis, entry by entry."""
+    """Return left - right of an equation that is a hypothesis, as a list: one difference for each entry of a matrix."""
     try:
         lefts, rights, _ = matched_sides(left, right)
     except ShapeMismatch:
-        raise InputError(f"{where}: expected a hypothesis with two sides of one shape") from None
+        raise InputError(f"{where}: expected a hypothesis whose two sides have the same shape") from None
     return [a - b for a, b in zip(lefts, rights, strict=True)]
 
 
 def _assumed(hypotheses: Sequence[Relation], sign: str) -> set[str]:
-    """Return the names x of hypotheses ``x > 0`` (or ``0 < x``); with the sign ``>=``, of hypotheses ``x >= 0``."""
+    """Return the names x of hypotheses ``x > 0`` (or ``0 < x``). With the sign ``>=``, return those of ``x >= 0``."""
     mirrored = {">": "<", ">=": "<="}[sign]
     zero = ("number", 0)
     names = set()
@@ -228,10 +232,10 @@ def _hypothesis(source: str, where: str, declared: Declared | None = None) -> Re
 
 
 def claim_of_text(source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None) -> Claim:
-    """Return the claim of a text ``left == right``; text with a backslash, a brace or a dollar sign is LaTeX.
+    """Return the claim of a text ``left == right``. Text with a backslash, a brace or a dollar sign is read as LaTeX.
 
-    Its names are real symbols, or functions of time if they are written ``f(t)``; so are the names in hypotheses.
-    A text with two readings is refused; :func:`symrot.checker.claim.lines.claims_of_reading` is for those.
+    Names become real symbols, or functions of time if they are written ``f(t)``; so do the names in the hypotheses. A
+    text that can be read in two ways is refused; :func:`symrot.checker.claim.lines.claims_of_reading` accepts it.
     """
     hypotheses = tuple(_hypothesis(text, "given") for text in assume)
     if isinstance(source, str) and is_latex(source):
@@ -245,7 +249,7 @@ def claim_of_relation(
 ) -> Claim:  # fmt: skip
     """Return the claim of an equation that was read from a text.
 
-    ``define`` are definitions that the text makes before, ``context`` the other formulas of the text.
+    ``define`` are the definitions on earlier lines of the text, and ``context`` are its other formulas.
 
     Raises
     ------
@@ -316,7 +320,7 @@ MOST_NAMES = 500
 
 @dataclass(frozen=True)
 class Refusal:
-    """An entry of a file that is no claim: its id, place and text as written, and the sentence that says why."""
+    """An entry of a file that cannot be read as a claim: its id, place and text, and a sentence with the reason."""
 
     id: str
     where: str
@@ -340,7 +344,7 @@ def read_claims(path: str | Path) -> list[Claim]:
 
 
 def read_entries(path: str | Path) -> list[Claim | Refusal]:
-    """Return the claims of a TOML file, with a refusal in place of each claim that cannot be read.
+    """Return the claims of a TOML file, with a :class:`Refusal` in place of each claim that cannot be read.
 
     Raises
     ------
@@ -381,7 +385,7 @@ def read_entries(path: str | Path) -> list[Claim | Refusal]:
 def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
     name = entry.get("id", f"claim-{number}")
     if not isinstance(name, str):
-        raise InputError(f"{label}: claim {number}: expected text as id, got {name!r}")
+        raise InputError(f"{label}: claim {number}: expected a text as the value of id, got {name!r}")
     place = f"{label}: {name}"
     for key, value in entry.items():
         _check_key(key, value, place)
@@ -415,7 +419,7 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
         raise InputError(f"{place}: expected exactly one of claim, latex and value, got {', '.join(kinds) or 'none'}")
     if kinds == ["value"]:
         if "printed_value" not in entry:
-            raise InputError(f"{place}: expected printed_value together with value, the key is missing")
+            raise InputError(f"{place}: expected the key printed_value together with the key value, got value alone")
         if others:
             raise InputError(
                 f"{place}: alternatives: expected other readings of a claim, got them together with a value"
@@ -443,7 +447,7 @@ def is_latex(source: str) -> bool:
 
 
 def _functions_of_time(relations: Sequence[Relation]) -> set[str]:
-    """Return the names f that occur as ``f(t)``."""
+    """Return the names f that occur as ``f(t)`` in the relations."""
     return {
         node.value
         for relation in relations
@@ -454,7 +458,7 @@ def _functions_of_time(relations: Sequence[Relation]) -> set[str]:
 
 
 def check_units(units: dict[str, str], known: set[str], place: str) -> dict[str, str]:
-    """Return the units of a claim; raise InputError for a name that it does not have, or an unknown unit."""
+    """Return the units of a claim. Raise InputError for an unknown unit, or for a name that the claim does not have."""
     for name, unit in units.items():
         if name not in known:
             raise InputError(f"{place}: units: expected units of names that the claim has, got {str(name)[:40]!r}")
@@ -465,7 +469,7 @@ def check_units(units: dict[str, str], known: set[str], place: str) -> dict[str,
 
 
 def _names_for_latex(claim: Claim) -> Names:
-    """Return the names of a claim for the reader of LaTeX, which marks matrices and columns in its own ways."""
+    """Return the names of a claim for the reader of LaTeX, which wants matrices and columns in sets of their own."""
     values = claim.definitions.values
     defined = [name for name, _ in claim.define]
     matrices = {name for name in defined if is_matrix(values[name])}

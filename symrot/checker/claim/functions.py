@@ -1,6 +1,6 @@
-"""The built-in functions of claims: a table of names, and a function each that turns the arguments' trees into SymPy.
+"""The built-in functions of claims, such as sin and cross: a table of the functions that build their SymPy values.
 
-Every divisor and radicand is recorded before SymPy can cancel it.
+Every divisor and every formula under a root is recorded before SymPy can cancel it.
 """
 
 from collections.abc import Callable, Mapping
@@ -35,7 +35,10 @@ LARGEST_MATRIX = 12
 
 
 def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] | None = None) -> Any:
-    """Return the evaluation of a function of one scalar; ``below`` of the argument is a divisor of its value."""
+    """Return the function that evaluates a call such as ``tan(x)``.
+
+    If the value has a divisor, ``below`` gives it: cos(x).
+    """
 
     def call(scope: Scope, node: Node) -> Expr:
         value = scope.argument(node.args[0], f"as the argument of {node.value}")
@@ -64,7 +67,7 @@ def _atan2(scope: Scope, node: Node) -> Expr:
 
 
 def _arc(function: Callable[[Expr], Expr]) -> Any:
-    """Return the evaluation of asin or acos, whose argument lies between -1 and 1."""
+    """Return the function that evaluates a call of asin or acos, whose argument must lie between -1 and 1."""
 
     def call(scope: Scope, node: Node) -> Expr:
         value = scope.argument(node.args[0], f"as the argument of {node.value}")
@@ -141,7 +144,7 @@ def _determinant(scope: Scope, matrix: ImmutableMatrix, node: Node, most_product
 
 
 def _by_cofactors(matrix: ImmutableMatrix) -> Expr:
-    """Return a determinant as a sum of products of entries, not multiplied out."""
+    """Return a determinant by expansion into smaller determinants, as a sum of products that are not multiplied out."""
     if matrix.rows == 1:
         return matrix[0, 0]
     rest = matrix[1:, :]

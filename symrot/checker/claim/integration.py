@@ -1,8 +1,4 @@
-"""Definite integrals of polynomials times sines and cosines of linear angles: by parts, exactly.
-
-``v^n exp(i (k v + c))`` has a closed antiderivative; every sine and cosine is a sum of two such exponentials. The
-integrand is real, so the terms with ``i`` in the result cancel and are left out.
-"""
+"""Definite integrals of polynomials times sines and cosines of angles linear in the variable: exactly, by parts."""
 
 from functools import lru_cache
 
@@ -18,7 +14,9 @@ MOST_TERMS = 2000
 
 @lru_cache(maxsize=64)
 def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Expr) -> tuple[Expr, tuple[Expr, ...]]:
-    """Return the integral over an interval, and the coefficients that it divides by.
+    """Return the integral over an interval, and the coefficients of the variable that its value divides by.
+
+    The integral of cos(k x), for example, divides by k.
 
     Parameters
     ----------
@@ -52,10 +50,10 @@ def _rewritten(integrand: Expr, variable: Symbol) -> Expr:
         exponentials[node] = (forward + backward) / 2 if node.func is cos else (forward - backward) / (2 * I)
     plain = integrand.xreplace(exponentials)
     if any(node.exp.is_Integer and node.exp > LARGEST_DEGREE for node in plain.atoms() if node.is_Pow):
-        raise InputError(f"integrate takes degrees up to {LARGEST_DEGREE}, got {integrand}")
+        raise InputError(f"expected an integrand of degree at most {LARGEST_DEGREE}, got {integrand}")
     expanded = plain.expand()
     if len(Add.make_args(expanded)) > MOST_TERMS:
-        raise InputError(f"integrate takes an integrand of at most {MOST_TERMS} terms")
+        raise InputError(f"expected an integrand of at most {MOST_TERMS} terms, got more")
     return expanded
 
 

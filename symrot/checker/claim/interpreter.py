@@ -1,8 +1,4 @@
-"""The interpreter of claims: from trees to SymPy, by a table with one function for each kind of node.
-
-Scalars become SymPy expressions, matrices become immutable; a vector is a column. A piece without a value (shapes that
-do not fit, an undefined name, a division by zero) is refused with its place in the text.
-"""
+"""The interpreter of claims: it turns syntax trees into SymPy, by a table with one function for each kind of node."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -38,7 +34,7 @@ INSTEAD = {"I": "I_1", "E": "E_k"}
 
 @dataclass
 class Interpreter(Scope):
-    """The names of one claim, with the evaluation of trees in them."""
+    """Interpreter of one claim: it knows the names of the claim, and turns syntax trees into SymPy."""
 
     def read(self, node: Node, source: str = "", where: str = "") -> Any:
         """Return the value of a tree: Expr or ImmutableMatrix.
@@ -169,7 +165,7 @@ def _power(interpreter: Interpreter, node: Node) -> Any:
 
 
 def _power_of_positive(interpreter: Interpreter, node: Node, base: Expr, exponent: Expr) -> Expr:
-    """Return a power with an exponent that is no number, exp(exponent*log(base)); its base is positive."""
+    """Return exp(exponent*log(base)), the power of a positive base, for an exponent that is not a number."""
     interpreter.shape(base, node.args[0])
     if any(not (part.is_Pow and part.exp.is_Integer) for part in exponent.atoms(sympy.Pow, sympy.Function)):
         raise interpreter.fail(node.args[1], "a number as an exponent, or a formula without functions and roots,")

@@ -48,7 +48,7 @@ def claims_of_reading(
 
 
 def _needed(define: Sequence[tuple[str, Node]], used: set[str]) -> list[tuple[str, Node]]:
-    """Return the definitions that names need, and those that these need, in order."""
+    """Return the definitions of the names in ``used``, and the definitions that these depend on, in order."""
     needed: list[tuple[str, Node]] = []
     names = set(used)
     for name, tree in reversed(define):

@@ -1,6 +1,6 @@
-"""Claims that relate quantities which nothing defines, such as ``k^2 = I/m``: a quantity, and the formula for it.
+"""Claims such as ``k^2 = I/m``, which relate a quantity without a definition to the formula for it.
 
-No such claim is an identity: it holds by what its letters mean, or not.
+No such claim is an identity: whether it holds depends on what its letters mean.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,11 +20,11 @@ INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log"}
 
 
 class NamedFormula(NamedTuple):
-    """The formula for a quantity that nothing defines.
+    """A quantity without a definition, and the formula that a claim gives for it.
 
     ``side`` is the side of the claim with the quantity, and ``formula`` the other side. ``name`` is the name of the
-    quantity, and ``is_rate`` says that its derivative is meant. ``solve`` turns any formula of the other side into that
-    of the quantity: k = sqrt(I/m) for k^2 = I/m. It is None if ``side`` is not the formula of one quantity.
+    quantity; if ``is_rate``, its time derivative is meant. ``solve`` turns a formula of the other side into the formula
+    of the quantity: k = sqrt(I/m) for k^2 = I/m. It is None if the quantity itself is ``side``.
     """
 
     name: str
@@ -53,11 +53,7 @@ def named_formula(claim: Claim) -> NamedFormula | None:
 
 
 def related_formula(claim: Claim) -> NamedFormula | None:
-    """Return a quantity, and the formula for it, of a claim that is no identity but may hold by what its letters mean.
-
-    The sides of such a claim have no letter in common, as in ``2*T = I*omega^2``, or the claim is a differential
-    equation, as in ``I*diff(theta(t), t, t) + k*theta(t) = 0``. Return None for any other claim.
-    """
+    """Return a quantity and the formula for it, from a claim that may hold because of what its letters mean."""
     assert claim.relation is not None
     left, right = _without_common_factors(*claim.relation[1:])
     known = _known(claim)
@@ -105,7 +101,7 @@ def _factors(tree: Node) -> list[Node]:
 
 
 def _known(claim: Claim) -> set[str]:
-    """Return the names that have a value or a definition."""
+    """Return the names that need no formula: pi, the time t, and the names that the claim defines."""
     return {"pi", "t", *(name for name, _ in claim.define)}
 
 
@@ -120,7 +116,7 @@ def _is_rate(tree: Node) -> bool:
 
 
 def _quantities(tree: Node) -> set[tuple[str, bool]]:
-    """Return the names in a tree, each with whether it is a rate; a derivative is a quantity of its own."""
+    """Return the names in a tree, each with whether its time derivative is meant; x and dx/dt are two quantities."""
     if _is_rate(tree):
         return {(str(tree.args[0].value), True)}
     if _is_name(tree):
@@ -129,7 +125,7 @@ def _quantities(tree: Node) -> set[tuple[str, bool]]:
 
 
 def _solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
-    """Return the quantity of a side, which has constant factors alone beside it, and how to solve for it; or None."""
+    """Return the quantity that a side contains, multiplied by constants only, and how to solve for it; or None."""
     steps: list[Solve] = []
     while not (_is_name(side) or _is_rate(side)):
         if side.kind == "neg":
@@ -172,12 +168,12 @@ def _called(function: str, tree: Node) -> Node:
 
 
 def _after(steps: Sequence[Solve], tree: Node) -> Node:
-    """Return a tree after several changes, one after the other."""
+    """Return a tree changed by each function in ``steps``, one after the other."""
     return reduce(lambda made, step: step(made), steps, tree)
 
 
 def _without_common_factors(left: Node, right: Node) -> tuple[Node, Node]:
-    """Return two sides without the factors, other than numbers, that both have."""
+    """Return both sides without their common factors; numbers are not removed."""
     factors = [list(side.args) if side.kind == "product" else [side] for side in (left, right)]
     for factor in [*factors[0]]:
         if factor in factors[1] and _quantities(factor):
@@ -187,9 +183,10 @@ def _without_common_factors(left: Node, right: Node) -> tuple[Node, Node]:
 
 
 def _equation_of_motion(left: Node, right: Node) -> NamedFormula | None:
-    """Return a rate and the formula for it of a differential equation that is linear in its highest rate, or None.
+    """Return the highest derivative in a linear differential equation, and the formula for it; otherwise None.
 
-    A claim with the derivative of a product, sum or function may be a rule for derivatives, and is not taken.
+    An equation with the derivative of a product, sum or function may be a rule of differentiation; for it, return None
+    too.
     """
     terms = [*_terms(left), *map(negated, _terms(right))]
     derivatives = {node for term in terms for _, node in walk(term) if node.kind == "call" and node.value == "diff"}

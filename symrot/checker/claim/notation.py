@@ -1,4 +1,4 @@
-"""Formulas written as the person who typed them writes: SymPy's text, or plain text with ``^``, ``=`` and primes."""
+"""Formulas written in the notation that the user typed: SymPy's text, or plain text with ``^``, ``=`` and primes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -60,7 +60,7 @@ class Notation:
         return replace(node, args=tuple(args))
 
     def _in_full(self, node: Node) -> Node:
-        """Return the tree of a formula that is differentiated, in which functions of time keep their ``(t)``."""
+        """Return the tree of a formula to be differentiated, with functions of time in full: ``f(t)``, not ``f``."""
         name = self.spelling.get(str(node.value), node.value) if node.kind in ("name", "call") else node.value
         return replace(node, value=name, args=tuple(map(self._in_full, node.args)))
 
@@ -70,7 +70,10 @@ class Notation:
         return f"{self.formula(left)} {'=' if self.plain and sign == '==' else sign} {self.formula(right)}"
 
     def rewritten(self, source: str) -> str:
-        """Return SymPy's text of a relation in this notation; words after it, such as ``with w == ..``, are kept."""
+        """Return a relation, given as SymPy's text, in this notation.
+
+        Words after the relation (``with w == ..``) stay unchanged.
+        """
         if not self.plain:
             return source
         claim, joint, rest = source.partition(" with ")
@@ -81,7 +84,7 @@ class Notation:
 
 
 def decimal(value: Fraction) -> str:
-    """Return a number as a decimal number if that is exact and short, else as a quotient in brackets."""
+    """Return a number as text: as a decimal number if that is exact and short, otherwise as a fraction in brackets."""
     if value.denominator == 1:
         return str(value)
     written = format(Decimal(value.numerator) / Decimal(value.denominator), "f")
@@ -89,7 +92,7 @@ def decimal(value: Fraction) -> str:
 
 
 def notation_of(reading: Reading) -> Notation:
-    """Return the notation in which a text is typed."""
+    """Return the notation in which the text of a reading (one interpretation of a typed text) is written."""
     return Notation(reading.plain, dict(reading.spelling), reading.timed)
 
 
@@ -98,7 +101,7 @@ END = Node("name", "")
 
 
 def _is_number_power(node: Node) -> bool:
-    """Return whether a tree is a power like x^3, which before a slash might be read as x^(3/2)."""
+    """Return whether a tree is a power like x^3. With a slash after it, x^3/2 might be taken for x^(3/2)."""
     return node.kind == "power" and node.args[1].kind == "name" and str(node.args[1].value) in ("1", "3", "5", "7", "9")
 
 

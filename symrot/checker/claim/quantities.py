@@ -18,10 +18,10 @@ USUAL_QUANTITIES = frozenset("mMgGhlLrRvFkTVUKJHNpqsabdcw")
 
 
 def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
-    """Return the letters I and E of trees in which they are quantities, an inertia and an energy.
+    """Return which of the letters I and E mean a quantity: I an inertia, E an energy.
 
-    They are, next to another name that books on mechanics use, unless they are where only a number makes sense: inside
-    of exp, log or a trigonometric function, or as the factor of nothing but a sine.
+    A letter is a quantity if another usual name of mechanics occurs. It is a number where only a number makes sense:
+    inside of exp, log or a trigonometric function, or in a product with nothing but sines.
     """
     nodes = [node for tree in trees for _, node in walk(tree)]
     names = {
@@ -45,7 +45,7 @@ def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
 
 
 def _is_imaginary(product: Node, letter: str) -> bool:
-    """Return whether a product has only the letter, numbers, and sines: I*sin(theta)."""
+    """Return whether a product holds only the letter, numbers and sines: in ``I*sin(theta)``, I is imaginary."""
     others = [factor for factor in product.args if (factor.kind, factor.value) != ("name", letter)]
     pure = all(
         factor.kind == "number" or (factor.kind == "call" and factor.value in ("sin", "cos", "sinh"))
@@ -58,7 +58,7 @@ IMAGINARY = ("i", "j")
 
 
 def has_natural_base(trees: Sequence[Node]) -> bool:
-    """Return whether the letter e is the base of the exponential function: it has an exponent that is no number."""
+    """Return whether the letter e is the base of the exponential function, as its exponent is not a number."""
     return any(_is_exponential(node, "e") for tree in trees for _, node in walk(tree))
 
 
@@ -69,7 +69,7 @@ def _is_exponential(node: Node, base: str) -> bool:
 
 
 def with_natural_base(node: Node) -> Node:
-    """Return a tree in which e is the base of the exponential function, exp(x) for e**x."""
+    """Return a tree in which the letter e is the base of the exponential function: exp(x) replaces e**x."""
     if node.kind == "power" and (node.args[0].kind, node.args[0].value) == ("name", "e"):
         return Node("call", "exp", (with_natural_base(node.args[1]),), node.span)
     if (node.kind, node.value) == ("name", "e"):
@@ -78,7 +78,7 @@ def with_natural_base(node: Node) -> Node:
 
 
 def imaginary_letter(trees: Sequence[Node]) -> Node | None:
-    """Return the letter i or j in an exponent of e or in exp(..), where most readers mean the imaginary unit."""
+    """Return the letter i or j if it is in an exponent of e or in exp(..), where it is mostly the imaginary unit."""
     exponents = [
         node.args[-1]
         for tree in trees

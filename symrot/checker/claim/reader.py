@@ -35,7 +35,10 @@ Relation = tuple[str, Node, Node]
 
 @dataclass(frozen=True)
 class Declared:
-    """The names that a claim declares: symbols and functions of time. None is read as a product, ``ab`` as ``a*b``."""
+    """The names that a claim declares or defines: symbols and functions of time.
+
+    The reader never splits such a name into a product of letters, as it splits ``mgl`` into m g l.
+    """
 
     symbols: Collection[str] = ()
     functions: Collection[str] = ()
@@ -43,7 +46,9 @@ class Declared:
 
 @dataclass(frozen=True)
 class Chain:
-    """One line of a text: its sides and the signs between them; one sign, or several equals signs.
+    """One line of a text: its sides and the signs between them.
+
+    There is one sign, or several equals signs (``a = b = c``).
 
     Attributes
     ----------
@@ -68,7 +73,7 @@ class Chain:
 
 @dataclass(frozen=True)
 class Reading:
-    """One reading of a text.
+    """One interpretation of a text that a user typed; ``1/2m`` has two of them.
 
     Attributes
     ----------
@@ -103,7 +108,7 @@ class Reading:
 
 
 class _Text:
-    """The tokens of a text, with the functions that read it in one way or another."""
+    """The tokens of a text, with the functions that interpret them."""
 
     def __init__(self, source: str, where: str, declared: Declared) -> None:
         self.source, self.where, self.declared = source, where, declared
@@ -121,7 +126,7 @@ class _Text:
     def read(
         self, whole: bool, as_sympy: bool, flips: Collection[tuple[str, int]] = (), one_side: bool = False
     ) -> Reading:
-        """Return the reading in which the places of ``flips`` have their other reading.
+        """Return the reading of the text in which the ambiguous places ``flips`` have their less usual meaning.
 
         Parameters
         ----------
@@ -201,7 +206,7 @@ class _Text:
     def words(
         self, alone: Collection[str], flips: Collection[tuple[str, int]]
     ) -> tuple[dict[str, tuple[str, ...]], list[str], list[Doubt]]:
-        """Return the words that are split into their pieces, with sentences about them, and the words in doubt."""
+        """Return the words that are several names (``mgl`` is m g l), sentences about them, and the doubtful words."""
         words: dict[str, tuple[str, ...]] = {}
         notes, doubts = [], []
         alone = {*alone}
@@ -226,7 +231,10 @@ class _Text:
     def without_shorthand(
         self, tokens: list[Token], flips: Collection[tuple[str, int]], notes: list[str], doubts: list[Doubt]
     ) -> list[Token]:
-        """Return tokens with cosines and sines for cθ and sθ, if the text has both and neither letter by itself."""
+        """Return tokens in which cos(θ) and sin(θ) replace the shorthands cθ and sθ.
+
+        They are shorthands only if the text has both, and has neither c nor s by itself.
+        """
         short = [form for form in shorthands(tokens) if tokens[form.place].text not in self.declared.symbols]
         if not short:
             return tokens
@@ -248,7 +256,10 @@ class _Text:
         return tokens
 
     def with_indices(self, tokens: list[Token], flips: Collection[tuple[str, int]], doubts: list[Doubt]) -> list[Token]:
-        """Return tokens with one name for ``ωp`` as the left side of an equation; anywhere else ``ωp`` is a product."""
+        """Return tokens in which ``ωp`` is one name if it is the left side of an equation.
+
+        Anywhere else ``ωp`` is the product of ω and p.
+        """
         padded = [None, *tokens]
         for place in range(len(tokens) - 3, -1, -1):
             before, first, second, after = padded[place], *tokens[place : place + 3]
@@ -264,7 +275,10 @@ class _Text:
         return tokens
 
     def lines(self, tokens: Sequence[Token]) -> Iterator[list[Token]]:
-        """Yield the tokens of each line; a line that starts or ends with an operator goes on."""
+        """Yield the tokens of each line.
+
+        A line that starts or ends with an operator is joined to the line before or after it.
+        """
         line: list[Token] = []
         depth = 0
         for token in tokens:
@@ -298,28 +312,28 @@ class _Text:
 
     @staticmethod
     def ended(line: list[Token]) -> list[Token]:
-        """Return the tokens of a line with a token for its end, without a comma or a full stop there."""
+        """Return the tokens of a line, with a token that marks its end instead of a comma or full stop there."""
         while len(line) > 1 and line[-1].kind == "mark" and line[-1].text in (",", "."):
             line = line[:-1]
         return [*line, Token("end", "", line[-1].end, line[-1].end)]
 
 
 def _alone(tokens: Sequence[Token]) -> Iterator[str]:
-    """Yield the names that stand by themselves: not before a bracket, and not a letter x that is a product sign."""
+    """Yield the names that are not followed by a bracket; a letter x used as the sign of a cross product is no name."""
     for before, token, after in zip((None, *tokens), tokens, tokens[1:], strict=False):
         if token.kind == "name" and after.text != "(" and not _is_cross(before, token, after):
             yield token.text
 
 
 def _is_cross(before: Token | None, token: Token, after: Token) -> bool:
-    """Return whether a letter x has blanks and names of vectors on both sides."""
+    """Return whether a letter x is the sign of a cross product: it has blanks and names of vectors on both sides."""
     if token.text != "x" or not token.spaced or not after.spaced or before is None:
         return False
     return is_cross_letter(before, after)
 
 
 def _crossed(tokens: Sequence[Token], flips: Collection[tuple[str, int]]) -> Iterator[str]:
-    """Yield the names on either side of a cross."""
+    """Yield the names on either side of the sign of a cross product."""
     alone = set(_alone(tokens))
     for before, sign, after in zip(tokens, tokens[1:], tokens[2:], strict=False):
         if (sign.kind == "mark" and sign.text == "×") or (
@@ -340,7 +354,7 @@ def _listed(words: Sequence[str]) -> str:
 
 
 def _finished(node: Node, timed: Collection[str], vectors: Collection[str], parent: str = "") -> Node:
-    """Return a tree in which names that depend on time are written ``f(t)``, and vectors and tables are matrices."""
+    """Return a tree with functions of time written ``f(t)``, and with vectors and tables of numbers as matrices."""
     if node.kind == "name" and node.value in timed:
         return Node("call", node.value, (TIME,), node.span)
     if node.kind == "name" and node.value in vectors:
@@ -402,7 +416,7 @@ def _readings(text: _Text, one_side: bool) -> Iterable[Reading]:
 
 
 def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
-    """Yield the readings of a text as people type: the usual one, then those with other readings of some places."""
+    """Yield the readings of a text as people type it: the usual one first, then the other ones."""
     try:
         usual = text.read(False, False, (), one_side)
     except InputError:
@@ -422,7 +436,10 @@ def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
 
 
 def _distinct(readings: Iterable[Reading]) -> list[Reading]:
-    """Return readings with different trees; if there are more than are tried, the first one has a note about it."""
+    """Return the readings that have different trees.
+
+    If there are too many to try, a note on the first reading says so.
+    """
     by_trees: dict[Any, Reading] = {}
     for reading in readings:
         by_trees.setdefault(reading.lines, reading)
@@ -434,7 +451,7 @@ def _distinct(readings: Iterable[Reading]) -> list[Reading]:
 
 
 def _only(readings: Sequence[Reading], source: str, where: str) -> Reading:
-    """Return the reading of a text that has one; refuse a text as people type it with several."""
+    """Return the reading of a text with a single interpretation; raise InputError for a text with several."""
     usual = readings[0]
     if usual.plain and len(readings) > 1:
         doubt = usual.doubts[0]
@@ -500,7 +517,7 @@ def read_relation(source: str, where: str = "", declared: Declared | None = None
 
 
 def _strict(text: _Text, one_side: bool) -> tuple[Reading | None, InputError | None]:
-    """Return the reading of SymPy's text, None for any other text; and the refusal of a text that cannot be read."""
+    """Return the reading of SymPy's text (None for any other text), and the error of a text that cannot be read."""
     try:
         strict = text.read(whole=True, as_sympy=True, one_side=one_side)
     except InputError as reason:

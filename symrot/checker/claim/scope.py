@@ -1,4 +1,4 @@
-"""The scope in which a claim is read: its names, its divisors and roots, and refusals of pieces without a value."""
+"""The scope in which a claim is evaluated: its names, the divisors and roots of its text, and its errors."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
@@ -27,7 +27,7 @@ class Divisor:
 
 
 def is_matrix(value: Any) -> bool:
-    """Return whether a value is a matrix; a column is one."""
+    """Return whether a value is a matrix; a column vector is a matrix too."""
     return isinstance(value, sympy.MatrixBase)
 
 
@@ -37,7 +37,7 @@ def described(value: Any) -> str:
 
 @dataclass
 class Scope(ABC):
-    """The names of one claim, the divisors and radicands of its text, and the refusals of pieces without a value.
+    """The names of one claim, the divisors and radicands of its text, and errors for formulas without a value.
 
     Attributes
     ----------
@@ -78,13 +78,13 @@ class Scope(ABC):
         return value
 
     def argument(self, node: Node, of: str) -> Expr:
-        """Return the value of a tree as the argument of a function; refuse functions that are nested too deeply."""
+        """Return the value of a tree, an argument of the function ``of``; refuse too deeply nested functions."""
         value = self.scalar(node, of)
         self.within_nesting(value, node)
         return value
 
     def within_nesting(self, value: Expr, node: Node) -> None:
-        """Refuse a value that a function or a root would nest too deeply."""
+        """Refuse a value inside of so many functions and roots that one more would be too many."""
         if nesting(value) >= MOST_NESTED:
             raise self.fail(node, f"at most {MOST_NESTED} functions and roots inside each other")
 
@@ -109,7 +109,7 @@ class Scope(ABC):
         return (value.rows, value.cols) if is_matrix(value) else None
 
     def bounded(self, value: Any, node: Node, most: int = MOST_PIECES) -> Any:
-        """Return a value unchanged; refuse one that is too large to be worked with."""
+        """Return a value unchanged; refuse a value of more than ``most`` symbols, numbers and operations."""
         if pieces(value if is_matrix(value) else [value]) > most:
             raise self.fail(node, f"a formula of at most {most} symbols, numbers and operations, written out,")
         return value
@@ -130,7 +130,7 @@ class Scope(ABC):
             raise self.fail(node, f"a number of at most {MOST_BITS_FACTORED} bits under a root, since it is factored,")
 
     def take_root(self, value: Expr, node: Node) -> None:
-        """Record a radicand; refuse a negative one."""
+        """Record the formula under an even root; refuse a negative number."""
         interval = enclosure(value) if value.is_number else None
         if (interval is None and value.is_negative) or (interval is not None and interval.b < 0):
             raise self.fail(node, "a number that is not negative under a root")

@@ -41,7 +41,7 @@ takes seconds, at depth 25 minutes."""
 
 
 def nesting(formula: Expr) -> int:
-    """Return how many functions and fractional powers are inside each other, at most, in a formula."""
+    """Return the depth of a formula: the largest number of functions and fractional powers inside each other."""
     depths: dict[Any, int] = {}
 
     def depth(node: Any) -> int:
@@ -71,7 +71,7 @@ def products_of_determinant(matrix: Any) -> int:
 
 
 def terms_of_angle(angle: Expr) -> int:
-    """Return about how many terms the sine of a sum of angles has in sines and cosines of the single angles."""
+    """Return about how many terms the sine of a sum of angles has when it is expanded: sin(a + b) has two."""
     terms, number = 1, 0
     for term in angle.as_ordered_terms() if angle.is_Add else [angle]:
         multiple, atom = term.as_coeff_Mul()

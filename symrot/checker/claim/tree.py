@@ -47,7 +47,7 @@ def number(value: int | Fraction) -> Node:
 
 
 def sum_of(terms: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
-    """Return the sum of terms, flat; 0 for an empty list."""
+    """Return the sum of terms, with terms that are sums merged into it; 0 for an empty list."""
     flat: list[Node] = []
     for term in terms:
         flat.extend(term.args if term.kind == "sum" else (term,))
@@ -57,7 +57,10 @@ def sum_of(terms: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
 
 
 def product(factors: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
-    """Return the product of factors, flat, with the sign in front; 1 for an empty list."""
+    """Return the product of factors, with its sign in front; factors that are products are merged into it.
+
+    The product of an empty list is 1.
+    """
     flat: list[Node] = []
     negative = False
     for factor in factors:
@@ -81,7 +84,7 @@ def walk(node: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
 
 
 def replaced(node: Node, path: Path, edit: Callable[[Node], Node]) -> Node:
-    """Return the tree in which the piece at a path is edited."""
+    """Return the tree in which the function ``edit`` has been applied to the piece at a path."""
     if not path:
         return edit(node)
     place, *rest = path

@@ -51,7 +51,7 @@ def decide_value(claim: Claim) -> Decision:
 
 
 def _printed(text: str, where: str) -> tuple[Fraction, Fraction]:
-    """Return the printed number and one unit of its last digit."""
+    """Return the decimal number in a text, and the value of one unit of its last digit: 157.08 and 0.01."""
     match = _DECIMAL.fullmatch(text)
     if match is None or not (match[2] or match[3]):
         raise InputError(f"{where}: expected a decimal number, got {text[:40]!r}")

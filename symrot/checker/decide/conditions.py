@@ -1,7 +1,8 @@
 """Conditions under which a false claim is true: a unit norm, equal moments, no products of inertia, the sign of a root.
 
-A condition is a common factor of all residuals: where it vanishes, the claim is true. Only conditions that textbooks
-state count, since every false claim is "true" where its residual happens to vanish.
+A condition is a common factor of all residuals (the left minus the right sides of the entries): where it is zero, the
+claim is true. Only conditions that textbooks state count, since every false claim is "true" where its residual happens
+to vanish.
 """
 
 import re
@@ -34,7 +35,7 @@ MOST_TERMS_OF_SQUARE = 40
 def requirements(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]], entries: int
 ) -> list[Requirement]:
-    """Return the conditions, of the kinds that textbooks state, each of which makes all residuals vanish.
+    """Return the conditions that textbooks state and each of which makes all residuals (left - right) vanish.
 
     Parameters
     ----------
@@ -69,10 +70,11 @@ def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> lis
 
 
 def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]], hypotheses: Sequence[Expr]) -> bool:
-    """Return whether in each wrong entry a side leaves out one of the symbols of a condition.
+    """Return whether one side of each wrong entry lacks one of the symbols of a condition such as ``A = B``.
 
-    An author who silently assumes ``A = B`` writes only one of them. A text with both, ``(A - B) w`` against
-    ``(B - A) w``, is wrong in another way. A hypothesis that ties a symbol to symbols of a side puts it into the side.
+    An author who silently assumes ``A = B`` writes only one of the two. A text with both, such as ``(A - B) w`` against
+    ``(B - A) w``, is wrong in another way. If a hypothesis relates a symbol to the symbols of a side, the side counts
+    as having it.
     """
     (formula,) = requirement.zeros
 
@@ -107,7 +109,10 @@ def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
 
 
 def _of_moments(factor: PolyElement, names: list[Expr], ring: FormulaRing, formula: Expr) -> Requirement | None:
-    """Return the condition ``I1 == I2`` or ``I1 + I2 == I3``; None for a sum of moments, which does not vanish."""
+    """Return the condition ``I1 == I2`` or ``I1 + I2 == I3`` that a factor states; None for a sum of moments.
+
+    A sum of moments of inertia is positive, so that it is no condition.
+    """
     coefficients = [int(factor[ring.ring.gens[ring.symbols[name]].leading_expv()]) for name in names]
     sides = [[str(n) for n, c in zip(names, coefficients, strict=True) if c * sign > 0] for sign in (1, -1)]
     if not all(sides):
@@ -131,7 +136,7 @@ def _is_unit_norm(factor: PolyElement, variables: int) -> bool:
 def _no_products(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]]
 ) -> list[Requirement]:
-    """Return the condition that all products of inertia vanish, if it suffices."""
+    """Return the condition that all products of inertia are zero, if the claim is true under it; otherwise None."""
     products = [(leaf, n) for leaf, n in ring.symbols.items() if _matches(PRODUCT_OF_INERTIA, leaf)]
     if not products or not all(any(mono[n] for _, n in products) for poly in numerators for mono in poly):
         return []
@@ -181,7 +186,10 @@ def _split(poly: PolyElement, place: int, generator: PolyElement) -> tuple[PolyE
 
 
 def surely_nonnegative(value: Expr) -> bool:
-    """Return whether the form of a real value shows that it is not negative; its roots are taken to be real."""
+    """Return whether the form of a real formula, such as a sum of squares, shows that it is never negative.
+
+    Its square roots are taken to be real.
+    """
     if value.is_nonnegative or isinstance(value, Abs | sympy.exp):
         return True
     if isinstance(value, Pow) and value.exp.is_Rational:

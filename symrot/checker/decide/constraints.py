@@ -1,8 +1,9 @@
-"""The set of real points over which a claim is decided, as polynomials in the generators of its ring.
+"""The real points for which a claim is decided, as polynomials in the generators (the unknowns) of its ring.
 
 Three kinds of polynomials vanish: hypotheses, ``sin^2 + cos^2 - 1`` of each angle, and the relations of roots. Divisors
 do not vanish. Symbols and even roots have signs. A generator is ``free`` if these polynomials say everything that is
-known of its value; a function of a symbol is not, nor is an angle that depends on a symbol, and they are left alone.
+known of its value; a function of a symbol is not free, nor is an angle that depends on a symbol. Constraints on
+generators that are not free are not used.
 """
 
 from collections.abc import Iterator, Sequence
@@ -25,7 +26,7 @@ MOST_TERMS, MOST_UNKNOWNS, LARGEST_DEGREE = 40, 4, 12
 
 @dataclass(frozen=True)
 class Constraints:
-    """A set of real points: ``zeros`` vanish, ``nonzero`` do not, and generators have the assumed signs.
+    """A set of real points: the polynomials ``zeros`` vanish, ``nonzero`` do not, and unknowns have the assumed signs.
 
     Attributes
     ----------
@@ -61,12 +62,12 @@ class Constraints:
 
     @cached_property
     def involved(self) -> tuple[int, ...]:
-        """The free generators that occur in a constraint, in order."""
+        """The free generators (unknowns of the ring) that occur in a constraint, in order."""
         return tuple(sorted(self.free & occurring([*self.zeros, *self.nonzero, *self.products])))
 
 
 def occurring(polynomials: Sequence[PolyElement]) -> set[int]:
-    """Return the numbers of the generators that occur in polynomials."""
+    """Return the numbers of the generators (unknowns of the ring) that occur in polynomials."""
     return {place for poly in polynomials for mono in poly for place, power in enumerate(mono) if power}
 
 
@@ -85,7 +86,7 @@ def distinct_factors(poly: PolyElement) -> list[PolyElement]:
 
 
 def constraints_of(ring: FormulaRing) -> Constraints:
-    """Return the constraints that a ring contains, all divisors that were read into it so far included."""
+    """Return the constraints that a ring contains, including all divisors that have been read into it so far."""
     target = PolyRing(ring.ring.symbols, QQ, grevlex)
     symbols = {leaf: n for leaf, n in ring.symbols.items() if ring.leaves[leaf]}
     free = {*symbols.values(), *_free_angles(ring)}

@@ -88,7 +88,7 @@ class Equation:
 
 
 def decide_equation(equation: Equation) -> Decision:
-    """Return the decision on an equation with hypotheses.
+    """Return the decision on an equation with hypotheses: true, false, conditional or undecided.
 
     Raises
     ------
@@ -137,7 +137,7 @@ def _decide(equation: Equation) -> Decision:
 
 @dataclass
 class _ClaimCase(Case):
-    """The case of a claim, with the evidence that only claims need.
+    """The state of the decision on a claim: its equation, and the evidence found so far.
 
     Attributes
     ----------
@@ -157,7 +157,10 @@ class _ClaimCase(Case):
 
     @cached_property
     def hypotheses(self) -> Hypotheses:
-        """The hypotheses, with the needs of the sides; their constraints include the divisors read until first use."""
+        """The hypotheses, with the conditions for both sides to be real numbers.
+
+        Their constraints include the divisors that were read before this property is first used.
+        """
         return Hypotheses(self.ring, _needs(self))
 
     @property
@@ -166,7 +169,10 @@ class _ClaimCase(Case):
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
     def within_domain(self, search: Search) -> Search:
-        """Return a search that drops points outside the domain of the text, which SymPy may have cancelled."""
+        """Return a search for points that skips the points where a side, as it is written, has no value.
+
+        An example is a point where a divisor that SymPy has cancelled is zero.
+        """
 
         def searched(
             ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
@@ -178,7 +184,7 @@ class _ClaimCase(Case):
         return searched if self.ring.domain else search
 
     def conditions_of(self, rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
-        """Return the conditions in the order of their texts, without those that assumptions or hypotheses grant."""
+        """Return the conditions of a proof in alphabetical order, without those that the hypotheses grant."""
         ring, granted = self.ring, self.nonzero_factors
         forms = [*domain.divisors(ring, granted), *(pair for other in rings for pair in domain.divisors(other))]
         free = set(domain.divisors(ring)) - set(domain.divisors(ring, granted))
@@ -214,21 +220,21 @@ class _ClaimCase(Case):
 
 
 def nonzero_by_hypothesis(case: _ClaimCase) -> None:
-    """Read the formulas that hypotheses state to be nonzero, before anything else is divided by."""
+    """Read the formulas that hypotheses state to be nonzero, before any other divisor is read."""
     for formula in case.equation.nonzero:
         case.ring.ratios.invert(case.ring.ratio(formula), formula)
     case.nonzero_factors = set(range(len(case.ring.ratios.factors)))
 
 
 def domain_of_text(case: _ClaimCase) -> None:
-    """Add the divisors of the text to the ring; refuse a claim whose sides are real numbers nowhere."""
+    """Add the divisors of the text to the ring. Raise InputError if the sides of the claim are real numbers nowhere."""
     for divisor in case.equation.divisors:
         case.ring.ratios.invert(case.ring.ratio(divisor), divisor)
     case.hypotheses.refuse_if_nowhere()
 
 
 def nearby_witness(case: _ClaimCase) -> None:
-    """Look for a counterexample among rational points, and then among the first points that obey the hypotheses."""
+    """Look for a counterexample: among rational points, then among a few points that obey the hypotheses."""
     ring, hypotheses = case.ring, case.hypotheses
     case.numerators = [ring.reduce(case.residuals[place].numerator) for place in case.unproven]
     closed_form = hypotheses.checked(closed_form_witness)
@@ -237,7 +243,10 @@ def nearby_witness(case: _ClaimCase) -> None:
 
 
 def branch(case: _ClaimCase) -> Decision | None:
-    """Decide a case that is true on a branch of a root, or of an inverse function, to which its domain confines it."""
+    """Decide a claim that is true for one sign of a root, or on one branch of an inverse function such as asin.
+
+    It is true if the domain of the claim allows no other sign or branch.
+    """
     case.branches, rings = _branches(case.ring, case.numerators)
     case.rely_on((*case.proof_rings, *rings))
     if case.branches is None:
@@ -248,7 +257,7 @@ def branch(case: _ClaimCase) -> Decision | None:
 
 
 def entail(case: _ClaimCase) -> Decision | None:
-    """Decide a case that follows from the hypotheses at all real points; refuse hypotheses that hold nowhere."""
+    """Decide a claim that follows from its hypotheses at all real points; refuse hypotheses that hold nowhere."""
     if not case.lacks_evidence:
         return None
     if case.hypotheses.entails(case.numerators):
@@ -266,7 +275,7 @@ def distant_witness(case: _ClaimCase) -> None:
 
 
 def condition(case: _ClaimCase) -> Decision | None:
-    """Decide a case that is true under a condition that authors often leave out."""
+    """Decide a claim that is true under a condition that authors often leave out, such as a unit norm."""
     sides = [(case.lefts[place], case.rights[place]) for place in case.unproven]
     needed = requirements(case.ring, case.numerators, sides, len(case.lefts))
     needed = [requirement for requirement in needed if case.can_hold(requirement)]
@@ -282,7 +291,7 @@ def condition(case: _ClaimCase) -> Decision | None:
 
 
 def leave_open(case: _ClaimCase) -> Decision:
-    """Leave the case undecided, with the reason."""
+    """Return the decision "undecided" on the claim, with the reason."""
     return Decision("undecided", case.conditions, reason=_obstacle(case.ring))
 
 
@@ -299,7 +308,7 @@ def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision
     """Return a decision that is conditional if the sides differ at a point that its conditions exclude.
 
     All functions but atan2 are continuous where they are defined: sides that are equal where no divisor of the proof
-    vanishes are equal in between too. atan2 jumps where its first argument is zero and the second negative.
+    vanishes are equal in between too. atan2 jumps where its first argument is zero and its second argument is negative.
     """
     symbols = sorted({symbol for side in case.sides for symbol in side.free_symbols}, key=str)
     cuts = sorted({node.args[0] for side in case.sides for node in side.atoms(atan2)}, key=str)
@@ -319,7 +328,10 @@ def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision
 
 
 def _points_on_cuts(symbols: Sequence[Expr], cuts: Sequence[Expr]) -> Iterator[dict[Expr, Rational]]:
-    """Yield simple points, and points where the first argument of an atan2 is zero if it is linear in a symbol."""
+    """Yield simple points, and points on the cuts of atan2, where its first argument is zero.
+
+    Points on a cut are known only if the argument is linear in a symbol.
+    """
     for values in product((0, -1, 1, Rational(-3, 2)), repeat=len(symbols)):
         point = dict(zip(symbols, map(Rational, values), strict=True))
         yield point
@@ -344,7 +356,7 @@ def _sides(equation: Equation) -> tuple[list[Expr], list[Expr], Shape]:
 
 
 def _needs(case: _ClaimCase) -> list[Need]:
-    """Return the needs of sides and hypotheses to be real numbers, those included that SymPy has cancelled."""
+    """Return the conditions for sides and hypotheses to be real numbers, also for parts that SymPy has cancelled."""
     equation = case.equation
     hypotheses = [as_zero(relation) for relation in equation.hypotheses]
     stated = [Need(divisor, "!= 0") for divisor in (*equation.divisors, *equation.nonzero)]
@@ -360,7 +372,7 @@ def _refuse_large_degree(formula: Expr) -> None:
 
 
 def _degree(node: Expr, known: dict[Expr, int]) -> int:
-    """Return a bound on the degree of numerator and denominator together."""
+    """Return an upper bound on the sum of the degrees of numerator and denominator of a formula."""
     if node not in known:
         below = [_degree(part, known) for part in node.args]
         if isinstance(node, Mul):
@@ -377,7 +389,10 @@ def _degree(node: Expr, known: dict[Expr, int]) -> int:
 
 
 def _multiple(argument: Expr) -> int:
-    """Return, roughly, how many base angles add up to the argument of a sine."""
+    """Return the sum of numerator times denominator of the coefficients in an angle: 5 for 3*x + y/2.
+
+    It estimates the degree of the sine of the angle in the sines and cosines of x and y/2.
+    """
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
         number, atom = term.as_coeff_Mul()
@@ -404,7 +419,7 @@ def _pieces(formula: Expr) -> int:
 def _branches(
     ring: FormulaRing, numerators: Sequence[PolyElement]
 ) -> tuple[list[Requirement] | None, tuple[FormulaRing, ...]]:
-    """Return conditions on signs under which residuals vanish, and the further ring that proves it.
+    """Return conditions on signs under which the residuals (left - right) vanish, and the ring in which this is proven.
 
     The list is empty if no condition is needed; it is None if no such condition is known.
     """

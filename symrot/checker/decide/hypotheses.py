@@ -75,7 +75,10 @@ class Hypotheses:
         return real_points(self.constraints)
 
     def points(self, attempts: int = ATTEMPTS) -> Iterator[RealPoint]:
-        """Yield the points among the first ``attempts`` that obey all constraints; each point is drawn once."""
+        """Yield the points, among the first ``attempts`` that are drawn at random, that obey all constraints.
+
+        A point is drawn once and stored.
+        """
         number = 0
         while number < attempts:
             if number == len(self._drawn):
@@ -88,7 +91,7 @@ class Hypotheses:
     # -- a point of the domain ----------------------------------------------------------------------------------------
 
     def point_is_known(self, further: Sequence[Need] = (), zeros: Sequence[Expr] = ()) -> bool:
-        """Return whether a real point is known at which all needs and hypotheses hold.
+        """Return whether a real point is known at which the hypotheses hold and all formulas have real values.
 
         Parameters
         ----------
@@ -117,7 +120,7 @@ class Hypotheses:
         return bool(self.ring.hypotheses and not zeros and self._drawn_point(needs, ATTEMPTS))
 
     def _refuse_if_excluded(self) -> None:
-        """Raise InputError if the hypotheses turn a need into a number that violates it."""
+        """Raise InputError if the hypotheses make a divisor the number zero, or a radicand a negative number."""
         for need in self.needs if self.ring.hypotheses else ():
             try:
                 reduced = normal_form(need.formula, self.ring.hypotheses)
@@ -140,11 +143,11 @@ class Hypotheses:
                 raise InputError(f"the hypotheses hold at no real point: {contradiction}")
 
     def _polynomial_core(self, needs: Sequence[Need]) -> bool:
-        """Return whether the points where no divisor vanishes are dense, by the theorem on the polynomial core."""
+        """Return whether the theorem on the polynomial core shows that points where no divisor vanishes are dense."""
         return is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)
 
     def _true_number(self, need: Need) -> bool:
-        """Return whether a need without symbols holds; raise InputError if it provably fails."""
+        """Return whether a condition without symbols, such as ``2 - 1 > 0``, holds; raise InputError if it is false."""
         interval = enclosure(need.formula)
         if interval is None:
             return False
@@ -155,7 +158,7 @@ class Hypotheses:
         return zero or holds(need, {})
 
     def _drawn_point(self, needs: Sequence[Need], attempts: int) -> bool:
-        """Return whether needs provably hold at one of the exact points that obey the hypotheses."""
+        """Return whether an exact point is found that obeys the hypotheses and meets the conditions ``needs``."""
         if not self.constraints.complete:
             return False
         formulas = [need.formula for need in needs]
@@ -175,7 +178,7 @@ class Hypotheses:
         return values
 
     def _values_for(self, formulas: Sequence[Expr], point: RealPoint) -> dict[Expr, Expr]:
-        """Return the values at a point, and values for symbols of the formulas on which no hypothesis bears."""
+        """Return the values at a point, extended by values for the symbols that occur in no hypothesis."""
         values = self._values(point)
         for number, leaf in enumerate(leaves_of(formulas)):
             values.setdefault(leaf, OTHER_VALUES[number % len(OTHER_VALUES)])
@@ -186,7 +189,7 @@ class Hypotheses:
         return infeasibility_proof(self.constraints) if self.present or self.ring.roots else None
 
     def refuse_if_empty(self) -> None:
-        """Raise InputError if there is provably no real point where the hypotheses hold and the sides are defined."""
+        """Raise InputError if the hypotheses provably hold at no real point at which the sides are defined."""
         infeasibility = self._infeasibility
         if infeasibility is None:
             return
@@ -268,12 +271,15 @@ class Hypotheses:
         return point.number(above / below)
 
     def _parts(self, side: Expr) -> tuple[PolyElement, PolyElement]:
-        """Return the numerator and the denominator of a side of the claim."""
+        """Return numerator and denominator of a side of the claim, which is a fraction of polynomials."""
         ratio, target = self.ring.ratio(side), self.constraints.ring
         return ratio.numerator.set_ring(target), self.ring.ratios.denominator(ratio).set_ring(target)
 
     def _named(self, point: RealPoint, used: set[Expr]) -> Iterator[tuple[Expr, Expr]]:
-        """Yield symbols and angles in use with their values; cosine and sine of angles other than multiples of pi/2."""
+        """Yield the symbols and angles that the claim uses, with their values at a point.
+
+        An angle that is no multiple of pi/2 is given by its cosine and sine.
+        """
         quarters = {(0, 1): 0, (1, 0): 1, (0, -1): 2, (-1, 0): 3}
         for leaf, place in self.ring.symbols.items():
             if leaf in used and place in point.values:
@@ -292,7 +298,10 @@ class Hypotheses:
     def _by_enclosures(
         self, left: Expr, right: Expr, entry: tuple[int, int] | None, attempts: int
     ) -> Counterexample | None:
-        """Return a point at which 50-digit intervals of the sides are disjoint, or None."""
+        """Return a point at which the sides provably differ: their values lie in disjoint intervals of 50 digits.
+
+        Else None.
+        """
         leaves = {place: leaf for leaf, place in self.ring.symbols.items()}
         involved = occurring([*self.constraints.zeros, *self.constraints.products])
         if not involved <= leaves.keys():
@@ -312,7 +321,7 @@ class Hypotheses:
         return None
 
     def _other_divisors_nonzero(self, point: RealPoint) -> bool:
-        """Return whether the divisors on which the drawing of points does not look, such as tanh(x), do not vanish."""
+        """Return whether divisors such as tanh(x), which the drawing of points ignores, are nonzero at a point."""
         factors = [factor.as_expr(*self.ring.generators) for factor in self.constraints.unconstrained]
         values = self._values_for(factors, point)
         enclosures = [enclosure(factor, values) for factor in factors]

@@ -37,7 +37,7 @@ class _Undecided(Exception):
 
 @dataclass(frozen=True)
 class Infeasibility:
-    """The reason why constraints hold nowhere, and the polynomial that cannot vanish; None if 1 = 0 follows."""
+    """The reason why constraints hold nowhere, and the polynomial that cannot vanish (None if 1 = 0 follows)."""
 
     reason: str
     polynomial: PolyElement | None = None
@@ -119,7 +119,10 @@ class _Prover:
         return "a polynomial that would have to vanish keeps its sign", poly
 
     def factors(self, poly: PolyElement) -> list[PolyElement]:
-        """Return the factors that may vanish, each once; an empty list if none of them may, or for zero."""
+        """Return the factors of a polynomial that may vanish, each once.
+
+        The list is empty if no factor may vanish, and for the polynomial zero.
+        """
         if not poly or poly.is_ground:
             return []
         return [
@@ -129,7 +132,10 @@ class _Prover:
         ]
 
     def parts(self, poly: PolyElement) -> list[PolyElement]:
-        """Return the polynomials that vanish if ``poly`` does: each term if all have one sign, else itself."""
+        """Return polynomials that vanish wherever ``poly`` does.
+
+        They are its terms if all of them have one sign, otherwise ``poly`` itself.
+        """
         signs = {self.sign_of_term(mono, coefficient) for mono, coefficient in poly.items()}
         if len(poly) > 1 and (signs <= {1} or signs <= {-1}):
             radicals = [tuple(min(power, 1) for power in mono) for mono in poly]
@@ -140,7 +146,7 @@ class _Prover:
     # -- signs --------------------------------------------------------------------------------------------------------
 
     def sign_of_term(self, mono: tuple[int, ...], coefficient: Any) -> int:
-        """Return +1 for a term that is nowhere negative, -1 for one that is nowhere positive, else 0."""
+        """Return +1 for a term that is never negative, -1 for one that is never positive, 0 for any other term."""
         sign = 1 if coefficient > 0 else -1
         for place, power in enumerate(mono):
             if power % 2 and place in self.constraints.negative:
@@ -150,10 +156,7 @@ class _Prover:
         return sign
 
     def one_signed(self, poly: PolyElement) -> bool:
-        """Return whether a polynomial is nowhere zero by its form.
-
-        All terms have one sign and one of them never vanishes, or it is a sum of squares and a positive number.
-        """
+        """Return whether the form of a polynomial shows that it is nowhere zero."""
         signs = {self.sign_of_term(mono, coefficient) for mono, coefficient in poly.items()}
         strict = any(all(place in self.signed for place, power in enumerate(mono) if power) for mono in poly)
         if strict and (signs == {1} or signs == {-1}):
@@ -165,7 +168,10 @@ class _Prover:
         return self.one_signed(poly) or self.rootless(poly) or self.out_of_range(poly, zeros)
 
     def rootless(self, poly: PolyElement) -> bool:
-        """Return whether a polynomial of one unknown has no real root that its sign allows (Sturm's theorem)."""
+        """Return whether a polynomial in one unknown has no real root of the sign that the unknown has.
+
+        The roots are counted by Sturm's theorem.
+        """
         places = occurring([poly])
         if len(places) != 1:
             return False
@@ -180,7 +186,10 @@ class _Prover:
         return roots == int(at_zero)
 
     def squares(self, poly: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Return pairs (d, l) with the polynomial = +-sum of d*l^2, d > 0, l of degree <= 1; else an empty list."""
+        """Return pairs (d, l) such that a polynomial is plus or minus the sum of d*l^2, with d > 0 and l linear.
+
+        The list is empty if there are no such pairs.
+        """
         if max(map(sum, poly)) != 2:
             return []
         for sign in (1, -1):
@@ -190,7 +199,7 @@ class _Prover:
         return []
 
     def _completed(self, rest: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Complete squares, one unknown after the other."""
+        """Write a quadratic polynomial as a sum of squares, by completing the square in one unknown after the other."""
         squares = []
         for place in sorted(occurring([rest])):
             x = self.ring.gens[place]
@@ -220,7 +229,7 @@ class _Prover:
         return low > 0 or high < 0
 
     def bounds(self, zeros: Sequence[PolyElement]) -> dict[int, tuple[Any, Any]]:
-        """Return the least and largest values of unknowns, from their signs and from ``sum of d*x^2 = constant``."""
+        """Return the smallest and largest values of unknowns, from their signs and from ``sum of d*x^2 = constant``."""
         bounds: dict[int, tuple[Any, Any]] = {}
         for poly in (*self.constraints.zeros, *zeros):
             constant = poly.coeff(1)

@@ -1,4 +1,7 @@
-"""Rational points of quadrics: a first one with simple coordinates, all others on lines through it."""
+"""Rational points of quadrics, the zeros of polynomials of degree 2.
+
+One point with simple coordinates is found first; all other points lie on straight lines through it.
+"""
 
 from collections.abc import Sequence
 from math import isqrt
@@ -32,7 +35,7 @@ def rational_square_root(value: Any) -> Any:
 
 
 def point_of_quadric(poly: PolyElement, places: Sequence[int], source: Random) -> dict[int, Any] | None:
-    """Return a random rational point of a quadric; None if it has no simple one.
+    """Return a random rational point at which a polynomial of degree 2 vanishes; None if no simple point is found.
 
     Parameters
     ----------

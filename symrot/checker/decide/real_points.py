@@ -43,12 +43,12 @@ second, one of norm 64 six seconds.
 
 
 class _DeadEnd(Exception):
-    """An exception for a drawing of a point whose choices so far allow no point."""
+    """Exception raised while a point is drawn, if the values chosen so far leave no value for another unknown."""
 
 
 @dataclass(frozen=True)
 class RealPoint:
-    """Values of generators, all in one field: the rationals, or an extension by real algebraic numbers."""
+    """Values of the generators (the unknowns of a ring) in one field: the rational or some real algebraic numbers."""
 
     values: dict[int, Any]
     field: Any = QQ
@@ -59,13 +59,13 @@ class RealPoint:
         return bool(self.field == QQ)
 
     def number(self, value: Any) -> Expr:
-        """Return an element of the field as an exact number of SymPy."""
+        """Return an element of the point's field as an exact number of SymPy."""
         number: Expr = self.field.to_sympy(value)
         return number if self.rational else number.expand()
 
     @property
     def size(self) -> tuple[int, int]:
-        """The length of the point as text, rational points before others."""
+        """The length of the point as text, to prefer short points; rational points come before all others."""
         return (not self.rational, sum(len(str(value)) for value in self.values.values() if value))
 
 
@@ -96,7 +96,10 @@ def _sign(value: Any, field: Any) -> int:
 
 
 def real_points(constraints: Constraints, attempts: int = ATTEMPTS) -> Iterator[RealPoint | None]:
-    """Yield for each attempt a point that exactly obeys all constraints, or None; the same on every machine."""
+    """Yield, for each attempt, a point that exactly obeys all constraints, or None.
+
+    Every machine yields the same points.
+    """
     source = Random(1)
     known: dict[Any, Any] = {}
     for attempt in range(attempts if constraints.real else 0):
@@ -109,7 +112,7 @@ def real_points(constraints: Constraints, attempts: int = ATTEMPTS) -> Iterator[
 
 
 def obeys(constraints: Constraints, point: RealPoint) -> bool:
-    """Return whether a point, with values for all generators involved, obeys all constraints."""
+    """Return whether a point with a value for every generator (unknown) of the constraints obeys all of them."""
     return (
         not any(value_at(poly, point) for poly in constraints.zeros)
         and all(value_at(poly, point) for poly in constraints.nonzero)
@@ -130,7 +133,7 @@ def _allowed(constraints: Constraints, place: int, value: Any, field: Any) -> bo
 
 
 class _Drawing:
-    """One attempt to find a point: the equations left to solve, the values so far, and the solved unknowns."""
+    """One attempt to find a point: the equations still to be solved, the values so far, and the solved unknowns."""
 
     def __init__(self, constraints: Constraints, source: Random, algebraic: bool, known: dict[Any, Any]) -> None:
         self.constraints, self.source, self.algebraic, self.known = constraints, source, algebraic, known
@@ -154,7 +157,7 @@ class _Drawing:
         raise _DeadEnd
 
     def completed(self) -> RealPoint:
-        """Give values to the unknowns that no equation restricts, then to those that were solved for."""
+        """Give values to the unknowns that no equation restricts, then to those expressed by other unknowns."""
         later = {place for place, _, _ in self.solved}
         for place in sorted(self.constraints.free - later - self.values.keys()):
             self.values[place] = self.field.convert(self.drawn(place), QQ)
@@ -167,7 +170,7 @@ class _Drawing:
         return RealPoint(self.values, self.field)
 
     def drawn(self, place: int) -> Any:
-        """Return a random rational value that the signs of a generator allow."""
+        """Return a random rational value for a generator (an unknown), of a sign that the constraints allow."""
         source = self.source
         for _ in range(20):
             value = (
@@ -189,7 +192,7 @@ class _Drawing:
     # -- steps: each returns whether it applied -----------------------------------------------------------------------
 
     def factor(self) -> bool:
-        """Let a product vanish with one of its factors."""
+        """Replace an equation ``a*b = 0`` by ``a = 0``, for one of the factors of its left side."""
         for number, poly in enumerate(self.zeros):
             if self.field != QQ:
                 return False
@@ -206,7 +209,7 @@ class _Drawing:
         return self._solve(lambda slope: slope.is_ground)
 
     def fraction(self) -> bool:
-        """Solve an equation for an unknown that enters linearly."""
+        """Solve an equation that is linear in an unknown for this unknown, which divides by its coefficient."""
         return self._solve(lambda slope: True)
 
     def _solve(self, fits: Callable[[PolyElement], bool]) -> bool:
@@ -227,7 +230,7 @@ class _Drawing:
         return True
 
     def univariate(self) -> bool:
-        """Give the root of an equation to its only unknown."""
+        """Solve an equation with a single unknown: the unknown gets one of its roots."""
         for poly in self.zeros:
             places = occurring([poly])
             if len(places) == 1:
@@ -237,7 +240,7 @@ class _Drawing:
         return False
 
     def quadric(self) -> bool:
-        """Give a rational point of a quadric to its unknowns."""
+        """Solve an equation of degree 2: its unknowns get the coordinates of a rational point."""
         if self.field != QQ:
             return False
         fitting = [p for p in self.zeros if max(map(sum, p)) == 2 and self.known.get(("barren", p), 0) < MOST_BARREN]
@@ -256,7 +259,7 @@ class _Drawing:
         return False
 
     def guess(self) -> bool:
-        """Give a simple value to an unknown of some equation."""
+        """Give a simple value to an unknown of one of the equations."""
         poly = self.source.choice(self.zeros)
         place = self.source.choice(sorted(occurring([poly])))
         self.put({place: self.field.convert(self.drawn(place), QQ)})
@@ -265,7 +268,7 @@ class _Drawing:
     # -- roots --------------------------------------------------------------------------------------------------------
 
     def root(self, poly: PolyElement, place: int) -> Any:
-        """Return a root of a polynomial in one unknown, in the field or in an extension of it."""
+        """Return a root of a polynomial in one unknown, if necessary after extending the field by the root."""
         generator = self.ring.gens[place]
         key = (poly, self.field)
         if key not in self.known:
@@ -281,7 +284,7 @@ class _Drawing:
         return self.adjoined(self.source.choice(factors), place)
 
     def spend(self, degree: int) -> None:
-        """Charge the factoring of a polynomial of this degree; over the rationals it costs nothing."""
+        """Count the cost of factoring a polynomial of this degree against the budget; over the rationals it is free."""
         if self.field != QQ:
             norm = degree * self.field.mod.degree()
             self.known["norms"] = self.known.get("norms", 0) + norm
@@ -324,7 +327,7 @@ def _as_rational(value: Any, field: Any) -> Any:
 
 
 def _eliminated(poly: PolyElement, place: int, above: PolyElement, below: PolyElement) -> PolyElement:
-    """Return a polynomial in which ``above/below`` replaces a generator, times a power of ``below``."""
+    """Return a polynomial with ``above/below`` in place of an unknown, multiplied by a power of ``below``."""
     degree = poly.degrees()[place]
     if not degree:
         return poly

@@ -4,10 +4,7 @@ __all__ = ["is_unordered"]
 
 
 def is_unordered(reason: BaseException | None) -> bool:
-    """Return whether an error of SymPy comes from two numbers that it could not order.
-
-    SymPy raises a TypeError, which the wrapper of its cache turns into an AttributeError.
-    """
+    """Return whether an error of SymPy means that it could not find out which of two numbers is larger."""
     while reason is not None:
         if isinstance(reason, TypeError) and "truth value of Relational" in str(reason):
             return True

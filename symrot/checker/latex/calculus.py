@@ -29,7 +29,7 @@ class CalculusPart(NamesPart):
         return node if power is None else Node("power", None, (node, power))
 
     def loose_argument(self, function: tree.Node) -> Node:
-        """Read ``2\\theta``, ``\\omega t`` or ``\\frac{\\theta}{2}`` after a sine; refuse an ambiguous argument."""
+        """Read the argument of a sine without brackets, such as ``2\theta``; refuse an ambiguous argument."""
         factors = [self.factor()] if not self.at("-") else []
         if not factors or factors[0].kind == "power":
             raise self.fail(f"brackets around the argument of {function.text}")
@@ -48,7 +48,7 @@ class CalculusPart(NamesPart):
         return product(factors)
 
     def is_spaced(self) -> bool:
-        """Return whether a command for space is before the cursor."""
+        r"""Return whether a LaTeX command for a space, such as ``\,``, is directly before the cursor."""
         return self.peek().start in self.after_space
 
     def root(self, root: tree.Root) -> Node:
@@ -68,7 +68,7 @@ class CalculusPart(NamesPart):
         return product([self.argument(above), Node("inv", None, (self.argument(below),))])
 
     def derivative_fraction(self, fraction: tree.Fraction) -> Node:
-        """Read ``\\frac{d^n X}{d x^n}`` or ``\\frac{d}{dx} X``."""
+        """Read a derivative written as a fraction: ``\frac{d^n X}{d x^n}`` or ``\frac{d}{dx} X``."""
         order, operand = self.inside(fraction.above, self.differentiated)
         if "d" in self.names:
             raise self.fail("another name for the symbol d, since d means a derivative here", fraction)
@@ -85,13 +85,16 @@ class CalculusPart(NamesPart):
         return operand
 
     def differentiated(self) -> tuple[int, Node | None]:
-        """Read ``d^n X`` over the line of a derivative; return the order and X, or None if it is after the fraction."""
+        """Read the numerator ``d^n X`` of a derivative.
+
+        Return the order n and X, or None for X if it follows the fraction.
+        """
         self.next()
         order = self.order()
         return order, None if self.peek().kind == "end" else self.expression()
 
     def variables(self) -> list[Node]:
-        """Read ``dx^2 dy`` under the line of a derivative."""
+        """Read the denominator of a derivative, such as ``dx^2 dy``; return the variables."""
         variables: list[Node] = []
         while self.peek().kind != "end":
             if not is_d(self.next()):

@@ -57,7 +57,7 @@ class Names:
         return any(kinds)
 
     def is_column(self, node: Node) -> bool:
-        """Return whether a matrix is a column: bars mean the length of a column, the determinant of other matrices."""
+        """Return whether a matrix is a column vector, of which bars mean the length (of a matrix, the determinant)."""
         if node.kind == "name":
             return node.value in self.columns
         if node.kind == "call" and node.value == "Matrix":
@@ -84,7 +84,7 @@ def is_d(item: tree.Node) -> bool:
 
 
 class Cursor(cursor.Cursor):
-    """The place in a formula, with the integrals that are open there, and the names that depend on time."""
+    """The place up to which a formula has been read, with the open integrals and the functions of time so far."""
 
     synonyms: ClassVar[Mapping[str, str]] = {
         "\\top": "\\T", "\\intercal": "\\T", "\\lbrace": "\\{", "\\rbrace": "\\}", "\\lbrack": "[", "\\rbrack": "]",
@@ -111,7 +111,7 @@ class Cursor(cursor.Cursor):
 
 
 def _unwrapped(source: str) -> tuple[int, int]:
-    """Return where the formula starts and ends, without dollar signs around it and a full stop after it."""
+    """Return where the formula starts and ends, without the dollar signs around it and a full stop after it."""
     start, end = 0, len(source)
     for opening, closing in WRAPPERS:
         if source.startswith(opening, start) and source.endswith(closing, start + len(opening), end):

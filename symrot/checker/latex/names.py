@@ -24,7 +24,7 @@ class NamesPart(SumsPart):
         return self.named(item.text.removeprefix("\\"), item)
 
     def named(self, name: str, item: tree.Node) -> Node:
-        """Read the rest of a name, its subscript, primes and ``(t)``; return its node."""
+        """Read the subscript, primes and ``(t)`` that follow a name; return the tree of the whole name."""
         if name in ("Delta", "delta") and name not in self.names and not self.at("_", "'"):
             follower = self.peek()
             if is_letter(follower):
@@ -45,7 +45,7 @@ class NamesPart(SumsPart):
         return Node("name", known)
 
     def refuse_call(self) -> None:
-        """Refuse ``f(x)`` and ``f(0)``, which may be products or values of a function."""
+        """Raise InputError for ``f(x)`` and ``f(0)``, which may be a product or the value of a function."""
         inner = self.peek(1)
         if self.at("(") and (inner.kind == "number" or is_letter(inner)) and self.peek(2).text == ")":
             raise self.fail("a function that is declared, or \\cdot before the bracket of a product,")
@@ -100,7 +100,7 @@ class NamesPart(SumsPart):
         return node
 
     def take_time_call(self, name: str) -> None:
-        """Step over ``(t)`` after a function of time; refuse other calls."""
+        """Step over ``(t)`` after a function of time; refuse brackets with any other argument."""
         if self.called_with_time() and (
             name in self.names.functions or (self.names.implied and name not in self.names)
         ):
@@ -109,7 +109,7 @@ class NamesPart(SumsPart):
         self.refuse_call()
 
     def marked(self, mark: tree.Accent | tree.Font) -> Node:
-        """Read ``\\vec{r}``, ``\\mathbf R``, ``\\hat n``: names of vectors and matrices, which must be defined."""
+        r"""Read a defined vector or matrix with a mark, such as ``\vec{r}``, ``\mathbf R`` or ``\hat n``."""
         inside = tree.alone(mark.inside)
         if inside.kind == "number" and mark.text in BOLD:
             raise self.fail("eye(n) among the definitions for a unit matrix", inside)
@@ -120,13 +120,13 @@ class NamesPart(SumsPart):
         return node
 
     def overlined(self, mark: tree.Accent | tree.Font) -> Node:
-        """Read a name with a mark that belongs to it, ``\\bar I``."""
+        """Read a name whose mark is part of the name: ``\bar I`` is another symbol than ``I``."""
         node = self.under(mark, lambda: self.symbol(NAME_MARKS[mark.text]))
         self.take_time_call(str(node.value))
         return node
 
     def under(self, mark: tree.Accent | tree.Font, read: Callable[[], Node]) -> Node:
-        """Read what is under a mark, with the subscript and primes after the mark, as in ``\\dot{\\mathbf{H}}_G``."""
+        r"""Read the formula under a mark, with the subscript and primes after the mark: ``\dot{\mathbf{H}}_G``."""
         scripts = []
         while script := self.script("_") or self.script("'"):
             scripts.append(script)

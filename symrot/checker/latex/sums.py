@@ -71,7 +71,7 @@ class SumsPart(Cursor):
         return negated(left) if negative else left
 
     def run(self) -> Node:
-        """Read factors side by side, with slashes, as in ``a/b`` or ``1/2 m``."""
+        """Read the factors of a product without product signs, with slashes, as in ``a/b`` or ``1/2 m``."""
         factors = [self.factor()]
         divided: tree.Node | None = None
         while True:
@@ -104,11 +104,11 @@ class SumsPart(Cursor):
         return not (self.integrals and self.differential())
 
     def differential(self) -> bool:
-        """Return whether a ``dx`` is at the cursor."""
+        """Return whether a differential such as ``dx`` is at the cursor."""
         return is_d(self.peek()) and is_letter(self.peek(1))
 
     def factor(self) -> Node:
-        """Read a piece with its powers."""
+        """Read one factor with its exponents."""
         item = self.next()
         node = self.base(item)
         while raised := self.script("^"):
@@ -120,7 +120,7 @@ class SumsPart(Cursor):
         return node
 
     def raised(self, node: Node, inside: tree.Node) -> Node:
-        """Return a transpose, a cross-product matrix or a power."""
+        """Return the tree of a node with an exponent: a power, a transpose, or the cross-product matrix of a vector."""
         mark = tree.alone(inside)
         if isinstance(mark, tree.Font) and mark.text in UPRIGHT:
             mark = tree.alone(mark.inside)
@@ -149,11 +149,11 @@ class SumsPart(Cursor):
         raise self.fail("a group in braces", node)
 
     def is_cut(self, digit: tree.Node) -> bool:
-        """Return whether a number without braces is one digit of several: LaTeX reads ``x^12`` as ``x^1 2``."""
+        """Return whether a digit is a part of a longer number without braces: LaTeX reads ``x^12`` as ``x^1 2``."""
         return len(digit.text) > 1 or self.source[digit.start + 1 : digit.start + 2].isdigit()
 
     def base(self, item: tree.Node) -> Node:
-        """Return a piece without its powers."""
+        """Read one factor without its exponents."""
         if item.kind == "number":
             return number(Fraction(item.text))
         if item.text == "\\pi":

@@ -1,7 +1,4 @@
-"""The LaTeX of claims: a tree as a book would print it, so that LaTeX is answered in LaTeX.
-
-A text is returned only if the reader reads the same equation from it.
-"""
+"""LaTeX of claims: the formula as a book would print it, so that a question in LaTeX gets its answer in LaTeX."""
 
 import re
 from collections.abc import Callable, Collection, Mapping
@@ -51,7 +48,10 @@ def latex_of(relation: Relation, functions: Collection[str] = ()) -> str | None:
 
 
 def latex_of_text(source: str, functions: Collection[str] = ()) -> str:
-    """Return the LaTeX of an equation in SymPy's text, or the text itself; words after it, ``with ..``, are kept."""
+    """Return the LaTeX of an equation in SymPy's text, or the text itself if it has no LaTeX.
+
+    Words after the equation (``with ..``) stay unchanged.
+    """
     claim, joint, rest = source.partition(" with ")
     try:
         written = latex_of(read_relation(claim), functions)
@@ -69,7 +69,7 @@ def _is_rate(node: Node) -> bool:
 
 
 class _Writer:
-    """The LaTeX of trees in which some names are functions of time, written without ``(t)``."""
+    """Writer of LaTeX: it turns trees into text, in which functions of time have no ``(t)``."""
 
     def __init__(self, timed: Collection[str]) -> None:
         self.timed = timed

@@ -1,1 +1,1 @@
-"""Recognise a formula among those that symrot derives."""
+"""Recognition of formulas: find the formula, among all that symrot derives, to which a given one is equal."""

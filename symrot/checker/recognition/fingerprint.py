@@ -30,7 +30,7 @@ Values = tuple[int, ...]
 
 
 class NotInField(Exception):
-    """An exception for a formula that has no value in the finite field, at a point or at all."""
+    """An exception for a formula that has no value in the finite field, at some point or at every point."""
 
 
 def values_at(entries: Sequence[Expr], point: Mapping[Expr, int]) -> Values:
@@ -87,7 +87,7 @@ def _inverse(value: int) -> int:
 
 
 def _root(value: int) -> int:
-    """Return the smaller root of a square, so that equal radicands have equal roots."""
+    """Return the smaller of the two roots of a square in the field, so that equal radicands have equal roots."""
     root = pow(value % PRIME, (PRIME + 1) // 4, PRIME)
     if (root * root - value) % PRIME:
         raise NotInField
@@ -103,7 +103,10 @@ def _power(base: int, exponent: Rational) -> int:
 
 
 def _mixed(value: int) -> int:
-    """Return the parameter of the circle point of an angle, scrambled to be unrelated to other values of a formula."""
+    """Return a pseudorandom number made from a number: the parameter of the circle point of an angle.
+
+    It is scrambled so that it has no relation to the other values of a formula.
+    """
     return pow(value + 1_000_003, 65_537, PRIME)
 
 
@@ -137,25 +140,28 @@ def _added(first: tuple[int, int], second: tuple[int, int]) -> tuple[int, int]:
 
 @dataclass(frozen=True)
 class Fingerprint:
-    """The atoms of a formula with their signatures: the values of its entries with that atom raised above the rest."""
+    """The atoms (symbols, functions, derivatives) of a formula, each with its signature.
+
+    A signature is the values of the formula's entries at a point where that atom alone has a larger value.
+    """
 
     atoms: tuple[Expr, ...]
     signatures: tuple[Values, ...]
     idle: tuple[Expr, ...] = ()  # atoms that occur in the formula, which does not depend on them
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return the signatures of the entries in another order, divided by a constant factor of all entries."""
+        """Return the signatures of the entries in another order, divided by a constant factor common to all entries."""
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
         below = _inverse(next((total[n] for n in order if total[n]), 1))
         return [tuple(values[n] * below % PRIME for n in order) for values in self.signatures]
 
     def key(self, shape: tuple[int, int] | None, order: Sequence[int]) -> str:
-        """Return the hash of the entries in another order; it ignores names and a constant factor."""
+        """Return the hash of the entries in the given order; it does not depend on names or on a constant factor."""
         return sha256(repr((shape, sorted(self.rows(order)))).encode()).hexdigest()[:16]
 
 
 def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
-    """Return the signatures of a formula at the first draw where it is defined.
+    """Return the signatures of a formula at the first random point at which it has a value.
 
     Raises
     ------
@@ -176,7 +182,7 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
 
 
 def _active(entries: Sequence[Expr], atoms: Sequence[Expr]) -> list[Expr]:
-    """Return the atoms that change the values of a formula when they move away from a point."""
+    """Return the atoms (symbols, functions, derivatives) on whose values the value of a formula depends."""
     for first, _ in DRAWS:
         point = {atom: pow(first, n + 2, PRIME) for n, atom in enumerate(atoms)}
         here = _defined(entries, point)

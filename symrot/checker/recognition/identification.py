@@ -61,7 +61,7 @@ LETTERS = {
 
 @dataclass(frozen=True)
 class View:
-    """A formula with its entries in another order: the change in words, the shape, and the places of its entries."""
+    """A formula with its entries in another order: the change in words, the shape, and the order of the entries."""
 
     how: str
     shape: tuple[int, int] | None
@@ -117,7 +117,7 @@ def _value(formula: Any) -> Any:
 
 
 def _in_new_names(tree: Node, source: str) -> Any:
-    """Return the value of a tree whose names are declared by their use."""
+    """Return the SymPy value of a tree; each name in it becomes a symbol or a function of time, as its use tells."""
     tree = with_natural_base(tree) if has_natural_base([tree]) else tree
     quantities = {letter: Symbol(letter, real=True) for letter in letters_of_quantities([tree])}
     return Interpreter(implied=True, values=quantities).read(tree, source)
@@ -134,7 +134,7 @@ def named_parts(claim: Claim) -> tuple[str, ...]:
 
 
 def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
-    """Yield the sides of a claim and the definitions that it uses, each with a word for its place."""
+    """Yield the sides of a claim and the definitions that it uses, each with words that name it in a note."""
     assert claim.relation is not None
     sides = claim.relation[1:]
     values = (claim.equation.left, claim.equation.right)
@@ -150,9 +150,9 @@ def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
 def identified(
     value: Any, steps: bool = True, named: bool = False, quantity: str | None = None
 ) -> Iterator[Identification]:
-    """Yield the identifications of a SymPy value, nearest names first.
+    """Yield the known formulas to which a SymPy value is equal, those with the most similar names first.
 
-    Steps of derivations are among them only if ``steps``, products of few symbols only if the value is ``named``. In a
+    Steps of derivations are included only if ``steps``, products of few symbols only if the value is ``named``. In a
     formula for a ``quantity``, given by its name, the axes and angles in the names of symbols keep their places.
     """
     entries, shape = flatten(value)
@@ -180,7 +180,7 @@ def identified(
 
 
 def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
-    """Yield the formula as it is, transposed, and with the rows or columns of a quaternion in the other order."""
+    """Yield a formula as it is, transposed, and with the components of a quaternion in the other order."""
     plain = tuple(range(count))
     yield View("", shape, plain)
     if shape is None or shape == (1, 1):
@@ -200,7 +200,7 @@ def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
 
 
 def _permuted(entries: Sequence[Expr], shape: tuple[int, int] | None) -> Iterator[View]:
-    """Yield a symmetric tensor with its axes in another order."""
+    """Yield the entries of a symmetric tensor with its three axes in another order."""
     if shape != (3, 3) or any(entries[3 * i + j] != entries[3 * j + i] for i in range(3) for j in range(i)):
         return
     for axes in permutations(range(3)):
@@ -221,7 +221,7 @@ def _known_value(text: str) -> tuple[tuple[Expr, ...], Fingerprint]:
 def _matched(
     known: Known, own: Fingerprint, entries: Sequence[Expr], view: View, quantity: str | None
 ) -> Identification | None:
-    """Return the identification if the formula is proven to be the known one."""
+    """Return the identification if the formula is proven equal to the known formula; otherwise None."""
     theirs, print_of = _known_value(known.text)
     ordered = [entries[n] for n in view.order]
     for pairing in islice(_pairings(print_of, own, view.order), MOST_TRIES):
@@ -248,7 +248,7 @@ def _matched(
 
 
 def _is_usual(mine: Expr, own: Expr) -> bool:
-    """Return whether a symbol has a letter that books use for a quantity with the unit of a known symbol."""
+    """Return whether books use the letter of a symbol for a quantity with the unit of a symbol of a known formula."""
     name, rate = as_text(own), re.fullmatch(r"diff\((\w+)(\(t\))?, t\)", as_text(own))
     name = f"d{rate[1]}" if rate else name.removesuffix("(t)")
     pattern = LETTERS.get(UNIT_OF_NAME.get(as_text(mine), ""))
@@ -256,7 +256,7 @@ def _is_usual(mine: Expr, own: Expr) -> bool:
 
 
 def _alike(mine: str, other: str) -> bool:
-    """Tell whether two texts are names of one thing, such as ``dphi`` and ``diff(phi(t), t)``."""
+    """Return whether two texts are names of the same thing, such as ``dphi`` and ``diff(phi(t), t)``."""
     return other in (mine, f"{mine}(t)") or (mine.startswith("d") and other == f"diff({mine[1:]}(t), t)")
 
 
@@ -265,7 +265,7 @@ def _factor_text(factor: Rational) -> str:
 
 
 def _pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Iterator[dict[Expr, Expr]]:
-    """Yield the ways of pairing symbols whose signatures agree, equal names first."""
+    """Yield the ways to pair the symbols of two formulas so that signatures agree, pairs of equal names first."""
     mine: dict[Values, list[Expr]] = {}
     for atom, row in zip(own.atoms, own.rows(order), strict=True):
         mine.setdefault(row, []).append(atom)
@@ -284,7 +284,10 @@ def _pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> It
 
 
 def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, ...]]:
-    """Return the orders of some symbols, those with the fewest contradicting units and the most equal names first."""
+    """Return orders of the symbols ``others`` to pair them with ``atoms``, the most plausible ones first.
+
+    An order is plausible if few units contradict each other and many names are equal.
+    """
     orders = list(islice(permutations(others), MOST_TRIES))
     known = {atom: (as_text(atom), unit_of(as_text(atom))) for atom in (*atoms, *others)}
 
@@ -300,7 +303,7 @@ def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, 
 
 
 def unit_of(name: str) -> str | None:
-    """Return the conventional unit of a symbol of a formula, None where books differ."""
+    """Return the conventional unit of a symbol, or None if books use the symbol for different quantities."""
     rate = re.fullmatch(r"diff\((\w+)(\(t\))?, t\)", name)
     name = f"d{rate[1]}" if rate else name.removesuffix("(t)")
     if re.fullmatch(r"[ABC]", name):
@@ -315,7 +318,7 @@ def _factor(
     idle: Sequence[Expr],
     factors: Sequence[Rational],
 ) -> Rational | None:
-    """Return the constant factor between two formulas by their values at a point; None if no constant fits."""
+    """Return the constant by which two formulas differ, from their values at a point; None if there is none."""
     for draw in range(MOST_DRAWS):
         point = {mine: pow(7 + 2 * draw, 40 + 3 * n, PRIME) for n, mine in enumerate(pairing)}
         try:

@@ -39,10 +39,10 @@ FRAMES = ("body", "space")
 
 @dataclass(frozen=True)
 class Known:
-    """A formula of the file: its name, source and text.
+    """A formula that symrot derives, with its name, its source and its text.
 
-    ``scaled`` says that a constant factor does not change what it is; ``only_named``, that it is a product of few
-    symbols, such as ``C*omega_3``, which only the name of a quantity makes recognisable.
+    ``scaled``: a multiple of the formula has the same name. ``only_named``: it is a product of few symbols, such as
+    ``C*omega_3``, which is recognised only in a claim that names the quantity.
     """
 
     name: str
@@ -232,7 +232,7 @@ def _torques() -> Iterator[Named]:
 
 
 def stated() -> Iterator[Named]:
-    """Yield the formulas of kinematics, inertia and dynamics in a fixed order, then the components of columns."""
+    """Yield the formulas of kinematics, inertia and dynamics in a fixed order, then the components of vectors."""
     columns: list[Named] = []
     for group in (
         _axes,
@@ -274,7 +274,7 @@ def derived() -> Iterator[Named]:
 
 
 def _selected(formulas: Iterator[Named], least: int, longest: int) -> Iterator[tuple[str, Known]]:
-    """Yield (fingerprint, formula), each once, of at least ``least`` symbols and at most ``longest`` letters."""
+    """Yield (fingerprint, formula) for each formula of at least ``least`` symbols and at most ``longest`` letters."""
     seen, few = set(), {name for name, *_ in (*tops(), *one_axis())}
     for name, source, value in formulas:
         entries, shape = flatten(value)
@@ -300,13 +300,13 @@ def _is_monomial(entry: Expr) -> bool:
 
 
 def _is_general(entries: Sequence[Expr]) -> bool:
-    """Return whether the nonzero entries are different symbols: any vector or diagonal matrix has this form."""
+    """Return whether the nonzero entries are different symbols, as in a vector or diagonal matrix of any values."""
     nonzero = [entry for entry in entries if entry != 0]
     return all(entry.is_Symbol for entry in nonzero) and len(set(nonzero)) == len(nonzero)
 
 
 def page(*groups: Iterator[Named]) -> str:
-    """Return the text of ``known_formulas.toml``, or, for a test, the text for some groups of formulas."""
+    """Return the text of the file ``known_formulas.toml``; for a test, the text for some groups of formulas only."""
     lines = [
         "# What symrot derives, by fingerprint (checker/recognition/fingerprint.py), up to the names of symbols.",
         "# Printed by `python -m symrot.checker.recognition.known_formulas`; do not edit.",

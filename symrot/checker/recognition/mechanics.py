@@ -58,7 +58,7 @@ def tops() -> Iterator[Named]:
 
 
 def _steady(effective: Expr, spin: Expr, weight: Expr) -> Iterator[Named]:
-    """Yield the rates of steady precession of a heavy top, and the torque that a precession needs."""
+    """Yield the rates of steady precession of a heavy top, and the torque that a given precession needs."""
     rate = symbols.n
     held = {P_PHI: P_PSI * cos(THETA) + A * rate * sin(THETA) ** 2}
     condition = expand(effective.diff(THETA).subs(held) / sin(THETA))
@@ -83,7 +83,7 @@ def _steady(effective: Expr, spin: Expr, weight: Expr) -> Iterator[Named]:
 
 
 def _free(omega: Matrix) -> Iterator[Named]:
-    """Yield the rates of a free symmetric body: in the body, in space, and of its spin."""
+    """Yield the rates of a free symmetric body: precession in the body, precession in space, and spin."""
     inertia = diag(A, A, C)
     alpha = angular_acceleration(inertia, OMEGA, Matrix([0, 0, 0]))
     yield (

@@ -1,9 +1,9 @@
-"""Verdicts on claims that name a quantity, ``I_zz == m/12*(a**2 + b**2)``: is the right side the formula for that?
+"""Verdicts on claims such as ``I_zz == m/12*(a**2 + b**2)``, which only name a quantity and give a formula for it.
 
-Nothing in such a claim says what the left side is, so that nothing can be proven about it, but most formulas of books
-and papers look like this. The right side is compared with the formulas that symrot derives, each under a renaming of
-its symbols that fits the names in use. The verdict is "recognised" if it is equal to one of them, "doubtful" if only a
-single edit of it is, and "definition" otherwise.
+Nothing in such a claim defines the left side, so that nothing can be proven about it; but most formulas of books and
+papers look like this. The right side is compared with the formulas that symrot derives, each with its symbols renamed
+to the names in the claim. The verdict is "recognised" if it is equal to one of them, "doubtful" if a single edit makes
+it equal to one, and "definition" otherwise.
 """
 
 import re
@@ -108,7 +108,10 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
 
 
 def _with_other_products(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
-    """Return the readings of a formula whose products of inertia are integrals without the minus sign."""
+    """Return the known formulas that match after a change of sign of the products of inertia.
+
+    Some authors define products of inertia as integrals without the minus sign.
+    """
     for edit in _edits(claim, named.formula):
         if edit.code == "inertia_product_sign":
             readings = _readings(claim, named, edit.tree, LEAST_SYMBOLS_EDITED)
@@ -117,7 +120,7 @@ def _with_other_products(claim: Claim, named: NamedFormula) -> tuple[Identificat
 
 
 def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if an edit of the formula is a known one, else None."""
+    """Return the verdict "doubtful" if one edit of the formula makes it a known formula; otherwise None."""
     nearest: tuple[tuple[int, int, int], Verdict] | None = None
     letters = _letters(named.formula)
     for edit in _edits(claim, named.formula):
@@ -143,7 +146,7 @@ def _letters(formula: Node) -> set[str]:
 
 
 def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
-    """Yield the single edits of a formula, the smallest first."""
+    """Yield the single edits of a formula, the cheapest first."""
     if sum(1 for _ in walk(formula)) > MOST_NODES:
         return
     numeric = NumericFilter(claim)
@@ -152,7 +155,10 @@ def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
 
 
 def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int) -> tuple[Identification, ...]:
-    """Return the known formulas to which a formula is equal and which fit the names in use, the likeliest first."""
+    """Return the known formulas to which a formula is equal and whose symbols fit the names in the claim.
+
+    The likeliest formula comes first.
+    """
     if named.solve is None:
         return ()
     try:
@@ -179,7 +185,7 @@ def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int)
 
 
 def _fits(named: NamedFormula, known: Identification, matrix: bool) -> bool:
-    """Return whether a claim may mean a known formula: by the name of the quantity, and by the units of its symbols."""
+    """Return whether a claim may mean a known formula, by the name of the quantity and the units of its symbols."""
     if known.how and (not matrix or "sign" in known.how or "times" in known.how):
         return False
     words = _words(named)
@@ -190,17 +196,20 @@ def _fits(named: NamedFormula, known: Identification, matrix: bool) -> bool:
 
 
 def _words(named: NamedFormula) -> tuple[str, ...] | None:
-    """Return the words of which one is in the name of the formulas of a quantity; None for a name of any quantity."""
+    """Return words, one of which must be in the name of a known formula for a quantity; None if any name will do."""
     return next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, _plain(named))), None)
 
 
 def _plain(named: NamedFormula) -> str:
-    """Return the name of a quantity, with ``d`` in front of it for its time derivative."""
+    """Return the name of a quantity; the name of its time derivative has a ``d`` in front."""
     return f"d{named.name}" if named.is_rate else named.name
 
 
 def _strangeness(named: NamedFormula, known: Identification) -> tuple[int, int, int]:
-    """Return how odd a reading is: another component or frame than the name says, symbols of another axis, renaming."""
+    """Return how implausible a known formula is as the meaning of a claim.
+
+    It is implausible if it has another component or frame than the name says, symbols of another axis, or new names.
+    """
     words = known.name.replace(",", "").split()
     places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and
               (after in ("component", "axis"))]  # fmt: skip
@@ -214,7 +223,7 @@ def _strangeness(named: NamedFormula, known: Identification) -> tuple[int, int, 
 
 
 def _rarity(known: Identification) -> tuple[bool, int]:
-    """Return whether a reading uses a convention that books name, and the place of its sequence in the usual ones."""
+    """Return a rank of a known formula: usual conventions, and Euler sequences that books use often, come first."""
     sequences = [word for word in known.name.split() if word in SEQUENCES]
     usual = [USUAL_SEQUENCES.index(name) if name in USUAL_SEQUENCES else len(USUAL_SEQUENCES) for name in sequences]
     return bool(known.how), max(usual, default=0)

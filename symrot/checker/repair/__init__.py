@@ -1,1 +1,1 @@
-"""The diagnosis of a false claim, and the nearest true formulas."""
+"""The diagnosis of a false claim: its probable fault, and the true formulas nearest to it."""

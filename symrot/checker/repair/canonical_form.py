@@ -1,4 +1,4 @@
-"""The canonical form of a tree: equal for formulas that differ only in the order of terms, factors and numbers."""
+"""The canonical form of a tree, which is equal for formulas that differ only in the order of terms and factors."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -9,7 +9,7 @@ __all__ = ["canonical"]
 
 
 def canonical(node: Node, is_matrix: Callable[[Node], bool]) -> Node:
-    """Return a tree with sorted terms and scalar factors, numbers in front, and signs outside.
+    """Return a tree with sorted terms and scalar factors; numbers come first, with the signs in front of them.
 
     Parameters
     ----------

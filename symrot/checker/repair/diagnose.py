@@ -1,8 +1,9 @@
-"""The diagnosis of a claim that is not true, and the nearest true formulas: search, numeric filter, proof.
+"""The diagnosis of a claim that is not true, and the true formulas nearest to it: search, numeric test, proof.
 
-Candidates are edits of the text, and pieces replaced by the values that they need. A candidate must be true at two
-points in double precision; then the exact engine decides it, and only proven candidates are offered as repairs. The
-work is bounded by counts, so that every run gives the same repairs.
+Candidates are formulas with one or two edits, and formulas with one part replaced by the value that makes the claim
+true. A candidate must be true at two points in double precision; then the exact engine decides it, and only proven
+candidates are offered as repairs. The work is bounded by counts instead of times, so that every run gives the same
+repairs.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -103,7 +104,7 @@ class _Search:
         return tuple(sorted(repairs, key=lambda repair: repair.cost))
 
     def others(self, repairs: Sequence[Repair]) -> list[Repair]:
-        """Return other ways of writing the repairs so far, if their costs are near enough."""
+        """Return further repairs that are the given repairs written in another way, if they cost about as little."""
         forms = {self.canonical_form(candidate.changes) for candidate in self.accepted}
         others: list[Repair] = []
         for candidate in self.alike:
@@ -118,14 +119,14 @@ class _Search:
         return others
 
     def canonical_form(self, changes: Sequence[Change]) -> tuple[Node, ...]:
-        """Return the trees of a repair, with terms and scalar factors in a canonical order."""
+        """Return the trees of a repaired claim, with terms and scalar factors in a canonical order."""
         claim = self.numeric.edited(changes)
         assert claim.relation is not None
         trees = (*claim.relation[1:], *(tree for _, tree in claim.define))
         return tuple(canonical(tree, self.numeric.is_matrix) for tree in trees)
 
     def changes(self) -> Iterator[Change]:
-        """Yield the single edits of all trees of the claim."""
+        """Yield the single edits of the sides and definitions of the claim."""
         numeric = self.numeric
         for place in numeric.places:
             tree = numeric.tree_at(place)
@@ -136,7 +137,10 @@ class _Search:
                     yield Change(place, edit)
 
     def pairs(self, changes: Sequence[Change]) -> Iterator[Candidate]:
-        """Yield pairs of edits in different pieces that make the claim true at the points, within the budget."""
+        """Yield pairs of edits in different parts of the claim that make it true at the test points.
+
+        Their number is limited by the budget of the search.
+        """
         cheap = list(changes)[:MOST_PAIRS_OF]
         ordered = sorted(combinations(cheap, 2), key=lambda pair: pair[0].cost + pair[1].cost)
         for first, second in ordered:
@@ -154,14 +158,14 @@ class _Search:
                 return
 
     def makes_sides_identical(self, code: str, changes: Sequence[Change]) -> bool:
-        """Return whether an edit made the two sides the same text, so that nothing of the claim is left."""
+        """Return whether an edit made both sides the same text: then the edited claim says nothing."""
         relation = self.numeric.edited(changes).relation
         assert relation is not None
         bare = {"name", "number"} & {self.numeric.left.kind, self.numeric.right.kind}
         return relation[1] == relation[2] and (bool(bare) or code in ("two_faults", "extra_term", "wrong_symbol"))
 
     def proven(self, candidates: Iterable[Candidate], most: int) -> list[Repair]:
-        """Return at most ``most`` repairs: the first candidates that the exact engine proves, each value once."""
+        """Return the first candidates that the exact engine proves, at most ``most``, no two with the same value."""
         repairs: list[Repair] = []
         attempts = 0
         for cost, code, changes in candidates:

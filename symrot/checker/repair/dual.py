@@ -16,7 +16,7 @@ __all__ = [
 
 
 class UndefinedValue(ValueError):
-    """An exception for a formula without a value, such as the root of a negative number or an unknown name."""
+    """An exception for a formula without a value, for example the root of a negative number, or an unknown name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ def minus(x: Any) -> Any:
 
 
 def _plainly(function: Any, x: Any) -> Any:
-    """Return the value of a function at a number, or at each number of a grid."""
+    """Return the value of a function at a number, or at each number of an array."""
     return function(x) if isinstance(x, np.ndarray) else getattr(math, function.__name__)(x)
 
 
@@ -96,7 +96,7 @@ def absolute(x: Any) -> Any:
 
 
 def plain(x: Any) -> float:
-    """Return the real part of a number that may be a dual number of any depth."""
+    """Return the real part of a dual number, whose real part may itself be a dual number."""
     while isinstance(x, Dual):
         x = x.value
     return float(x)
@@ -135,5 +135,5 @@ def power(x: Any, exponent: float) -> Any:
     if isinstance(x, Dual):
         return Dual(power(x.value, exponent), exponent * power(x.value, exponent - 1) * x.slope)
     if np.any(x < 0):
-        raise UndefinedValue("a fractional power of a negative number")
+        raise UndefinedValue("expected a positive base of a fractional power, got a negative number")
     return x**exponent

@@ -1,7 +1,7 @@
-"""The faults that occur in practice as edits of a tree, each with a code and a cost.
+"""The faults that occur in practice (a lost factor, a wrong sign), as edits of a tree with a code and a cost.
 
-An edit changes one piece; the smaller its cost, the more likely its fault. ``single_edits`` yields all edits of a tree;
-:mod:`symrot.checker.repair.diagnose` combines them and finds out which results are true.
+An edit changes one part of a formula; the more likely its fault is, the smaller is its cost. ``single_edits`` yields
+all edits of a tree; :mod:`symrot.checker.repair.diagnose` combines edits, and finds out which results are true.
 """
 
 import re
@@ -81,7 +81,7 @@ PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)",
 
 @dataclass(frozen=True)
 class Edit:
-    """A changed tree with the code and the cost of the change; ``path`` is the piece that was changed."""
+    """A changed tree, with the code and the cost of the change; ``path`` leads to the changed part."""
 
     code: str
     cost: float
@@ -112,7 +112,7 @@ def single_edits(
     moving: bool,
     opened: Callable[[Path], bool] = lambda path: True,
 ) -> Iterator[Edit]:
-    """Yield every single edit of a tree; edits that change a thing everywhere come first.
+    """Yield every single edit of a tree. Edits that change all occurrences of a name or angle come first.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def single_edits(
 
 
 def _put(tree: Node, path: Path, made: Node) -> Node:
-    """Return a tree in which a piece is replaced, with signs and sums brought to the usual form."""
+    """Return a tree in which a part is replaced, with signs in front and sums inside of sums merged."""
     if path and made.kind in ("neg", "sum", "product"):
         *above, place = path
         return replaced(tree, tuple(above), lambda node: _regrouped(node, place, made))
@@ -161,7 +161,7 @@ def _changes(
     node: Node, path: Path, names: Collection[str], functions: Collection[str],
     matrices: Callable[[Node], bool], order: str, lone: bool,
 ) -> Iterator[Change]:  # fmt: skip
-    """Yield the edits of one piece; ``lone`` says that it is an entry of a matrix or a list."""
+    """Yield the edits of the part at a path; ``lone`` says that the part is an entry of a matrix or a list."""
     if node.kind == "sum":
         yield from _of_sum(node, matrices)
     elif node.kind == "product":
@@ -196,7 +196,7 @@ def _changes(
 
 
 def _of_rows(node: Node) -> Iterator[Change]:
-    """Yield the transpose of a square matrix that is written out."""
+    """Yield the transpose of a square matrix that is given by its rows."""
     (written,) = node.args
     size = len(written.args)
     if size > 1 and all(row.kind == "list" and len(row.args) == size for row in written.args):
@@ -207,7 +207,7 @@ def _of_rows(node: Node) -> Iterator[Change]:
 
 
 def _is_own_transpose(node: Node) -> bool:
-    """Return whether a transpose changes nothing or only the shape, or equals another edit."""
+    """Return whether a transpose is no useful edit: it changes nothing, or the shape alone, or equals another edit."""
     return node.kind == "call" and node.value in ("vee", "qmul", "Matrix", "eye", "diag", "cross", *ROTATIONS)
 
 
@@ -246,7 +246,7 @@ def _of_product(node: Node, matrices: Callable[[Node], bool], order: str) -> Ite
 
 
 def _of_quotients(factors: list[Node]) -> Iterator[Change]:
-    """Yield ``b/a`` for ``a/b``."""
+    """Yield ``b/a`` in place of a quotient ``a/b``."""
     for below, divisor in enumerate(factors):
         if divisor.kind != "inv" or divisor.args[0].kind != "name":
             continue
@@ -258,7 +258,7 @@ def _of_quotients(factors: list[Node]) -> Iterator[Change]:
 
 
 def _of_sequence(factors: list[Node]) -> Iterator[Change]:
-    """Yield the product of elementary rotations in the other order, and about other axes."""
+    """Yield a product of elementary rotations with the factors in reverse order, and with other axes."""
     yield "wrong_sequence_type", product(factors[::-1]), COST["sequence_reversed"]
     angles = [factor.args for factor in factors]
     for place, factor in enumerate(factors):
@@ -300,7 +300,7 @@ def _of_call(node: Node, functions: Collection[str]) -> Iterator[Change]:
 
 
 def _of_quaternion(node: Node) -> Iterator[Change]:
-    """Yield four components with the scalar last or first, and the conjugate."""
+    """Yield changed quaternions: the scalar component moved to the other end, and the conjugate."""
     first, *vector = node.args
     yield "quaternion_storage_order", replace(node, args=(*vector, first)), 0.0
     yield "quaternion_storage_order", replace(node, args=(node.args[3], *node.args[:3])), 0.0
@@ -312,7 +312,7 @@ def _of_quaternion(node: Node) -> Iterator[Change]:
 
 
 def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
-    """Yield edits that change a thing wherever it occurs: an angle, a matrix by name, all products of inertia."""
+    """Yield edits that change all occurrences: of an angle, of a matrix by its name, of all products of inertia."""
     nodes = [node for _, node in walk(tree)]
     angles = {node.args[0] for node in nodes if node.kind == "call" and node.value in OPPOSITE}
     arguments = [node.args[0] for node in nodes if node.kind == "call" and node.value in OPPOSITE]
@@ -341,7 +341,10 @@ def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
 
 
 def _substituted(tree: Node, old: Node, new: Node, inside: Collection[str] | None = None) -> Node:
-    """Return a tree with a piece replaced everywhere; with ``inside``, only as the argument of these functions."""
+    """Return a tree with ``new`` in place of each ``old``.
+
+    With ``inside``, only the arguments of these functions are changed.
+    """
     if tree == old and inside is None:
         return new
     direct = inside is not None and tree.kind == "call" and tree.value in inside and tree.args[0] == old
@@ -352,7 +355,7 @@ def _substituted(tree: Node, old: Node, new: Node, inside: Collection[str] | Non
 
 
 def _rebuilt(node: Node) -> Node:
-    """Return a node with its signs moved to the front, as the reader of claims writes it."""
+    """Return a node with the signs of its factors moved to the front, as the reader of claims builds it."""
     if node.kind == "product":
         return product(list(node.args), node.span)
     if node.kind == "neg":
@@ -367,7 +370,7 @@ def _swapped_functions(tree: Node, angle: Node) -> Node:
 
 
 def normalise_factors(node: Node) -> Node:
-    """Return a tree without factors 1 and nested fractions, which edits of numbers leave behind."""
+    """Return a tree without factors 1 and without fractions inside of fractions, which edits of numbers produce."""
     args = tuple(map(normalise_factors, node.args))
     if node.kind == "power" and args[1] == number(1):
         return args[0]

@@ -1,4 +1,4 @@
-"""Repairs of a matrix that is written out and has several wrong entries: an edit for each of them."""
+"""Repairs of a matrix, given by its rows, in which several entries are wrong: one edit for each wrong entry."""
 
 from collections.abc import Callable, Sequence
 from itertools import combinations
@@ -15,7 +15,7 @@ MOST_PAIRS_OF = 60
 
 
 def by_entries(numeric: NumericFilter) -> list[Candidate]:
-    """Return the repairs of a written-out matrix in which each wrong entry has its own edit."""
+    """Return the repairs of a matrix, given by its rows, in which each wrong entry has its own edit."""
     candidates: list[Candidate] = []
     for place, other in (("right", numeric.left), ("left", numeric.right)):
         tree = numeric.tree_at(place)
@@ -48,7 +48,10 @@ def by_entries(numeric: NumericFilter) -> list[Candidate]:
 
 
 def _entry_edit(numeric: NumericFilter, cell: Node, targets: Sequence[float]) -> Edit | None:
-    """Return the cheapest edit that gives an entry its target values; its code is ``none`` if it has them already."""
+    """Return the cheapest edit that gives an entry its correct values at the test points.
+
+    Its code is ``none`` if the entry has these values already.
+    """
 
     def fits(tree: Node) -> bool:
         try:
@@ -73,12 +76,12 @@ def _entry_edit(numeric: NumericFilter, cell: Node, targets: Sequence[float]) ->
 
 
 def replacement(made: Node) -> Callable[[Node], Node]:
-    """Return a function that returns a piece whatever its argument, for :func:`replaced`."""
+    """Return a function that ignores its argument and returns ``made``, as the edit for :func:`replaced`."""
     return lambda _: made
 
 
 def merged(tree: Node, first: Edit, second: Edit) -> Node | None:
-    """Return a tree with two edits in different pieces; None if one piece lies inside the other."""
+    """Return a tree with two edits in different parts; None if one of the parts lies inside the other."""
     a, b = first.path, second.path
     if not a or not b or a[: len(b)] == b or b[: len(a)] == a:
         return None
@@ -87,7 +90,7 @@ def merged(tree: Node, first: Edit, second: Edit) -> Node | None:
 
 
 def _same_shape(tree: Node, edited: Node, path: Path) -> bool:
-    """Return whether a path leads to the same piece in an edited tree."""
+    """Return whether a path leads to the same part of an edited tree as of the original tree."""
     for place in path:
         if place >= len(edited.args) or edited.kind != tree.kind or len(edited.args) != len(tree.args):
             return False

@@ -1,6 +1,6 @@
-"""The numeric filter: a claim with changed trees, evaluated at two points in double precision to rule out repairs.
+"""The numeric filter: it evaluates edited claims at two points in double precision, to discard false ones quickly.
 
-Pieces that a change leaves alone are evaluated once. The work is bounded by a count of evaluated pieces, so that every
+Parts that an edit leaves unchanged are evaluated once. The work is bounded by a count of evaluated parts, so that every
 run gives the same repairs.
 """
 
@@ -25,7 +25,7 @@ SIDES = ("right", "left")
 
 @dataclass(frozen=True)
 class Change:
-    """An edit of one of the trees of a claim: a side, ``"left"`` or ``"right"``, or a definition by name."""
+    """An edit of one tree of a claim: of a side (``"left"`` or ``"right"``), or of a definition, given by its name."""
 
     place: str
     edit: Edit
@@ -44,7 +44,7 @@ class Candidate(NamedTuple):
 
 
 class NumericFilter:
-    """A fast test of proposed repairs: the repaired claim is evaluated at points that obey its hypotheses."""
+    """A fast test of repairs: it evaluates the edited claim at points that obey the hypotheses."""
 
     def __init__(self, claim: Claim) -> None:
         assert claim.relation is not None
@@ -72,12 +72,12 @@ class NumericFilter:
 
     @property
     def places(self) -> tuple[str, ...]:
-        """The sides, and the definitions that the claim uses."""
+        """The trees that may be edited, by place: both sides, and the definitions that the claim uses."""
         return (*SIDES, *self.used)
 
     @property
     def names(self) -> list[str]:
-        """Symbols and definitions."""
+        """The names that occur in the claim: symbols and definitions."""
         return [name for name in (*self.symbols, *self.definitions) if name != "t"]
 
     def tree_at(self, place: str) -> Node:
@@ -95,7 +95,7 @@ class NumericFilter:
         return used
 
     def is_matrix(self, node: Node) -> bool:
-        """Return whether a piece is a matrix, by its form and the definitions."""
+        """Return whether a part of a formula is a matrix, judged by its form and by the definitions of the claim."""
         if node.kind == "name":
             return node.value in self.matrix_names
         if node.kind == "call":
@@ -103,7 +103,10 @@ class NumericFilter:
         return node.kind not in ("index", "list", "number") and any(map(self.is_matrix, node.args))
 
     def sensible(self, place: str, tree: Node) -> bool:
-        """Return whether an edited side is not a bare number, and an edited definition does not refer to itself."""
+        """Return whether an edited tree says something.
+
+        A side must be more than a number, and a definition must not use its own name.
+        """
         if place in SIDES:
             return is_nontrivial(tree) or not is_nontrivial(self.tree_at(place))
         order = list(self.definitions)
@@ -111,7 +114,7 @@ class NumericFilter:
         return is_nontrivial(tree) and not any(node.kind == "name" and node.value in later for _, node in walk(tree))
 
     def edited(self, changes: Sequence[Change]) -> Claim:
-        """Return the claim with its trees changed."""
+        """Return the claim with the changes made to its trees."""
         trees = {change.place: change.edit.tree for change in changes}
         relation = ("==", trees.get("left", self.left), trees.get("right", self.right))
         if not trees.keys() & self.definitions.keys():
@@ -120,7 +123,7 @@ class NumericFilter:
         return replace(self.claim, relation=relation, define=define)
 
     def text(self, changes: Sequence[Change]) -> str:
-        """Return a repair as text: the claim, and the changed definitions."""
+        """Return a repair as text: the edited equation, and the edited definitions."""
         edited = self.edited(changes)
         assert edited.relation is not None
         claim = f"{text(edited.relation[1])} == {text(edited.relation[2])}"
@@ -142,7 +145,10 @@ class NumericFilter:
         return wrong
 
     def open_paths(self, place: str, tree: Node) -> "OpenEntries":
-        """Return which pieces a single edit may change; in a written-out matrix, only a wrong entry that is alone."""
+        """Return a test of paths: whether a single edit may change the part at a path.
+
+        In a matrix that is given by its rows, an edit may change an entry only if no other entry is wrong.
+        """
         cells = matrix_entries(tree) if place in SIDES else {}
         alone = [cells[number] for number in self.wrong if number in cells] if len(self.wrong) == 1 else []
         return OpenEntries(tuple(cells.values()), tuple(alone))
@@ -164,7 +170,7 @@ class NumericFilter:
         return point.value(left), point.value(right)
 
     def redefined(self, point: Point, name: str, tree: Node) -> Point:
-        """Return a point with one definition replaced; pieces that do not depend on it keep their values."""
+        """Return a point with one definition replaced; parts that do not depend on it keep their stored values."""
         if name not in self.dependent:
             self.dependent[name] = self._dependent_on(name)
         stale = self.dependent[name]
@@ -172,7 +178,7 @@ class NumericFilter:
         return replace(point, definitions={**point.definitions, name: tree}, known=known, lifted={})
 
     def _dependent_on(self, name: str) -> set[int | str]:
-        """Return the definitions, by name, and the pieces, by identity, whose values depend on a definition."""
+        """Return the names of the definitions, and the ids of the parts, whose values depend on a definition."""
         names = {name}
         for other, tree in self.definitions.items():
             if any(node.kind == "name" and node.value in names for _, node in walk(tree)):
@@ -191,7 +197,7 @@ class NumericFilter:
         return dependents
 
     def holds(self, changes: Sequence[Change]) -> bool:
-        """Return whether an edited claim is true at the points, and not only because both sides became zero."""
+        """Return whether an edited claim is true at the points, without both sides having become zero."""
         if not self.affordable():
             return False
         for point in self.points:
@@ -205,7 +211,7 @@ class NumericFilter:
         return any(entries_of(left)) or not (is_nontrivial(self.left) and is_nontrivial(self.right))
 
     def differences(self, point: Point, changes: Sequence[Change]) -> list[float]:
-        """Return left minus right entry by entry.
+        """Return left minus right for each entry of an edited claim.
 
         Raises
         ------
@@ -216,30 +222,30 @@ class NumericFilter:
         size = max(len(left), len(right))
         left, right = (side * size if side == [0.0] else side for side in (left, right))
         if len(left) != len(right):
-            raise UndefinedValue("sides of different shapes")
+            raise UndefinedValue("expected sides of the same shape, got sides of different shapes")
         return [a - b for a, b in zip(left, right, strict=True)]
 
     def fingerprint(self, changes: Sequence[Change]) -> tuple[float, ...]:
-        """Return the values of both sides at a point, rounded: equal for one repair written in two ways."""
+        """Return the rounded values of both sides at a point, which are equal for one repair written in two ways."""
         left, right = self.sides(self.points[0], changes)
         return tuple(float(f"{value:.9g}") for value in (*entries_of(left), *entries_of(right)))
 
 
 @dataclass(frozen=True)
 class OpenEntries:
-    """The entries of a matrix that is written out, and those among them that a single edit may change."""
+    """The entries of a matrix that is given by its rows, and which of them a single edit may change."""
 
     cells: tuple[Path, ...]
     alone: tuple[Path, ...]
 
     def __call__(self, path: Path) -> bool:
-        """Return whether a piece lies outside all entries, or inside one that alone is wrong."""
+        """Return whether the part at a path is outside of all entries, or inside of the only wrong entry."""
         inside = next((cell for cell in self.cells if path[: len(cell)] == cell), None)
         return inside is None or inside in self.alone
 
 
 def _named(trees: Sequence[Node]) -> set[tuple[str, bool]]:
-    """Return (name, whether it is called with t) for every name that is not built in."""
+    """Return (name, whether it is written with ``(t)``) for every name in the trees that is not built in."""
     names = set()
     for tree in trees:
         for _, node in walk(tree):
@@ -251,12 +257,12 @@ def _named(trees: Sequence[Node]) -> set[tuple[str, bool]]:
 
 
 def is_nontrivial(tree: Node) -> bool:
-    """Return whether a tree contains a symbol or a matrix, and is not just a number."""
+    """Return whether a tree contains a symbol or a matrix, so that it is more than a number."""
     return any(node.kind in ("name", "call") and node.value != "pi" for _, node in walk(tree))
 
 
 def at(tree: Node, path: Sequence[int]) -> Node | None:
-    """Return the piece of a tree at a path, or None if the tree has no such path."""
+    """Return the part of a tree to which a path leads, or None if the tree has no such path."""
     for place in path:
         if place >= len(tree.args):
             return None
@@ -265,7 +271,7 @@ def at(tree: Node, path: Sequence[int]) -> Node | None:
 
 
 def matrix_entries(tree: Node) -> dict[int, Path]:
-    """Return the paths of the entries of a matrix that is written out, by number, counted row by row."""
+    """Return the paths of the entries of a matrix that is given by its rows, by number, counted row by row."""
     if tree.kind == "call" and tree.value == "diag":
         return {place * (len(tree.args) + 1): (place,) for place in range(len(tree.args))}
     if tree.kind != "call" or tree.value != "Matrix" or tree.args[0].kind != "list":
@@ -277,7 +283,7 @@ def matrix_entries(tree: Node) -> dict[int, Path]:
 
 
 def pieces(tree: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
-    """Yield the pieces that may be extended: all but exponents, and variables of derivatives and integrals."""
+    """Yield the parts that an edit may extend: all but exponents, and the variables of derivatives and integrals."""
     if tree.kind not in ("list", "inv"):
         yield path, tree
     for place, child in enumerate(tree.args):

@@ -1,4 +1,7 @@
-"""Repairs by insertion: a missing term from the exact difference of the sides, a matrix factor, another definition."""
+"""Repairs that insert something: a missing term, a missing factor that is a matrix, another definition.
+
+The missing term is the exact difference of the sides.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -44,7 +47,7 @@ MOST_TERMS_READ, MOST_ROOTS_READ = 1000, 12
 
 
 def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs that add one term to each wrong entry: the exact difference of its sides."""
+    """Yield repairs that add one term to each wrong entry: the exact difference of the two sides there."""
     equation = numeric.claim.equation
     (lefts, shape), (rights, other) = flatten(equation.left), flatten(equation.right)
     if shape != other:
@@ -68,7 +71,7 @@ def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
-    """Return a normal form; raise TooLarge if it is far too long to be one term."""
+    """Return the normal form of a formula; raise TooLarge if it is far too long to be a single term."""
     ring = FormulaRing([formula], [as_zero(hypothesis) for hypothesis in hypotheses])
     residual = ring.reduce(ring.ratio(formula).numerator)
     if len(residual) > MOST_TERMS_READ or len(ring.roots) > MOST_ROOTS_READ:
@@ -77,7 +80,7 @@ def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
 
 
 def _whole(numeric: NumericFilter, place: str, lacking: Mapping[Path, Any]) -> Iterator[Candidate]:
-    """Yield the repair of a side that adds the missing term of each wrong entry, if all of them are single terms."""
+    """Yield the repair of a side that adds the missing term to each wrong entry, if each entry lacks a single term."""
     made = numeric.tree_at(place)
     for path, residual in lacking.items():
         piece = at(made, path)
@@ -93,7 +96,7 @@ def _whole(numeric: NumericFilter, place: str, lacking: Mapping[Path, Any]) -> I
 def _inside(
     numeric: NumericFilter, place: str, cell: Path, residual: Any, hypotheses: Sequence[Any]
 ) -> Iterator[Candidate]:
-    """Yield repairs of an entry that add one term inside a bracket: ``a (b + m)`` for ``a b``."""
+    """Yield repairs of an entry that add one term inside of a bracket: ``a (b + m)`` in place of ``a b``."""
     interpreter = numeric.claim.interpreter()
     tree = numeric.tree_at(place)
     whole = at(tree, cell)
@@ -113,7 +116,7 @@ def _inside(
 
 
 def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs that multiply a matrix, from the left or the right, by another matrix of the claim."""
+    """Yield repairs that multiply a matrix by another matrix of the claim, from the left or the right."""
     named = [Node("name", name) for name in sorted(numeric.matrix_names)]
     factors = [*named, *(Node("transpose", None, (by,)) for by in named)]
     for place in SIDES:
@@ -129,7 +132,7 @@ def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs that replace the name of a definition by the name of another one."""
+    """Yield repairs that use another definition: they replace the name of one by the name of another."""
     used = [name for name in numeric.definitions if name not in numeric.symbols]
     for place in SIDES:
         tree = numeric.tree_at(place)
@@ -142,9 +145,9 @@ def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def _term(residual: Any, piece: Node | None) -> Node | None:
-    """Return a residual as the term that a piece lacks: one short product without a divisor; else None.
+    """Return a difference as the term that a part of a formula lacks: one short product without a divisor; else None.
 
-    A term with brackets must be much shorter than the piece, since adding the difference of the sides repairs anything.
+    A term with brackets must be much shorter than the part, since adding the difference of the sides repairs anything.
     """
     above, below = residual.as_numer_denom()
     if not below.is_number or not residual.free_symbols:
@@ -160,7 +163,10 @@ def _term(residual: Any, piece: Node | None) -> Node | None:
 
 
 def _linear_pieces(tree: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
-    """Yield the pieces in which a tree is linear and to which a term may be added, with their paths."""
+    """Yield the parts, with their paths, to which a term may be added.
+
+    The value of the tree depends linearly on each of them.
+    """
     yield path, tree
     for place, child in enumerate(tree.args if tree.kind in ("sum", "product", "neg") else ()):
         if child.kind not in ("inv", "number") and (tree.kind != "product" or child.kind in ("sum", "name", "call")):

@@ -98,7 +98,7 @@ class Point:
     lifted: dict[Any, "Point"] = field(default_factory=dict)
 
     def value(self, node: Node) -> Any:
-        """Return a number or the rows of a matrix.
+        """Return the value of a tree at the point: a number, or the rows of a matrix.
 
         Raises
         ------
@@ -121,11 +121,14 @@ class Point:
         return value
 
     def redefined(self, name: str, node: Node) -> "Point":
-        """Return the point with one definition replaced."""
+        """Return a copy of the point with one definition replaced."""
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
     def raised(self, variable: Node) -> "Point":
-        """Return the point lifted to dual numbers along a variable: a symbol, ``f(t)``, or ``diff(f(t), t)``."""
+        """Return the point with a dual number as the value of a variable, to differentiate by this variable.
+
+        The variable is a symbol, ``f(t)``, or ``diff(f(t), t)``.
+        """
         order = 0
         inner = variable
         while inner.kind == "call" and inner.value == "diff":
@@ -134,11 +137,11 @@ class Point:
         name = inner.value
         key = (name, order)
         if self.weight > HEAVIEST:
-            raise UndefinedValue("derivatives of too high an order")
+            raise UndefinedValue("expected derivatives of low order, got one of too high an order")
         if key not in self.lifted:
             in_time = name == "t" and not order
             if not in_time and name not in self.symbols and name not in self.functions:
-                raise UndefinedValue("a variable to differentiate by")
+                raise UndefinedValue("expected a variable to differentiate by that has a value, got another one")
             self.lifted[key] = Point(
                 {s: Dual(v, float(s == name)) for s, v in self.symbols.items()},
                 {
@@ -205,7 +208,7 @@ def _list(point: Point, node: Node) -> Any:
     rows = [point._value(member) for member in node.args]
     if all(isinstance(row, list) for row in rows):
         if len({len(row) for row in rows}) > 1:
-            raise UndefinedValue("rows of unequal length")
+            raise UndefinedValue("expected rows of equal length in a matrix, got unequal ones")
         return tuple(map(tuple, rows))
     if node.value == ("(", ")"):
         return column(rows)
@@ -241,7 +244,7 @@ def _differentiated(point: Point, formula: Node, variables: Sequence[Node]) -> A
 
 
 def _integrated(point: Point, integrand: Node, ranges: Sequence[Node]) -> Any:
-    """Return an integral over a box by Gauss-Legendre quadrature, on all nodes at once; outer variables come first."""
+    """Return an integral over a box by Gauss-Legendre quadrature, at all nodes together; outer variables come first."""
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS[min(len(ranges), 3)])
     inner, total = point, np.ones((1,) * len(ranges))
     for axis, part in enumerate(ranges):
@@ -326,8 +329,8 @@ def points(
 ) -> list[Point]:  # fmt: skip
     """Return random points, the same in every run, that obey the hypotheses to double precision.
 
-    Symbols lie between 0.3 and ``most`` before Newton's method moves them onto the hypotheses. There are fewer than
-    ``count`` points if it fails. Values of the trees in ``remembered``, by identity, are stored.
+    Symbols lie between 0.3 and ``most`` before Newton's method moves them until the hypotheses hold; if that fails,
+    there are fewer than ``count`` points. The values of the trees in ``remembered`` (their ids) are stored.
     """
     accepted = []
     for seed in range(3 * count):
@@ -347,7 +350,7 @@ def points(
 
 
 def _onto_hypotheses(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> Point | None:
-    """Return a point moved onto the hypotheses by Newton's method with least-squares steps; None if it fails."""
+    """Return a point moved by Newton's method (least-squares steps) until the hypotheses hold; None if that fails."""
     variables = [Node("name", name) for name in point.symbols]
     variables += [Node("call", name, (Node("name", "t"),)) for name in point.functions]
     for _ in range(30 if hypotheses else 0):

@@ -1,4 +1,4 @@
-"""Small matrices as tuples of rows of any kind of number: sums, products, rotations, quaternions."""
+"""Small matrices as tuples of rows, for entries of any kind of number: sums, products, rotations, quaternions."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -48,14 +48,14 @@ def shape_of(value: Any) -> tuple[int, int] | None:
 
 
 def mapped(function: Callable[[Any], Any], value: Any) -> Any:
-    """Return a value with a function applied to every entry."""
+    """Return a scalar or matrix with a function applied to every entry."""
     return tuple(tuple(function(entry) for entry in row) for row in value) if is_matrix(value) else function(value)
 
 
 def plus(left: Any, right: Any) -> Any:
     """Return the sum of two scalars or matrices; raise UndefinedValue if their shapes differ."""
     if shape_of(left) != shape_of(right):
-        raise UndefinedValue("shapes in a sum")
+        raise UndefinedValue("expected terms of the same shape in a sum, got different shapes")
     if is_matrix(left):
         return tuple(tuple(a + b for a, b in zip(x, y, strict=True)) for x, y in zip(left, right, strict=True))
     return left + right
@@ -68,7 +68,7 @@ def times(left: Any, right: Any) -> Any:
     if not is_matrix(right):
         return mapped(lambda entry: entry * right, left)
     if len(left[0]) != len(right):
-        raise UndefinedValue("shapes in a product")
+        raise UndefinedValue("expected factors with fitting shapes in a product, got others")
     columns = tuple(zip(*right, strict=True))
     return tuple(tuple(dot(row, column) for column in columns) for row in left)
 
@@ -82,15 +82,15 @@ def dot(left: Sequence[Any], right: Sequence[Any]) -> Any:
 
 
 def transposed(value: Any) -> Rows:
-    """Return the transpose."""
+    """Return the transpose of a matrix."""
     return tuple(zip(*needed(value), strict=True))
 
 
 def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> Rows:
-    """Return a matrix unchanged; raise UndefinedValue for a scalar or a matrix of another shape."""
+    """Return a matrix unchanged; raise UndefinedValue for a scalar, and for a matrix of another shape."""
     actual = shape_of(value)
     if actual is None or any(size not in (None, got) for size, got in zip(shape, actual, strict=True)):
-        raise UndefinedValue("a matrix of another shape")
+        raise UndefinedValue("expected a matrix of the shape needed here, got another value")
     rows: Rows = value
     return rows
 
@@ -98,7 +98,7 @@ def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> R
 def determinant(rows: Rows) -> Any:
     """Return the determinant of a matrix of at most 6 rows, by minors."""
     if len(rows) != len(rows[0]) or len(rows) > 6:
-        raise UndefinedValue("a determinant")
+        raise UndefinedValue("expected a square matrix of at most 6 rows in a determinant, got another one")
     if len(rows) == 1:
         return rows[0][0]
     total: Any = 0.0
@@ -109,7 +109,7 @@ def determinant(rows: Rows) -> Any:
 
 
 def inverted(rows: Rows) -> Rows:
-    """Return the inverse of a matrix, computed by minors."""
+    """Return the inverse of a matrix, computed from the determinants of its submatrices."""
     below = inverse(determinant(rows))
     size = range(len(rows))
     if len(rows) == 1:
@@ -147,7 +147,7 @@ def rotation(axis: int) -> Callable[[Any], Rows]:
 
 
 def rotation_of_quaternion(*q: Any) -> Rows:
-    """Return the matrix of v -> q v q*, which is a rotation matrix times the square of the norm of q."""
+    """Return the matrix that rotates a vector v into q v q*: a rotation matrix times the squared length of q."""
     a, b, c, d = q
     conjugate = [a, -b, -c, -d]
     columns = [hamilton(hamilton(q, [0.0, *(float(i == j) for j in range(3))]), conjugate)[1:] for i in range(3)]

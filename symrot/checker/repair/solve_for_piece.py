@@ -1,8 +1,8 @@
-"""Repairs by solving for a piece: the value that it needs for the claim to hold, recognised as a short formula.
+"""Repairs that replace one part of a formula by the value that makes the claim true, recognised as a short formula.
 
-The claim is solved for one piece at a time, a term, a factor or a symbol, at two points. The values that the piece
-needs are compared with all short products of symbols and functions of the claim. So a lost term, a lost factor or a
-wrong symbol takes one look-up, however long the formula is.
+The claim is solved numerically for one part at a time (a term, a factor or a symbol), at two points. The values that
+the part must have are compared with all short products of symbols and functions of the claim. So a lost term, a lost
+factor or a wrong symbol takes one look-up, however long the formula is.
 """
 
 from bisect import bisect_left
@@ -56,7 +56,7 @@ class Entry:
 
 
 class Vocabulary:
-    """Short products of the symbols, functions, sines and cosines of a claim, and its terms, ordered by value."""
+    """Short products of the symbols, functions, sines and cosines of a claim, and its terms, sorted by value."""
 
     def __init__(self, numeric: NumericFilter) -> None:
         self.numeric = numeric
@@ -109,7 +109,7 @@ class Vocabulary:
         return made
 
     def values(self, node: Node) -> Values | None:
-        """Return the values of a nonzero scalar at the points; None for any other piece."""
+        """Return the values of a scalar at the test points; None for a matrix, and for a scalar that is zero there."""
         try:
             values = [point.value(node) for point in self.numeric.points]
         except UndefinedValue:
@@ -131,7 +131,7 @@ class Vocabulary:
         return values[0] / values[1]
 
     def find(self, values: Values) -> Iterator[tuple[Entry, Fraction]]:
-        """Yield (entry, rational number) whose product has these values, the shortest entries first."""
+        """Yield pairs (short product, rational factor) that together have these values, the shortest products first."""
         if not all(values):
             return
         key = self._key(values)
@@ -153,7 +153,7 @@ def _times(left: Values, right: Values) -> Values:
 
 
 def _rational(values: Sequence[float], largest: int = LARGEST_RATIO) -> Fraction | None:
-    """Return the simple rational number that all values are equal to, or None."""
+    """Return the simple rational number to which all values are equal, or None if there is none."""
     near = Fraction(values[0]).limit_denominator(largest)
     fits = all(abs(value - near) <= 1e-3 * CLOSE * abs(near) for value in values)
     return near if fits and near and abs(near.numerator) <= LARGEST_RATIO * largest else None
@@ -163,7 +163,7 @@ def _rational(values: Sequence[float], largest: int = LARGEST_RATIO) -> Fraction
 
 
 def solutions(numeric: NumericFilter) -> list[Candidate]:
-    """Return the repairs that replace one piece by the value that it needs, the nearest first."""
+    """Return the repairs that replace one part of the claim by the value that makes it true, the nearest first."""
     if len(numeric.points) < 2 or not (is_nontrivial(numeric.left) or is_nontrivial(numeric.right)):
         return []  # a wrong number alone does not tell which formula was meant
     vocabulary = Vocabulary(numeric)
@@ -207,7 +207,10 @@ def _is_meaningful(numeric: NumericFilter, change: Change) -> bool:
 
 
 def _pieces(tree: Node, path: Path = (), term: bool = False) -> Iterator[tuple[Path, Node, bool]]:
-    """Yield (path, piece, whether it is a term of a sum) for each piece to solve for, none inside most functions."""
+    """Yield (path, part, whether it is a term of a sum) for each part that may be replaced.
+
+    The arguments of most functions are left out.
+    """
     if tree.kind not in ("list", "inv"):
         yield path, tree, term
     for place, child in enumerate(tree.args):
@@ -226,7 +229,7 @@ def _candidate(numeric: NumericFilter, place: str, path: Path, made: Node, edit:
 
 
 def _flattened(node: Node) -> Node:
-    """Return a tree without sums directly inside sums, and products inside products."""
+    """Return a tree in which sums inside of sums are merged, and products inside of products."""
     args = tuple(map(_flattened, node.args))
     if node.kind in ("sum", "product"):
         return (sum_of if node.kind == "sum" else product)(list(args), node.span)
@@ -236,7 +239,7 @@ def _flattened(node: Node) -> Node:
 
 
 def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: Values) -> Values | None:
-    """Return the values that a piece must have at the points for the claim to hold, or None."""
+    """Return the values that a part must have at the test points for the claim to hold; None if there are none."""
     tree = replaced(numeric.tree_at(place), path, lambda _: made)
     if place not in SIDES and not numeric.sensible(place, tree):
         return None
@@ -251,7 +254,7 @@ def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: V
 
 
 def _root(numeric: NumericFilter, point: Point, change: Sequence[Change], start: float) -> float | None:
-    """Return the value of the unknown that makes both sides equal, by the secant method; None if there is none."""
+    """Return the value of the unknown that makes both sides equal, by the secant method; None if it finds none."""
 
     def differences(value: float) -> list[float]:
         point.symbols[HOLE.value] = value
@@ -290,7 +293,7 @@ Reading = tuple[Node, tuple[str, float]]
 def _readings(
     numeric: NumericFilter, vocabulary: Vocabulary, piece: Node, values: Values, needed: Values, term: bool, outer: bool
 ) -> Iterator[Reading]:
-    """Yield the formulas that may replace a piece, from the values that it has and the values that it needs."""
+    """Yield the formulas that may replace a part, from the values that it has and the values that it should have."""
     if all(abs(b) <= CLOSE * abs(a) for a, b in zip(values, needed, strict=True)):
         return  # the piece would have to vanish
     ratios = tuple(b / a for a, b in zip(values, needed, strict=True))
@@ -329,7 +332,7 @@ def _readings(
 
 
 def _is_there(vocabulary: Vocabulary, piece: Node, lacking: Values) -> bool:
-    """Return whether the lacking value is a multiple of a term of the piece: then that term has another fault."""
+    """Return whether the missing value is a multiple of a term of the part; then the term is wrong, not lost."""
     for node in piece.args if piece.kind == "sum" else (piece,):
         values = vocabulary.values(node)
         if values and _rational([a / b for a, b in zip(lacking, values, strict=True)]) is not None:
@@ -345,7 +348,7 @@ def _exchanged(numeric: NumericFilter, piece: Node, other: Node) -> tuple[str, f
 
 
 def _weight(least: float, entry: Entry, ratio: Fraction) -> float:
-    """Return a cost that grows with the size of the inserted factors, and with a rational number in front."""
+    """Return a cost that grows with the length of the inserted product, and with the rational number in front of it."""
     size = sum(1 + sum(1 for _ in walk(factor)) // 3 for factor in entry.factors)
     return least + COST["per_piece_added"] * size + (0.0 if abs(ratio) == 1 else COST["rational_in_front"])
 
@@ -361,7 +364,7 @@ def _multiplied(piece: Node, entry: Entry, ratio: Fraction, upward: bool) -> Nod
 
 
 def _scaled(term: Node, ratio: Fraction) -> Node:
-    """Return a term times a rational number, as people write it."""
+    """Return a term multiplied by a rational number, in the form in which people write it: ``m*r**2/2``."""
     size = abs(ratio)
     above = [] if size.numerator == 1 else [number(size.numerator)]
     below = [] if size.denominator == 1 else [Node("inv", None, (number(size.denominator),))]
@@ -375,7 +378,7 @@ def _scaled(term: Node, ratio: Fraction) -> Node:
 def _of_matrix(
     numeric: NumericFilter, vocabulary: Vocabulary, place: str, path: Path, piece: Node
 ) -> Iterator[Candidate]:
-    """Yield the repairs that give a matrix a scalar factor, or add another matrix to it."""
+    """Yield the repairs that multiply a matrix by a scalar, or add another matrix to it."""
     if piece.kind == "call" and piece.value == "Matrix" and path:
         return
     unit = (1.0,) * len(numeric.points)
@@ -396,7 +399,7 @@ def _of_matrix(
 
 
 def _matrices(numeric: NumericFilter, piece: Node) -> list[Node]:
-    """Return matrices of the shape of a piece: other pieces, names, their transposes, and products of two of these."""
+    """Return the matrices of the claim that have the shape of a part, their transposes, and products of two of them."""
     shape = _shape(numeric, piece)
     written = [node for place in numeric.places for _, node in walk(numeric.tree_at(place)) if numeric.is_matrix(node)]
     named = [Node("name", name) for name in sorted(numeric.matrix_names)]

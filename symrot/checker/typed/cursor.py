@@ -1,4 +1,4 @@
-"""The cursor of the reader of claims: the place in the tokens of a formula, its vocabulary, and its places in doubt."""
+"""The cursor of the reader of claims: the place in the tokens of a formula, its names, and its ambiguous places."""
 
 import re
 from abc import ABC, abstractmethod
@@ -29,7 +29,7 @@ USUAL_VECTORS = frozenset([*"abcdeuvwrpqnsFLHMNRT", "omega", "Omega", "alpha", "
 
 @dataclass(frozen=True)
 class Doubt:
-    """A place of a text that has two readings.
+    """A place of a text that can be read in two ways.
 
     Attributes
     ----------
@@ -45,9 +45,9 @@ class Doubt:
 
 @dataclass(frozen=True)
 class Vocabulary:
-    """The names with a meaning: declared symbols, functions of time and matrices; those that the text uses alone.
+    """The names with a meaning: declared symbols, functions of time and matrices, and single names that the text uses.
 
-    ``vectors`` are names on either side of a cross, which a text uses as vectors.
+    ``vectors`` are the names on either side of a cross product, which are vectors.
     """
 
     symbols: frozenset[str] = frozenset()
@@ -56,7 +56,7 @@ class Vocabulary:
     vectors: frozenset[str] = frozenset()
 
     def function(self, name: str) -> str | None:
-        """Return the name of a built-in or declared function, None for any other name."""
+        """Return the name if it is a built-in or declared function; None for any other name."""
         if name in self.symbols:
             return None
         if name in BUILT_IN or name in self.functions or name in DEFINED:
@@ -65,7 +65,7 @@ class Vocabulary:
 
 
 class Cursor(ABC):
-    """A place in the tokens of a formula, with the functions that read a tree from there.
+    """A place in the tokens of a formula, with the methods that read a tree starting at that place.
 
     Attributes
     ----------
@@ -100,7 +100,7 @@ class Cursor(ABC):
         return self.tokens[min(self.index + ahead, len(self.tokens) - 1)]
 
     def peek(self) -> str:
-        """Return the mark at the cursor, or an empty text."""
+        """Return the text of the operator or bracket at the cursor; an empty text if it is another token."""
         token = self.token()
         return token.text if token.kind == "mark" else ""
 
@@ -110,7 +110,7 @@ class Cursor(ABC):
         return token
 
     def take(self, mark: str) -> bool:
-        """Step over a mark if it is the next token, and return whether it was."""
+        """Step over an operator or bracket if it is the next token, and return whether it was."""
         is_next = self.peek() == mark
         self.index += is_next
         return is_next
@@ -131,7 +131,7 @@ class Cursor(ABC):
             raise self.fail(f"at most {DEEPEST_NESTING} nested levels")
 
     def other_reading(self, kind: str, at: int, start: int, stop: int) -> bool:
-        """Record a place with two readings, and the text around it; return whether its other reading is wanted."""
+        """Record a place that can be read in two ways; return whether it is to be read in the less usual way."""
         self.plain = True
         doubt = Doubt((kind, at), self.source[start:stop].strip())
         if doubt.key not in [known.key for known in self.doubts]:
@@ -148,11 +148,11 @@ class Cursor(ABC):
 
     @abstractmethod
     def factor(self) -> Node:
-        """Read a power with signs before it."""
+        """Read a power, with the signs before it."""
 
     @abstractmethod
     def power(self) -> Node:
-        """Read a piece with its exponents."""
+        """Read a number, name, call or bracket, with its exponents."""
 
     def row(self) -> list[Node]:
         entries = [self.expression()]
@@ -189,7 +189,7 @@ class Cursor(ABC):
         return Node("number", Fraction(token.text), (), self.span(token.start))
 
     def starts_factor(self) -> bool:
-        """Return whether a factor without a sign before it starts at the cursor."""
+        """Return whether another factor, without a product sign before it, starts at the cursor."""
         token = self.token()
         if token.kind in ("number", "fraction"):
             raise self.fail("a product sign before a number" if token.kind == "number" else "an operator")
@@ -198,7 +198,7 @@ class Cursor(ABC):
         return token.kind == "name" or token.text in FACTOR_MARKS or (token.text == "|" and not self.bars)
 
     def end_of_run(self) -> int:
-        """Return where the factor at the cursor ends, by its tokens."""
+        """Return the position in the text at which the factor at the cursor ends."""
         depth = 0
         for token in self.tokens[self.index :]:
             depth += (token.text in ("(", "[")) - (token.text in (")", "]"))
@@ -207,7 +207,7 @@ class Cursor(ABC):
         return len(self.source)
 
     def is_vector(self, node: Node) -> bool:
-        """Return whether a tree is a vector: a list, a cross product, a name that the text uses as a vector."""
+        """Return whether a tree is a vector: a list, a cross product, or a name that the text uses as a vector."""
         if node.kind == "name":
             return node.value in self.vocabulary.vectors
         if node.kind == "call":
@@ -215,7 +215,7 @@ class Cursor(ABC):
         return node.kind == "list" or (node.kind in ("sum", "neg", "product") and any(map(self.is_vector, node.args)))
 
     def is_cross_letter(self) -> bool:
-        """Return whether a letter x between the names of two vectors, with blanks around it, is a product sign."""
+        """Return whether a letter x is the sign of a cross product: it has blanks and names of vectors around it."""
         token, after, before = self.token(), self.token(1), self.tokens[self.index - 1]
         if token.kind != "name" or token.text != "x" or not token.spaced or not after.spaced:
             return False
@@ -225,7 +225,7 @@ class Cursor(ABC):
 
 
 def is_cross_letter(before: Token, after: Token) -> bool:
-    """Return whether a letter x between two pieces may be a product of vectors, by their names."""
+    """Return whether a letter x may be the sign of a cross product, judged by the tokens before and after it."""
     pieces = [(token.kind == "name", re.split("[_0-9]", token.text)[0], token.text) for token in (before, after)]
     usual = [name and word in USUAL_VECTORS for name, word, _ in pieces]
     brackets = [text in ("(", ")", "[", "]") for _, _, text in pieces]

@@ -1,4 +1,4 @@
-"""Functions that are formulas of other functions: coth, sech, csch, and the inverses of the hyperbolic functions."""
+"""Functions that are defined by other functions: coth, sech, csch, and the inverse hyperbolic functions."""
 
 from collections.abc import Callable, Mapping
 

@@ -1,8 +1,9 @@
 """The grammar of claims: from tokens to trees by precedence, with tables for operators, functions and methods.
 
 SymPy's text has one meaning. A formula as people type it has products without a sign (``2x``, ``m g l``), functions
-without brackets (``sin 2x``), powers (``x^2``, ``x²``), primes and dots, and it may have several readings. The parser
-takes the usual one and records each such place as a :class:`Doubt`; with the place among ``flips`` it takes the other.
+without brackets (``sin 2x``), powers (``x^2``, ``x²``), primes and dots. It may be ambiguous: the parser then chooses
+the usual meaning and records the place as a :class:`Doubt`. If the place is among ``flips``, it chooses the other
+meaning.
 """
 
 import re
@@ -20,7 +21,7 @@ BROKEN_EXPONENTS = frozenset([*(("1", n) for n in "23456789"), *((n, "2") for n 
 
 
 class Parser(PiecesPart):
-    """The whole parser: chains of sides, sums, products, vectors and powers."""
+    """The complete parser of claims, from chains of equals signs down to powers."""
 
     def whole(self) -> Node:
         node = self.expression()
@@ -29,12 +30,12 @@ class Parser(PiecesPart):
         return node
 
     def relation(self) -> tuple[list[str], list[Node]]:
-        """Read a chain of sides; return the signs between them, and the sides."""
+        """Read the sides of an equation, or of a chain ``a = b = c``; return the signs between them, and the sides."""
         if self.token().text == "Eq" and self.token(1).text == "(":
             self.index += 2
             sides = self.members(")")
             if len(sides) != 2:
-                raise self.fail("two sides in Eq(..)")
+                raise self.fail("two arguments in Eq(left, right)")
             signs = ["=="]
         else:
             sides, signs = [self.expression()], []
@@ -87,7 +88,7 @@ class Parser(PiecesPart):
                 return product(factors, self.span(start)) if len(factors) > 1 else factors[0]
 
     def divisor(self, above: Node, start: int, slash: int) -> Node:
-        """Read the formula after a slash; without brackets it may be one factor, or the product that follows.
+        """Read the formula after a slash: without brackets, one factor or the whole product that follows.
 
         Usually ``1/2 m`` and ``a/b c`` are (1/2)*m and (a/b)*c, but ``p^2/2m`` and ``g/ωr``, without blanks, divide by
         the product.
@@ -120,7 +121,7 @@ class Parser(PiecesPart):
         return Node("neg", None, (made,), self.span(start)) if negative else made
 
     def crossed(self, factors: list[Node]) -> None:
-        """Read a product with a cross: of vectors if one side is a vector, else of numbers."""
+        """Read a product with the sign ×: a cross product if a side is a vector, otherwise a product of numbers."""
         self.plain = True
         closed = self.tokens[self.index - 1].text == ")"
         sign = self.next()
@@ -135,7 +136,7 @@ class Parser(PiecesPart):
         factors[-1] = Node("call", "cross", (left, right), self.span(left.span[0]))
 
     def dotted(self, factors: list[Node]) -> None:
-        """Read a product with a dot after a vector."""
+        """Read a product with a dot after a vector, which is a scalar product."""
         self.plain = True
         self.next()
         right = self.factor()
@@ -160,7 +161,7 @@ class Parser(PiecesPart):
         return base
 
     def raised(self, base: Node, token: Token, start: int) -> Node:
-        """Return a power with raised digits, a transpose or an inverse."""
+        """Return a base with a raised exponent: a power ``x²``, a transpose or an inverse."""
         self.plain = True
         digits, transposed = token.text.removesuffix("T"), token.text.endswith("T")
         if transposed and digits in ("", "-"):
@@ -173,7 +174,7 @@ class Parser(PiecesPart):
         return Node("power", None, (base, number(int(digits))), self.span(start))
 
     def caret(self, base: Node, start: int) -> Node:
-        """Read the exponent after ``^``: a factor, or T for the transpose."""
+        """Read the exponent after ``^``: a factor, or the letter T for the transpose."""
         if self.token().text == "T" and self.token(1).text != "(":
             self.next()
             return Node("transpose", None, (base,), self.span(start))

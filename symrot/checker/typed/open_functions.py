@@ -12,7 +12,7 @@ __all__ = ["OpenFunctionsPart"]
 
 
 class OpenFunctionsPart(Cursor):
-    """The part of the parser for functions whose argument has no brackets, and for derivatives as quotients."""
+    """The part of the parser that reads functions without brackets, and derivatives written as quotients."""
 
     def applied(self, function: str, token: Token) -> Node:
         """Read a function without brackets: ``sin 2x``, ``sin^2 x``, ``tan^-1 x``."""
@@ -29,7 +29,7 @@ class OpenFunctionsPart(Cursor):
         return Node("power", None, (call, exponent), self.span(token.start))
 
     def function_exponent(self, token: Token) -> Node | None:
-        """Read the power between a function and its argument."""
+        """Read the exponent between a function and its argument, as the 2 of ``sin^2 x``."""
         if self.token().kind == "power":
             raised = self.next()
             self.plain = True
@@ -51,7 +51,7 @@ class OpenFunctionsPart(Cursor):
         return Node("neg", None, (value,), value.span) if negative else value
 
     def open_call(self, function: str, token: Token, exponent: Node | None) -> tuple[Node, Node | None]:
-        """Read the argument of a function without brackets; return the call, and the power of the whole of it."""
+        """Read the argument of a function without brackets; return the call, and an exponent of the whole call."""
         self.plain = True
         first = self.token()
         if first.kind not in ("number", "name", "fraction") and first.text not in ("√", "-", "[", "|"):
@@ -83,7 +83,10 @@ class OpenFunctionsPart(Cursor):
         return self.power()
 
     def power_of_call(self, token: Token, factors: list[Node]) -> Node | None:
-        """Return the power at the end of an argument if it belongs to the function, (sin x)^2; usually it does not."""
+        """Return the exponent at the end of an argument if it applies to the function: ``sin x^2`` read as (sin x)^2.
+
+        Usually an exponent there belongs to the argument: sin(x^2).
+        """
         last = factors[-1]
         if last.kind != "power" or last.args[0].kind not in ("name", "call"):
             return None
@@ -93,7 +96,7 @@ class OpenFunctionsPart(Cursor):
         return last.args[1]
 
     def absorbs(self, function: Token, factors: list[Node]) -> bool:
-        """Return whether the next factor belongs to the argument of a function without brackets."""
+        """Return whether the next factor belongs to the argument of a function without brackets: x in ``sin 2 x``."""
         token = self.token()
         if token.text in ("*", "·") and token.kind == "mark":
             if self.other_reading("product after argument", token.start, function.start, self.token(1).end):
@@ -113,7 +116,7 @@ class OpenFunctionsPart(Cursor):
         return self.other_reading("argument", token.start, function.start, self.end_of_run()) != usual
 
     def slash_belongs(self, function: Token, factors: list[Node]) -> bool:
-        """Return whether a slash after the argument of a function without brackets belongs to the argument."""
+        """Return whether a slash after a function without brackets divides the argument: ``sin x/2`` as sin(x/2)."""
         slash, below = self.token(), self.token(1)
         if below.kind == "name" and (self.vocabulary.function(below.text) or below.text in SINGLE_ARGUMENT):
             return False
@@ -127,7 +130,7 @@ class OpenFunctionsPart(Cursor):
         return self.other_reading("slash after argument", slash.start, function.start, below.end) != usual
 
     def root(self, token: Token) -> Node:
-        """Read the formula under a root sign without a bar over it."""
+        """Read the formula after a root sign √, to which no bar shows the end."""
         self.plain = True
         self.deeper()
         first = self.token()
@@ -163,7 +166,7 @@ class OpenFunctionsPart(Cursor):
         return None
 
     def continues(self, ahead: int) -> bool:
-        """Return whether a power or a bracket follows a token."""
+        """Return whether an exponent or a bracket follows the token that is ``ahead`` tokens after the cursor."""
         after = self.token(ahead + 1)
         return after.text in ("^", "**") or after.kind == "power"
 

@@ -1,4 +1,4 @@
-"""Pieces of formulas: numbers, names, calls, brackets and matrices, with the indices, methods and primes after them."""
+"""The smallest parts of formulas: numbers, names, calls, brackets and matrices, with indices, methods and primes."""
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
@@ -30,7 +30,7 @@ MOST_DOTS = 4
 
 
 class PiecesPart(OpenFunctionsPart):
-    """The part of the parser for pieces without an operator."""
+    """The part of the parser for numbers, names, calls, brackets and matrices."""
 
     def postfix(self) -> Node:
         start = self.start()
@@ -50,7 +50,7 @@ class PiecesPart(OpenFunctionsPart):
                 node = self.rate(node, self.next(), start)
             elif token.text == "°":
                 if self.tokens[self.index - 1].text == "°":
-                    raise self.fail("one sign of degrees")
+                    raise self.fail("a single degree sign")
                 self.plain = True
                 self.next()
                 degrees = [node, Node("name", "pi"), Node("inv", None, (number(180),))]
@@ -59,7 +59,7 @@ class PiecesPart(OpenFunctionsPart):
                 return node
 
     def is_index(self) -> bool:
-        """Return whether square brackets are an index, ``M[0, 1]``, and not brackets of a formula, ``m[a^2 + b^2]``."""
+        """Return whether square brackets hold an index, as in ``M[0, 1]``; in ``m[a^2 + b^2]`` they hold a factor."""
         depth, inside = 0, self.tokens[self.index + 1 :]
         names = False
         for token in inside:
@@ -72,7 +72,7 @@ class PiecesPart(OpenFunctionsPart):
         return True
 
     def method(self, node: Node, start: int) -> Node:
-        """Read a method of a matrix after a dot."""
+        """Read a method of a matrix after a dot, such as ``.T``."""
         token = self.token()
         if token.kind != "name" or token.text not in METHODS:
             names = ", ".join(name if name == "T" else f"{name}()" for name in METHODS)
@@ -93,11 +93,11 @@ class PiecesPart(OpenFunctionsPart):
         return Node("call", name, (node, *arguments), self.span(start))
 
     def rate(self, node: Node, mark: Token, start: int) -> Node:
-        """Return the derivative with respect to time that primes or dots mean; x' may also be a name of its own."""
+        """Return the time derivative that primes or dots after a name mean; ``x'`` may also be a name by itself."""
         self.plain = True
         order = int(mark.text) if mark.kind == "dots" else len(mark.text)
         if order > MOST_DOTS:
-            raise self.fail(f"a rate of order {MOST_DOTS} at most", mark.start)
+            raise self.fail(f"a time derivative of order at most {MOST_DOTS}", mark.start)
         if node.kind == "name":
             name = str(node.value)
             doubtful = mark.kind == "prime" and name not in self.vocabulary.functions
@@ -160,7 +160,7 @@ class PiecesPart(OpenFunctionsPart):
         return product([above, Node("inv", None, (below,), below.span)], call.span)
 
     def symbol(self, token: Token) -> Node:
-        """Read a name that is no built-in function: a function of time, or a symbol, perhaps before a bracket."""
+        """Read a name that is not a built-in function: a symbol, perhaps before a bracket, or a function of time."""
         word = token.text
         inside = [self.token(n).text for n in range(1, 3)]
         if self.peek() == "(" and (inside == ["t", ")"] or not self.is_factor(word)):
@@ -172,7 +172,10 @@ class PiecesPart(OpenFunctionsPart):
         return Node("name", word, (), self.span(token.start))
 
     def is_factor(self, word: str) -> bool:
-        """Return whether a name before a bracket is a symbol: used alone elsewhere, or a letter before a formula."""
+        """Return whether a name before a bracket is a symbol, so that the bracket is a factor and no argument.
+
+        It is, if the text uses the name without a bracket elsewhere, or if it is one letter before a formula.
+        """
         if word in self.vocabulary.symbols or word in self.vocabulary.alone:
             return True
         depth = pieces = 0
@@ -210,7 +213,7 @@ class PiecesPart(OpenFunctionsPart):
         return Node("list", ("[", "]"), tuple(Node("list", ("[", "]"), tuple(row), span) for row in rows), span)
 
     def has_blanks(self, entry: Node) -> bool:
-        """Return whether an entry is a product with nothing but blanks between two names: perhaps two entries."""
+        """Return whether an entry of a matrix has two names with only blanks between them, which may be two entries."""
         inner = entry.args[0] if entry.kind == "neg" else entry
         pairs = pairwise(inner.args if inner.kind == "product" else ())
         gaps = [self.source[a.span[1] : b.span[0]] for a, b in pairs if a.kind in ("name", "call", "number")]

@@ -44,7 +44,7 @@ class Token(NamedTuple):
 
     @property
     def tight(self) -> bool:
-        """Whether no blank is before it."""
+        """Whether there is no blank between this token and the token before it."""
         return not self.spaced
 
 
@@ -124,7 +124,7 @@ def without_dots(name: str) -> str:
 
 
 def _written_out(source: str) -> tuple[str, list[int]]:
-    """Return the text with characters that mean the same as others replaced, and the place of each in the source."""
+    """Return the text with a single character for each meaning, and the place of each character in the source."""
     written: list[str] = []
     places: list[int] = []
     for place, character in enumerate(source):
@@ -146,7 +146,7 @@ def _alike(character: str) -> str:
 
 
 def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
-    """Yield kind, text and end of the tokens that start together at a place: one, or a name and the dots over it."""
+    """Yield kind, text and end of the tokens that start at a place: one token, or a name and the dots over it."""
     character = text[at]
     if number := _NUMBER.match(text, at):
         yield "number", number[0], number.end()
@@ -171,7 +171,7 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
 
 
 def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, int]]:
-    """Yield a name of Latin letters; dots are over its last letter only, so that ``mẍ`` has two names."""
+    """Yield the tokens of a name of Latin letters. Dots are over its last letter only, so that ``mẍ`` has two names."""
     word, stop = name[0], name.end()
     if word == "d" and text[stop : stop + 1] and text[stop] in LETTERS:  # a differential, or the rate of an angle
         yield from _letter(text, stop, f"d{LETTERS[text[stop]]}")

@@ -1,6 +1,6 @@
 """Words that may be several names: ``mgh`` is m*g*h and ``sinx`` is sin(x), unless the whole word is a name.
 
-A word is split only into names that the text uses by themselves, or that nearly every book on mechanics uses.
+A word is split only into names that the text uses separately, or that nearly every book on mechanics uses.
 """
 
 import re
@@ -63,7 +63,9 @@ MOST_LETTERS = 3
 
 
 def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], bool]:
-    """Return the names and numbers of which a word may be made, in order, and whether it usually is; () for a name.
+    """Return the names and numbers that a word may consist of, in order, and whether splitting it is usual.
+
+    The result is empty if the word is a name. ``alone`` are the names that the text uses separately.
 
     Parameters
     ----------
@@ -101,7 +103,7 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
 
 
 class Shorthand(NamedTuple):
-    """A short form of a cosine or a sine, ``cθ`` or ``c_theta``: its first token, the number of tokens, its formula."""
+    """A short form of a cosine or sine, ``cθ`` or ``c_theta``: its first token, its number of tokens, its formula."""
 
     place: int
     length: int
@@ -109,7 +111,7 @@ class Shorthand(NamedTuple):
     angle: str
 
     def tokens(self, first: Token, last: Token) -> tuple[Token, ...]:
-        """Return the tokens of the formula in full, in the place of the short form."""
+        """Return the tokens of the full formula, cos(theta), with the places of the tokens that it replaces."""
         mark = Token("mark", "(", first.start, first.start)
         start = last.start if self.length == 2 else first.start + 2
         return (
@@ -119,7 +121,7 @@ class Shorthand(NamedTuple):
 
 
 def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
-    """Return the pieces of a text that may be short for the cosine or sine of an angle."""
+    """Return the parts of a text that may be short for the cosine or sine of an angle, such as ``cθ``."""
     short = []
     for place, token in enumerate(tokens[:-1]):
         letter, _, angle = token.text.partition("_")
@@ -137,7 +139,7 @@ def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
 
 
 def split_tokens(tokens: Sequence[Token], words: Mapping[str, Sequence[str]]) -> Iterator[Token]:
-    """Yield tokens, with those of words split into their pieces."""
+    """Yield tokens, with each of the words ``words`` replaced by the tokens of the names that it consists of."""
     for token in tokens:
         pieces = words.get(token.text, ()) if token.kind == "name" else ()
         if not pieces or token.end - token.start != len(token.text):

@@ -71,7 +71,7 @@ def check_dimensions(
 
 
 def dimensions_of_formulas(left: Any, right: Any, units: Mapping[str, str] | None = None) -> Dimensions:
-    """Return the check of an equation between SymPy values; symbols of :mod:`symrot.symbols` have their own units."""
+    """Return the check of units of an equation between SymPy values; symbols of :mod:`symrot.symbols` bring units."""
     symbols = {symbol for side in (left, right) for symbol in getattr(side, "free_symbols", ())}
     own = {symbol.name: UNIT[symbol] for symbol in symbols if UNIT.get(symbol)} | dict(units or {})
     try:

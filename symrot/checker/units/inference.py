@@ -33,12 +33,12 @@ Rows = tuple[tuple[Any, ...], ...]
 
 
 class Unreadable(Exception):
-    """An exception for shapes that do not fit, or for a piece of a formula without a known dimension."""
+    """An exception for matrices whose shapes do not fit, or for a part of a formula without a known dimension."""
 
 
 @dataclass
 class UnitInference:
-    """The units of one claim: it follows them through trees and collects contradictions.
+    """The inference of the units of one claim: it follows units through trees, and collects contradictions.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class UnitInference:
     # -- definitions and equations ----------------------------------------------------------------------------------
 
     def define(self, name: str, tree: Node) -> None:
-        """Give a name the dimension of its definition; a bare number is taken as a quantity whose unit was left out."""
+        """Give a name the dimension of its definition; for a bare number, assume a quantity whose unit was left out."""
         self.place = f"in the definition of {name}"
         value = self.value(tree)
         if _bare(tree):
@@ -110,7 +110,7 @@ class UnitInference:
         self.same(values[0], values[1], f"{prefix}the left side is {{0}}, the right side is {{1}}")
 
     def inferred(self) -> dict[str, str]:
-        """Return the units that follow for names without a stated or conventional unit."""
+        """Return the units that follow for the names whose unit is neither stated nor conventional."""
         units = {}
         for name in sorted(self.names & self.system.solved.keys()):
             unit = self.system.reduced({name: Fraction(1)})
@@ -141,12 +141,12 @@ class UnitInference:
         return dimension
 
     def physical(self) -> bool:
-        """Return whether letters such as m and t are quantities: if units are stated, or longer names have one."""
+        """Return whether letters such as m and t mean mass and time: if units are stated, or longer names have one."""
         units = (conventional_unit(name) for name in self.names if len(name) > 1)
         return bool(self.units) or any(unit not in (None, "rad") for unit in units)
 
     def values_of(self, rows: Rows, node: Node) -> Rows:
-        """Return the dimensions of a matrix of numbers: none for unit vectors, else unknown ones."""
+        """Return the dimensions of a matrix of numbers: pure numbers if all are 0 and 1, otherwise unknown ones."""
         if _is_unit(node):
             return rows
         return tuple(tuple(ZERO if entry is ZERO else self.unknown() for entry in row) for row in rows)
@@ -187,7 +187,7 @@ class UnitInference:
         )
 
     def plain(self, value: Value, words: str) -> Dimension:
-        """Require that a scalar is a number without a dimension."""
+        """Require that a scalar is a pure number."""
         if isinstance(value, tuple):
             raise Unreadable
         self.same(value, NOTHING, words)
@@ -214,7 +214,7 @@ class UnitInference:
         return value
 
     def total(self, values: Sequence[Value], what: str) -> Value:
-        """Return the dimension of a sum, after demanding that all its terms have it."""
+        """Return the dimension of a sum, after requiring that all its terms have the same dimension."""
         dimension = values[0]
         for number, value in enumerate(values[1:], start=2):
             dimension = self.same(dimension, value, f"term 1 of {what} is {{0}}, term {number} is {{1}}")
@@ -297,7 +297,7 @@ def _bare(tree: Node) -> bool:
 
 
 def _is_unit(tree: Node) -> bool:
-    """Return whether all numbers in a tree are 0 and 1: a direction, a norm."""
+    """Return whether all numbers in a tree are 0 and 1, as in a unit vector or a norm of 1."""
     return all(node.value in (0, 1) for _, node in walk(tree) if node.kind == "number") and not any(
         node.kind == "name" for _, node in walk(tree)
     )

@@ -59,7 +59,7 @@ a stated unit; other claims may be pure mathematics.
 
 
 def times(first: Dimension, second: Dimension) -> Dimension:
-    """Return the dimension of a product."""
+    """Return the dimension of the product of two quantities."""
     powers = dict(first)
     for name, power in second.items():
         powers[name] = powers.get(name, Fraction(0)) + power
@@ -67,12 +67,12 @@ def times(first: Dimension, second: Dimension) -> Dimension:
 
 
 def raised(base: Dimension, exponent: Fraction) -> Dimension:
-    """Return the dimension of a power."""
+    """Return the dimension of a quantity raised to a power."""
     return {name: power * exponent for name, power in base.items() if exponent}
 
 
 def over(first: Dimension, second: Dimension) -> Dimension:
-    """Return the dimension of a quotient."""
+    """Return the dimension of the quotient of two quantities."""
     return times(first, raised(second, Fraction(-1)))
 
 
@@ -130,7 +130,7 @@ def _shown_power(name: str, power: Fraction) -> str:
 
 
 def _plain(text: str) -> Dimension:
-    """Return the dimension of a text such as ``kg m^2 s^-2``, of bases with integer powers."""
+    """Return the dimension of a unit such as ``kg m^2 s^-2``, a product of base units with integer powers."""
     pairs = [(piece.partition("^")[0], piece.partition("^")[2] or "1") for piece in text.split()]
     return {f"[{base}]": Fraction(power) for base, power in pairs}
 
@@ -140,7 +140,7 @@ _KNOWN = {name: _plain(text) for text, names in DERIVED.items() for name in name
 
 @dataclass
 class UnitSystem:
-    """Equations between dimensions, and the unknown units that follow from them so far (``solved``)."""
+    """Equations between dimensions (exponents of base units); ``solved`` has the unknown units that follow so far."""
 
     solved: dict[str, Dimension] = field(default_factory=dict)
 
@@ -152,7 +152,10 @@ class UnitSystem:
         return result
 
     def equate(self, first: Dimension, second: Dimension) -> bool:
-        """Demand that two dimensions are equal; return False and change nothing if that is impossible."""
+        """Add the equation that two dimensions are equal.
+
+        Return False, and add nothing, if that contradicts the others.
+        """
         quotient = self.reduced(over(first, second))
         unknown = [name for name in quotient if not name.startswith("[")]
         if not unknown:

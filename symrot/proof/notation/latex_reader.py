@@ -34,7 +34,7 @@ UNMARKED = str.maketrans("", "", "{} \t\n\r\f\v")
 
 
 class Unread(InputError):
-    """Signal that LaTeX text contains a name without a meaning, or an unsupported notation."""
+    """Exception raised if LaTeX text contains a name without a meaning, or a notation that is not supported."""
 
 
 def key(latex: str) -> str:
@@ -91,7 +91,7 @@ class _Interpreter(Cursor):
         self.time = names.get(TIME, "t")
 
     def value(self, node: Node) -> Any:
-        """Return the value of a whole row, or of an argument."""
+        """Return the value of a complete row of LaTeX, or of the argument of a command."""
         return self.inside(node, self.sum)
 
     # -- sums and products ------------------------------------------------------------------------------------------
@@ -134,7 +134,7 @@ class _Interpreter(Cursor):
             return self.raised(value, script.inside)
         power = self.value(script.inside)
         if isinstance(power, MatrixBase):
-            raise Unread("the exponential of a matrix")
+            raise Unread("expected readable LaTeX, got the exponential of a matrix")
         return sympy.exp(power)
 
     def raised(self, value: Any, inside: Node) -> Any:
@@ -146,15 +146,15 @@ class _Interpreter(Cursor):
         if matrix and value.cols == 1 and exponent == 2:
             return value.dot(value)
         if isinstance(exponent, MatrixBase) or (matrix and not exponent.is_Integer):
-            raise Unread("a power of a matrix")
+            raise Unread("expected readable LaTeX, got a power of a matrix")
         return value.inv() ** -exponent if matrix and exponent < 0 else value**exponent
 
     def norm(self) -> Any:
-        """Read the length of a vector, after the first bar."""
+        """Read the length of a vector, such as ``|v|``, from after its first bar."""
         inner = self.barred(self.sum, "|")
         square = inner.dot(inner) if isinstance(inner, MatrixBase) and 1 in inner.shape else None
         if square is None:
-            raise Unread("an absolute value")
+            raise Unread("expected readable LaTeX, got an absolute value")
         script = self.script("^")
         if script is None:
             return sqrt(square)
@@ -178,29 +178,29 @@ class _Interpreter(Cursor):
         values = self.listed(self.sum, CLOSING[opening])
         if opening == "[" and self.at_skew():
             if not isinstance(values[0], MatrixBase) or values[0].shape != (3, 1):
-                raise self.fail("no cross-product matrix of this")
+                raise self.fail("a vector before the index \\times, which makes its cross-product matrix")
             self.next()
             return Matrix(values[0].hat())
         return values[0] if len(values) == 1 else Matrix.vstack(*map(_as_matrix, values))
 
     def at_skew(self) -> bool:
-        """Return whether the index that makes a cross-product matrix of a vector is next."""
+        r"""Return whether the next item is the index ``\times``, which makes the cross-product matrix of a vector."""
         item = self.peek()
         return isinstance(item, Script) and item.text == "_" and alone(item.inside).text == "\\times"
 
     def evaluated(self, dot: Node) -> Any:
-        r"""Return the value of ``\left. X \right|_{a = b, ...}``, which is X with a replaced by b."""
+        r"""Return the value of ``\left. X \right|_{a = b, ...}``: the formula X with ``a`` replaced by ``b``."""
         value = self.barred(self.sum, "|")
         script = self.script("_")
         if script is None:
-            raise self.fail("the place of the value")
+            raise self.fail("an index such as _{x = 0} after the bar, the place of the value")
         places: list[tuple[Any, Any]] = []
         inside = script.inside if isinstance(script.inside, Row) else Row((script.inside,), dot.start, dot.start)
         for equation in divided(inside, ","):
             first, *others = [self.value(side) for side in divided(equation, "=")]
             places += [(first, others[0])] if len(others) == 1 else [(other, first) for other in others]
             if not others or not all(getattr(variable, "is_Symbol", False) for variable, _ in places):
-                raise Unread("the value of something other than a symbol as the place of evaluation")
+                raise Unread("expected a symbol before = in the index of a bar, got a formula")
         return value.subs(dict(places), simultaneous=True)
 
     def function(self, function: Callable[[Any], Any]) -> Any:
@@ -218,9 +218,9 @@ class _Interpreter(Cursor):
         return _multiplied(self.value(above), _inverted(self.value(below)))
 
     def differentiated(self, operand: Row | None) -> Any:
-        """Read what is differentiated: the rest of the numerator, or the term after the fraction."""
+        """Read the formula to differentiate: the rest of the numerator of d/dt, or the term after the fraction."""
         if operand is None:
-            raise self.fail("the sign of a derivative above the line")
+            raise self.fail("d or \\partial in the numerator of a derivative")
         return self.value(operand) if operand.items else self.term()
 
     def root(self, root: Root) -> Any:
@@ -229,8 +229,9 @@ class _Interpreter(Cursor):
         return sqrt(self.value(root.inside))
 
     def font(self, font: Font) -> Any:
-        r"""Return the value of a name in a font: a function of a matrix, ``\mathbf{1}``, or a name with a declared
-        meaning.
+        r"""Return the value of a name in a special font.
+
+        It is a function of a matrix, the identity ``\mathbf{1}``, or a name with a declared meaning.
         """
         word, place = _text(font.inside), self.index
         if word == "1":
@@ -252,7 +253,7 @@ class _Interpreter(Cursor):
         if table.name not in ("bmatrix", "pmatrix", "matrix"):
             raise self.fail("a matrix", table)
         if self.at("_") and not self.at_skew():
-            raise self.fail("no index of a matrix")
+            raise self.fail("an operator or the end instead of an index after the matrix")
         return value
 
     # -- names ------------------------------------------------------------------------------------------------------
@@ -287,7 +288,7 @@ class _Interpreter(Cursor):
         raise Unread(text)
 
     def name_parts(self) -> Iterator[str]:
-        """Yield the pieces of a name: a letter, a command or a letter with a mark, then indices and primes."""
+        """Yield the parts of a name: a letter, a command or a letter with a mark, then its indices and primes."""
         item = self.next()
         if not isinstance(item, Token | Accent | Font) or item.text in ENDS:
             raise self.fail("a name", item)
@@ -308,7 +309,7 @@ READERS: dict[str, Callable[[_Interpreter, Any], Any]] = {
 
 
 def _text(node: Node) -> str:
-    """Return a piece as the key of a name; braces are left out."""
+    """Return a part of a name as text for looking the name up; braces are left out."""
     if isinstance(node, Row):
         return "".join(map(_text, node.items))
     if isinstance(node, Scripts):
@@ -319,7 +320,7 @@ def _text(node: Node) -> str:
 
 
 def _after(node: Node, mark: str) -> Row | None:
-    """Return a group, or a token, without the mark it starts with; None if it does not start with it."""
+    """Return the rest of a group or token that starts with a mark; None if it does not start with the mark."""
     row = node if isinstance(node, Row) else Row((node,), node.start, node.start)
     return Row(row.items[1:], row.start, row.end) if row.items and row.items[0].text == mark else None
 
@@ -336,7 +337,7 @@ def _as_matrix(value: Any) -> Matrix:
 
 
 def _added(left: Any, right: Any) -> Any:
-    """Return the sum of two values; a number added to a matrix means that multiple of the unit matrix."""
+    """Return the sum of two values; a number added to a matrix means that multiple of the identity matrix."""
     if isinstance(left, MatrixBase) != isinstance(right, MatrixBase):
         matrix, scalar = (left, right) if isinstance(left, MatrixBase) else (right, left)
         if scalar == 0:
@@ -361,23 +362,23 @@ def _dotted(left: Any, right: Any) -> Any:
 
 def _crossed(left: Any, right: Any) -> Any:
     if not all(isinstance(side, MatrixBase) and side.shape == (3, 1) for side in (left, right)):
-        raise Unread("a cross product of values that are not vectors of three")
+        raise Unread("expected a cross product of two vectors with three components, got other values")
     return Matrix(left).cross(Matrix(right))
 
 
 def _inverted(value: Any) -> Any:
     if isinstance(value, MatrixBase):
-        raise Unread("division by a matrix")
+        raise Unread("expected a number as divisor, got a matrix")
     if value == 0:
-        raise Unread("division by zero")
+        raise Unread("expected a divisor that is not zero, got 0")
     return 1 / value
 
 
 def _gradient(value: Any, variable: Any) -> Any:
     if isinstance(variable, MatrixBase):
         if isinstance(value, MatrixBase) or not all(entry.is_Symbol for entry in variable):
-            raise Unread("a derivative with respect to a vector")
+            raise Unread("expected a derivative with respect to a symbol, got one with respect to a vector")
         return Matrix([diff(value, entry) for entry in variable])
     if not getattr(variable, "is_Symbol", False):
-        raise Unread("a derivative with respect to a formula instead of a symbol")
+        raise Unread("expected a derivative with respect to a symbol, got one with respect to a formula")
     return diff(value, variable)

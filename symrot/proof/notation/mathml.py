@@ -45,7 +45,10 @@ SMALL = 0.75  # scripts, relative to the line
 
 
 class Item(NamedTuple):
-    """One item of a row: MathML, width in letters, LaTeX; ``kind`` is "relation", "sign", "function" or ""."""
+    """One part of a formula in a row: MathML, width in letters, LaTeX.
+
+    ``kind`` is "relation", "sign", "function" or "".
+    """
 
     mathml: str
     width: float
@@ -77,7 +80,7 @@ SIGNS = {"+": "+", "-": "−"}
 
 
 class _Translation:
-    """The translation of a tree into items; it takes the LaTeX of each item from the source."""
+    """The translation of a LaTeX tree into items (parts of a formula with MathML); LaTeX is copied from the source."""
 
     def __init__(self, latex: str) -> None:
         self.latex = latex
@@ -86,7 +89,7 @@ class _Translation:
         return complaint(self.latex, "formula", node.start, "LaTeX that the pages use")
 
     def row(self, row: Row) -> list[Item]:
-        """Return the items of a row; the LaTeX of each reaches to the next one."""
+        """Return the items of a row; the LaTeX of an item reaches up to the next item."""
         items: list[Item] = []
         kind = "sign"
         for place, node in enumerate(row.items, start=1):
@@ -102,15 +105,15 @@ class _Translation:
         return items
 
     def argument(self, node: Node) -> list[Item]:
-        """Return the items of a group, or one item, as the argument of a command."""
+        """Return the argument of a command as items: all items of a group in braces, or a single one."""
         return self.row(node) if isinstance(node, Row) else [self.item(node)]
 
     def group(self, node: Node) -> Item:
-        """Return an argument as one item."""
+        """Return the argument of a command as a single item."""
         return _joined(self.argument(node))
 
     def item(self, node: Node, after_operand: bool = False) -> Item:
-        """Return one item; a sign is a prefix, except after an operand."""
+        """Return one item. A plus or minus sign is binary after an operand, and a prefix everywhere else."""
         if not isinstance(node, Token):
             return self.scripted(node, after_operand) if isinstance(node, Scripts) else ITEMS[type(node)](self, node)
         text = node.text
@@ -204,7 +207,7 @@ def _fence(mark: str, form: str) -> str:
 
 
 def _letter(letter: str, variant: str) -> str:
-    """Return the Unicode character of a letter in a font, since MathML no longer has most font attributes."""
+    """Return the Unicode character of a letter in a font; MathML no longer has most font attributes."""
     if not (letter.isascii() and letter.isalnum()):
         return letter
     if variant == "script":
@@ -227,7 +230,7 @@ def _joined(items: list[Item]) -> Item:
 
 
 def read(latex: str) -> list[Item]:
-    """Return a formula as a row of items.
+    """Return a LaTeX formula as a row of items: parts with MathML, a width, and possible line breaks.
 
     Raises
     ------
@@ -238,7 +241,10 @@ def read(latex: str) -> list[Item]:
 
 
 def rows(latex: str, width: float) -> list[list[Item]]:
-    """Return a formula broken into lines of a given width where possible: before relations, then before signs."""
+    """Return a formula broken into lines of a given width where possible.
+
+    Lines are broken before relations such as ``=``, and if that is not enough, before plus and minus.
+    """
     return _broken(read(latex), width)
 
 
@@ -257,7 +263,7 @@ def _broken(items: list[Item], width: float) -> list[list[Item]]:
 
 
 def _stacked(items: list[Item]) -> Item:
-    """Return a row of items as one item; a long sum becomes several lines."""
+    """Return a row of items as a single item; a long sum becomes several lines inside of it."""
     lines = _broken(items, WIDEST)
     if len(lines) == 1:
         return _joined(items)
@@ -266,7 +272,7 @@ def _stacked(items: list[Item]) -> Item:
 
 
 def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:
-    """Yield the parts of a row, which is split before each item of a kind."""
+    """Yield the parts of a row of items; a new part starts at each item of the given kind."""
     piece: list[Item] = []
     for item in items:
         if item.kind == kind and piece:

@@ -42,8 +42,9 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
     _print_tanh = _print_sech = _print_of_angle
 
     def _print_MatrixBase(self, matrix: MatrixBase) -> str:
-        """Return the LaTeX of a matrix: 0 for zero, 1 for the unit matrix, a common denominator of all entries in
-        front.
+        """Return the LaTeX of a matrix, with a common denominator of all entries in front.
+
+        The zero matrix is printed as 0, and the identity matrix as 1.
         """
         if matrix.is_zero_matrix:
             return "0"
@@ -72,7 +73,10 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
 
 
 def _common_scale(matrix: MatrixBase) -> Any:
-    """Return 1/D if all nonzero entries of a matrix have the denominator D and no fraction inside; otherwise 1."""
+    """Return 1/D if D is the denominator of all nonzero entries of a matrix; otherwise 1.
+
+    It is also 1 if an entry has a fraction in its numerator or denominator.
+    """
     denominators = {entry.as_numer_denom()[1] for entry in matrix if entry != 0}
     if len(denominators) != 1 or len(matrix) < 2:
         return 1
@@ -88,5 +92,5 @@ _PRINTER = PagePrinter({"mat_delim": "[", "mat_str": "matrix", "fold_short_frac"
 
 
 def formula(side: Any) -> str:
-    """Return the LaTeX of an expression or matrix on one line; a str is LaTeX already and returned unchanged."""
+    """Return the LaTeX of an expression or matrix on one line; a str is taken for LaTeX and returned unchanged."""
     return side if isinstance(side, str) else str(_PRINTER.doprint(side)).replace("\n", " ")

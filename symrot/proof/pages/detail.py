@@ -1,4 +1,4 @@
-"""One step of a derivation as a page, optionally with all rewritings from its left side to its right side."""
+"""One step of a derivation as a page, optionally with all rewritings that lead from its left side to its right side."""
 
 from sympy import MatrixBase, factor
 

@@ -1,4 +1,7 @@
-"""Printer of derivations as HTML: one file, native MathML, no script, no network. Same derivation, same bytes."""
+"""Printer of derivations as HTML: one file with native MathML, without script or network.
+
+The same derivation always gives the same bytes.
+"""
 
 import re
 from collections.abc import Iterator
@@ -77,7 +80,7 @@ def _display(latex: str) -> str:
 
 
 def _raised(prose: str) -> str:
-    """Return units as HTML with their exponents as superscripts."""
+    """Return text with units as HTML, in which the exponents of the units are superscripts."""
     return re.sub(r"\^(\d)", r"<sup>\1</sup>", prose)
 
 

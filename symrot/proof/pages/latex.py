@@ -1,4 +1,4 @@
-"""Printer of derivations as complete LaTeX documents. Same derivation, same bytes."""
+"""Printer of derivations as complete LaTeX documents; the same derivation always gives the same bytes."""
 
 import re
 

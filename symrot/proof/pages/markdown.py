@@ -1,4 +1,4 @@
-"""Printer of derivations as Markdown for a code-hosting site. Same derivation, same bytes."""
+"""Printer of derivations as Markdown for a code-hosting site; the same derivation always gives the same bytes."""
 
 import re
 from collections.abc import Iterator
@@ -48,7 +48,7 @@ def _host_safe(part: str) -> str:
 
 
 def _contents(page: Page) -> Iterator[str]:
-    """Yield one line of links to the sections of a long page."""
+    """Yield the table of contents of a long page, one line of links to its sections."""
     titles = [item.title for item in page.items if isinstance(item, Section)]
     if len(titles) > MANY_SECTIONS:
         anchors = (re.sub("[^a-z0-9 -]", "", title.lower()).replace(" ", "-") for title in titles)

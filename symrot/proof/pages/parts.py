@@ -19,7 +19,7 @@ def equation(step: Step) -> str:
 
 
 def remarks(step: Step) -> Iterator[str]:
-    """Yield the reason, hypotheses, conditions and source of a step, each as a sentence."""
+    """Yield the remarks on a step, each a sentence: its reason, its hypotheses, its conditions and its source."""
     yield f"*Why:* {step.reason}."
     if step.hypotheses:
         yield f"*Given:* {_list(map(_hypothesis, step.hypotheses))}."
@@ -42,7 +42,7 @@ def _list(formulas: Iterable[str]) -> str:
 
 
 def units(page: Page) -> str:
-    """Return one sentence with the unit of every symbol on the page."""
+    """Return a sentence that gives the unit of every symbol on the page."""
     sides: list[Any] = [side for step in page.steps for side in (step.left, step.right)]
     passages = (item for item in page.items if isinstance(item, Passage))
     sides += [side for passage in passages for pair in passage.equations for side in pair]
@@ -69,6 +69,6 @@ def footer(page: Page) -> str:
 
 
 def passage_equations(passage: Passage) -> Iterator[str]:
-    """Yield the equations of a passage; a pair without a left side continues the previous equation."""
+    """Yield the equations of a paragraph; a pair without a left side continues the equation before it."""
     for left, right in passage.equations:
         yield f"{formula(left)} = {formula(right)}".lstrip()
