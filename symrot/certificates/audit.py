@@ -40,7 +40,7 @@ NULLABLE = ("coq", *OPTIONAL)  # sections that may be null
 
 
 def load_certificate(path: Path) -> Data:
-    """Return a certificate from its file.
+    """Read a certificate from its JSON file and return it.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def _refused(text: str) -> Any:
 
 
 def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[Data, list[str]]:
-    """Return a certificate whose statements hold, and the findings of the audit as sentences.
+    """Check every statement of a certificate; return the certificate, and one sentence for each check that it passed.
 
     Parameters
     ----------
@@ -119,7 +119,10 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
 
 
 def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | None]) -> list[str]:
-    """Return the findings of those checks of a certificate that need symrot's own derivations."""
+    """Check a certificate against symrot's own derivations and bounds.
+
+    Return one sentence for each check that it passed.
+    """
     name = data["kernel"]
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
     check_header(header, source, name)
@@ -136,7 +139,10 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
 
 
 def _compared(data: Data) -> list[str]:
-    """Return a finding that the verdicts on object code were not checked, since they hold for another machine."""
+    """Return the sentence that the verdicts on object code were not checked.
+
+    Such verdicts hold only for the machine that made them.
+    """
     finding = "its verdicts on object code were not checked: --object compares an object file of yours"
     return [finding] if data.get("objects") else []
 
@@ -151,7 +157,10 @@ def _compare(path: Path, data: Mapping[str, Any], statement: Mapping[str, Any]) 
 
 
 def _bounds(path: Path, data: Data, source: str) -> str:
-    """Return the finding on rounding error bounds; raise CertificateError if they do not belong to the C text."""
+    """Return a sentence about the rounding error bounds; raise CertificateError unless they belong to the C text.
+
+    Raise CertificateError if they are not bounds of the C text.
+    """
     section = data.get("rounding")
     own = library_section(data["kernel"], source) if data["kernel"] in kernel_names() else None
     if section is None:
@@ -175,12 +184,15 @@ def _bounds(path: Path, data: Data, source: str) -> str:
 
 
 def operations_of(data: Data, source: str) -> dict[str, Operations]:
-    """Return the operations of the one-sample functions of a certificate, read back from the C text, by name."""
+    """Return the operations of a certificate's one-sample functions, by function name, read from the C text.
+
+    Return the operations of each, by function name.
+    """
     return {name: read_kernel(source, name, f"{data['kernel']}.c") for name in data["readback"]}
 
 
 def _check_readback(data: Data, source: str) -> None:
-    """Raise CertificateError if the section ``readback`` differs from the operations in the C text."""
+    """Raise CertificateError if the section ``readback`` does not list the operations that the C text performs."""
     where = f"{data['kernel']}.c"
     for name, stated in data["readback"].items():
         one, batch = read_kernel(source, name, where), read_batch(source, f"{name}_batch", where)

@@ -1,12 +1,13 @@
 """Check certificates exactly, from their files alone; ``symrot audit`` begins with this check.
 
-It checks every hash, that the C text computes the formulas, and that the formulas obey their laws. Equations are
-evaluated in exact arithmetic at random integers, with one more random integer as the value of a function for each
-different argument: a wrong equation passes one run with a chance of about its degree in 2^128. Laws are proven by the
-cases, steps and cofactors in the certificate (:mod:`symrot.certificates.laws.laws`). ``recheck.py``, which evaluates
-numbers and reads no proofs, shares only the seal and the hashes with this module. Headers are checked by hash alone.
-All other statements of a certificate (titles and units, counts and digests of operations, flags, theorems, bounds of
-rounding errors, object code) are not checked here.
+The module checks every hash, that the C text computes the formulas, and that the formulas obey their laws (identities
+such as "the norm is 1"). Equations are evaluated in exact arithmetic at random integers; the value of a function such
+as sin(x) is one more random integer for each different argument. A wrong equation passes one run with a chance of about
+its degree in 2^128. Laws are proven by the cases, steps and cofactors in the certificate
+(:mod:`symrot.certificates.laws.laws`). ``recheck.py``, which evaluates numbers and reads no proofs, shares only the
+seal and the hashes with this module. Headers are checked by hash alone. All other statements of a certificate (titles
+and units, counts and digests of operations, flags, theorems, bounds of rounding errors, object code) are not checked
+here.
 """
 
 import ast
@@ -74,14 +75,17 @@ def require(holds, message):
 
 
 def nearest(value, real):
-    """Return a value rounded to the nearest number of a type, ties to even."""
+    """Return an exact value rounded to the nearest double or float, ties to even."""
     bits, shift = {"double": 53, "float": 24}[real], value.denominator.bit_length() - abs(value.numerator).bit_length()
     scale = Fraction(2) ** (bits + shift - (abs(value) * Fraction(2) ** shift >= 1))
     return round(value * scale) / scale
 
 
 class RandomIntegers(defaultdict):
-    """A random integer for each name, or for each function with its arguments, drawn at the first use."""
+    """A random integer for each variable, and for each function call with its arguments.
+
+    It is drawn when it is first needed.
+    """
 
     def __missing__(self, key):
         return self.setdefault(key, Fraction(secrets.randbits(128)))
@@ -102,11 +106,11 @@ class Evaluator:
         return ast.parse(NUMBER.sub(r"'\1'", text.strip()), mode="eval").body
 
     def read(self, text):
-        """Return the value of an expression that is passed as text."""
+        """Return the value of an expression from its text."""
         return self.value(self.parsed(text))
 
     def value(self, node):
-        """Return the value of an expression that is passed as a syntax tree."""
+        """Return the value of an expression from its syntax tree."""
         match node:
             case ast.Constant(value=int(number)) if not self.real:
                 return Fraction(number)
@@ -138,7 +142,7 @@ class Evaluator:
         raise ValueError(f"expected a formula of kernels, got {ast.unparse(node)[:60]}")
 
     def call(self, name, *values):
-        """Return the value of a named function at the values of its arguments."""
+        """Return the value of a function, such as ``"sin"``, at the values of its arguments."""
         if self.cases is not None and name == "Abs":
             return self.call("copysign", Fraction(1), *values) * values[0]
         if self.cases is not None and name in SAFE and name != "select_ge":
@@ -148,7 +152,10 @@ class Evaluator:
         return self.functions[name, *values]
 
     def run(self, body, places, targets=()):
-        """Run statements of C; return the values that they assign, by target, or the value that they return."""
+        """Run C statements.
+
+        Return the assigned values by target such as ``"q[1]"``, or the value of the ``return`` statement.
+        """
         self.names, results, statements = dict(places), {}, body.split(";")
         require(not statements.pop().strip(), f"expected a semicolon at the end, got {body[-60:]!r}")
         for place, statement in enumerate(statements, 1):
@@ -174,7 +181,7 @@ class Evaluator:
 
 
 class KernelCheck:
-    """The check that the C text of a function, for one sample and in batches, computes its formulas."""
+    """The check that a C function, in its versions for one sample and for many (``_batch``), computes its formulas."""
 
     def __init__(self, name, data, c_functions):
         self.name, self.readback, self.spec, self.c_functions = name, data["readback"][name], data["spec"], c_functions
@@ -205,7 +212,7 @@ class KernelCheck:
         self.constants = dict(map(self.constant, self.readback["constants"]))
 
     def constant(self, pair):
-        """Check a rounded constant of the C text; return the constant, and the exact number that it stands for."""
+        """Check that a constant of the C text is its exact number rounded; return the constant and the exact number."""
         written, exact = Fraction(pair[0]), Fraction(pair[1].removesuffix("*pi"))
         times_pi = pair[1].endswith("*pi")
         require(
@@ -214,7 +221,7 @@ class KernelCheck:
         return written, exact * self.symbols["pi"] if times_pi else exact
 
     def run(self, body, places, targets=(), near=()):
-        """Return the values that the body of a C function assigns or returns at given inputs."""
+        """Run the body of a C function at given inputs; return the values that it assigns or returns."""
         reader = Evaluator({}, self.functions, self.real, self.calls, self.constants if targets else ())
         computed = reader.run(body, places, targets)
         require(
@@ -224,7 +231,7 @@ class KernelCheck:
         return computed
 
     def check(self):
-        """Check that the one-sample function and the batch function both compute the formulas."""
+        """Check that the functions for one sample and for many samples (``_batch``) compute the formulas."""
         for function, bare in self.own.items():
             self.check_own(function, bare)
         places = [*self.inputs, *self.outputs]
@@ -266,7 +273,7 @@ class KernelCheck:
         self.compare([again], batch, map(of_sample, self.outputs))
 
     def compare(self, bodies, places, targets, near=()):
-        """Check that bodies of C functions assign to their targets the values of the formulas."""
+        """Check that the bodies of C functions assign to each target, such as ``"q[1]"``, the value of its formula."""
         targets, computed = [*targets], {}
         for body in bodies:
             computed |= self.run(body, places, [target for target in targets if target not in computed], near)
@@ -274,7 +281,7 @@ class KernelCheck:
             require(target in computed and computed[target] == expected, f"{place} of {self.name} is not its formula")
 
     def check_own(self, function, bare):
-        """Check that a helper function of the C file computes its formula, or a series close enough to the formula."""
+        """Check a helper function of the C file: it must compute its formula, or near zero a close enough series."""
         (explicit, case), (_, _, arguments, body) = SAFE[bare], self.c_functions[function]
         for _, split, coefficients, rest in (each for each in self.readback["series"] if each[0] == bare):
             taylor = [
@@ -301,7 +308,7 @@ class FloatFunctions(dict):
 
 
 def hypotheses(values):
-    """Return polynomials that are zero if some numbers are a unit vector's components or a rotation's nine entries."""
+    """Return polynomials that are zero if the numbers are a unit vector, unit quaternion or rotation matrix."""
     if len(values) != 9:
         return [sum(each**2 for each in values) - 1] if values else []
     rows, pairs = [values[:3], values[3:6], values[6:]], [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
@@ -313,11 +320,11 @@ def hypotheses(values):
 
 
 def prove(law, case, formulas):
-    """Check the stored proof of a law in one case: entry times factor = sum of cofactors times relations.
+    """Check the stored proof of a law in one case: entry times factor must be the sum of cofactors times relations.
 
-    An entry is an expression that is zero by the law; a relation is a polynomial that is known to be zero.
-    Factors and cofactors are also evaluated at the witness, where the hypotheses hold, so that none of them hides a
-    division by zero.
+    An entry is an expression that the law states to be zero; a relation is a polynomial that is known to be zero.
+    Factors and cofactors are also evaluated at the witness, a stored point where the hypotheses of the law hold, so
+    that none of them hides a division by zero.
     """
     witness = {name: Fraction(text) for name, text in law["witness"].items()} | {"pi": PI}
     there, reader = (
@@ -380,7 +387,7 @@ def prove(law, case, formulas):
 
 
 def complete(cases):
-    """Tell whether the cases of a proof cover both branches of every choice in the formulas."""
+    """Tell whether the cases of a proof cover both branches of every conditional in the formulas."""
     if not cases or not cases[0]:
         return len(cases) == 1
     left, _, right = cases[0][0]
@@ -389,7 +396,7 @@ def complete(cases):
 
 
 def functions_of(text, name, files):
-    """Return the functions in a C text by name, as tuples (static, type, arguments, body)."""
+    """Return the functions of a C text by name, each as a tuple (static, type, arguments, body)."""
     odd = re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", text)
     require(not odd, "expected no backslash, trigraph, // comment or control character in the C text")
     known = ["#include <math.h>", f'#include "{name}.h"', *['#include "symrot_math.h"'] * ("symrot_math.h" in files)]
@@ -408,7 +415,10 @@ def functions_of(text, name, files):
 
 
 def check(path):
-    """Check a certificate; return a line that lists the checks, or raise one of REFUSALS if one of them fails."""
+    """Check a certificate; return a line that lists the checks.
+
+    A failed check raises an exception of the types REFUSALS.
+    """
     path = Path(path)
     data = recheck.certified(path)
     name, files, spec, readback = data["kernel"], data["files"], data["spec"], data["readback"]
@@ -434,7 +444,7 @@ REFUSALS += (ValueError,)
 
 
 def sentence(reason):
-    """Return an exception that a check raised as one sentence for the user."""
+    """Return the exception of a failed check as one sentence for the user."""
     if isinstance(reason, (SyntaxError, LookupError)):
         return f"no text of kernels, or no certificate of the schema ({reason.args[0]!r})"
     text = str(reason) if isinstance(reason, (ValueError, OSError)) else f"no certificate of the schema ({reason!r})"

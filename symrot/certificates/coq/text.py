@@ -21,7 +21,7 @@ _SUM, _PRODUCT, _POWER, _ATOM = range(4)  # precedence of the outermost operatio
 
 
 def coq_expression(expression: Expr) -> str:
-    """Return the text of a real expression.
+    """Return the Coq text of a real expression.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def coq_expression(expression: Expr) -> str:
 
 
 def _print(expression: Expr) -> tuple[str, int]:
-    """Return the Coq text of an expression and the precedence of its outermost operation, which decides on brackets."""
+    """Return the Coq text of an expression, and the precedence of its outermost operation, which decides on brackets."""
     if isinstance(expression, Symbol):
         return str(expression), _ATOM
     if isinstance(expression, Rational):
@@ -96,7 +96,7 @@ def _power(expression: Pow) -> tuple[str, int]:
 
 
 def folded(text: str, indent: int = 0) -> str:
-    """Return a text folded into lines of at most :data:`WIDTH` characters, all but the first indented."""
+    """Fold a text into lines of at most :data:`WIDTH` characters; all lines but the first are indented."""
     return fill(text, WIDTH, subsequent_indent=" " * indent, break_long_words=False, break_on_hyphens=False)
 
 
@@ -106,7 +106,7 @@ def comment(text: str) -> str:
 
 
 def _record(formulas: Sequence[Expr]) -> str:
-    """Return formulas as Coq text of a vector, quaternion or matrix (row by row); one formula stays a number."""
+    """Return formulas as a Coq vector, quaternion or matrix (row by row); a single formula is returned as a number."""
     if len(formulas) == 1:
         return folded(f"  {coq_expression(formulas[0])}", 4)
     texts = [_within(formula, _ATOM) for formula in formulas]
@@ -122,12 +122,12 @@ def _defined(name: str, variable_names: Iterable[str], size: int, body: str) -> 
 
 
 def matrix_text(name: str, variable_names: Iterable[str], formulas: Sequence[Expr]) -> str:
-    """Return the definition of a function of real variables whose value is a vector, quaternion or matrix."""
+    """Return the Coq definition of a function of real variables, whose value is a vector, quaternion or matrix."""
     return _defined(name, variable_names, len(formulas), _record(formulas))
 
 
 def definition_text(kernel: Definition, name: str, output: str | None = None) -> str:
-    """Return the definition of an output of a kernel, as a function of the components of its inputs in order.
+    """Return an output of a kernel as a Coq function, whose arguments are the components of the inputs in order.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The effect of machine instructions on integers and addresses, and access to the operands of any instruction."""
+"""The effect of machine instructions on integers and addresses, and the reading and writing of operands."""
 
 from collections.abc import Callable
 
@@ -43,7 +43,7 @@ CONDITIONS = set(OF_NUMBERS) | set(OF_INTEGERS)
 
 
 def memory_place(state: MachineState, instruction: Instruction, operand: Memory) -> tuple[str, int]:
-    """Return the base and offset of a memory operand, which may be relative to the instruction pointer."""
+    """Return the base and offset of a memory operand, also of one relative to the instruction pointer."""
     if operand.base != "rip":
         return state.address(operand)
     if operand.segment or operand.index:
@@ -52,7 +52,10 @@ def memory_place(state: MachineState, instruction: Instruction, operand: Memory)
 
 
 def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[str, ...]) -> tuple[str, int]:
-    """Return the base and offset of an address that the linker fills in; the base is "" for another file's symbol."""
+    """Return the base and offset of an address that the linker fills in.
+
+    The base of another file's symbol is an empty text.
+    """
     relocation = instruction.relocation
     if relocation is None or relocation.kind not in kinds:
         raise NotUnderstood("an address without a relocation of a known kind")
@@ -72,7 +75,7 @@ def symbol_of(state: MachineState, instruction: Instruction) -> int:
 
 
 def read(state: MachineState, instruction: Instruction, operand: object, size: int) -> Words:
-    """Return the 32-bit words of a source operand: a general register, memory or a constant."""
+    """Return the 32-bit words of a source operand: a general-purpose register, memory or a constant."""
     if isinstance(operand, Register):
         if GENERAL.get(operand.name, ("", 0))[1] != size:
             raise NotUnderstood(f"a use of the register {operand.name} as {size} bytes")
@@ -91,7 +94,7 @@ def read(state: MachineState, instruction: Instruction, operand: object, size: i
 
 
 def write(state: MachineState, instruction: Instruction, operand: object, words: Words) -> None:
-    """Write 32-bit words to a destination operand: a general register or memory."""
+    """Write 32-bit words to a destination operand: a general-purpose register or memory."""
     if isinstance(operand, Register):
         state.set_register(operand.name, words)
     elif isinstance(operand, Memory) and operand.size == 4 * len(words):
@@ -139,7 +142,7 @@ def _lea(state: MachineState, instruction: Instruction) -> None:
 
 
 def operands_of(instruction: Instruction, count: int) -> tuple[object, ...]:
-    """Return the operands of an instruction; raise NotUnderstood if their number is not ``count``."""
+    """Return the operands of an instruction; raise NotUnderstood unless there are ``count`` of them."""
     if len(instruction.operands) != count:
         raise NotUnderstood(f"an unexpected number of operands, {len(instruction.operands)}")
     return instruction.operands
@@ -162,7 +165,7 @@ def _arithmetic(name: str) -> Callable[[MachineState, Instruction], None]:
 
 
 def _byte_test(state: MachineState, instruction: Instruction, name: str) -> None:
-    """Execute ``test al, al`` and similar instructions on one byte, whose value must be known."""
+    """Execute a test of one byte, such as ``test al, al``; the value of the byte must be known."""
     target, source = instruction.operands
     if name not in ("test", "or", "and") or target != source or not isinstance(target, Register):
         raise NotUnderstood("an operation on single bytes")
@@ -179,7 +182,7 @@ def _known_byte(state: MachineState, name: str) -> int:
 
 
 def _computed(state: MachineState, name: str, first: Words, second: Words) -> tuple[Words, tuple[str, tuple[int, ...]]]:
-    """Return the result of an instruction on integers or addresses, and the processor's flags after it."""
+    """Return the result of an instruction on two integers or addresses, and the processor's flags after it."""
     terms, bits = state.context.terms, 32 * len(first)
     x, y = state.integer(first), state.integer(second)
     a, b = state.whole(first), state.whole(second)
@@ -220,7 +223,7 @@ def _flags(name: str, x: int, y: int, value: int, bits: int) -> tuple[int, int, 
 
 
 def _one(name: str, number: int) -> Callable[[MachineState, Instruction], None]:
-    """Return the effect of the instruction ``inc`` or ``dec``: adding or subtracting 1."""
+    """Return the effect of the instruction ``inc`` (``number`` is 1) or ``dec`` (-1)."""
 
     def step(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)
@@ -273,7 +276,7 @@ def _pop(state: MachineState, instruction: Instruction) -> None:
 
 
 def pop_words(state: MachineState) -> Words:
-    """Pop 8 bytes from the stack and return their words."""
+    """Pop 8 bytes from the stack and return them as two 32-bit words."""
     base, offset = stack_place(state)
     words = state.load(base, offset, 2)
     state.general["rsp"] = state.halves(state.context.terms.address(base, offset + 8))
@@ -294,7 +297,7 @@ def _leave(state: MachineState, instruction: Instruction) -> None:
 
 
 def condition_holds(state: MachineState, condition: str) -> bool:
-    """Tell whether a jump condition, such as ``ne``, holds for the processor's current flags."""
+    """Tell whether the condition of a jump, such as ``ne`` (not equal), holds for the processor's current flags."""
     kind, values = state.flags
     if kind == "numbers" and condition in OF_NUMBERS:
         return state.decide(OF_NUMBERS[condition], values[0], values[1])

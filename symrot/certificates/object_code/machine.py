@@ -1,8 +1,8 @@
 """Symbolic execution of a function of an object file, along every path that its comparisons allow.
 
-Integers and addresses must have known values, so that loops and tables are followed as they are. A comparison of
-numbers whose outcome is not known is followed both ways. An instruction that is in no table, or a state of stack,
-registers or arrays that the calling convention (System V, x86-64) forbids, raises :class:`NotUnderstood`.
+Integers and addresses must have known values, so that each loop runs a known number of times. A comparison of
+floating-point numbers whose outcome is not known is followed both ways. An instruction that is in no table, or a state
+of stack, registers or arrays that the calling convention (System V, x86-64) forbids, raises :class:`NotUnderstood`.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -47,7 +47,7 @@ NO_OPERATION = {"nop", "endbr64"}
 
 @dataclass(frozen=True)
 class ExecutionPath:
-    """One path through a function: the memory at its end, and the outcomes of comparisons that lead there."""
+    """One path through a function: the memory when it returns, and the outcomes of comparisons that lead there."""
 
     memory: Mapping[tuple[str, int], int]
     known: Mapping[tuple[int, int], Outcomes]
@@ -58,7 +58,7 @@ class ExecutionPath:
 def state_at_call(
     context: CallContext, names: tuple[str, ...], numbers: tuple[str, ...], start: tuple[str, int]
 ) -> MachineState:
-    """Return the processor's state when a function is called with some arrays and numbers as arguments."""
+    """Return the processor's state at the call of a function whose arguments are some arrays and numbers."""
     terms = context.terms
     state = MachineState(context, start, {}, {})
     for name in (*CALLER_SAVED, *CALLEE_SAVED, "rsp"):
@@ -113,7 +113,7 @@ def execution_paths(state: MachineState) -> Iterator[ExecutionPath]:
 
 
 def _run_step(state: MachineState) -> None:
-    """Execute the next instruction; if it is not understood, raise NotUnderstood with its address."""
+    """Execute the next instruction; for an instruction that is not understood, raise NotUnderstood with its address."""
     instruction = state.context.listing.code.get(state.at)
     if instruction is None:
         raise NotUnderstood(f"no instruction at {state.at[1]:#x} of {state.at[0]}")
@@ -126,7 +126,7 @@ def _run_step(state: MachineState) -> None:
 
 
 def _run_instruction(state: MachineState, instruction: Instruction) -> tuple[str, int]:
-    """Execute one instruction and return the place of the next one."""
+    """Execute one instruction and return the section and address of the next one."""
     mnemonic = instruction.mnemonic
     following = (instruction.section, instruction.address + instruction.size)
     if (
@@ -152,7 +152,7 @@ def _run_instruction(state: MachineState, instruction: Instruction) -> tuple[str
 
 
 def _target(state: MachineState, instruction: Instruction) -> tuple[str, int] | str:
-    """Return where a jump leads: an address in this file, or the name of a function that another file defines."""
+    """Return where a jump leads: an address in this object file, or the name of a function of another file."""
     (operand,) = operands_of(instruction, 1)
     if isinstance(operand, Constant):
         if instruction.relocation is None:

@@ -1,4 +1,4 @@
-"""The effect of SSE2 and AVX moves and comparisons, and the look-up of every other vector instruction."""
+"""The effect of SSE2 and AVX move instructions, and the table look-up of every other vector instruction."""
 
 from collections.abc import Callable
 
@@ -62,7 +62,10 @@ def run_vector_instruction(state: MachineState, instruction: Instruction) -> Non
 
 
 def _bytes_of(bare: str, operand: object, whole: int) -> int:
-    """Return the size in bytes of a source operand in memory, which depends on the instruction."""
+    """Return the size in bytes of a source operand in memory.
+
+    It depends on the instruction's name without the prefix ``v`` (``bare``).
+    """
     if not isinstance(operand, Memory):
         return whole
     if bare in SOURCE_BYTES:
@@ -89,7 +92,7 @@ def _move_whole(state: MachineState, instruction: Instruction, bare: str, is_vex
 
 
 def _move_scalar(size: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return the effect of movss or movsd: a load from memory clears the upper words, a register move keeps them."""
+    """Return the function that executes movss or movsd: a load clears the upper words, a register move keeps them."""
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources = instruction.operands
@@ -109,7 +112,7 @@ def _move_scalar(size: int) -> Callable[[MachineState, Instruction, str, bool], 
 
 
 def _move_bits(size: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return the effect of movd or movq, which copy bits between vector registers, general registers and memory."""
+    """Return the function that executes movd or movq: copy bits between vector registers, other registers and memory."""
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, source = operands_of(instruction, 2)
@@ -126,7 +129,7 @@ def _move_bits(size: int) -> Callable[[MachineState, Instruction, str, bool], No
 
 
 def _move_half(start: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return the effect of movlpd or movhpd, which copy 64 bits between memory and half of a 128-bit register."""
+    """Return the function that executes movlpd or movhpd: copy 64 bits between memory and half of a vector register."""
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources = instruction.operands

@@ -1,4 +1,4 @@
-"""The effect of SSE2 and AVX instructions that only rearrange words: unpack, shuffle, blend, insert, broadcast.
+"""The effect of SSE2 and AVX instructions that only rearrange 32-bit words: unpack, shuffle, blend, insert, broadcast.
 
 Each entry of the table takes the words of the sources and a constant, and returns the words of the result.
 """
@@ -13,7 +13,10 @@ Shuffle = Callable[[MachineState, list[Words], int], Words]
 
 
 def _pick(places: Sequence[int]) -> Shuffle:
-    """Return the effect of a shuffle by fixed places per 128 bits: 0 to 3 in the first source, 4 to 7 in the last."""
+    """Return the function that executes a shuffle of fixed words per 128 bits.
+
+    Word numbers 0 to 3 are in the first source, 4 to 7 in the last.
+    """
 
     def shuffle(_: MachineState, sources: list[Words], __: int) -> Words:
         picked: Words = []
@@ -26,7 +29,7 @@ def _pick(places: Sequence[int]) -> Shuffle:
 
 
 def _by_constant(places: Callable[[int, int], Sequence[int]]) -> Shuffle:
-    """Return the effect of a shuffle whose places follow from the instruction's constant."""
+    """Return the function that executes a shuffle whose word numbers follow from the instruction's constant."""
 
     def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:
         picked: Words = []
@@ -90,7 +93,7 @@ def _permute_lanes(state: MachineState, sources: list[Words], constant: int) -> 
 
 
 def _permps(state: MachineState, sources: list[Words], _: int) -> Words:
-    """Execute vpermps or vpermd: pick the words of the second source whose numbers are in the first source."""
+    """Execute vpermps or vpermd: the first source holds the numbers of the words to pick from the second source."""
     return [sources[1][_constant(state, word) & 7] for word in sources[0]]
 
 
@@ -162,7 +165,7 @@ def _pshufb(state: MachineState, sources: list[Words], _: int) -> Words:
 
 
 def _broadcast(count: int) -> Shuffle:
-    """Return the effect of a broadcast, which repeats the first ``count`` words over the whole register."""
+    """Return the function that executes a broadcast: it repeats the first ``count`` words over the register."""
     return lambda _, sources, __: sources[-1][:count] * (8 // count)
 
 
@@ -174,7 +177,7 @@ def _broadcast_byte(state: MachineState, sources: list[Words], _: int) -> Words:
 
 
 def _doubled(_: MachineState, sources: list[Words], __: int) -> Words:
-    """Execute movddup: repeat the low 64 bits of each 128."""
+    """Execute movddup: repeat the low 64 bits of each 128 bits."""
     return [word for start in range(0, len(sources[-1]), 4) for word in sources[-1][start : start + 2] * 2]
 
 

@@ -39,13 +39,13 @@ VECTORS: dict[str, tuple[str, int]] = {  # name -> the full register, size in wo
 
 
 class NotUnderstood(Exception):
-    """An exception for an instruction, or an effect of it in the current state, that the machine does not model."""
+    """The exception for an instruction, or its effect in the current state, that symbolic execution cannot follow."""
 
 
 class UndecidedBranch(Exception):
-    """An exception for a branch on a comparison of unknown outcome: both branches must be followed.
+    """The exception for a branch on a comparison of unknown outcome: execution must continue along both branches.
 
-    ``pair`` are the terms that are compared, ``branches`` the two sets of outcomes.
+    ``pair`` are the two terms that are compared; ``branches`` are the outcomes that lead to each branch.
     """
 
     def __init__(self, pair: Pair, first: Outcomes, second: Outcomes) -> None:
@@ -63,7 +63,7 @@ class ArrayArgument:
 
 @dataclass(frozen=True)
 class CallContext:
-    """The facts about a call that stay the same while the function runs: its arrays, constants and number type."""
+    """The facts about a call that stay the same while the function runs: its arrays, constants and type of numbers."""
 
     terms: Terms
     listing: Listing
@@ -74,7 +74,10 @@ class CallContext:
 
 @dataclass
 class MachineState:
-    """The state of the processor before one instruction; ``known`` holds outcomes of comparisons on the path."""
+    """The state of the processor before one instruction.
+
+    ``known`` holds the outcomes of earlier comparisons on the path.
+    """
 
     context: CallContext
     at: tuple[str, int]
@@ -85,7 +88,7 @@ class MachineState:
     flags: tuple[str, tuple[int, ...]] = ("unknown", ())
 
     def branch(self, pair: Pair, outcomes: Outcomes) -> "MachineState":
-        """Return a copy of the state in which a comparison has one of the given outcomes."""
+        """Return a copy of the state in which the comparison of ``pair`` has one of the given outcomes."""
         return replace(
             self,
             general={name: list(words) for name, words in self.general.items()},
@@ -97,7 +100,10 @@ class MachineState:
     # --- numbers ------------------------------------------------------------------------------------------------------
 
     def decide(self, outcomes: Outcomes, a: int, b: int) -> bool:
-        """Tell whether a comparison has one of the outcomes; raise :class:`UndecidedBranch` if that is not known."""
+        """Tell whether the comparison of ``a`` with ``b`` has one of the outcomes.
+
+        Raise :class:`UndecidedBranch` if unknown.
+        """
         terms = self.context.terms
         a, b = terms.rebuilt((a, b), self.known)
         inner = terms.undecided((a, b))
@@ -112,18 +118,18 @@ class MachineState:
         raise UndecidedBranch((pair[0], pair[1]), possible & accepted, possible - accepted)
 
     def integer(self, words: Words) -> int | None:
-        """Return the integer that some words hold, or None if they are not constant."""
+        """Return the integer in some 32-bit words, or None if they are not constant."""
         values = [self.context.terms.constant(word) for word in words]
         if any(value is None for value in values):
             return None
         return sum(value << 32 * place for place, value in enumerate(values) if value is not None)
 
     def whole(self, words: Words) -> int:
-        """Return one term that consists of one or two 32-bit words."""
+        """Join one or two 32-bit words into one term, and return it."""
         return words[0] if len(words) == 1 else self.context.terms.join(*words)
 
     def halves(self, term: int) -> Words:
-        """Return a term split into its 32-bit words."""
+        """Split a term into its 32-bit words, and return them."""
         terms = self.context.terms
         return [term] if terms.width(term) == 32 else [terms.word(term, 0), terms.word(term, 1)]
 
@@ -151,7 +157,10 @@ class MachineState:
         self.general[whole] = words + self.zeros(2 - len(words))
 
     def set_vector(self, name: str, words: Words, is_vex: bool) -> None:
-        """Write the low words of a vector register; VEX instructions set its other words to zero."""
+        """Write the low words of a vector register.
+
+        A VEX instruction (``v...``) sets the register's other words to zero.
+        """
         if name not in VECTORS:
             raise NotUnderstood(f"the use of register {name}")
         whole = VECTORS[name][0]
@@ -160,7 +169,7 @@ class MachineState:
     # --- memory -------------------------------------------------------------------------------------------------------
 
     def address(self, operand: Memory) -> tuple[str, int]:
-        """Return the base and offset of a memory operand that has no relocation."""
+        """Return the base and offset of a memory operand whose address is known without the linker."""
         if operand.segment:
             raise NotUnderstood(f"an address in the segment {operand.segment}")
         base, offset = "", operand.offset
@@ -183,7 +192,7 @@ class MachineState:
         return base, offset
 
     def load(self, base: str, offset: int, count: int) -> Words:
-        """Return ``count`` words of memory."""
+        """Return ``count`` 32-bit words of memory from a base and offset."""
         if offset % 4:
             raise NotUnderstood("an address that is not a multiple of 4")
         return [self._load(base, offset + 4 * place) for place in range(count)]

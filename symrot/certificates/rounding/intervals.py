@@ -29,7 +29,7 @@ _LEAST = {"binary64": ETA, "binary32": 2.0**-150}  # bound of the error of a sub
 
 
 def point(value: float, count: int) -> Array:
-    """Return ``count`` intervals that hold just one number."""
+    """Return ``count`` intervals that each hold only the number ``value``."""
     return np.full((2, count), value)
 
 
@@ -69,7 +69,7 @@ def add(a: Array, b: Array) -> Array:
 
 
 def _short(a: Array) -> NDArray[np.bool_]:
-    """Tell which numbers have at most 26 significant bits, so that their products are exact."""
+    """Tell which numbers have at most 26 significant bits; the product of two such numbers is an exact double."""
     large = a * SPLIT
     return np.asarray(large - (large - a) == a)
 
@@ -133,7 +133,7 @@ def half_ulp(size: Array, precision: str) -> Array:
 
 
 def rounded_to(a: Array, precision: str) -> Array:
-    """Return intervals that contain the given ones and all roundings of their numbers to a precision."""
+    """Return intervals that contain given intervals and all numbers in them rounded to a precision."""
     if precision == "binary64":
         return a
     with np.errstate(over="ignore"):
