@@ -1,1 +1,1 @@
-"""Certificates: statements about emitted C kernels (formulas, rounding errors) with their proofs, and their checkers."""
+"""Certificates: statements about emitted C kernels (formulas, rounding errors) with proofs, and their checkers."""

@@ -28,7 +28,7 @@ Value = Any  # Fraction or an interval of mpmath
 
 
 class Undefined(ValueError):
-    """The error raised for a formula that is proven to be no real number at a point."""
+    """The exception for a formula that is proven to have no real value at a point."""
 
 
 def _asin(x: Any) -> Any:

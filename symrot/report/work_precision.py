@@ -1,4 +1,4 @@
-"""Work-precision studies (time against error, for several methods) as lines of text, and the comparison of two."""
+"""Work-precision studies (time against error for several methods) as text, and the comparison of two studies."""
 
 import json
 import math
@@ -25,7 +25,7 @@ def _number(value: float) -> str:
 
 
 def _decades(study: Mapping[str, Any]) -> list[str]:
-    """Return a table with a column for each decade of the error: the least time, and all times relative to it."""
+    """Return a study as a table with a column for each decade of the error: the least time, and the ratios to it."""
     table = study["decades"]
     names = list(dict.fromkeys(name for row in table for name in row["methods"]))
     rows = [["error <=", *(f"{row['error']:.0e}" for row in table)]]
@@ -141,7 +141,7 @@ def _positive(study: Mapping[str, Any]) -> bool:
 
 
 def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
-    """Compare a second study with a first one: return ratios of times by decade, and the least errors.
+    """Return the ratios of the times of two studies by decade of the error, and the least errors.
 
     Raises
     ------
@@ -186,7 +186,7 @@ def _least_errors(study: Mapping[str, Any]) -> dict[str, float]:
 
 
 def lines_of_comparison(comparison: Mapping[str, Any]) -> list[str]:
-    """Return the comparison of two studies, as :func:`compared` returns it, as lines of text."""
+    """Return the comparison of two studies, data from :func:`compared`, as lines of text."""
     errors = sorted(
         {error for item in comparison["ratios"].values() for error in item["decades"]}, key=float, reverse=True
     )

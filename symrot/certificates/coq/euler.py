@@ -62,7 +62,7 @@ def euler_file(sequence: str) -> CoqFile:
 
 
 def _rotations(sequence: str) -> list[tuple[str, str]]:
-    """Return the axis letter and the angle of the three rotations whose product is the rotation matrix, left to right."""
+    """Return axis letter and angle of the three rotations whose product is the rotation matrix, left to right."""
     return [(AXES[factor.axis].lower(), str(factor.angle)) for factor in factors(sequence)]
 
 

@@ -33,7 +33,7 @@ def coq_expression(expression: Expr) -> str:
 
 
 def _print(expression: Expr) -> tuple[str, int]:
-    """Return the Coq text of an expression, and the precedence of its outermost operation, which decides on brackets."""
+    """Return the Coq text of an expression, and the precedence of its outermost operation, for brackets."""
     if isinstance(expression, Symbol):
         return str(expression), _ATOM
     if isinstance(expression, Rational):

@@ -39,9 +39,7 @@ ProofStep = tuple[Any, ...]  # kind, arguments
 
 @dataclass(frozen=True)
 class EntryProof:
-    """The proof that an expression of a law is zero: the expression times ``factor`` is a sum of cofactors times
-    relations.
-    """
+    """The proof that an expression of a law is zero: expression * ``factor`` is a sum of cofactors times relations."""
 
     factor: str
     cofactors: Cofactors
@@ -210,7 +208,7 @@ class LawProver(FormulaReader):
         return self.roots[square]
 
     def radical(self, inside: PolyElement) -> PolyElement:
-        """Return the square root of a polynomial: a polynomial if that is a perfect square, otherwise a new variable."""
+        """Return the square root of a polynomial: a polynomial if it is a perfect square, else a new variable."""
         if inside not in self.radicals:
             root = self.perfect(inside)
             if root is None:
@@ -364,7 +362,7 @@ class LawProver(FormulaReader):
     # --- cofactors ----------------------------------------------------------------------------------------------------
 
     def remainder(self, value: PolyElement) -> PolyElement:
-        """Return a polynomial's remainder after division by the relations, and by the hypothesis if there is only one."""
+        """Return a polynomial's remainder after division by the relations, and by a single hypothesis."""
         basis = [*self.rules, *(self.hypotheses if len(self.hypotheses) == 1 else ())]
         return value.rem(basis) if basis else value
 

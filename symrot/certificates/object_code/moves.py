@@ -112,7 +112,7 @@ def _move_scalar(size: int) -> Callable[[MachineState, Instruction, str, bool], 
 
 
 def _move_bits(size: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return the function that executes movd or movq: copy bits between vector registers, other registers and memory."""
+    """Return the function that executes movd or movq: copy bits between registers of any kind and memory."""
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, source = operands_of(instruction, 2)

@@ -369,7 +369,7 @@ class Terms:
         return outcomes, a, b
 
     def mask(self, width: int, outcomes: Outcomes, a: int, b: int) -> int:
-        """Return the mask of a comparison: all bits one if ``a`` and ``b`` compare with one of the outcomes, else zero."""
+        """Return the mask of a comparison: all ones if ``a`` and ``b`` compare with one of the outcomes, else zero."""
         outcomes, a, b = self.compared(outcomes, a, b)
         x, y = self._value(a), self._value(b)
         if x is not None and y is not None:

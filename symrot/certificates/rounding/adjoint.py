@@ -475,8 +475,7 @@ def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array 
 
 
 def _backward_pass(state: _ErrorPass) -> tuple[Array, NDArray[np.int64], NDArray[np.bool_]]:
-    """Return the sum of errors times derivatives, the node that makes it infinite (or -1), and possible jumps of
-    angles.
+    """Return the sum of errors times derivatives, the node that makes it infinite (or -1), and jumps of angles.
 
     An angle that may jump by 2 pi must enter the output with derivative 1 or -1; the error of the output is then
     meant modulo 2 pi. A node that no possible branch uses may have any value; every other node must be finite.

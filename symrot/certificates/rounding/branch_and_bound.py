@@ -184,8 +184,7 @@ class _BoundSearch:
     def best(
         self, parts: _Parts, relative: Array, otherwise: NDArray[np.int64]
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return for each part (sub-box) the input whose range, when shrunk, lowers the bound most, and the second
-        best.
+        """Return for each part (sub-box) the two inputs whose ranges, when shrunk, lower the bound most.
 
         The second best is -1 if it lowers the bound by no more than ``SECOND`` times the gain of the best.
         """

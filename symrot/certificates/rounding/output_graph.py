@@ -88,7 +88,7 @@ class OutputGraph:
 
     @cached_property
     def exact(self) -> tuple[bool, ...]:
-        """Whether each node has no rounding error, as inputs, their signs, their absolute values and short constants."""
+        """Whether each node has no rounding error, as inputs, their signs and absolute values, short constants."""
         flags: list[bool] = []
         for node in self.nodes:
             kind = node[0]
@@ -98,7 +98,7 @@ class OutputGraph:
 
     @cached_property
     def choices(self) -> tuple[tuple[str, bool], ...]:
-        """The conditions that compare rounded numbers: text, and whether the branches differ by multiples of 2 pi only."""
+        """The conditions that compare rounded numbers: text, and whether branches differ by multiples of 2 pi only."""
         choices = []
         for number, (relation, i, j) in enumerate(self.conditions):
             if (self.exact[i] and self.exact[j]) or relation == "<":

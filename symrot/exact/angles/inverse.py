@@ -43,7 +43,7 @@ INVERSE: dict[type, Callable[..., Pair]] = {asin: _asin, acos: _acos, atan: _ata
 
 
 def cosine_sine(angle: Expr, halvings: int) -> Pair:
-    """Return the cosine and sine of the value of an inverse function divided by ``2**halvings``."""
+    """Return the cosine and sine of ``angle / 2**halvings``, where ``angle`` is an inverse function such as asin(u)."""
     pair = INVERSE[type(angle)](*angle.args)
     if halvings and isinstance(angle, acos):  # the range of acos ends at pi, half of which is included too
         (u,) = angle.args
@@ -61,7 +61,10 @@ _QUARTER = Fraction(1, 2)
 
 
 def range_of(angle: Expr) -> Range:
-    """Return a range that contains all values of an inverse function; known signs of the arguments narrow it."""
+    """Return a range that contains all values of an inverse function such as atan(u).
+
+    Known signs of its arguments narrow the range.
+    """
     first, second = (*angle.args, Integer(1))[:2]
     closed = not isinstance(angle, atan)
     if isinstance(angle, acos):

@@ -26,7 +26,7 @@ MOST_BITS = 2000
 
 
 def fails_everywhere(need: Need) -> bool:
-    """Return whether a condition (see :class:`Need`) is proven to hold at no real point."""
+    """Return whether a condition, such as ``x >= 0`` (see :class:`Need`), is proven to hold at no real point."""
     low, high = range_everywhere(need.formula)
     return bool({">= 0": high < 0, "> 0": high <= 0, "!= 0": low == high == 0}.get(need.sign, False))
 
@@ -114,7 +114,7 @@ def _power(base: Range, exponent: Expr) -> Range:
 
 
 def _monotone(function: Callable[[Expr], Expr], least: Bound, most: Bound) -> Callable[[Range], Range]:
-    """Return the function that maps the range of an argument to the range of an increasing function of it.
+    """Return a function that maps the range of an argument to the range of an increasing function such as log.
 
     ``least`` and ``most`` are the limits of the increasing function at the ends of its domain.
     """

@@ -73,7 +73,10 @@ class _Basis:
         return self.reduced()
 
     def add(self, terms: Terms, pairs: list[tuple[Any, ...]]) -> None:
-        """Add a reduced polynomial to the basis, and its pairs to the queue, smallest least common multiple first."""
+        """Add a reduced polynomial to the basis, and its pairs with the other members to the queue.
+
+        The pair with the smallest least common multiple is first.
+        """
         if not terms:
             return
         lead = max(terms, key=self.key)
@@ -89,7 +92,7 @@ class _Basis:
             pairs.clear()  # a constant generates the whole ring
 
     def idle(self, i: int, j: int) -> bool:
-        """Return whether a third polynomial makes a pair superfluous (Buchberger's chain criterion on older pairs)."""
+        """Return whether a third polynomial makes the pair (i, j) superfluous (Buchberger's chain criterion)."""
         both = tuple(map(max, self.leads[i], self.leads[j]))
         return any(
             k < i and _divides(lead, both) and tuple(map(max, lead, self.leads[i])) != both

@@ -1,8 +1,8 @@
-"""Fractions of polynomials whose denominators are products of known factors.
+"""Fractions of polynomials whose denominators are stored as products of factors, each factor with an exponent.
 
 Formulas of rotation divide often by a few factors (``sin(theta)``, a moment of inertia, ``1 + q0``). Each factor is
 stored once and represented by an exponent, so that a sum over equal denominators is a sum of polynomials. With each
-factor the expression is stored in which it first was a divisor: it is a condition for the formula to be defined.
+factor its first divisor is stored as it was written: the formula is defined only where that divisor is not zero.
 """
 
 from collections.abc import Callable, Sequence
@@ -26,12 +26,15 @@ The claims of the four textbooks and courses need at most 27 000."""
 
 
 class TooLarge(InputError):
-    """The error raised for a formula that cannot be expanded within the budget."""
+    """The exception for a formula that cannot be expanded within the budget."""
 
 
 @dataclass(frozen=True)
 class Ratio:
-    """A fraction ``numerator / (constant * product of factors)``; factors are (number, exponent), increasing."""
+    """A fraction ``numerator / (constant * product of factors)``.
+
+    ``factors`` are pairs (number of the factor, exponent), sorted by number.
+    """
 
     numerator: PolyElement
     constant: int = 1
@@ -64,7 +67,7 @@ class Ratios:
         self.products = 0  # products of terms used so far
 
     def number(self, numerator: int, denominator: int = 1) -> Ratio:
-        """Return a rational number as a fraction of the ring."""
+        """Return the rational number numerator/denominator as a fraction of the ring."""
         return Ratio(self.ring.ground_new(self.ring.domain(numerator)), denominator)
 
     def add(self, terms: Sequence[Ratio]) -> Ratio:
@@ -113,7 +116,7 @@ class Ratios:
         return Ratio(base.numerator**exponent, base.constant**exponent, below)
 
     def invert(self, value: Ratio, source: Expr) -> Ratio:
-        """Return 1/value; new factors of its numerator are stored with ``source``, the divisor as it is written.
+        """Return 1/value; its divisor is stored with ``source``, the text of the formula that divides.
 
         Raises
         ------
@@ -140,7 +143,7 @@ class Ratios:
             raise TooLarge(f"expanding the formula takes more than {MOST_PRODUCTS} products of terms")
 
     def _split(self, poly: PolyElement, source: Expr) -> tuple[Fraction, tuple[tuple[int, int], ...]]:
-        """Return a polynomial as a rational constant times known factors; new factors are stored."""
+        """Return a polynomial as a rational constant times factors; factors that are not yet stored are added."""
         constant, poly = _primitive(poly)
         powers: dict[int, int] = {}
         shared = [min(column) for column in zip(*poly, strict=True)]
@@ -164,7 +167,7 @@ class Ratios:
         return constant, tuple(sorted(powers.items()))
 
     def _value(self, poly: PolyElement) -> int:
-        """Return the value of a polynomial with integer coefficients at a fixed point."""
+        """Return the value of a polynomial with integer coefficients at a fixed point, to test divisibility."""
         return sum(
             int(coefficient) * prod(base**power for base, power in zip(self.point, mono, strict=True) if power)
             for mono, coefficient in poly.items()
@@ -191,7 +194,7 @@ class Ratios:
 
 
 def _most_terms(poly: PolyElement, exponent: int) -> int:
-    """Return an upper bound on the number of terms of a power, from the terms and the degrees of the polynomial."""
+    """Return an upper bound on the number of terms of a polynomial's power."""
     if len(poly) < 2 or exponent == 1:
         return len(poly)
     by_degrees = prod(int(degree) * exponent + 1 for degree in poly.degrees())
@@ -199,7 +202,7 @@ def _most_terms(poly: PolyElement, exponent: int) -> int:
 
 
 def _primitive(poly: PolyElement) -> tuple[Fraction, PolyElement]:
-    """Return (c, P) with poly = c*P, where P has coprime integer coefficients and a positive leading coefficient."""
+    """Return (c, P) with ``poly = c*P``; P has coprime integer coefficients, the leading one positive."""
     scale: Any = 1
     if poly.ring.domain is QQ:
         scale, poly = poly.clear_denoms()
