@@ -51,7 +51,8 @@ def load_certificate(path: Path) -> Data:
     """
     if path.suffix in (".c", ".h", ".o"):
         raise CertificateError(
-            f"{path}: expected a certificate, got another file; the certificate of this one is {path.stem}.cert.json"
+            f"{path}: expected a certificate, got another kind of file; write the path of its "
+            f"certificate, {path.stem}.cert.json"
         )
     try:
         content = read_input(path, LARGEST)
@@ -74,14 +75,16 @@ def load_certificate(path: Path) -> Data:
             )
     unknown = sorted(set(data) - set(PARTS))
     if unknown:
-        raise CertificateError(f"{path}: expected no section but those of a certificate, got {unknown[0]!r}")
+        raise CertificateError(
+            f"{path}: expected only the sections that symrot writes into a certificate, got {unknown[0]!r}"
+        )
     return data
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> Data:
     data = dict(pairs)
     if len(data) != len(pairs):
-        raise ValueError("one object has the same name twice")
+        raise ValueError("expected different names in an object, got one name twice")
     return data
 
 
@@ -214,4 +217,6 @@ def _check_readback(data: Data, source: str) -> None:
         }
         for what, holds in checks.items():
             if not holds:
-                raise CertificateError(f"{where}: expected the {what} of the operations of {name}, got others")
+                raise CertificateError(
+                    f"{where}: expected the {what} that follows from the operations of {name}, got another"
+                )

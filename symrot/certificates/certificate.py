@@ -220,7 +220,9 @@ def _readback(kernel: KernelUnderTest, suffix: str, real: str) -> Data:
     text = kernel.files[file]
     one, batch = read_kernel(text, name, file), read_batch(text, f"{name}_batch", file)
     if one.digest() != batch.digest():
-        raise CertificateError(f"{file}: expected {name} and {name}_batch to compute the same, and they do not")
+        raise CertificateError(
+            f"{file}: expected {name} and {name}_batch to perform the same operations, got different ones"
+        )
     symbols = {place: symbol for place, (symbol, _) in kernel.places.items()}
     proof = prove_equal(
         one, symbols, {place: f for place, (_, f) in kernel.formulas.items()}, kernel.named, kernel.parameters

@@ -139,7 +139,9 @@ class Evaluator:
                 if re.match("symrot_(?:(sin|cos)f?$|near_(?!arc_))", name):
                     self.near.add(values[0])
                 return self.call(self.calls[name] if self.real else name, *values)
-        raise ValueError(f"expected a formula of kernels, got {ast.unparse(node)[:60]}")
+        raise ValueError(
+            f"expected sums, products, powers and functions such as sin in a formula, got {ast.unparse(node)[:60]}"
+        )
 
     def call(self, name, *values):
         """Return the value of a function, such as ``"sin"``, at the values of its arguments."""
@@ -162,12 +164,14 @@ class Evaluator:
             match = require(STATEMENT.fullmatch(statement), f"expected a statement, got {statement[:60]!r}")
             real, name, formula, target, assigned, returned = match.groups()
             if returned:
-                require(place == len(statements), "expected nothing after return")
+                require(
+                    place == len(statements), "expected the end of the function after return, got another statement"
+                )
                 return self.read(CHOICE.sub(r"(\4) if (\1) \2 (\3) else (\5)", returned))
             if name:
                 require(
                     real == self.real and name not in (*self.names, *self.calls, "n", "k"),
-                    f"expected a new name, got {name}",
+                    f"expected a name that is not yet used, got {name}",
                 )
                 self.names[name] = self.read(formula)
             if target:
@@ -199,7 +203,10 @@ class KernelCheck:
             {*self.spec["parameters"]} == parameters,
             "expected the same parameters in the formulas and among the inputs",
         )
-        require(all(symbol.isidentifier() for _, symbol, _ in data["inputs"]), "expected inputs that are names")
+        require(
+            all(symbol.isidentifier() for _, symbol, _ in data["inputs"]),
+            "expected the name of a variable for each input, got other text",
+        )
         require(
             len({*inputs.values(), "pi"}) == len(data["inputs"]) + 1,
             "expected inputs that differ from each other and from pi",
@@ -216,7 +223,8 @@ class KernelCheck:
         written, exact = Fraction(pair[0]), Fraction(pair[1].removesuffix("*pi"))
         times_pi = pair[1].endswith("*pi")
         require(
-            nearest(exact * PI if times_pi else exact, self.real) == written, f"{written} does not stand for {pair[1]}"
+            nearest(exact * PI if times_pi else exact, self.real) == written,
+            f"expected the constant nearest to {pair[1]}, got {written}",
         )
         return written, exact * self.symbols["pi"] if times_pi else exact
 
@@ -226,7 +234,7 @@ class KernelCheck:
         computed = reader.run(body, places, targets)
         require(
             reader.near <= set(map(reader.read, near)),
-            f"{self.name} calls a function of limited range for an untested angle",
+            f"{self.name} calls a function of limited range for an angle that the C text does not test",
         )
         return computed
 
@@ -241,14 +249,20 @@ class KernelCheck:
             bases[base] = 0 if own == [base] else len(own)
             require(
                 own in ([base], [f"{base}[{k}]" for k in range(len(own))]),
-                f"expected the places of one argument, numbered from 0, got {', '.join(own)}",
+                f"expected the components of one argument, such as q[0], q[1], numbered from 0, got {', '.join(own)}",
             )
         typed = {base: "const " * (f"{base}[0]" not in self.outputs) + self.real for base in bases}
         one = [f"{typed[base]} {base}[{size}]" if size else f"{self.real} {base}" for base, size in bases.items()]
         many = [one[k] if base == "p" else f"{typed[base]} *SYMROT_RESTRICT {base}" for k, base in enumerate(bases)]
-        require(self.c_functions[self.name][1:3] == ("void", ", ".join(one)), f"{self.name} has other arguments")
+        require(
+            self.c_functions[self.name][1:3] == ("void", ", ".join(one)),
+            f"{self.name} has other arguments than expected: the inputs and outputs of the certificate",
+        )
         _, kind, arguments, loops = self.c_functions[f"{self.name}_batch"]
-        require((kind, arguments) == ("void", ", ".join(["size_t n", *many])), f"{self.name}_batch has other arguments")
+        require(
+            (kind, arguments) == ("void", ", ".join(["size_t n", *many])),
+            f"{self.name}_batch has other arguments than expected: the inputs and outputs of the certificate",
+        )
 
         def of_sample(place):
             base, _, index = place.partition("[")
@@ -261,13 +275,13 @@ class KernelCheck:
         if loop := LOOP.fullmatch(loops) or PARTS.fullmatch(loops):
             return self.compare(loop.groups(), batch, map(of_sample, self.outputs))
         bits, first, far, again = require(
-            BLOCKS.fullmatch(loops), f"{self.name}_batch is not a loop over all samples"
+            BLOCKS.fullmatch(loops), f"{self.name}_batch does not have the expected loop over all samples"
         ).groups()
         tested = re.findall(rf"symrot_far{self.end}\(((?:[^()]|\([^()]*\))*)\)", far)
         holds = far == " + ".join(f"symrot_far{self.end}({each})" for each in tested)
         require(
             holds and bits == {"double": "64", "float": "32"}[self.real],
-            f"{far} is not the test of the range of angles",
+            f"{far} does not test every angle as expected",
         )
         self.compare([first], batch, map(of_sample, self.outputs), tested)
         self.compare([again], batch, map(of_sample, self.outputs))
@@ -278,7 +292,10 @@ class KernelCheck:
         for body in bodies:
             computed |= self.run(body, places, [target for target in targets if target not in computed], near)
         for target, (place, expected) in zip(targets, self.outputs.items()):
-            require(target in computed and computed[target] == expected, f"{place} of {self.name} is not its formula")
+            require(
+                target in computed and computed[target] == expected,
+                f"{place} of {self.name} does not have the value of its formula, as expected",
+            )
 
     def check_own(self, function, bare):
         """Check a helper function of the C file: it must compute its formula, or near zero a close enough series."""
@@ -290,7 +307,7 @@ class KernelCheck:
             falling = [abs(each) * Fraction(split) ** k for k, each in enumerate(taylor)]
             holds = sorted(falling, reverse=True) == falling and [*map(Fraction, coefficients)] == taylor[:-1]
             holds = holds and Fraction(rest) == falling[-1] / (falling[0] - falling[1])
-            require(holds, f"the series of {bare}, or its bound, is wrong")
+            require(holds, f"the series of {bare}, or the bound of its error, is not the expected one")
             series = [f"({nearest(each, self.real)})*x**{2 * k}" for k, each in enumerate(taylor[:-1])]
             case = case.format(series=" + ".join(series), split=split)
         names = [argument.removeprefix(f"{self.real} ") for argument in arguments.split(", ")]
@@ -332,7 +349,10 @@ def prove(law, case, formulas):
         Evaluator(RandomIntegers(), RandomIntegers(), cases={}),
     )
     relations, roots = hypotheses([*map(reader.read, law["given"])]), set()
-    require(not any(hypotheses([*map(there.read, law["given"])])), "the hypotheses do not hold at the witness")
+    require(
+        not any(hypotheses([*map(there.read, law["given"])])),
+        "expected the hypotheses of the law to hold at its witness (a stored point), but they do not",
+    )
 
     def combined(value, factor, cofactors):
         holds = abs(there.read(factor)) > 1e-6 and all(abs(there.read(text)) < 1e6 for _, text in cofactors)
@@ -347,7 +367,10 @@ def prove(law, case, formulas):
     for kind, first, *rest in case["steps"]:
         second = rest[0] if rest else ""
         if kind == "name":
-            require(re.fullmatch(r"g\d+_", first) and first not in witness, f"expected a new name, got {first}")
+            require(
+                re.fullmatch(r"g\d+_", first) and first not in witness,
+                f"expected a name that is not yet used, got {first}",
+            )
             reader.names[first], witness[first] = reader.read(second), there.read(second)
             match reader.parsed(second):
                 case ast.Call(func=ast.Name(id="sqrt")):
@@ -357,11 +380,15 @@ def prove(law, case, formulas):
                 case ast.Call(func=ast.Name(id="sin" | "cos" | "atan2" | "copysign")):
                     pass
                 case _:
-                    raise ValueError(f"expected a function that {first} stands for")
+                    raise ValueError(
+                        f"expected the function call that the new variable {first} stands for, got another formula"
+                    )
         elif kind == "square":
             square, value = map(reader.read, (first, second))
             holds = never_negative(second) and combined(square - value**2, *rest[1:])
-            reader.functions["sqrt", square] = require(holds, f"{second} is not the root of {first}") and value
+            reader.functions["sqrt", square] = (
+                require(holds, f"expected {second} to be the square root of {first}, but its square differs") and value
+            )
         else:
             fill = (RELATIONS | FACTS)[kind].replace("WRAPPED", WRAPPED)
             arguments = {"X": f"({first})", "Y": f"({second})"}
@@ -372,18 +399,21 @@ def prove(law, case, formulas):
                 reader.functions[node.func.id, *map(reader.value, node.args)] = reader.read(right)
     require(
         relations == [*map(reader.read, case["relations"])],
-        "the relations of a proof are not those that its steps make",
+        "expected the relations that follow from the steps of a proof, got others",
     )
     reader.cases = {(reader.read(left), reader.read(right)): sign for left, sign, right in case["case"]}
     for name, text in formulas:
-        require(name not in reader.names and name.isidentifier(), f"expected a new name, got {name}")
+        require(name not in reader.names and name.isidentifier(), f"expected a name that is not yet used, got {name}")
         reader.names[name] = reader.read(text)
     require(
         len(case["entries"]) == len(law["vanishing"]),
-        f"the proof of the law {law['law']!r} has another number of entries than the law",
+        f"expected a proof for each expression of the law {law['law']!r}, got more or fewer",
     )
     for text, entry in zip(law["vanishing"], case["entries"]):
-        require(combined(reader.read(text), *entry), f"the law {law['law']!r} does not follow")
+        require(
+            combined(reader.read(text), *entry),
+            f"the law {law['law']!r} does not follow from the formulas as expected: its stored proof is wrong",
+        )
 
 
 def complete(cases):
@@ -431,7 +461,10 @@ def check(path):
         KernelCheck(function, data, c_functions).check()
     formulas = [*spec["named"], *(item[1:] for item in spec["formulas"])]
     for law in require(data["laws"], "expected laws, got none"):
-        require(complete([case["case"] for case in law["cases"]]), f"cases of the law {law['law']!r} are missing")
+        require(
+            complete([case["case"] for case in law["cases"]]),
+            f"expected a proof of the law {law['law']!r} for both branches of every conditional, got fewer cases",
+        )
         for case in law["cases"]:
             prove(law, case, formulas)
     checked = " and ".join(readback)

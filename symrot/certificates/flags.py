@@ -196,7 +196,7 @@ def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
         raise InputError(f"flags: expected words as a shell reads them, got {flags!r} ({reason})") from None
     if not words:
         raise InputError(
-            "flags: expected the flags of a compiler, such as 'gcc -O2 -ffp-contract=off', got an empty text"
+            "flags: expected a compiler command or its flags, such as 'gcc -O2 -ffp-contract=off', got an empty text"
         )
     compiler, place = _compiler(words)
     switched: dict[str, str] = {}  # property that is on -> the flag that switched it on
@@ -242,7 +242,7 @@ def _compiler(words: Sequence[str]) -> tuple[str, int]:
 def _check_file(word: str) -> None:
     """Raise InputError if a word of a compiler command is neither a flag nor the name of a file."""
     if not _FILE.fullmatch(word):
-        raise InputError(f"flags: expected flags and names of files such as kernel.c, got {word[:80]!r}")
+        raise InputError(f"flags: expected flags (-O2) and names of files (kernel.c), got {word[:80]!r}")
 
 
 def _rule(flag: str) -> FlagRule:

@@ -372,7 +372,7 @@ class Names(dict):
         return value
 
     def define(self, name, value):
-        need(name not in self, f"{name} is no new name: expected a name that nothing above it uses")
+        need(name not in self, f"{name} is already in use: expected a name that nothing above it uses")
         self[name] = value
 
 
@@ -383,7 +383,7 @@ def at_a_point(compute):
             return compute()
         except ArithmeticError:
             continue
-    raise ValueError("expected formulas that are defined somewhere, got none of 200 random points where they are")
+    raise ValueError("expected formulas that are defined somewhere, but they are undefined at 200 random points")
 
 
 # --- tokens and expressions as text -----------------------------------------------------------------------------------
@@ -528,7 +528,10 @@ class Reader:
         return Choice(self.choices[name], *arguments) if name in self.choices else Call(self.base(name), arguments)
 
     def check_weight(self):
-        self.need(self.weight <= LONGEST_TEXT, f"expected at most {LONGEST_TEXT} words with those of functions")
+        self.need(
+            self.weight <= LONGEST_TEXT,
+            f"expected at most {LONGEST_TEXT} words, including those of called functions, got more",
+        )
 
 
 class FormulaReader(Reader):
@@ -565,7 +568,7 @@ class FormulaReader(Reader):
         if not self.accept("**"):
             return operand
         inner, sign = self.accept("("), -1 if self.accept("-") else 1
-        self.need(re.fullmatch(r"\d\d?", self.token.text), "expected an exponent of at most two digits")
+        self.need(re.fullmatch(r"\d\d?", self.token.text), "expected an exponent of one or two digits, got another")
         exponent = sign * int(self.advance())
         if inner and self.accept("/"):
             self.take("2")
@@ -647,7 +650,7 @@ def without_comments(text, file):
     while (opened := text.find("/*", start)) >= 0:
         closed = text.find("*/", opened + 2)
         comment = text[opened + 2 : closed]
-        need(closed >= 0 and "/*" not in comment, f"{file}: expected comments that end once, without one inside")
+        need(closed >= 0 and "/*" not in comment, f"{file}: expected comments that end, without another comment inside")
         pieces += [text[start:opened], " ", "\n" * comment.count("\n")]
         start = closed + 2
     return "".join([*pieces, text[start:]])
@@ -764,7 +767,7 @@ class CReader(Reader):
             known.append({f + end for f in (*C_FUNCTIONS, *VECTOR_FUNCTIONS, *VECTOR_CHOICES)})
         self.need(
             not any(name in each for each in known),
-            f"{name} is no new name: expected {what} that means nothing yet",
+            f"{name} is already in use: expected {what} that has no meaning yet",
         )
         return name
 
@@ -971,7 +974,7 @@ def check_shape(value, shape, place):
 def content(path):
     """Return the bytes of a file; refuse a file that is not regular, or is larger than any file of a kernel can be."""
     small = path.is_file() and path.stat().st_size <= LARGEST_FILE
-    need(small, f"{path.name} is no file of at most {LARGEST_FILE} bytes: expected one of the kernel")
+    need(small, f"{path.name} is not a regular file of at most {LARGEST_FILE} bytes: expected a file of the kernel")
     return path.read_bytes()
 
 
@@ -1012,18 +1015,25 @@ def certified(path):
     text = json.dumps(sealed, sort_keys=True, separators=(",", ":"))
     seal = sha256(text.encode()).hexdigest() == data["seal"]
     known = data["schema"] == "symrot.certificate/1"
-    need(seal and known, "the schema is another, or the text that was sealed: expected symrot.certificate/1 as sealed")
+    need(
+        seal and known,
+        "the text was changed after it was sealed, or has another schema: expected "
+        "symrot.certificate/1 with a valid seal",
+    )
     name, files = data["kernel"], data["files"]
     right = re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII) and path.name == f"{name}.cert.json"
     need(
         right and {f"{name}.c", f"{name}.h"} <= {*files},
-        f"it is that of another file: expected the kernel of {path.name}, with its C file and header",
+        f"the certificate belongs to another file: expected the kernel of {path.name}, with its C file and header",
     )
     for file, digest in files.items():
-        need(re.fullmatch(r"(\.\./){0,2}(\w+/)*\w+\.\w+", file, re.ASCII), f"{quoted(file)} is no file of a kernel")
+        need(
+            re.fullmatch(r"(\.\./){0,2}(\w+/)*\w+\.\w+", file, re.ASCII),
+            f"{quoted(file)} is not the path of a kernel's file: expected a path such as NAME.c",
+        )
         if "/" not in file or (path.parent / file).exists():
             right = sha256(content(path.parent / file)).hexdigest() == digest
-            need(right, f"{file} is not what was certified")
+            need(right, f"{file} was changed: expected the text with the hash in the certificate")
     return sealed
 
 
@@ -1041,7 +1051,7 @@ def defined_functions(definitions):
     functions = {}
     for name, text in definitions:
         new = is_name(name) and name not in functions
-        need(new, f"{quoted(name)} is no new function: expected a name that means nothing yet")
+        need(new, f"{quoted(name)} is already in use: expected a name without a meaning for a function")
         parameters = [letter for letter in "xyzw" if re.search(rf"\b{letter}\b", text)]
         need(parameters and parameters == [*"xyzw"][: len(parameters)], f"{name}: expected a function of x, or of x, y")
         reader = FormulaReader(text, f"function {name}", functions, ("pi", *parameters))
@@ -1063,10 +1073,10 @@ class Specification:
             all(is_name(symbol) and symbol not in functions for symbol in symbols)
             and len({*symbols}) == len(symbols)
             and len({*places}) == len(places),
-            "an input is no name, or two are one: expected a name of its own for each input, and a place",
+            "an input has no valid name, or two inputs have the same: expected a name and an index text for each",
         )
         slots = {symbol for place, symbol, _ in data["inputs"] + spec["formulas"] if place.startswith("p[")}
-        need(slots == {*spec["parameters"]}, "p is another: expected the inputs p[0], p[1], .. to be the parameters")
+        need(slots == {*spec["parameters"]}, "the parameters differ from the inputs p[0], p[1], ..: expected the same")
         self.inputs = []  # of (place, expression): a symbol, or a parameter by its formula
         for place, symbol in self.symbols.items():
             text = spec["parameters"].get(symbol, symbol)
@@ -1195,7 +1205,7 @@ def constants_of(readback, real):
     for written, exact in pairs:
         number = NEAREST[real](float(written)).value
         right = NEAREST[real](float(exact)).value == number and exact * 2**20 % 1
-        need(right, f"a constant is another number: expected the {real} nearest to {float(exact)!r}, got {number!r}")
+        need(right, f"a constant is wrong: expected the {real} nearest to {float(exact)!r}, got {number!r}")
         constants[number] = exact
     return constants
 
@@ -1262,7 +1272,7 @@ def exact_point(specification):
     inputs = specification.set_values(names)
     need(
         len({names["pi"], *inputs.values()}) == len(inputs) + 1,
-        "an input is no name, or two are one: expected inputs of different values",
+        "two inputs have the same name, or one is pi: expected a different name for each",
     )
     outputs = {component_of(place): names[symbol] for place, symbol in specification.outputs}
     return ExactPoint(names.numbers, by_component(inputs), outputs)
@@ -1276,7 +1286,7 @@ def check_formulas(name, kernel, data, point):
     """
     need(
         kernel.parameters == expected_parameters(data, kernel.shape != "one sample"),
-        f"arguments or loops of {name} are others: expected the inputs and outputs of the certificate, in their order",
+        f"arguments or loops of {name} differ: expected the inputs and outputs of the certificate, in their order",
     )
     numbers, expected = point.numbers, point.outputs
     computed = {}
@@ -1285,18 +1295,28 @@ def check_formulas(name, kernel, data, point):
         outputs, far = run(body, numbers, point.inputs)
         need(
             numbers.near_angles <= far,
-            f"functions of {name} take angles beyond their range: expected symrot_far of each in a first loop",
+            f"{name} does not test all angles for their range: expected symrot_far of each angle in a first loop",
         )
         for place, value in outputs.items():
             right = place in expected and value == expected[place]
-            need(right, f"{name} is not its formulas: expected {place[0]}[{place[1]}] to be that of the certificate")
+            need(
+                right,
+                f"{name} does not compute its formulas: expected {place[0]}[{place[1]}] to have the "
+                "value of the certificate's formula",
+            )
         if kernel.shape == "spans":
-            need(not computed.keys() & outputs.keys(), f"{name} is not its formulas: expected each output in one loop")
+            need(
+                not computed.keys() & outputs.keys(),
+                f"{name} does not compute its formulas: expected each output in one loop",
+            )
             computed |= outputs
         else:
             computed = outputs
-            need(computed.keys() == expected.keys(), f"{name} is not its formulas: expected all outputs in each loop")
-    need(computed.keys() == expected.keys(), f"{name} is not its formulas: expected all outputs")
+            need(
+                computed.keys() == expected.keys(),
+                f"{name} does not compute its formulas: expected all outputs in each loop",
+            )
+    need(computed.keys() == expected.keys(), f"{name} does not compute its formulas: expected all outputs")
 
 
 # --- rounding errors --------------------------------------------------------------------------------------------------
@@ -1366,7 +1386,8 @@ def check_rounding(name, kernel, point):
             right = math.isfinite(value) and abs(Decimal(value) - point.exact[place]) <= bound
             need(
                 right,
-                f"{name} is rounded by more than its bounds: expected at most {bound:.3} in {place[0]}[{place[1]}]",
+                f"{name} has a larger rounding error than its bound: expected at most {bound:.3} in "
+                f"{place[0]}[{place[1]}]",
             )
 
 
@@ -1491,7 +1512,7 @@ def check_files(path):
     name, files, readback = data["kernel"], data["files"], data["readback"]
     need(
         files.get("symrot_math.h", MATH_HEADER_SHA256) == MATH_HEADER_SHA256,
-        "symrot_math.h is another: expected that of symrot",
+        "symrot_math.h was changed: expected the text that symrot emits",
     )
     need(data["laws"], "there are no laws: expected at least one")
     text, header = text_of(path.with_name(f"{name}.c")), text_of(path.with_name(f"{name}.h"))
@@ -1501,7 +1522,7 @@ def check_files(path):
     expected = {function + end for function in readback for end in ("", "_batch")}
     need(
         readback and kernels.keys() == expected,
-        f"functions are others: expected {', '.join(sorted(expected))} in {name}.c",
+        f"the functions differ: expected {', '.join(sorted(expected))} in {name}.c",
     )
     check_header(name, header, kernels)
     specification = Specification(data, defined_functions(data["spec"]["functions"]))
@@ -1523,9 +1544,9 @@ def check(path):
     except (ValueError, OSError):
         raise
     except RecursionError:
-        raise ValueError("expected texts of usual depth, got parentheses or calls nested too deeply") from None
+        raise ValueError("expected fewer nested parentheses and calls, got too many") from None
     except (ArithmeticError, MemoryError) as reason:
-        raise ValueError(f"expected numbers of usual size, got others ({reason!r})") from None
+        raise ValueError(f"expected numbers within the range of a double, got others ({reason!r})") from None
 
 
 def main(paths):

@@ -66,4 +66,7 @@ def spend_ring() -> None:
         return
     budget.left -= 1
     if budget.left < 0:
-        raise TooLarge(f"nested functions need more than {MOST_RINGS} readings of parts of the formula; split it")
+        raise TooLarge(
+            f"expected a formula that needs at most {MOST_RINGS} conversions of nested parts to "
+            "polynomials, got more; split it"
+        )

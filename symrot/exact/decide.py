@@ -150,7 +150,7 @@ class _FormulaCase(Case):
             return Decision("true", self.conditions)
         nowhere = next((need for need in needs_of(self.sides) if fails_everywhere(need)), None)
         if nowhere is not None:
-            raise InputError(f"the sides are real numbers nowhere: {nowhere} does not hold at any real point")
+            raise InputError(f"expected sides that are real numbers somewhere, but {nowhere} holds at no real point")
         nonzero = [Need(condition.lhs, "!= 0") for condition in self.conditions if isinstance(condition, Ne)]
         if known_point([*(need for need in needs if need.sign != "real"), *nonzero]) is None:
             return Decision("undecided", self.conditions, stopped_by=tuple(need.formula for need in needs))

@@ -82,7 +82,7 @@ class _Reader:
         return token
 
     def argument(self) -> Node:
-        """Read the argument of a command: a group in braces, a single item, or one digit, as LaTeX does."""
+        """Read the argument of a command: a group in braces, a single item, or one digit of a number, as LaTeX does."""
         while self.tokens[self.place].kind == "space":
             self.place += 1
         token = self.tokens[self.place]

@@ -18,9 +18,9 @@ FREE = frozenset({"neg"})  # a minus sign counts as part of its addition or mult
 
 
 def _operations(structure: Structure) -> Counter[str]:
-    """Return the numbers of operations, by kind, in one evaluation of a kernel's rates, given its ``structure``.
+    """Return the numbers of operations, by kind, in one evaluation of the equations of motion.
 
-    The structure lists symmetry, constraints and states of the scene.
+    ``structure`` describes the body and its torques: symmetry, parameters and states.
     """
     from symrot.codegen.scene_kernels import rates_program
     from symrot.dynamics.equations import equations_of_motion

@@ -43,7 +43,9 @@ UNDATED: dict[str, dict[str, Any]] = {
 def require_matplotlib() -> None:
     """Raise InputError if matplotlib is missing."""
     if find_spec("matplotlib") is None:
-        raise InputError("--plot: expected matplotlib, which is not installed: pip install 'symrot[plot]'")
+        raise InputError(
+            "--plot: expected matplotlib, but it is not installed; install it with pip install 'symrot[plot]'"
+        )
 
 
 def _times(trajectory: Any) -> tuple[Floats, str]:

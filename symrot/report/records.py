@@ -80,7 +80,7 @@ class CostRecord(TypedDict):
 
 
 class SwitchingRecord(TypedDict):
-    """A time (s) at which a function jumps or has a kink, see :class:`symrot.propagation.steppers.stepping.Switching`."""
+    """A time (s) of a jump or kink of a function, see :class:`symrot.propagation.steppers.stepping.Switching`."""
 
     t: float
     function: str
@@ -99,7 +99,7 @@ class InvariantRecord(TypedDict):
 
 
 class LostRecord(TypedDict):
-    """A quantity that this motion does not conserve, although others do, and the reason."""
+    """A candidate for a conserved quantity, such as a momentum component, that this motion does not conserve."""
 
     name: str
     unit: str

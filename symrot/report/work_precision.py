@@ -128,7 +128,9 @@ def read_study(path: Path) -> dict[str, Any]:
     except (KeyError, TypeError, AttributeError, ValueError, IndexError, OverflowError):
         whole = False
     if not whole:
-        raise InputError(f"{label}: expected a whole study of `symrot bench`, got one with parts missing or impossible")
+        raise InputError(
+            f"{label}: expected a whole study of `symrot bench`, got one with missing parts or impossible numbers"
+        )
     return study
 
 
@@ -150,10 +152,11 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
     """
     names = [study["scene"]["name"] for study in (first, second)]
     if names[0] != names[1]:
-        raise InputError(f"--compare: expected two studies of one scene, got {names[0]!r} and {names[1]!r}")
+        raise InputError(f"--compare: expected two studies of the same scene, got {names[0]!r} and {names[1]!r}")
     if len({study["scene"].get("digest") for study in (first, second)}) > 1:
         raise InputError(
-            f"--compare: expected two studies of one scene, got two motions that are both named {names[0]!r}"
+            "--compare: expected two studies of the same scene, got two different motions with the "
+            f"same name {names[0]!r}"
         )
     before = {row["error"]: row["methods"] for row in first["decades"]}
     methods: dict[str, Any] = {}
@@ -164,7 +167,9 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
                 methods.setdefault(name, {})[f"{row['error']:.0e}"] = now["seconds"] / then["seconds"]
     floors = [_least_errors(study) for study in (first, second)]
     if not methods:
-        raise InputError("--compare: expected studies with a method and a decade of the error in common, got none")
+        raise InputError(
+            "--compare: expected two studies with a common method and a common decade of the error, got none in common"
+        )
     return {
         "format": "symrot comparison 1",
         "scene": second["scene"],

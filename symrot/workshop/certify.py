@@ -209,7 +209,7 @@ def certify(
     if objects:
         object_code.require_compiler()
     if ranges and not bounds:
-        raise InputError(f"--box: expected a box alone, got {ranges[0]!r} with --no-bounds too; leave out --no-bounds")
+        raise InputError(f"--box: expected --box or --no-bounds, got both ({ranges[0]!r}); leave out one of them")
     rounding = None
     if bounds and (ranges or name in kernel_names()):
         progress("bounding ..")

@@ -97,7 +97,10 @@ def check_kernel(kernel: str, seconds: float = SECONDS) -> CoqResult:
     """
     section = coq_section(kernel)
     if section is None:
-        raise CertificateError(f"{kernel}: expected a kernel with a theorem in Coq; `symrot prove` lists them")
+        raise CertificateError(
+            f"{kernel}: expected the name of a kernel about which there is a Coq theorem; `symrot "
+            "prove` lists these kernels"
+        )
     name = str(section["file"]).removesuffix(".v")
     return check_texts(coq_texts((name,)), seconds=seconds)
 
@@ -179,7 +182,7 @@ def _levels(sources: Mapping[str, str]) -> list[list[str]]:
         ready = [name for name, text in left.items() if _required(text) & sources.keys() <= done]
         if not ready:
             raise CertificateError(
-                f"expected files of theorems that do not require each other in a circle, got {', '.join(left)}"
+                f"expected Coq files that do not require each other in a circle, got {', '.join(left)}"
             )
         levels.append(ready)
         done |= set(ready)

@@ -61,7 +61,7 @@ def coq_file(name: str) -> CoqFile:
         If there is no file of that name.
     """
     if name not in _FILES:
-        raise InputError(f"expected the name of a file of theorems, such as euler_zxz, got {name!r}")
+        raise InputError(f"expected the name of a Coq file of theorems, such as euler_zxz, got {name!r}")
     _, make = _FILES[name]
     return make()
 

@@ -46,7 +46,9 @@ def _print(expression: Expr) -> tuple[str, int]:
         return _power(expression)
     if expression.func in _FUNCTIONS:
         return f"{_FUNCTIONS[expression.func]} {_within(expression.args[0], _ATOM)}", _POWER
-    raise CertificateError(f"expected a rational function of variables, sines, cosines and roots, got {expression}")
+    raise CertificateError(
+        f"expected a formula of sums, products, quotients, sines, cosines and square roots, got {expression}"
+    )
 
 
 def _within(expression: Expr, least: int) -> str:
@@ -92,7 +94,7 @@ def _power(expression: Pow) -> tuple[str, int]:
         return f"1 / {_within(base**-exponent, _POWER)}", _PRODUCT
     if isinstance(exponent, Integer):
         return f"{_within(base, _ATOM)} ^ {exponent}", _POWER
-    raise CertificateError(f"expected a whole power or a square root, got {expression}")
+    raise CertificateError(f"expected an integer power or a square root, got {expression}")
 
 
 def folded(text: str, indent: int = 0) -> str:

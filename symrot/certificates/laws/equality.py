@@ -69,7 +69,9 @@ class _AtomField(FractionField):
         key = (function, arguments)
         if key not in self.atoms:
             if len(self.atoms) == MOST_ATOMS:
-                raise CertificateError(f"expected a kernel with at most {MOST_ATOMS} different function values")
+                raise CertificateError(
+                    f"expected a kernel with at most {MOST_ATOMS} different function values such as sin(x), got more"
+                )
             self.atoms[key] = f"atom_{len(self.atoms)}"
         return self.generator(self.atoms[key])
 
@@ -153,7 +155,10 @@ class _EqualityProver:
         if node[0] == "const":
             return {index}
         if node[0] not in ("add", "mul"):
-            raise CertificateError(f"{self.operations.name}: expected a polynomial where a series is summed")
+            raise CertificateError(
+                f"{self.operations.name}: expected a polynomial in the branch of a conditional that "
+                "holds a series, got another formula"
+            )
         return {index} | self._below(node[1], leaf) | self._below(node[2], leaf)
 
     def _value(self, node: tuple[Any, ...]) -> Quotient:
@@ -202,7 +207,8 @@ class _EqualityProver:
                     ):
                         return self.fractions.generator(atom)
         raise CertificateError(
-            f"{self.operations.name}: expected a choice that the formula makes too, got one by {relation!r}"
+            f"{self.operations.name}: expected a conditional that the formula contains too, got one "
+            f"with the relation {relation!r}"
         )
 
     def _is_limit_or_formula(
@@ -226,7 +232,10 @@ class _EqualityProver:
             if kind == "const":
                 self.truncations.append(self._truncated(name, limit, self._coefficients(near, square)))
                 return self.fractions.generator(atom)
-        raise CertificateError(f"{self.operations.name}: expected the series of a function of the formula")
+        raise CertificateError(
+            f"{self.operations.name}: expected a series that belongs to a function of the formula, got "
+            "another polynomial"
+        )
 
     def _coefficients(self, index: int, leaf: int) -> list[Fraction]:
         """Return the coefficients of a polynomial in the value of the node ``leaf``, the constant term first."""
@@ -254,7 +263,8 @@ class _EqualityProver:
         terms = [abs(a) * split**k for k, a in enumerate(exact)]
         if sorted(terms, reverse=True) != terms or any(a * b >= 0 for a, b in pairwise(exact)):
             raise CertificateError(
-                f"{self.operations.name}: expected a series with decreasing terms up to x^2 = {split}"
+                f"{self.operations.name}: expected a series whose terms decrease up to x^2 = {split}, "
+                "got one whose terms do not"
             )
         return Truncation(name, split, len(written), terms[-1] / (terms[0] - terms[1]))
 

@@ -42,7 +42,8 @@ class FractionField:
         """Return ``above/below`` in lowest terms; the denominator is scaled to the leading coefficient 1."""
         if not below:
             raise CertificateError(
-                f"{self.name}: expected a formula that is defined at some point, got one that divides by zero"
+                f"{self.name}: expected a formula that is defined somewhere, got one that divides by "
+                "an expression that is zero everywhere"
             )
         if not below.is_ground:
             above, below = above.cancel(below)

@@ -165,7 +165,9 @@ class LawProver(FormulaReader):
             return self.read(expr.args[2 if self.takes_first_branch(expr) else 3])
         plain = explicit(expr)
         if plain == expr:
-            raise CertificateError(f"{self.name}: expected functions of kernels in a law, got {name}")
+            raise CertificateError(
+                f"{self.name}: expected functions that kernels use, such as sin, in a law, got {name}"
+            )
         return self.read(plain)
 
     def takes_first_branch(self, choice: Expr) -> bool:
@@ -203,7 +205,9 @@ class LawProver(FormulaReader):
                 factor = square[1] * value[1] ** 2
                 cofactors = self.cofactors(square[0] * value[1] ** 2 - value[0] ** 2 * square[1])
                 if cofactors is None:
-                    raise CertificateError(f"{self.name}: expected the square of a root to equal its radicand")
+                    raise CertificateError(
+                        f"{self.name}: expected the square of a root to equal its radicand, but it differs"
+                    )
                 self.step("square", quotient_text(square), quotient_text(value), str(factor), cofactors)
         return self.roots[square]
 
@@ -282,7 +286,9 @@ class LawProver(FormulaReader):
         """Return cosine and sine of an angle, which must be a sum of integer multiples of base angles and of pi/2."""
         above, below = angle
         if below != 1:
-            raise CertificateError(f"{self.name}: expected a sum of angles under a sine, got {quotient_text(angle)}")
+            raise CertificateError(
+                f"{self.name}: expected a sum of angles as the argument of a sine or cosine, got {quotient_text(angle)}"
+            )
         right_angles, angle_so_far, result = (
             Fraction(0),
             self.ring.zero,
@@ -294,7 +300,9 @@ class LawProver(FormulaReader):
                 Fraction(int(coefficient.numerator), int(coefficient.denominator)),
             )
             if unit == 1:
-                raise CertificateError(f"{self.name}: expected a sine of angles and multiples of pi alone, got {above}")
+                raise CertificateError(
+                    f"{self.name}: expected angles and multiples of pi as the argument of a sine or cosine, got {above}"
+                )
             if unit == self.fractions.generators["pi"]:
                 right_angles = 2 * multiple
                 continue
@@ -303,7 +311,10 @@ class LawProver(FormulaReader):
                 self.step("sum", str(angle_so_far), str(coefficient * unit))
             angle_so_far, result = angle_so_far + coefficient * unit, self._sum_of_angles(result, pair)
         if right_angles.denominator != 1:
-            raise CertificateError(f"{self.name}: expected a sine of angles plus whole right angles, got {above}")
+            raise CertificateError(
+                f"{self.name}: expected angles and integer multiples of pi/2 as the argument of a sine "
+                f"or cosine, got {above}"
+            )
         for _ in range(abs(int(right_angles))):
             direction = 1 if right_angles > 0 else -1
             self.step("quarter" if direction > 0 else "quarter back", str(angle_so_far))
@@ -339,7 +350,10 @@ class LawProver(FormulaReader):
         """
         if unit in self.angle_functions and unit in self.arcs.values():
             if coefficient.denominator != 1:
-                raise CertificateError(f"{self.name}: expected whole multiples of an arc tangent under a sine")
+                raise CertificateError(
+                    f"{self.name}: expected integer multiples of an arc tangent as the argument of a "
+                    "sine or cosine, got a fraction of one"
+                )
             return Fraction(1)
         known = self.bases.get(str(unit), self.first_coefficients.setdefault(str(unit), abs(coefficient)))
         if (coefficient / known).denominator != 1:

@@ -98,7 +98,9 @@ def compare_object(
     names = tuple(functions) or one_sample_functions(functions_in_text)
     unknown = [name for name in names if name not in functions_in_text]
     if unknown:
-        raise CertificateError(f"{where}: expected a definition of {unknown[0]}, got {', '.join(functions_in_text)}")
+        raise CertificateError(
+            f"{where}: expected a function named {unknown[0]}, got only {', '.join(functions_in_text)}"
+        )
     listing = read_listing(path)
     return tuple(compare_function(read_kernel(text, name, where), functions_in_text[name], listing) for name in names)
 
@@ -150,7 +152,7 @@ def _compare(
                     reason = reason or f"the product {split} is rounded in one place and fused in another"
                     return ObjectVerdict(function.name, DIFFERS, output, reason, cases, instructions)
                 if cases > MAX_CASES:
-                    raise NotUnderstood(f"more than {MAX_CASES} cases of comparisons")
+                    raise NotUnderstood(f"expected at most {MAX_CASES} cases of comparisons, got more")
             worst = CONTRACTED if known is not path.known else worst
     except NotUnderstood as reason:
         return ObjectVerdict(function.name, NOT_UNDERSTOOD, "", str(reason), cases, instructions)
@@ -187,7 +189,7 @@ def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) ->
         name, index = place.removesuffix("]").split("[")
         words = [path.memory.get((name, (int(index) * width + 32 * part) // 8)) for part in range(width // 32)]
         if None in words:
-            raise NotUnderstood(f"a path through the code at whose end {place} is not written")
+            raise NotUnderstood(f"expected every path through the code to write {place}, got one that does not")
         outputs.append(words[0] if width == 32 else terms.join(*(word for word in words if word is not None)))
     return [item for item in outputs if item is not None]
 

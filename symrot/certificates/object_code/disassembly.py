@@ -164,7 +164,7 @@ def read_listing(path: Path) -> Listing:
         raise CertificateError(f"{path}: expected an object file, got an empty one")
     header = _objdump(path, "-f")
     if "In archive " in header:
-        raise CertificateError(f"{where}: expected one object file as `cc -c` makes it, got an archive of them")
+        raise CertificateError(f"{where}: expected one object file as `cc -c` makes it, got an archive of object files")
     format_match = re.search(r"file format (\S+)", header)
     if format_match is None or format_match[1] != FORMAT or "DYNAMIC" in header or "EXEC_P" in header:
         kind = (
@@ -225,10 +225,13 @@ def _constants(path: Path, where: str) -> dict[str, bytes]:
             row = _BYTES.match(dumped)
             if row is not None:
                 if int(row["address"], 16) != len(content):
-                    raise CertificateError(f"{where}: expected the bytes of {name} in order")
+                    raise CertificateError(
+                        f"{where}: expected the bytes of section {name} in increasing order of "
+                        "addresses, got another order from objdump"
+                    )
                 content += bytes.fromhex(row["words"])
         if len(content) != size:
-            raise CertificateError(f"{where}: expected {size} bytes in {name}, objdump shows {len(content)}")
+            raise CertificateError(f"{where}: expected {size} bytes in section {name}, got {len(content)}")
         constants[name] = bytes(content)
     return constants
 
@@ -249,7 +252,7 @@ def _code(text: str, where: str) -> dict[tuple[str, int], Instruction]:
         if row is None and body.strip() and body.strip() != "...":
             alone = _RELOCATION.fullmatch(body)
             if alone is None:
-                raise CertificateError(f"{where}: expected a line of objdump, got {body.strip()[:80]!r}")
+                raise CertificateError(f"{where}: expected a line as objdump prints it, got {body.strip()[:80]!r}")
         if row is not None:
             rows.append((section, int(row["address"], 16), bytes.fromhex(row["bytes"]), row["text"] or "(bad)"))
         for relocation in [alone, *(_RELOCATION.fullmatch(item) for item in relocated)]:
@@ -258,7 +261,7 @@ def _code(text: str, where: str) -> dict[tuple[str, int], Instruction]:
                 relocations[section, int(relocation["address"], 16)] = (relocation["kind"], relocation["symbol"], plus)
     code = {(row[0], row[1]): _instruction(*row, relocations, where) for row in rows}
     if len(code) != len(rows):
-        raise CertificateError(f"{where}: expected one instruction at each address, got two sections of one name")
+        raise CertificateError(f"{where}: expected a different name for each section, got two sections of one name")
     return code
 
 
@@ -273,7 +276,8 @@ def _instruction(
     relocation = None
     if len(inside) > 1:
         raise CertificateError(
-            f"{where}: expected at most one relocation in the instruction at {address:#x} of {section}"
+            f"{where}: expected at most one relocation (address filled in by the linker) in the "
+            f"instruction at {address:#x} of {section}, got more"
         )
     for at, (kind, symbol, plus) in inside:
         relocation = Relocation(kind, symbol, plus + address + len(content) - at)

@@ -47,7 +47,7 @@ def memory_place(state: MachineState, instruction: Instruction, operand: Memory)
     if operand.base != "rip":
         return state.address(operand)
     if operand.segment or operand.index:
-        raise NotUnderstood(f"an address in the segment {operand.segment}")
+        raise NotUnderstood(f"expected an address without a segment, got one in the segment {operand.segment}")
     return relocated_place(state, instruction, RELATIVE)
 
 
@@ -58,10 +58,10 @@ def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[
     """
     relocation = instruction.relocation
     if relocation is None or relocation.kind not in kinds:
-        raise NotUnderstood("an address without a relocation of a known kind")
+        raise NotUnderstood("expected an address that a relocation of a known kind defines, got another")
     place = state.context.listing.symbols.get(relocation.symbol)
     if place is None:
-        raise NotUnderstood(f"the unknown symbol {relocation.symbol}")
+        raise NotUnderstood(f"expected a symbol that the code may read, got {relocation.symbol}")
     section, offset = place
     return (f"section {section}", offset + relocation.addend) if section else ("", relocation.addend)
 
@@ -70,7 +70,7 @@ def symbol_of(state: MachineState, instruction: Instruction) -> int:
     """Return the address of a symbol of another file, which the instruction reads from the global offset table."""
     base, offset = relocated_place(state, instruction, INDIRECT)
     if base or offset or instruction.relocation is None:
-        raise NotUnderstood("an address that only the linker knows")
+        raise NotUnderstood("expected an address within the object file, got one that only the linker knows")
     return state.context.terms.address(f"symbol {instruction.relocation.symbol}", 0)
 
 
@@ -78,7 +78,7 @@ def read(state: MachineState, instruction: Instruction, operand: object, size: i
     """Return the 32-bit words of a source operand: a general-purpose register, memory or a constant."""
     if isinstance(operand, Register):
         if GENERAL.get(operand.name, ("", 0))[1] != size:
-            raise NotUnderstood(f"a use of the register {operand.name} as {size} bytes")
+            raise NotUnderstood(f"expected {size} bytes, got the register {operand.name} of another size")
         return state.register(operand.name)
     if isinstance(operand, Constant):
         terms = state.context.terms
@@ -89,7 +89,9 @@ def read(state: MachineState, instruction: Instruction, operand: object, size: i
     if operand.base == "rip" and instruction.relocation is not None and instruction.relocation.kind in INDIRECT:
         return state.halves(symbol_of(state, instruction))
     if operand.size not in (size, 0) or size < 4:
-        raise NotUnderstood(f"an access to {operand.size} bytes of memory")
+        raise NotUnderstood(
+            f"expected an access to memory of the instruction's operand size, got one to {operand.size} bytes"
+        )
     return state.load(*memory_place(state, instruction, operand), size // 4)
 
 
@@ -100,7 +102,7 @@ def write(state: MachineState, instruction: Instruction, operand: object, words:
     elif isinstance(operand, Memory) and operand.size == 4 * len(words):
         state.store(*memory_place(state, instruction, operand), words)
     else:
-        raise NotUnderstood("a destination of an unexpected kind")
+        raise NotUnderstood("expected a general-purpose register or memory as destination, got another operand")
 
 
 def _size(instruction: Instruction) -> int:
@@ -110,7 +112,7 @@ def _size(instruction: Instruction) -> int:
             return GENERAL[operand.name][1]
         if isinstance(operand, Memory) and operand.size:
             return operand.size
-    raise NotUnderstood("operands whose size is not known")
+    raise NotUnderstood("expected an operand whose size is known, got none")
 
 
 # --- integers and addresses -------------------------------------------------------------------------------------------
@@ -124,7 +126,7 @@ def _mov(state: MachineState, instruction: Instruction) -> None:
 def _lea(state: MachineState, instruction: Instruction) -> None:
     target, source = operands_of(instruction, 2)
     if not isinstance(source, Memory) or _size(instruction) != 8:
-        raise NotUnderstood("an address of less than 64 bits")
+        raise NotUnderstood("expected an address of 64 bits, got a shorter one")
     terms = state.context.terms
     try:
         base, offset = memory_place(state, instruction, source)
@@ -144,7 +146,7 @@ def _lea(state: MachineState, instruction: Instruction) -> None:
 def operands_of(instruction: Instruction, count: int) -> tuple[object, ...]:
     """Return the operands of an instruction; raise NotUnderstood unless there are ``count`` of them."""
     if len(instruction.operands) != count:
-        raise NotUnderstood(f"an unexpected number of operands, {len(instruction.operands)}")
+        raise NotUnderstood(f"expected as many operands as the instruction table lists, got {len(instruction.operands)}")
     return instruction.operands
 
 
@@ -168,7 +170,7 @@ def _byte_test(state: MachineState, instruction: Instruction, name: str) -> None
     """Execute a test of one byte, such as ``test al, al``; the value of the byte must be known."""
     target, source = instruction.operands
     if name not in ("test", "or", "and") or target != source or not isinstance(target, Register):
-        raise NotUnderstood("an operation on single bytes")
+        raise NotUnderstood("expected operands of 4 or 8 bytes, got single bytes")
     value = _known_byte(state, target.name)
     state.flags = ("integers", (int(value == 0), value >> 7, 0, 0))
 
@@ -177,7 +179,7 @@ def _known_byte(state: MachineState, name: str) -> int:
     whole, size = GENERAL.get(name, ("", 0))
     low = state.context.terms.lowest_byte(state.general[whole][0]) if size == 1 else None
     if low is None:
-        raise NotUnderstood("an operation on single bytes")
+        raise NotUnderstood("expected operands of 4 or 8 bytes, got single bytes")
     return low
 
 
@@ -196,12 +198,12 @@ def _computed(state: MachineState, name: str, first: Words, second: Words) -> tu
     if node[0] == "address" and y is not None and name in ("add", "sub", "and"):
         signed = y - (1 << bits) if y >> bits - 1 else y
         if name == "and" and (node[2] != STACK or signed not in (-16, -32, -64)):
-            raise NotUnderstood("a bit mask applied to an address")
+            raise NotUnderstood("expected integers under a bit mask, got an address")
         offset = {"add": node[3] + signed, "sub": node[3] - signed, "and": node[3] & signed}[name]
         return state.halves(terms.address(node[2], offset)), unknown
     if name in ("and", "or", "xor"):
         return state.halves({"and": terms.bit_and, "or": terms.bit_or, "xor": terms.bit_xor}[name](a, b)), unknown
-    raise NotUnderstood("integers whose values are not known")
+    raise NotUnderstood("expected integers of known value, got unknown ones")
 
 
 _INTEGER: dict[str, Callable[[int, int], int]] = {
@@ -223,7 +225,7 @@ def _flags(name: str, x: int, y: int, value: int, bits: int) -> tuple[int, int, 
 
 
 def _one(name: str, number: int) -> Callable[[MachineState, Instruction], None]:
-    """Return the effect of the instruction ``inc`` (``number`` is 1) or ``dec`` (-1)."""
+    """Return the function that executes ``inc`` or ``dec``: the operation ``name`` with the constant ``number``."""
 
     def step(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)
@@ -241,7 +243,7 @@ def _shift(name: str) -> Callable[[MachineState, Instruction], None]:
         target, count = instruction.operands if len(instruction.operands) == 2 else (*instruction.operands, Constant(1))
         size = _size(instruction)
         if not isinstance(count, Constant) or count.value >= 8 * size:
-            raise NotUnderstood("a shift by an amount that is not constant")
+            raise NotUnderstood("expected a shift by a constant, got a variable shift")
         words, _ = _computed(state, name, read(state, instruction, target, size), read(state, instruction, count, size))
         write(state, instruction, target, words)
         state.flags = ("unknown", ())
@@ -253,7 +255,7 @@ def _imul(state: MachineState, instruction: Instruction) -> None:
     target, *sources = instruction.operands
     size = _size(instruction)
     if not 1 <= len(sources) <= 2:
-        raise NotUnderstood("operands of an unexpected kind")
+        raise NotUnderstood("expected operands of the kinds that the instruction table lists, got others")
     first, second = (
         read(state, instruction, item, size) for item in (sources if len(sources) == 2 else (target, *sources))
     )
@@ -287,7 +289,7 @@ def stack_place(state: MachineState) -> tuple[str, int]:
     """Return the base and offset to which the stack pointer points."""
     node = state.context.terms.nodes[state.whole(state.general["rsp"])]
     if node[0] != "address" or node[2] != STACK:
-        raise NotUnderstood("a stack pointer that does not point into the stack")
+        raise NotUnderstood("expected a stack pointer that points into the stack, got another value")
     return node[2], node[3]
 
 
@@ -304,14 +306,14 @@ def condition_holds(state: MachineState, condition: str) -> bool:
     if kind == "integers" and condition in OF_INTEGERS:
         zero, sign, carry, overflow = values
         return bool(OF_INTEGERS[condition](zero, sign, carry, overflow))
-    raise NotUnderstood("a condition whose outcome is not known")
+    raise NotUnderstood("expected a condition whose outcome is known, got an unknown one")
 
 
 def _set(condition: str) -> Callable[[MachineState, Instruction], None]:
     def set_byte(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)
         if not isinstance(target, Register) or GENERAL.get(target.name, ("", 0))[1] != 1:
-            raise NotUnderstood("an operation on single bytes")
+            raise NotUnderstood("expected operands of 4 or 8 bytes, got single bytes")
         whole, terms = GENERAL[target.name][0], state.context.terms
         low = terms.constant(state.general[whole][0])
         is_set = condition_holds(state, condition)
@@ -326,7 +328,7 @@ def _set(condition: str) -> Callable[[MachineState, Instruction], None]:
 def _movzx(state: MachineState, instruction: Instruction) -> None:
     target, source = operands_of(instruction, 2)
     if not isinstance(source, Register) or not isinstance(target, Register):
-        raise NotUnderstood("an operation on single bytes")
+        raise NotUnderstood("expected operands of 4 or 8 bytes, got single bytes")
     byte = _known_byte(state, source.name)
     state.set_register(target.name, read(state, instruction, Constant(byte), GENERAL[target.name][1]))
 

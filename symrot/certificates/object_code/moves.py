@@ -19,12 +19,12 @@ def _source(state: MachineState, instruction: Instruction, operand: object, size
     if isinstance(operand, Register) and operand.name in VECTORS:
         return list(state.register(operand.name))
     if not isinstance(operand, Memory) or operand.size not in (size, 0):
-        raise NotUnderstood("operands of an unexpected kind")
+        raise NotUnderstood("expected operands of the kinds that the instruction table lists, got others")
     base, offset = memory_place(state, instruction, operand)
     is_vex = instruction.mnemonic.startswith("v")
     must_be_aligned = size >= 16 and bare not in UNALIGNED and (not is_vex or bare in ALIGNED)
     if must_be_aligned and (base in state.context.arrays or offset % size):
-        raise NotUnderstood(f"an aligned access to {base}")
+        raise NotUnderstood(f"expected an aligned address, got one in {base} that may not be aligned")
     return state.load(base, offset, size // 4)
 
 
@@ -44,14 +44,14 @@ def run_vector_instruction(state: MachineState, instruction: Instruction) -> Non
         bare = f"{bare} by words"
     operation = SHUFFLES.get(bare) or NUMERIC.get(bare)
     if operation is None or not operands:
-        raise NotUnderstood("an unknown instruction")
+        raise NotUnderstood("expected an instruction of the tables, got another")
     target = operands[0]
     if isinstance(target, Memory):  # vextractf128
         words = operation(state, [_source(state, instruction, item, 32, bare) for item in operands[1:]], constant or 0)
         write(state, instruction, target, words)
         return
     if not isinstance(target, Register) or target.name not in VECTORS:
-        raise NotUnderstood("operands of an unexpected kind")
+        raise NotUnderstood("expected operands of the kinds that the instruction table lists, got others")
     count = VECTORS[target.name][1]
     keeps_target = not is_vex or bare.startswith(("fmadd", "fmsub", "fnmadd", "fnmsub"))
     source_words = [
@@ -83,7 +83,7 @@ def _move_whole(state: MachineState, instruction: Instruction, bare: str, is_vex
         words = _source(state, instruction, source, 0, bare)
         base, offset = memory_place(state, instruction, target)
         if bare in ALIGNED and (base in state.context.arrays or offset % (4 * len(words))):
-            raise NotUnderstood(f"an aligned access to {base}")
+            raise NotUnderstood(f"expected an aligned address, got one in {base} that may not be aligned")
         write(state, instruction, target, words)
         return
     assert isinstance(target, Register)
@@ -140,7 +140,7 @@ def _move_half(start: int) -> Callable[[MachineState, Instruction, str, bool], N
         first = _source(state, instruction, sources[0] if len(sources) == 2 else target, 16, bare)
         words = _source(state, instruction, sources[-1], 8, bare)
         if not isinstance(sources[-1], Memory):
-            raise NotUnderstood("operands of an unexpected kind")
+            raise NotUnderstood("expected operands of the kinds that the instruction table lists, got others")
         state.set_vector(target.name, first[:start] + words + first[start + 2 :], is_vex)
 
     return move
@@ -150,7 +150,7 @@ def _extract(size: int) -> Callable[[MachineState, Instruction, str, bool], None
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, source, place = operands_of(instruction, 3)
         if not isinstance(place, Constant):
-            raise NotUnderstood("operands of an unexpected kind")
+            raise NotUnderstood("expected operands of the kinds that the instruction table lists, got others")
         start = place.value * (size // 4) % 4
         write(state, instruction, target, _source(state, instruction, source, 16, bare)[start : start + size // 4])
 
@@ -161,7 +161,7 @@ def _insert(size: int) -> Callable[[MachineState, Instruction, str, bool], None]
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources, place = instruction.operands
         if not isinstance(place, Constant) or not isinstance(target, Register):
-            raise NotUnderstood("operands of an unexpected kind")
+            raise NotUnderstood("expected operands of the kinds that the instruction table lists, got others")
         first = _source(state, instruction, sources[0] if len(sources) == 2 else target, 16, bare)
         start, words = place.value * (size // 4) % 4, read(state, instruction, sources[-1], size)
         state.set_vector(target.name, first[:start] + words + first[start + size // 4 :], is_vex)

@@ -99,7 +99,7 @@ def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         if outcomes is None and not 0 <= constant < 32:
-            raise NotUnderstood(f"a comparison with the unknown code {constant}")
+            raise NotUnderstood(f"expected a known code of comparison, got {constant}")
         chosen = by_number[constant % 16] if outcomes is None else outcomes
         return _each(suffix, lambda terms, a, b: terms.mask(WIDTHS[suffix[1]], chosen, a, b))(state, sources, 0)
 
@@ -152,7 +152,7 @@ def _approximate(name: str) -> Callable[..., int]:
 
 def _same(state: MachineState, sources: list[Words], _: int) -> Words:
     if sources[0] != sources[1]:
-        raise NotUnderstood("a comparison of integers")
+        raise NotUnderstood("expected a comparison of floating-point numbers, got one of integers")
     return [state.context.terms.bits(32, -1)] * len(sources[0])
 
 
@@ -164,7 +164,7 @@ def _shifted(width: int, shift: Callable[[int, int, int], int]) -> Numeric:
         for lane in _lanes(state, sources[-1], width):
             value = terms.constant(lane)
             if value is None:
-                raise NotUnderstood("a shift of a number that is not constant")
+                raise NotUnderstood("expected a shift of a constant, got a variable")
             results += state.halves(
                 terms.bits(width, shift(value, constant, width) if constant < width else _out(shift, value, width))
             )

@@ -77,7 +77,7 @@ def _pblendw(_: MachineState, sources: list[Words], constant: int) -> Words:
     for place in range(len(sources[0])):
         chosen = constant >> 2 * (place % 4) & 3
         if chosen not in (0, 3):
-            raise NotUnderstood("a blend of 16-bit words")
+            raise NotUnderstood("expected a blend of 32-bit words, got one of 16-bit words")
         blended.append(sources[1 if chosen else 0][place])
     return blended
 
@@ -124,7 +124,7 @@ def _insertps(state: MachineState, sources: list[Words], constant: int) -> Words
 
 def _align(_: MachineState, sources: list[Words], constant: int) -> Words:
     if constant % 4 or constant > 16:
-        raise NotUnderstood("a shift of single bytes")
+        raise NotUnderstood("expected a shift by whole 32-bit words, got one by single bytes")
     aligned: Words = []
     for start in range(0, len(sources[0]), 4):
         aligned += (sources[1][start : start + 4] + sources[0][start : start + 4])[constant // 4 :][:4]
@@ -134,7 +134,7 @@ def _align(_: MachineState, sources: list[Words], constant: int) -> Words:
 def _shift_bytes(left: bool) -> Shuffle:
     def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:
         if constant % 4:
-            raise NotUnderstood("a shift of single bytes")
+            raise NotUnderstood("expected a shift by whole 32-bit words, got one by single bytes")
         moved, shifted = min(constant // 4, 4), list[int]()
         for start in range(0, len(sources[-1]), 4):
             words, zeros = sources[-1][start : start + 4], state.zeros(moved)
@@ -147,7 +147,7 @@ def _shift_bytes(left: bool) -> Shuffle:
 def _constant(state: MachineState, word: int) -> int:
     value = state.context.terms.constant(word)
     if value is None:
-        raise NotUnderstood("a shuffle by places that are not constant")
+        raise NotUnderstood("expected a shuffle by constant word numbers, got variable ones")
     return value
 
 
@@ -160,7 +160,7 @@ def _pshufb(state: MachineState, sources: list[Words], _: int) -> Words:
         elif control[0] % 4 == 0 and all((byte & 0x8F) == (control[0] & 15) + i for i, byte in enumerate(control)):
             shuffled.append(sources[0][(place & ~3) + (control[0] & 15) // 4])
         else:
-            raise NotUnderstood("a shuffle of single bytes")
+            raise NotUnderstood("expected a shuffle of 32-bit words, got one of single bytes")
     return shuffled
 
 
@@ -172,7 +172,7 @@ def _broadcast(count: int) -> Shuffle:
 def _broadcast_byte(state: MachineState, sources: list[Words], _: int) -> Words:
     byte = state.context.terms.lowest_byte(sources[-1][0])
     if byte is None:
-        raise NotUnderstood("a byte whose value is not known")
+        raise NotUnderstood("expected a byte of known value, got an unknown one")
     return [state.context.terms.bits(32, byte * 0x01010101)] * 8
 
 

@@ -146,14 +146,14 @@ class MachineState:
             return self.vector[whole][:count]
         whole, size = GENERAL.get(name, ("", 0))
         if size < 4:
-            raise NotUnderstood(f"the use of register {name}")
+            raise NotUnderstood(f"expected a register that the tables list, got {name}")
         return self.general[whole][: size // 4]
 
     def set_register(self, name: str, words: Words) -> None:
         """Write a general register; writing its lower half sets the upper half to zero."""
         whole, size = GENERAL.get(name, ("", 0))
         if size < 4 or len(words) != size // 4:
-            raise NotUnderstood(f"the use of register {name}")
+            raise NotUnderstood(f"expected a register that the tables list, got {name}")
         self.general[whole] = words + self.zeros(2 - len(words))
 
     def set_vector(self, name: str, words: Words, is_vex: bool) -> None:
@@ -162,7 +162,7 @@ class MachineState:
         A VEX instruction (``v...``) sets the register's other words to zero.
         """
         if name not in VECTORS:
-            raise NotUnderstood(f"the use of register {name}")
+            raise NotUnderstood(f"expected a register that the tables list, got {name}")
         whole = VECTORS[name][0]
         self.vector[whole] = words + (self.zeros(8 - len(words)) if is_vex else self.vector[whole][len(words) :])
 
@@ -171,13 +171,13 @@ class MachineState:
     def address(self, operand: Memory) -> tuple[str, int]:
         """Return the base and offset of a memory operand whose address is known without the linker."""
         if operand.segment:
-            raise NotUnderstood(f"an address in the segment {operand.segment}")
+            raise NotUnderstood(f"expected an address without a segment, got one in the segment {operand.segment}")
         base, offset = "", operand.offset
         for name, scale in ((operand.base, 1), (operand.index, operand.scale)):
             if not name:
                 continue
             if GENERAL.get(name, ("", 0))[1] != 8:
-                raise NotUnderstood(f"the register {name} used for an address")
+                raise NotUnderstood(f"expected a 64-bit register in an address, got {name}")
             words = self.register(name)
             node = self.context.terms.nodes[self.whole(words)]
             value = self.integer(words)
@@ -186,15 +186,15 @@ class MachineState:
             elif value is not None:
                 offset += scale * (value - (1 << 64) if value >> 63 else value)
             else:
-                raise NotUnderstood("an address that is not known")
+                raise NotUnderstood("expected a known address, got an unknown one")
         if not base:
-            raise NotUnderstood("an address that is not known")
+            raise NotUnderstood("expected a known address, got an unknown one")
         return base, offset
 
     def load(self, base: str, offset: int, count: int) -> Words:
         """Return ``count`` 32-bit words of memory from a base and offset."""
         if offset % 4:
-            raise NotUnderstood("an address that is not a multiple of 4")
+            raise NotUnderstood("expected an address that is a multiple of 4, got another")
         return [self._load(base, offset + 4 * place) for place in range(count)]
 
     def _load(self, base: str, offset: int) -> int:
@@ -205,28 +205,30 @@ class MachineState:
             return terms.unknown()
         if array is not None:
             if not 0 <= offset < array.size:
-                raise NotUnderstood(f"a read outside the array {array.name}")
+                raise NotUnderstood(f"expected a read inside the array {array.name}, got one outside")
             if array.is_output:
-                raise NotUnderstood(f"a read of {array.name}, which is not written yet")
+                raise NotUnderstood(f"expected a value in {array.name} before it is read, got none")
             size = self.context.width // 8
             place = terms.input(self.context.width, f"{array.name}[{offset // size}]")
             return terms.word(place, offset % size // 4) if size == 8 else place
         content = self.context.listing.constants.get(base.removeprefix("section "), b"")
         if not base.startswith("section ") or not 0 <= offset <= len(content) - 4:
-            raise NotUnderstood(f"a read outside the constants, from {base.removeprefix('section ')}")
+            raise NotUnderstood(f"expected a read of a known constant, got one from {base.removeprefix('section ')}")
         return terms.bits(32, int.from_bytes(content[offset : offset + 4], "little"))
 
     def store(self, base: str, offset: int, words: Words) -> None:
         """Write words to memory: to the function's own part of the stack, or to an output array."""
         array = self.context.arrays.get(base)
         if offset % 4:
-            raise NotUnderstood("an address that is not a multiple of 4")
+            raise NotUnderstood("expected an address that is a multiple of 4, got another")
         for place, word in enumerate(words):
             at = offset + 4 * place
             if array is None and not (base == STACK and at < self.context.top):
-                raise NotUnderstood(f"a write to {base.removeprefix('section ')}")
+                raise NotUnderstood(
+                    f"expected writes to the stack or to output arrays, got one to {base.removeprefix('section ')}"
+                )
             if array is not None and not (array.is_output and 0 <= at < array.size):
-                raise NotUnderstood(f"a write outside the outputs, to {array.name}")
+                raise NotUnderstood(f"expected writes to output arrays only, got one to {array.name}")
             self.memory[base, at] = word
 
     def forget_below(self, offset: int) -> None:

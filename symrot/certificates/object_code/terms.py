@@ -111,7 +111,7 @@ class Terms:
         """
         bits = _bits_from_number(float(value), width)
         if bits is None or Fraction(number_from_bits(bits, width)) != value:
-            raise ValueError(f"expected a number of {width} bits, got {value}")
+            raise ValueError(f"expected a number that {width} bits represent exactly, got {value}")
         return self.bits(width, bits)
 
     def unknown(self, byte: int | None = None) -> int:
@@ -411,7 +411,7 @@ class Terms:
     def rebuilt(self, roots: Iterable[int], known: Known, fused: bool = True) -> list[int]:
         """Return terms after simplifying them by comparisons whose outcomes are known.
 
-        ``fused`` lists products to fuse or not.
+        With ``fused=False``, each fused multiply-add becomes a rounded product and a rounded sum.
         """
         roots = list(roots)
         new: dict[int, int] = {}

@@ -55,7 +55,9 @@ class CFunction:
 def _tokens(text: str, where: str) -> list[Token]:
     """Return the tokens of a C file without comments and directives."""
     if "??" in text or "\\" in text:  # trigraphs and spliced lines are never emitted, and could hide code from a reader
-        raise CertificateError(f"{where}: expected C as symrot emits it, got a backslash or a trigraph")
+        raise CertificateError(
+            f"{where}: expected C without backslashes and trigraphs, as symrot emits it, got one of these"
+        )
     bare = _COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
     lines = bare.split("\n")
     for number, line in enumerate(lines, 1):
@@ -72,7 +74,7 @@ def _tokens(text: str, where: str) -> list[Token]:
             match = _TOKEN.match(line, position)
             if match is None:
                 raise CertificateError(
-                    f"{where}, line {number}: expected C of the emitted subset, got {line[position]!r}"
+                    f"{where}, line {number}: expected a character of C as symrot emits it, got {line[position]!r}"
                 )
             position = match.end()
             if match.lastgroup != "space":
@@ -97,7 +99,7 @@ class Cursor:
     def next(self) -> Token:
         """Return the next token and move past it."""
         if self.index >= len(self.tokens):
-            raise self.fail("more text")
+            raise self.fail("more text before the end of the file")
         self.index += 1
         return self.tokens[self.index - 1]
 
@@ -156,7 +158,7 @@ def functions_of(text: str, where: str = "kernel") -> Mapping[str, CFunction]:
             continue
         if function.name in functions:
             raise CertificateError(
-                f"{where}, line {function.line}: expected one definition of {function.name}, got two"
+                f"{where}, line {function.line}: expected one function named {function.name}, got two"
             )
         functions[function.name] = function
     return MappingProxyType(functions)
@@ -169,7 +171,7 @@ def _function(cursor: Cursor) -> CFunction | None:
     line = cursor.tokens[cursor.index].line if cursor.index < len(cursor.tokens) else 0
     returns = cursor.name()
     if returns not in ("void", "double", "float"):
-        raise cursor.fail("a function of double or float")
+        raise cursor.fail("a function whose arguments are of type double or float")
     name = cursor.name()
     cursor.expect("(")
     parameters = [_parameter(cursor)]
@@ -192,7 +194,7 @@ def _parameter(cursor: Cursor) -> Parameter:
         cursor.next()
     kind = cursor.name()
     if kind not in ("double", "float", "size_t"):
-        raise cursor.fail("a parameter of double or float")
+        raise cursor.fail("a parameter of type double or float")
     if cursor.peek() == "*":
         cursor.next()
         if cursor.peek() in ("SYMROT_RESTRICT", "restrict"):

@@ -76,7 +76,7 @@ class _BodyReader:
                 cursor.expect("const", self.real)
                 name = cursor.name()
                 if name in scope.values or name in scope.arrays or name in (scope.loop, scope.count):
-                    raise cursor.fail("a new name", repr(name))
+                    raise cursor.fail("a name that is not yet used", repr(name))
                 cursor.expect("=")
                 scope.values[name] = self.expression(cursor, scope)
                 cursor.expect(";")
@@ -100,7 +100,7 @@ class _BodyReader:
         value = self.expression(cursor, scope)
         cursor.expect(";")
         if (name, index) in scope.written:
-            raise cursor.fail(f"one assignment to {name}[{index}]", "a second one")
+            raise cursor.fail(f"one assignment to {name}[{index}]", "a second assignment")
         scope.written[name, index] = value
 
     def _index(self, cursor: Cursor, scope: _Scope, array: Parameter) -> int:
@@ -115,7 +115,7 @@ class _BodyReader:
                 raise cursor.fail(f"an index below {array.size} for {array.name}", str(index))
         else:
             if not scope.loop:
-                raise cursor.fail("an array with a size", repr(array.name))
+                raise cursor.fail("an array with a length, such as q[4]", repr(array.name))
             index = 0
             if cursor.peek() == scope.count:
                 index = 1
@@ -131,7 +131,7 @@ class _BodyReader:
         """Read an expression, which is ``a < b ? x : y`` or a sum; return its node."""
         self.depth += 1
         if self.depth > DEEPEST:
-            raise cursor.fail(f"an expression of at most {DEEPEST} nested levels", "a deeper one")
+            raise cursor.fail(f"an expression of at most {DEEPEST} nested levels", "a deeper expression")
         value = self.sum(cursor, scope)
         relation = cursor.peek()
         if relation in RELATIONS:
@@ -221,7 +221,7 @@ class _BodyReader:
             return self._inlined(cursor, self.functions[name], arguments)
         bare = name.removesuffix("f") if self.real == "float" else name
         if self.real == "float" and bare == name:
-            raise cursor.fail(f"the float form of {name}", repr(name))
+            raise cursor.fail(f"the function for floats instead of {name}, such as sinf for sin", repr(name))
         if bare in ROUNDED and ROUNDED[bare][1] == len(arguments):
             return self.builder.add(ROUNDED[bare][0], *arguments)
         if self.vectorised_angles is not None and bare in VECTORISED and len(arguments) == 1:
@@ -239,7 +239,7 @@ class _BodyReader:
         """Return the node for a call of a function of the same file; its body is read with these arguments."""
         parameters = function.parameters
         if function.returns != self.real or any(p.size or p.type != self.real for p in parameters):
-            raise cursor.fail(f"a function of {self.real}", repr(function.name))
+            raise cursor.fail(f"a function of type {self.real}", repr(function.name))
         if len(parameters) != len(arguments):
             raise cursor.fail(f"{len(parameters)} arguments for {function.name}", str(len(arguments)))
         if function.name in self.calls:
@@ -268,7 +268,9 @@ def _nearest_float(digits: str, value: float) -> float:
 def _defined(functions: Mapping[str, CFunction], name: str, where: str) -> CFunction:
     """Return the function with a given name; raise CertificateError if the C text does not define it."""
     if name not in functions:
-        raise CertificateError(f"{where}: expected a definition of {name}, got {', '.join(functions) or 'no function'}")
+        raise CertificateError(
+            f"{where}: expected a function named {name}, got {', '.join(functions) or 'no function'}"
+        )
     return functions[name]
 
 
@@ -276,7 +278,9 @@ def _real_of(function: CFunction, where: str) -> str:
     """Return the type of all numbers of a kernel, double or float."""
     types = {p.type for p in function.parameters} - {"size_t"}
     if function.returns != "void" or len(types) != 1:
-        raise CertificateError(f"{where}, line {function.line}: expected a kernel of one type, double or float")
+        raise CertificateError(
+            f"{where}, line {function.line}: expected only double or only float in a kernel, got both"
+        )
     return types.pop()
 
 
@@ -340,7 +344,10 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
     real = _real_of(function, where)
     counts = [p.name for p in function.parameters if p.type == "size_t"]
     if len(counts) != 1:
-        raise CertificateError(f"{where}, line {function.line}: expected one number of samples for {name}")
+        raise CertificateError(
+            f"{where}, line {function.line}: expected one argument with the number of samples in "
+            f"{name}, got none or several"
+        )
     reader, scope = _BodyReader(functions, where, real, batch=True), _Scope(count=counts[0])
     scope.arrays = {p.name: p for p in function.parameters if p.type != "size_t"}
     one = functions.get(name.removesuffix("_batch"))
@@ -384,7 +391,7 @@ def _parts(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
         reader.statements(Cursor(_samples(cursor, part, "start", "end"), cursor.where), part)
         twice = [f"{name}[{index}]" for name, index in part.written if (name, index) in scope.written]
         if twice:
-            raise cursor.fail(f"one assignment to {twice[0]}", "a second one in another loop")
+            raise cursor.fail(f"one assignment to {twice[0]}", "a second assignment in another loop")
         scope.written |= part.written
     cursor.expect("}")
 
@@ -425,7 +432,7 @@ def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
     reader.statements(Cursor(_samples(cursor, plain, "start", "again"), cursor.where), plain)
     cursor.expect("}")
     if plain.written != scope.written:
-        raise cursor.fail("both loops over samples to compute the same")
+        raise cursor.fail("both loops over samples to perform the same operations")
 
 
 def _finished(

@@ -119,7 +119,10 @@ def bound_tasks(
     strangers = sorted({place for group in region.unit for place in group} - set(operations.inputs))
     if strangers:
         known = ", ".join(operations.inputs)
-        raise InputError(f"{operations.name}: expected unit groups of {known}, got {strangers[0]}")
+        raise InputError(
+            f"{operations.name}: expected only inputs {known} in the groups of inputs with unit norm, "
+            f"got {strangers[0]}"
+        )
     tasks_by_output = {}
     for place, index in operations.outputs:
         graph = output_graph(operations, index)
@@ -369,7 +372,7 @@ def check_section(
         raise CertificateError(f"expected bounds for {' and '.join(kernels)}, got {' and '.join(precisions) or 'none'}")
     head = _section_head(box, region, budget, libm_ulp)
     if not _alike({name: value for name, value in section.items() if name != "precisions"}, head):
-        raise CertificateError("expected a box and assumptions as this method prints them, got others")
+        raise CertificateError("expected a box and assumptions in the printed form, got another form")
     if rerun:
         check_bounds(section, operations_double, operations_float, fresh=True)
 
@@ -421,7 +424,9 @@ def _check_precision(
     """Check the part of a ``rounding`` section about double or float, by evaluating the error at single points."""
     name = operations.name
     if part["operations_sha256"] != operations.digest():
-        raise CertificateError(f"{name}: expected bounds of these operations, got bounds of others")
+        raise CertificateError(
+            f"{name}: expected bounds for the operations in the C text, got bounds for other operations"
+        )
     tasks_by_output = bound_tasks(operations, box, region, 0, libm_ulp)
     unit = 2.0 ** -DIGITS[operations.precision]
     if [item["output"] for item in part["outputs"]] != list(tasks_by_output) or float.fromhex(part["unit"]) != unit:
@@ -437,7 +442,9 @@ def _check_precision(
                 f"{name}: expected the same choices for {item['output']} as in the operations of the C text"
             )
         if at.size and not ((task.box[0] <= at) & (at <= task.box[1])).all():
-            raise CertificateError(f"{name}: expected a point of the box for {item['output']}, got another")
+            raise CertificateError(
+                f"{name}: expected a point inside the box as the worst point of {item['output']}, got one outside"
+            )
         least = error_at_point(task, at)
         if not least <= float.fromhex(item["pointwise"]) * (1 + 1e-9) or float.fromhex(item["pointwise"]) > bound:
             raise CertificateError(

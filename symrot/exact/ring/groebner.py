@@ -59,7 +59,10 @@ class _Basis:
     def spend(self, products: int) -> None:
         self.spent[0] += products * self.weight
         if self.spent[0] > self.most:
-            raise TooLarge(f"the hypotheses need more than {self.most} products of terms; use fewer or simpler ones")
+            raise TooLarge(
+                f"expected hypotheses that need at most {self.most} products of terms, got more; use "
+                "fewer or simpler hypotheses"
+            )
 
     def of(self, polynomials: Sequence[PolyElement]) -> tuple[PolyElement, ...]:
         pairs: list[tuple[Any, ...]] = []

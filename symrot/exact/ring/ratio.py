@@ -116,7 +116,7 @@ class Ratios:
         return Ratio(base.numerator**exponent, base.constant**exponent, below)
 
     def invert(self, value: Ratio, source: Expr) -> Ratio:
-        """Return 1/value; its divisor is stored with ``source``, the text of the formula that divides.
+        """Return 1/value; its divisor is stored together with ``source``, the divisor as the formula writes it.
 
         Raises
         ------
@@ -140,7 +140,9 @@ class Ratios:
     def _spend(self, products: int) -> None:
         self.products += products * (1 + len(self.generators) // 8)  # a long monomial costs more
         if self.products > MOST_PRODUCTS:
-            raise TooLarge(f"expanding the formula takes more than {MOST_PRODUCTS} products of terms")
+            raise TooLarge(
+                f"expected a formula whose expansion takes at most {MOST_PRODUCTS} products of terms, got more"
+            )
 
     def _split(self, poly: PolyElement, source: Expr) -> tuple[Fraction, tuple[tuple[int, int], ...]]:
         """Return a polynomial as a rational constant times factors; factors that are not yet stored are added."""

@@ -269,7 +269,7 @@ class FormulaRing:
         value = self.ratio(root.power_expression)
         above, below = self.reduce(value.numerator).cancel(self.ratios.denominator(value))
         if not below.is_ground:
-            raise InputError(f"the square root {root.expression} has a radicand that is no polynomial: {above}/{below}")
+            raise InputError(f"expected a polynomial as the radicand of {root.expression}, got {above}/{below}")
         if abs(below.LC) == 1:
             return above.mul_ground(below.LC)
         if self.ring.domain is ZZ:
