@@ -146,7 +146,9 @@ def _lea(state: MachineState, instruction: Instruction) -> None:
 def operands_of(instruction: Instruction, count: int) -> tuple[object, ...]:
     """Return the operands of an instruction; raise NotUnderstood unless there are ``count`` of them."""
     if len(instruction.operands) != count:
-        raise NotUnderstood(f"expected as many operands as the instruction table lists, got {len(instruction.operands)}")
+        raise NotUnderstood(
+            f"expected as many operands as the instruction table lists, got {len(instruction.operands)}"
+        )
     return instruction.operands
 
 

@@ -146,14 +146,14 @@ class MachineState:
             return self.vector[whole][:count]
         whole, size = GENERAL.get(name, ("", 0))
         if size < 4:
-            raise NotUnderstood(f"expected a register that the tables list, got {name}")
+            raise NotUnderstood(f"expected a register that kernels use, got {name}")
         return self.general[whole][: size // 4]
 
     def set_register(self, name: str, words: Words) -> None:
         """Write a general register; writing its lower half sets the upper half to zero."""
         whole, size = GENERAL.get(name, ("", 0))
         if size < 4 or len(words) != size // 4:
-            raise NotUnderstood(f"expected a register that the tables list, got {name}")
+            raise NotUnderstood(f"expected a register that kernels use, got {name}")
         self.general[whole] = words + self.zeros(2 - len(words))
 
     def set_vector(self, name: str, words: Words, is_vex: bool) -> None:
@@ -162,7 +162,7 @@ class MachineState:
         A VEX instruction (``v...``) sets the register's other words to zero.
         """
         if name not in VECTORS:
-            raise NotUnderstood(f"expected a register that the tables list, got {name}")
+            raise NotUnderstood(f"expected a register that kernels use, got {name}")
         whole = VECTORS[name][0]
         self.vector[whole] = words + (self.zeros(8 - len(words)) if is_vex else self.vector[whole][len(words) :])
 
@@ -228,7 +228,7 @@ class MachineState:
                     f"expected writes to the stack or to output arrays, got one to {base.removeprefix('section ')}"
                 )
             if array is not None and not (array.is_output and 0 <= at < array.size):
-                raise NotUnderstood(f"expected writes to output arrays only, got one to {array.name}")
+                raise NotUnderstood(f"expected writes inside the output arrays, got one outside, to {array.name}")
             self.memory[base, at] = word
 
     def forget_below(self, offset: int) -> None:
