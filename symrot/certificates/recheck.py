@@ -1033,7 +1033,7 @@ def certified(path):
         )
         if "/" not in file or (path.parent / file).exists():
             right = sha256(content(path.parent / file)).hexdigest() == digest
-            need(right, f"{file} was changed: expected the text with the hash in the certificate")
+            need(right, f"{file} was changed after it was certified")
     return sealed
 
 

@@ -1,4 +1,4 @@
-"""A budget for one decision: how often it may convert a formula to polynomials (read it into a polynomial ring).
+"""A budget for one decision: how many formulas it may convert to polynomials before it gives up.
 
 Each root inside a root and each inverse function inside another one is read into a ring of its own, and proofs about
 them read both sides again, so nested functions need many readings. The result of a reading is stored only until the

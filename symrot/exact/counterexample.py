@@ -234,7 +234,7 @@ def _nonnegative(formula: Expr, values: dict[Expr, Expr]) -> bool:
 
 
 def _seems_nonnegative(formula: Expr, values: dict[Expr, Expr]) -> bool:
-    """Return whether a formula is nonnegative in double precision: a fast test before the proof by intervals."""
+    """Return whether a formula is nonnegative in double precision, a fast test before the proof by intervals."""
     try:
         return float_at(formula, {leaf: float(value) for leaf, value in values.items()}, {}) > -1e-9
     except (NoValue, TypeError, OverflowError):
@@ -253,7 +253,7 @@ def _is_flat(formula: Expr, deep: int = MOST_NESTED) -> bool:
 
 
 def _shortest(number: Expr) -> Expr:
-    """Return a number as a rational if it is rational and contains few roots; otherwise return it unchanged."""
+    """Return a number as a rational if it is rational and contains few roots; otherwise return it as it is."""
     if number.is_Rational or not number.is_number:
         return number
     try:

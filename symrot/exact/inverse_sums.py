@@ -175,6 +175,6 @@ def _range(leaf: Expr) -> tuple[Fraction, Fraction, bool, bool]:
 
 
 def _fraction(end: Any) -> Fraction:
-    """Return the exact value of an endpoint of an interval."""
+    """Return the exact value of an endpoint of an interval as a fraction."""
     sign, mantissa, power, _ = end._mpi_[0]
     return (-1 if sign else 1) * int(mantissa) * Fraction(2) ** int(power)

@@ -61,7 +61,7 @@ def _first_line(text: str, emitted: str) -> str:
 
 
 def _meaning(text: str, emitted: KernelUnderTest) -> str:
-    """Return, in brackets, the first output of an edited C text that its kernel's formula no longer gives.
+    """Return, in brackets, how an edited C text differs: no longer the kernel's formulas, or other operations.
 
     The result is empty if the text has the same operations.
     """

@@ -30,7 +30,7 @@ class FractionField:
         self.generators = dict(zip(map(str, ring.symbols), ring.gens, strict=True))
 
     def number(self, value: Fraction | int) -> Quotient:
-        """Return a rational number as a fraction of the field."""
+        """Return a rational number as a constant fraction of polynomials."""
         value = Fraction(value)
         return self.ring.ground_new(QQ(value.numerator, value.denominator)), self.ring.one
 
@@ -51,29 +51,29 @@ class FractionField:
         return (above, below) if lead == 1 else (above.quo_ground(lead), below.quo_ground(lead))
 
     def add(self, a: Quotient, b: Quotient) -> Quotient:
-        """Return a + b."""
+        """Return the sum of two fractions of polynomials, ``a + b``."""
         if a[1] == b[1]:
             return self.lowest(a[0] + b[0], a[1])
         return self.lowest(a[0] * b[1] + b[0] * a[1], a[1] * b[1])
 
     def negative(self, a: Quotient) -> Quotient:
-        """Return -a."""
+        """Return the negative of a fraction of polynomials, ``-a``."""
         return -a[0], a[1]
 
     def subtract(self, a: Quotient, b: Quotient) -> Quotient:
-        """Return a - b."""
+        """Return the difference of two fractions of polynomials, ``a - b``."""
         return self.add(a, self.negative(b))
 
     def multiply(self, a: Quotient, b: Quotient) -> Quotient:
-        """Return a*b."""
+        """Return the product of two fractions of polynomials, ``a*b``."""
         return self.lowest(a[0] * b[0], a[1] * b[1])
 
     def divide(self, a: Quotient, b: Quotient) -> Quotient:
-        """Return a/b; raise CertificateError if b is zero."""
+        """Return the quotient of two fractions of polynomials, ``a/b``; raise CertificateError if ``b`` is zero."""
         return self.lowest(a[0] * b[1], a[1] * b[0])
 
     def power(self, a: Quotient, exponent: int) -> Quotient:
-        """Return ``a**exponent``; the exponent may be negative."""
+        """Return a fraction of polynomials to an integer power, which may be negative."""
         above, below = a if exponent > 0 else (a[1], a[0])
         return self.lowest(above ** abs(exponent), below ** abs(exponent))
 
@@ -95,7 +95,7 @@ class FormulaReader(ABC):
 
     @abstractmethod
     def symbol(self, name: str) -> Quotient:
-        """Return a symbol, or pi, as a fraction of polynomials."""
+        """Return a symbol, or the number pi, as a fraction of polynomials."""
 
     @abstractmethod
     def root(self, square: Quotient) -> Quotient:

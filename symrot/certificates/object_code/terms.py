@@ -87,7 +87,7 @@ class Terms:
         return self.places[term]
 
     def width(self, a: int) -> int:
-        """Return the number of bits of a term, 32 or 64."""
+        """Return the number of bits of a symbolic term, 32 or 64."""
         return int(self.nodes[a][1])
 
     def kind(self, a: int) -> str:
@@ -122,7 +122,7 @@ class Terms:
         return self._add("unknown", 32, len(self.nodes), byte)
 
     def lowest_byte(self, a: int) -> int | None:
-        """Return the lowest byte of a word, or None if it is not known."""
+        """Return the lowest byte of a 32-bit term, or None if the byte is not known."""
         value = self.nodes[a][3] if self.kind(a) == "unknown" else self.constant(a)
         return None if value is None else int(value) & 0xFF
 
@@ -135,7 +135,7 @@ class Terms:
         return self._add("address", 64, base, offset)
 
     def constant(self, a: int) -> int | None:
-        """Return the bits of a constant term, or None for any other term."""
+        """Return the bits of a symbolic term if it is constant; None for any other term."""
         return self.nodes[a][2] if self.nodes[a][0] == "bits" else None
 
     def _value(self, a: int) -> float | None:

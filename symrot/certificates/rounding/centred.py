@@ -1,4 +1,4 @@
-"""Enclosures of polynomials by mean value forms, from the value at the middle of a box and derivatives on the box.
+"""Intervals that contain a polynomial on a box, from its value at the middle and its derivatives (mean value form).
 
 Plain interval arithmetic for ``x*y - x*z`` ignores that both factors x are the same number. The mean value form ``f(c)
 + sum of f_k'(box)*(x_k - c_k)`` accounts for it, to first order in the width. The enclosed values lie between exact and

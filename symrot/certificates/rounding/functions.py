@@ -1,4 +1,4 @@
-"""Enclosures of sine, cosine, arc tangent and related functions on intervals, from ``+ - * / sqrt`` alone.
+"""Intervals that contain sine, cosine, arc tangent and related functions, computed from ``+ - * / sqrt`` alone.
 
 The C library's sine differs between machines, but bounds must be the same everywhere. So arguments are reduced by
 multiples of pi/2, which is split in two parts, and Taylor series are summed. The absolute error stays below 1e-15;
@@ -105,7 +105,7 @@ class _EvenFunction:
     crude: float
 
     def __call__(self, x: Array) -> Array:
-        """Return an enclosure of the even function on intervals."""
+        """Return intervals that contain the values of the even function on given intervals."""
         size = _size(x)
         low = np.minimum(size, self.end)
         far = np.maximum(low, 2.0)
@@ -195,7 +195,10 @@ def arc_tangent(y: Array, x: Array) -> Array:
 
 
 def arc_slope(a: Array, b: Array) -> Array:
-    """Return the tightest enclosure of a/(a^2 + b^2), a derivative of atan2; infinite where both contain zero."""
+    """Return the tightest intervals that contain a/(a^2 + b^2), a derivative of atan2.
+
+    They are infinite where both ``a`` and ``b`` contain zero.
+    """
     return np.stack([-_steepest(negative(a), b), _steepest(a, b)])
 
 
@@ -218,7 +221,7 @@ def _slope_at(a: Array, b: Array) -> Array:
 
 
 def arc_ratio_terms(s: Array, c: Array, radius: Array) -> tuple[Array, Array, Array]:
-    """Return enclosures of atan2(s, c)/s and of its derivatives by s and by c, for s, c >= 0, not both 0.
+    """Return intervals of atan2(s, c)/s and of its derivatives by s and by c, for s, c >= 0, not both 0.
 
     With ``s = r sin(a)``, ``c = r cos(a)`` they are ``1/(r sinc a)``, ``-4 a sine_gap(2a)/(r sinc a)^2`` and
     ``-1/r^2``, which are finite at ``a = 0``.

@@ -141,7 +141,7 @@ _SIGNS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 
 
 def operand_places(node: Node) -> tuple[int, ...]:
-    """Return the indices of the operands of a node of a graph."""
+    """Return the indices of the nodes that are operands of a node of a graph."""
     if node[0] in ("in", "const"):
         return ()
     if node[0] == "gap":

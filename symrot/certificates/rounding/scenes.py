@@ -27,7 +27,7 @@ ANY, UNIT = (-LARGEST, LARGEST), (Fraction(-1), Fraction(1))
 class SceneInputs:
     """The arguments of a scene's kernel, the values of its parameters, and its first and last time (s).
 
-    ``formulas`` maps the place of a parameter (``"p[0]"``) to its name and formula; ``constants`` holds the values of
+    ``formulas`` maps a parameter's index text (``"p[0]"``) to its name and formula; ``constants`` holds the values of
     the physical constants in these formulas.
     """
 

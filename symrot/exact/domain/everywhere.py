@@ -1,4 +1,4 @@
-"""The range of a formula over all real points: bounds that hold for all values of its symbols.
+"""Bounds of a formula that hold for all real values of its symbols.
 
 ``cos(x) - 2`` lies between -3 and -1, so its root is real nowhere. Bounds are exact fractions or infinite; a formula
 whose range is not known gets the bounds (-inf, inf), which exclude nothing.
@@ -32,7 +32,7 @@ def fails_everywhere(need: Need) -> bool:
 
 
 def range_everywhere(formula: Expr) -> Range:
-    """Return bounds (low, high) of a formula over all real points at which it is defined."""
+    """Return bounds (low, high) that hold for a formula at all real points at which it is defined."""
     return _range(formula, {})
 
 
@@ -68,7 +68,7 @@ def _of_number(node: Expr) -> Range:
 
 
 def _end(value: Any) -> Fraction:
-    """Return the exact value of an endpoint of an interval."""
+    """Return the exact value of an endpoint of an interval as a fraction."""
     sign, mantissa, power, _ = value._mpi_[0]
     if abs(power) > MOST_BITS:
         raise OverflowError

@@ -112,7 +112,7 @@ class _Basis:
         return total
 
     def subtract(self, total: Terms, terms: Terms, shift: Monomial, times: Any) -> None:
-        """Subtract ``times * shift`` times a polynomial from ``total``, in place."""
+        """Subtract ``times * shift`` times a polynomial (``terms``) from the polynomial ``total``, in place."""
         self.spend(len(terms))
         zero = self.ring.domain.zero
         for mono, coefficient in terms.items():
@@ -124,7 +124,10 @@ class _Basis:
                 del total[place]
 
     def normal(self, terms: Terms, members: Sequence[Terms]) -> Terms:
-        """Return the remainder of a polynomial: no leading term of a member divides any of its terms."""
+        """Return the remainder of a polynomial after division by the members of a basis.
+
+        No leading term of a member divides a term of the remainder.
+        """
         leads = self.leads if members is self.members else [max(member, key=self.key) for member in members]
         left: Terms = {}
         while terms:

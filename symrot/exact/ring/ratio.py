@@ -26,7 +26,7 @@ The claims of the four textbooks and courses need at most 27 000."""
 
 
 class TooLarge(InputError):
-    """The exception for a formula that cannot be expanded within the budget."""
+    """The exception for a formula whose expansion takes more products of terms than the budget allows."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class Ratios:
         return Ratio(self.ring.ground_new(self.ring.domain(numerator)), denominator)
 
     def add(self, terms: Sequence[Ratio]) -> Ratio:
-        """Return the sum of fractions; those with equal denominators are added before any cross-multiplication."""
+        """Return the sum of fractions of polynomials; fractions with equal denominators are added first."""
         groups: dict[tuple[int, tuple[tuple[int, int], ...]], PolyElement] = {}
         for term in terms:
             key = (term.constant, term.factors)
@@ -96,7 +96,7 @@ class Ratios:
         return Ratio(total, common_constant, tuple(sorted(common.items())))
 
     def multiply(self, factors: Sequence[Ratio]) -> Ratio:
-        """Return the product of fractions, multiplying small numerators first."""
+        """Return the product of fractions of polynomials; small numerators are multiplied first."""
         numerator, constant = self.ring.one, 1
         below: dict[int, int] = {}
         for factor in sorted(factors, key=lambda f: len(f.numerator)):
@@ -108,7 +108,7 @@ class Ratios:
         return Ratio(numerator, constant, tuple(sorted(below.items())))
 
     def power(self, base: Ratio, exponent: int) -> Ratio:
-        """Return a fraction to a power >= 0."""
+        """Return a fraction of polynomials to an integer power >= 0."""
         if exponent == 0:
             return Ratio(self.ring.one)
         self._spend(_most_terms(base.numerator, exponent) * len(base.numerator))
@@ -131,7 +131,7 @@ class Ratios:
         return Ratio(above if constant > 0 else -above, abs(constant.numerator), below)
 
     def denominator(self, value: Ratio) -> PolyElement:
-        """Return the denominator of a fraction as an expanded polynomial."""
+        """Return the denominator of a fraction of polynomials as an expanded polynomial."""
         below = self.ring.ground_new(self.ring.domain(value.constant))
         for number, power in value.factors:
             below = below * self.factors[number] ** power
@@ -145,7 +145,7 @@ class Ratios:
             )
 
     def _split(self, poly: PolyElement, source: Expr) -> tuple[Fraction, tuple[tuple[int, int], ...]]:
-        """Return a polynomial as a rational constant times factors; factors that are not yet stored are added."""
+        """Return a polynomial as a rational constant times factors; factors that are new are stored."""
         constant, poly = _primitive(poly)
         powers: dict[int, int] = {}
         shared = [min(column) for column in zip(*poly, strict=True)]
