@@ -149,7 +149,9 @@ C = TypeVar("C", bound=Case)
 
 
 def first_decision(case: C, stages: Sequence[Callable[[C], Decision | None]]) -> Decision:
-    """Pass a case through stages; return the decision of the first stage that decides.
+    """Pass an equation (``case``) through stages of decision; return the decision of the first stage that decides.
+
+    The last stage always decides.
 
     The last stage always decides.
     """
@@ -164,7 +166,7 @@ def first_decision(case: C, stages: Sequence[Callable[[C], Decision | None]]) ->
 
 
 def subtract(case: Case) -> None:
-    """Compute left - right of each entry of a case and try to prove that it is zero; decide nothing yet."""
+    """Compute left - right for each entry of an equation and try to prove that it is zero; decide nothing yet."""
     ring = case.ring
     case.residuals = [ring.difference(a, b) for a, b in zip(case.lefts, case.rights, strict=True)]
     proofs = [proof(ring, residual.numerator) for residual in case.residuals]
@@ -173,7 +175,7 @@ def subtract(case: Case) -> None:
 
 
 def prove(case: Case) -> Decision | None:
-    """Return the verdict "true" if all entries of a case are proven equal, else None."""
+    """Return the verdict "true" if all entries of an equation are proven equal, else None."""
     if case.unproven:
         return None
     case.rely_on(case.proof_rings)
@@ -181,14 +183,14 @@ def prove(case: Case) -> Decision | None:
 
 
 def refute(case: Case) -> Decision | None:
-    """Return the verdict "false" if the case has a counterexample, else None."""
+    """Return the verdict "false" if a counterexample to an equation is found, else None."""
     if case.counterexample is None:
         return None
     return Decision("false", case.conditions, counterexample=case.counterexample)
 
 
 def congruence(case: Case) -> Decision | None:
-    """Decide a case whose open entries become equal if inverse functions replace equal ones; else return None."""
+    """Decide an equation whose open entries become equal if inverse functions replace equal ones; else return None."""
     ring = case.ring
     proofs = [proof_by_congruence(case.lefts[n], case.rights[n], ring.hypotheses, ring.domain) for n in case.unproven]
     if None in proofs:
@@ -248,7 +250,10 @@ def flatten(expression: Any) -> tuple[list[Expr], Shape]:
 
 
 def place_in_matrix(number: int, shape: Shape) -> tuple[int, int] | None:
-    """Return (row, column), from 1, of a matrix entry counted row by row from 0; None if the shape is a scalar's."""
+    """Return (row, column), counted from 1, of a matrix entry with a number counted row by row from 0.
+
+    Return None if ``shape`` is that of a scalar.
+    """
     return None if shape is None else (number // shape[1] + 1, number % shape[1] + 1)
 
 

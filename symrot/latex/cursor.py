@@ -41,7 +41,7 @@ class Cursor:
         return complaint(self.source, self.where, (item or self.peek()).start, expected)
 
     def enter(self, node: Node) -> None:
-        """Start to read another row, or a single item as if it were a row, from its beginning."""
+        """Start to read another row of the LaTeX tree, or a single item as if it were a row, from its beginning."""
         self.items: list[Node] = []
         self.index = 0
         self.flatten(node.items if isinstance(node, Row) else (node,))
@@ -65,7 +65,7 @@ class Cursor:
                 space = False
 
     def inside(self, node: Node, read: Callable[[], Value], closing: str = "'}'") -> Value:
-        """Read a row or a single item to its end with ``read``, then go back to the position before it."""
+        """Read a row or a single item of the LaTeX tree with ``read``, then go back to the position before it."""
         outside = self.items, self.index, self.open_bars
         self.enter(node)
         self.open_bars = ()

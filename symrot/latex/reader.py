@@ -35,7 +35,10 @@ class _Reader:
         return complaint(self.source, self.where, token.start, expected)
 
     def row(self, closing: str, *stops: str) -> Row:
-        """Read items up to a token whose kind or text is in ``closing``, which stays unread; return them as a row."""
+        """Read items of a formula up to a token whose kind or text is in ``closing``; return them as a row.
+
+        The closing token stays unread.
+        """
         items: list[Node] = []
         first = token = self.tokens[self.place]
         while token.kind not in stops and token.text not in stops:
@@ -50,7 +53,7 @@ class _Reader:
         return Row(tuple(items), first.start, token.start)
 
     def group(self, opening: Token, closing: str = "}") -> Row:
-        """Read a row of items and the token that closes it."""
+        """Read a row of items of a formula and the token that closes it, such as a brace."""
         row = self.row(closing, closing)
         self.place += 1
         return Row(row.items, opening.start, row.end)

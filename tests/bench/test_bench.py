@@ -355,7 +355,7 @@ def test_the_lines_name_references_and_every_method(found):
 
 @pytest.mark.parametrize(
     ("content", "said"),
-    [("{", "not JSON"), ("[]", "format"), ('{"format": "symrot work-precision 1"}', "parts missing")],
+    [("{", "not JSON"), ("[]", "format"), ('{"format": "symrot work-precision 1"}', "missing parts")],
 )
 def test_a_file_that_is_no_study_is_refused(tmp_path, content, said):
     path = tmp_path / "x.json"

@@ -55,7 +55,7 @@ class Equality:
 
 
 class _AtomField(FractionField):
-    """A field of fractions over inputs, pi and atoms.
+    """A field of fractions of polynomials over inputs, pi and symbols for function values such as ``sin(psi)``.
 
     An atom is a symbol for the value of a function, added at its first use.
     """

@@ -1,4 +1,4 @@
-"""An attempt to prove a law: write each entry as a sum of cofactors times relations, over a polynomial ring.
+"""An attempt to prove a law: each expression that must be zero is written as a sum of cofactors times relations.
 
 An entry is an expression that the law states to be zero; a relation is a polynomial that is known to be zero. The value
 of each function, such as ``cos(x)``, is a variable (generator) of the ring.
@@ -66,7 +66,7 @@ class CaseProof:
 
 
 class UndecidedChoice(Exception):
-    """The exception for a conditional whose branch the current case of a proof does not fix.
+    """The exception for a conditional whose branch is not chosen yet; its arguments are both compared sides.
 
     Its arguments are both compared sides.
     """
@@ -171,7 +171,7 @@ class LawProver(FormulaReader):
         return self.read(plain)
 
     def takes_first_branch(self, choice: Expr) -> bool:
-        """Tell whether the current case of the proof takes the first branch of a conditional."""
+        """Tell whether the current proof takes the first branch of a conditional in a formula."""
         left, right = (quotient_text(self.read(argument)) for argument in choice.args[:2])
         if (left, right) not in self.decided:
             raise UndecidedChoice(left, right)

@@ -92,7 +92,7 @@ class BoundTask:
 
     @property
     def key(self) -> str:
-        """The key under which the bound is stored; equal tasks have equal keys."""
+        """The key under which the bound is stored, a hash; equal tasks have equal keys."""
         numbers = {place: k for k, place in enumerate(self.graph.places)}
         groups = sorted(tuple(numbers.get(place, -1) for place in group) for group in self.region.unit)
         ends = [x.hex() for x in (*self.low, *self.high)]

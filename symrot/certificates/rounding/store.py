@@ -57,13 +57,15 @@ def _from_json(plain: Mapping[str, Any]) -> SearchResult:
 
 
 class Store:
-    """A store of rounding error bounds by key: in memory, in the table of symrot and in the cache."""
+    """A store of rounding error bounds by key (a hash of the task): in memory, in symrot's table and in the cache."""
 
     def __init__(self) -> None:
         self.memory: dict[str, SearchResult] = {}
 
     def get(self, key: str, with_table: bool = True) -> SearchResult | None:
-        """Return the bound of a key, or None; with ``with_table=False`` the table of symrot is not searched.
+        """Return the bound of a rounding error by its key, or None.
+
+        With ``with_table=False`` the table of bounds that comes with symrot is not searched.
 
         With ``with_table=False`` the table of symrot is not searched.
         """
@@ -77,6 +79,6 @@ class Store:
         return self.memory[key]
 
     def put(self, key: str, bound: SearchResult) -> None:
-        """Store a bound under its key, in memory and in the cache."""
+        """Store a bound of a rounding error under its key, in memory and in the cache."""
         self.memory[key] = bound
         cache_files.store(f"rounding {method()} {key}", json.dumps(_to_json(bound)))

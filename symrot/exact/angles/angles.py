@@ -31,9 +31,7 @@ class LinearForm:
 
 
 def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
-    """Return an angle (rad) as a sum of atoms with rational coefficients plus a multiple of pi; an atom is e.g.
-
-    a symbol.
+    """Return the linear form of an angle (rad): atoms (such as symbols) with rational coefficients, plus a multiple of pi.
 
     Products are expanded; every factor that is not a number is an atom. With ``turns=False``, used for the exponent of
     an exponential, ``pi`` is an atom as any symbol is.

@@ -37,7 +37,7 @@ class Rule:
 
     @property
     def polynomial(self) -> PolyElement:
-        """The polynomial ``generator^power - replacement``, which is zero."""
+        """The polynomial ``generator^power - replacement`` of the ring, which the rule says is zero."""
         return self.replacement.ring.gens[self.generator] ** self.power - self.replacement
 
 

@@ -496,7 +496,7 @@ def _occurring(poly: PolyElement) -> set[int]:
 
 
 def _order(node: Expr) -> tuple[str, str]:
-    """Return a sort key of an expression that is the same in every run, unlike SymPy's own order."""
+    """Return a sort key of an expression that is the same in every run."""
     return (written(node), type(node).__name__)
 
 

@@ -96,7 +96,7 @@ class Radical:
 
 
 def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
-    """Split a fractional power, the imaginary unit ``i`` or an absolute value into factors, and return them.
+    """Split a fractional power, the imaginary unit ``i`` or an absolute value into factors; return the factors.
 
     Parameters
     ----------
