@@ -31,7 +31,7 @@ class LinearForm:
 
 
 def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
-    """Return the linear form of an angle (rad): atoms (such as symbols) with rational coefficients, plus a multiple of pi.
+    """Return the linear form of an angle (rad): atoms (such as symbols) with rational factors, and a multiple of pi.
 
     Products are expanded; every factor that is not a number is an atom. With ``turns=False``, used for the exponent of
     an exponential, ``pi`` is an atom as any symbol is.
