@@ -1,1 +1,1 @@
-"""Certificates of emitted kernels: read back, bounded, compared with the object code, and re-checked."""
+"""Certificates: statements about emitted C kernels (formulas, rounding errors) with proofs, and their checkers."""

@@ -40,7 +40,7 @@ NULLABLE = ("coq", *OPTIONAL)  # sections that may be null
 
 
 def load_certificate(path: Path) -> Data:
-    """Return a certificate from its file.
+    """Read a certificate from its JSON file and return it.
 
     Raises
     ------
@@ -51,7 +51,8 @@ def load_certificate(path: Path) -> Data:
     """
     if path.suffix in (".c", ".h", ".o"):
         raise CertificateError(
-            f"{path}: expected a certificate, got another file; the certificate of this one is {path.stem}.cert.json"
+            f"{path}: expected a certificate, got another kind of file; write the path of its "
+            f"certificate, {path.stem}.cert.json"
         )
     try:
         content = read_input(path, LARGEST)
@@ -74,14 +75,16 @@ def load_certificate(path: Path) -> Data:
             )
     unknown = sorted(set(data) - set(PARTS))
     if unknown:
-        raise CertificateError(f"{path}: expected no section but those of a certificate, got {unknown[0]!r}")
+        raise CertificateError(
+            f"{path}: expected only the sections that symrot writes into a certificate, got {unknown[0]!r}"
+        )
     return data
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> Data:
     data = dict(pairs)
     if len(data) != len(pairs):
-        raise ValueError("one object has the same name twice")
+        raise ValueError("expected different names in an object, got one name twice")
     return data
 
 
@@ -90,7 +93,7 @@ def _refused(text: str) -> Any:
 
 
 def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[Data, list[str]]:
-    """Return a certificate whose statements hold, and the findings of the audit as sentences.
+    """Check every statement of a certificate; return the certificate, and one sentence for each check that it passed.
 
     Parameters
     ----------
@@ -119,7 +122,10 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
 
 
 def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | None]) -> list[str]:
-    """Return the findings of those checks of a certificate that need symrot's own derivations."""
+    """Check a certificate against symrot's own derivations and bounds.
+
+    Return one sentence for each check that it passed.
+    """
     name = data["kernel"]
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
     check_header(header, source, name)
@@ -136,7 +142,10 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
 
 
 def _compared(data: Data) -> list[str]:
-    """Return a finding that the verdicts on object code were not checked, since they hold for another machine."""
+    """Return the sentence that the verdicts on object code were not checked.
+
+    Such verdicts hold only for the machine that made them.
+    """
     finding = "its verdicts on object code were not checked: --object compares an object file of yours"
     return [finding] if data.get("objects") else []
 
@@ -151,7 +160,10 @@ def _compare(path: Path, data: Mapping[str, Any], statement: Mapping[str, Any]) 
 
 
 def _bounds(path: Path, data: Data, source: str) -> str:
-    """Return the finding on rounding error bounds; raise CertificateError if they do not belong to the C text."""
+    """Return a sentence about the rounding error bounds; raise CertificateError unless they belong to the C text.
+
+    Raise CertificateError if they are not bounds of the C text.
+    """
     section = data.get("rounding")
     own = library_section(data["kernel"], source) if data["kernel"] in kernel_names() else None
     if section is None:
@@ -175,12 +187,15 @@ def _bounds(path: Path, data: Data, source: str) -> str:
 
 
 def operations_of(data: Data, source: str) -> dict[str, Operations]:
-    """Return the operations of the one-sample functions of a certificate, read back from the C text, by name."""
+    """Return the operations of a certificate's one-sample functions, by function name, read from the C text.
+
+    Return the operations of each, by function name.
+    """
     return {name: read_kernel(source, name, f"{data['kernel']}.c") for name in data["readback"]}
 
 
 def _check_readback(data: Data, source: str) -> None:
-    """Raise CertificateError if the section ``readback`` differs from the operations in the C text."""
+    """Raise CertificateError if the section ``readback`` does not list the operations that the C text performs."""
     where = f"{data['kernel']}.c"
     for name, stated in data["readback"].items():
         one, batch = read_kernel(source, name, where), read_batch(source, f"{name}_batch", where)
@@ -202,4 +217,6 @@ def _check_readback(data: Data, source: str) -> None:
         }
         for what, holds in checks.items():
             if not holds:
-                raise CertificateError(f"{where}: expected the {what} of the operations of {name}, got others")
+                raise CertificateError(
+                    f"{where}: expected the {what} that follows from the operations of {name}, got another"
+                )

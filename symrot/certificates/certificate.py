@@ -1,11 +1,10 @@
 """The certificate of an emitted kernel: statements about its files, and their proofs, as JSON.
 
-The program recheck.py checks it without symrot.
+The program ``recheck.py`` checks a certificate without symrot.
 
-
-Two statements are proven here from the printed files: the formulas obey their laws, and the C text computes the
-formulas. The sections about rounding errors and object code are added on request. The same kernel has the same
-certificate, byte for byte, on every machine.
+Two statements are proven here from the printed files: the formulas obey their laws (identities such as "the norm is
+1"), and the C text computes the formulas. The sections about rounding errors and object code are added on request. The
+same kernel has the same certificate, byte for byte, on every machine.
 """
 
 import json
@@ -79,12 +78,12 @@ class KernelUnderTest:
 
     @property
     def places(self) -> dict[str, tuple[str, str]]:
-        """The symbol and unit of each input, by place."""
+        """The symbol and unit of each input component, by its index text such as ``"q[1]"``."""
         return {place: (name, unit) for a in self.inputs for place, (name, unit, _) in _places(a)}
 
     @property
     def formulas(self) -> dict[str, tuple[str, Expr]]:
-        """The symbol and formula of each output, by place."""
+        """The symbol and formula of each output component, by its index text such as ``"dq[1]"``."""
         return {
             place: (component[0], formula)
             for target, formulas in self.outputs
@@ -93,7 +92,7 @@ class KernelUnderTest:
 
 
 def _places(argument: Argument) -> list[tuple[str, tuple[str, str, str]]]:
-    """Return each component of an argument: its place, such as ``"q[1]"``, with its symbol, unit and description."""
+    """Return for each component of an argument its index text, such as ``"q[1]"``, symbol, unit and description."""
     if argument.is_scalar:
         return [(argument.name, argument.components[0])]
     return [(f"{argument.name}[{i}]", component) for i, component in enumerate(argument.components)]
@@ -132,7 +131,7 @@ PROVERS = (
 
 @cache
 def _prover_digest() -> str:
-    """Return the SHA-256 of the modules that find proofs."""
+    """Return the SHA-256 of the source files that prove certificates; if it changes, cached proofs are not used."""
     here = Path(__file__).parent
     return sha256(b"".join((here / f"{name}.py").read_bytes() for name in PROVERS)).hexdigest()
 
@@ -177,15 +176,15 @@ def _functions(formulas: Sequence[Expr]) -> list[list[str]]:
 
 
 def proven_statement(kernel: KernelUnderTest) -> Data:
-    """Return a kernel's certificate without its optional sections and its seal, every statement proven by symrot.
+    """Return a kernel's certificate, every statement proven by symrot, without its optional sections and its seal.
 
-    The seal is left out too.
+    The optional sections are the rounding bounds and the verdicts on object code; the seal is a hash of the content.
     """
     return {key: value for key, value in json.loads(certificate_text(kernel)).items() if key != "seal"}
 
 
 def _proven(kernel: KernelUnderTest) -> Data:
-    """Return the proofs of the laws, and the proofs that the C text computes the formulas."""
+    """Return the proofs of the laws, and the proofs that the C text computes the formulas, for a certificate."""
     known = {str(symbol): value for symbol, value in kernel.named} | dict(kernel.formulas.values())
     return {
         "laws": [_law(prove_law(kernel.name, law, known)) for law in kernel.laws],
@@ -221,7 +220,9 @@ def _readback(kernel: KernelUnderTest, suffix: str, real: str) -> Data:
     text = kernel.files[file]
     one, batch = read_kernel(text, name, file), read_batch(text, f"{name}_batch", file)
     if one.digest() != batch.digest():
-        raise CertificateError(f"{file}: expected {name} and {name}_batch to compute the same, and they do not")
+        raise CertificateError(
+            f"{file}: expected {name} and {name}_batch to perform the same operations, got different ones"
+        )
     symbols = {place: symbol for place, (symbol, _) in kernel.places.items()}
     proof = prove_equal(
         one, symbols, {place: f for place, (_, f) in kernel.formulas.items()}, kernel.named, kernel.parameters
@@ -254,7 +255,7 @@ def _series(proof: Equality) -> list[list[Any]]:
 
 
 def seal(data: Data) -> str:
-    """Return the seal of a certificate: the SHA-256 of all its other content."""
+    """Return the seal of a certificate: the SHA-256 of all its content except the seal itself."""
     bare = {key: value for key, value in data.items() if key != "seal"}
     return sha256(json.dumps(bare, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
@@ -285,7 +286,7 @@ def with_sections(text: str, sections: Mapping[str, Any]) -> str:
 
 
 def certificate_json(data: Data) -> str:
-    """Return a certificate as text, with its seal at the end."""
+    """Return a certificate as JSON text, with its seal as the last entry."""
     sealed = {key: value for key, value in data.items() if key != "seal"}
     return _layout(sealed | {"seal": seal(sealed)}) + "\n"
 
@@ -294,7 +295,7 @@ WIDTH = 118
 
 
 def _layout(value: Any, indent: int = 0, key: str = "") -> str:
-    """Return a value as JSON in which every object or list that fits on a line is on one line."""
+    """Return a value as JSON text; every object or list that fits on one line is written on one line."""
     flat = json.dumps(value, ensure_ascii=False)
     if len(flat) + indent + len(key) <= WIDTH or not isinstance(value, (dict, list)) or not value:
         return flat

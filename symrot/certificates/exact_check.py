@@ -1,12 +1,13 @@
 """Check certificates exactly, from their files alone; ``symrot audit`` begins with this check.
 
-It checks every hash, that the C text computes the formulas, and that the formulas obey their laws. Equations are
-evaluated in exact arithmetic at random integers, with one more random integer as the value of a function for each
-different argument: a wrong equation passes one run with a chance of about its degree in 2^128. Laws are proven by the
-cases, steps and cofactors in the certificate (:mod:`symrot.certificates.laws.laws`). ``recheck.py``, which evaluates
-numbers and reads no proofs, shares only the seal and the hashes with this module. Headers are checked by hash alone.
-All other statements of a certificate (titles and units, counts and digests of operations, flags, theorems, bounds of
-rounding errors, object code) are not checked here.
+The module checks every hash, that the C text computes the formulas, and that the formulas obey their laws (identities
+such as "the norm is 1"). Equations are evaluated in exact arithmetic at random integers; the value of a function such
+as sin(x) is one more random integer for each different argument. A wrong equation passes one run with a chance of about
+its degree in 2^128. Laws are proven by the cases, steps and cofactors in the certificate
+(:mod:`symrot.certificates.laws.laws`). ``recheck.py``, which evaluates numbers and reads no proofs, shares only the
+seal and the hashes with this module. Headers are checked by hash alone. All other statements of a certificate (titles
+and units, counts and digests of operations, flags, theorems, bounds of rounding errors, object code) are not checked
+here.
 """
 
 import ast
@@ -74,14 +75,17 @@ def require(holds, message):
 
 
 def nearest(value, real):
-    """Return a value rounded to the nearest number of a type, ties to even."""
+    """Return an exact value rounded to the nearest double or float, ties to even."""
     bits, shift = {"double": 53, "float": 24}[real], value.denominator.bit_length() - abs(value.numerator).bit_length()
     scale = Fraction(2) ** (bits + shift - (abs(value) * Fraction(2) ** shift >= 1))
     return round(value * scale) / scale
 
 
 class RandomIntegers(defaultdict):
-    """A random integer for each name, or for each function with its arguments, drawn at the first use."""
+    """A random integer for each variable, and for each function call with its arguments.
+
+    It is drawn when it is first needed.
+    """
 
     def __missing__(self, key):
         return self.setdefault(key, Fraction(secrets.randbits(128)))
@@ -102,11 +106,11 @@ class Evaluator:
         return ast.parse(NUMBER.sub(r"'\1'", text.strip()), mode="eval").body
 
     def read(self, text):
-        """Return the value of an expression that is passed as text."""
+        """Return the value of an expression from its text."""
         return self.value(self.parsed(text))
 
     def value(self, node):
-        """Return the value of an expression that is passed as a syntax tree."""
+        """Return the value of an expression from its syntax tree."""
         match node:
             case ast.Constant(value=int(number)) if not self.real:
                 return Fraction(number)
@@ -135,10 +139,12 @@ class Evaluator:
                 if re.match("symrot_(?:(sin|cos)f?$|near_(?!arc_))", name):
                     self.near.add(values[0])
                 return self.call(self.calls[name] if self.real else name, *values)
-        raise ValueError(f"expected a formula of kernels, got {ast.unparse(node)[:60]}")
+        raise ValueError(
+            f"expected sums, products, powers and functions such as sin in a formula, got {ast.unparse(node)[:60]}"
+        )
 
     def call(self, name, *values):
-        """Return the value of a named function at the values of its arguments."""
+        """Return the value of a function, such as ``"sin"``, at the values of its arguments."""
         if self.cases is not None and name == "Abs":
             return self.call("copysign", Fraction(1), *values) * values[0]
         if self.cases is not None and name in SAFE and name != "select_ge":
@@ -148,19 +154,24 @@ class Evaluator:
         return self.functions[name, *values]
 
     def run(self, body, places, targets=()):
-        """Run statements of C; return the values that they assign, by target, or the value that they return."""
+        """Run C statements.
+
+        Return the assigned values by target such as ``"q[1]"``, or the value of the ``return`` statement.
+        """
         self.names, results, statements = dict(places), {}, body.split(";")
         require(not statements.pop().strip(), f"expected a semicolon at the end, got {body[-60:]!r}")
         for place, statement in enumerate(statements, 1):
             match = require(STATEMENT.fullmatch(statement), f"expected a statement, got {statement[:60]!r}")
             real, name, formula, target, assigned, returned = match.groups()
             if returned:
-                require(place == len(statements), "expected nothing after return")
+                require(
+                    place == len(statements), "expected the end of the function after return, got another statement"
+                )
                 return self.read(CHOICE.sub(r"(\4) if (\1) \2 (\3) else (\5)", returned))
             if name:
                 require(
                     real == self.real and name not in (*self.names, *self.calls, "n", "k"),
-                    f"expected a new name, got {name}",
+                    f"expected a name that is not yet used, got {name}",
                 )
                 self.names[name] = self.read(formula)
             if target:
@@ -174,7 +185,7 @@ class Evaluator:
 
 
 class KernelCheck:
-    """The check that the C text of a function, for one sample and in batches, computes its formulas."""
+    """The check that a C function, in its versions for one sample and for many (``_batch``), computes its formulas."""
 
     def __init__(self, name, data, c_functions):
         self.name, self.readback, self.spec, self.c_functions = name, data["readback"][name], data["spec"], c_functions
@@ -192,7 +203,10 @@ class KernelCheck:
             {*self.spec["parameters"]} == parameters,
             "expected the same parameters in the formulas and among the inputs",
         )
-        require(all(symbol.isidentifier() for _, symbol, _ in data["inputs"]), "expected inputs that are names")
+        require(
+            all(symbol.isidentifier() for _, symbol, _ in data["inputs"]),
+            "expected the name of a variable for each input, got other text",
+        )
         require(
             len({*inputs.values(), "pi"}) == len(data["inputs"]) + 1,
             "expected inputs that differ from each other and from pi",
@@ -205,26 +219,27 @@ class KernelCheck:
         self.constants = dict(map(self.constant, self.readback["constants"]))
 
     def constant(self, pair):
-        """Check a rounded constant of the C text; return the constant, and the exact number that it stands for."""
+        """Check that a constant of the C text is its exact number rounded; return the constant and the exact number."""
         written, exact = Fraction(pair[0]), Fraction(pair[1].removesuffix("*pi"))
         times_pi = pair[1].endswith("*pi")
         require(
-            nearest(exact * PI if times_pi else exact, self.real) == written, f"{written} does not stand for {pair[1]}"
+            nearest(exact * PI if times_pi else exact, self.real) == written,
+            f"expected the constant nearest to {pair[1]}, got {written}",
         )
         return written, exact * self.symbols["pi"] if times_pi else exact
 
     def run(self, body, places, targets=(), near=()):
-        """Return the values that the body of a C function assigns or returns at given inputs."""
+        """Run the body of a C function at given inputs; return the values that it assigns or returns."""
         reader = Evaluator({}, self.functions, self.real, self.calls, self.constants if targets else ())
         computed = reader.run(body, places, targets)
         require(
             reader.near <= set(map(reader.read, near)),
-            f"{self.name} calls a function of limited range for an untested angle",
+            f"{self.name} calls a function of limited range for an angle that the C text does not test",
         )
         return computed
 
     def check(self):
-        """Check that the one-sample function and the batch function both compute the formulas."""
+        """Check that the functions for one sample and for many samples (``_batch``) compute the formulas."""
         for function, bare in self.own.items():
             self.check_own(function, bare)
         places = [*self.inputs, *self.outputs]
@@ -234,14 +249,20 @@ class KernelCheck:
             bases[base] = 0 if own == [base] else len(own)
             require(
                 own in ([base], [f"{base}[{k}]" for k in range(len(own))]),
-                f"expected the places of one argument, numbered from 0, got {', '.join(own)}",
+                f"expected the components of one argument, such as q[0], q[1], numbered from 0, got {', '.join(own)}",
             )
         typed = {base: "const " * (f"{base}[0]" not in self.outputs) + self.real for base in bases}
         one = [f"{typed[base]} {base}[{size}]" if size else f"{self.real} {base}" for base, size in bases.items()]
         many = [one[k] if base == "p" else f"{typed[base]} *SYMROT_RESTRICT {base}" for k, base in enumerate(bases)]
-        require(self.c_functions[self.name][1:3] == ("void", ", ".join(one)), f"{self.name} has other arguments")
+        require(
+            self.c_functions[self.name][1:3] == ("void", ", ".join(one)),
+            f"{self.name} has other arguments than expected: the inputs and outputs of the certificate",
+        )
         _, kind, arguments, loops = self.c_functions[f"{self.name}_batch"]
-        require((kind, arguments) == ("void", ", ".join(["size_t n", *many])), f"{self.name}_batch has other arguments")
+        require(
+            (kind, arguments) == ("void", ", ".join(["size_t n", *many])),
+            f"{self.name}_batch has other arguments than expected: the inputs and outputs of the certificate",
+        )
 
         def of_sample(place):
             base, _, index = place.partition("[")
@@ -254,27 +275,30 @@ class KernelCheck:
         if loop := LOOP.fullmatch(loops) or PARTS.fullmatch(loops):
             return self.compare(loop.groups(), batch, map(of_sample, self.outputs))
         bits, first, far, again = require(
-            BLOCKS.fullmatch(loops), f"{self.name}_batch is not a loop over all samples"
+            BLOCKS.fullmatch(loops), f"{self.name}_batch does not have the expected loop over all samples"
         ).groups()
         tested = re.findall(rf"symrot_far{self.end}\(((?:[^()]|\([^()]*\))*)\)", far)
         holds = far == " + ".join(f"symrot_far{self.end}({each})" for each in tested)
         require(
             holds and bits == {"double": "64", "float": "32"}[self.real],
-            f"{far} is not the test of the range of angles",
+            f"{far} does not test every angle as expected",
         )
         self.compare([first], batch, map(of_sample, self.outputs), tested)
         self.compare([again], batch, map(of_sample, self.outputs))
 
     def compare(self, bodies, places, targets, near=()):
-        """Check that bodies of C functions assign to their targets the values of the formulas."""
+        """Check that the bodies of C functions assign to each target, such as ``"q[1]"``, the value of its formula."""
         targets, computed = [*targets], {}
         for body in bodies:
             computed |= self.run(body, places, [target for target in targets if target not in computed], near)
         for target, (place, expected) in zip(targets, self.outputs.items()):
-            require(target in computed and computed[target] == expected, f"{place} of {self.name} is not its formula")
+            require(
+                target in computed and computed[target] == expected,
+                f"{place} of {self.name} does not have the value of its formula, as expected",
+            )
 
     def check_own(self, function, bare):
-        """Check that a helper function of the C file computes its formula, or a series close enough to the formula."""
+        """Check a helper function of the C file: it must compute its formula, or near zero a close enough series."""
         (explicit, case), (_, _, arguments, body) = SAFE[bare], self.c_functions[function]
         for _, split, coefficients, rest in (each for each in self.readback["series"] if each[0] == bare):
             taylor = [
@@ -283,7 +307,7 @@ class KernelCheck:
             falling = [abs(each) * Fraction(split) ** k for k, each in enumerate(taylor)]
             holds = sorted(falling, reverse=True) == falling and [*map(Fraction, coefficients)] == taylor[:-1]
             holds = holds and Fraction(rest) == falling[-1] / (falling[0] - falling[1])
-            require(holds, f"the series of {bare}, or its bound, is wrong")
+            require(holds, f"the series of {bare}, or the bound of its error, is not the expected one")
             series = [f"({nearest(each, self.real)})*x**{2 * k}" for k, each in enumerate(taylor[:-1])]
             case = case.format(series=" + ".join(series), split=split)
         names = [argument.removeprefix(f"{self.real} ") for argument in arguments.split(", ")]
@@ -301,7 +325,7 @@ class FloatFunctions(dict):
 
 
 def hypotheses(values):
-    """Return polynomials that are zero if some numbers are a unit vector's components or a rotation's nine entries."""
+    """Return polynomials that are zero if the numbers are a unit vector, unit quaternion or rotation matrix."""
     if len(values) != 9:
         return [sum(each**2 for each in values) - 1] if values else []
     rows, pairs = [values[:3], values[3:6], values[6:]], [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
@@ -313,11 +337,11 @@ def hypotheses(values):
 
 
 def prove(law, case, formulas):
-    """Check the stored proof of a law in one case: entry times factor = sum of cofactors times relations.
+    """Check the stored proof of a law in one case: entry times factor must be the sum of cofactors times relations.
 
-    An entry is an expression that is zero by the law; a relation is a polynomial that is known to be zero.
-    Factors and cofactors are also evaluated at the witness, where the hypotheses hold, so that none of them hides a
-    division by zero.
+    An entry is an expression that the law states to be zero; a relation is a polynomial that is known to be zero.
+    Factors and cofactors are also evaluated at the witness, a stored point where the hypotheses of the law hold, so
+    that none of them hides a division by zero.
     """
     witness = {name: Fraction(text) for name, text in law["witness"].items()} | {"pi": PI}
     there, reader = (
@@ -325,7 +349,10 @@ def prove(law, case, formulas):
         Evaluator(RandomIntegers(), RandomIntegers(), cases={}),
     )
     relations, roots = hypotheses([*map(reader.read, law["given"])]), set()
-    require(not any(hypotheses([*map(there.read, law["given"])])), "the hypotheses do not hold at the witness")
+    require(
+        not any(hypotheses([*map(there.read, law["given"])])),
+        "expected the hypotheses of the law to hold at its witness (a stored point), but they do not",
+    )
 
     def combined(value, factor, cofactors):
         holds = abs(there.read(factor)) > 1e-6 and all(abs(there.read(text)) < 1e6 for _, text in cofactors)
@@ -340,7 +367,10 @@ def prove(law, case, formulas):
     for kind, first, *rest in case["steps"]:
         second = rest[0] if rest else ""
         if kind == "name":
-            require(re.fullmatch(r"g\d+_", first) and first not in witness, f"expected a new name, got {first}")
+            require(
+                re.fullmatch(r"g\d+_", first) and first not in witness,
+                f"expected a name that is not yet used, got {first}",
+            )
             reader.names[first], witness[first] = reader.read(second), there.read(second)
             match reader.parsed(second):
                 case ast.Call(func=ast.Name(id="sqrt")):
@@ -350,11 +380,15 @@ def prove(law, case, formulas):
                 case ast.Call(func=ast.Name(id="sin" | "cos" | "atan2" | "copysign")):
                     pass
                 case _:
-                    raise ValueError(f"expected a function that {first} stands for")
+                    raise ValueError(
+                        f"expected the function call that the new variable {first} stands for, got another formula"
+                    )
         elif kind == "square":
             square, value = map(reader.read, (first, second))
             holds = never_negative(second) and combined(square - value**2, *rest[1:])
-            reader.functions["sqrt", square] = require(holds, f"{second} is not the root of {first}") and value
+            reader.functions["sqrt", square] = (
+                require(holds, f"expected {second} to be the square root of {first}, but its square differs") and value
+            )
         else:
             fill = (RELATIONS | FACTS)[kind].replace("WRAPPED", WRAPPED)
             arguments = {"X": f"({first})", "Y": f"({second})"}
@@ -365,22 +399,25 @@ def prove(law, case, formulas):
                 reader.functions[node.func.id, *map(reader.value, node.args)] = reader.read(right)
     require(
         relations == [*map(reader.read, case["relations"])],
-        "the relations of a proof are not those that its steps make",
+        "expected the relations that follow from the steps of a proof, got others",
     )
     reader.cases = {(reader.read(left), reader.read(right)): sign for left, sign, right in case["case"]}
     for name, text in formulas:
-        require(name not in reader.names and name.isidentifier(), f"expected a new name, got {name}")
+        require(name not in reader.names and name.isidentifier(), f"expected a name that is not yet used, got {name}")
         reader.names[name] = reader.read(text)
     require(
         len(case["entries"]) == len(law["vanishing"]),
-        f"the proof of the law {law['law']!r} has another number of entries than the law",
+        f"expected a proof for each expression of the law {law['law']!r}, got more or fewer",
     )
     for text, entry in zip(law["vanishing"], case["entries"]):
-        require(combined(reader.read(text), *entry), f"the law {law['law']!r} does not follow")
+        require(
+            combined(reader.read(text), *entry),
+            f"the law {law['law']!r} does not follow from the formulas as expected: its stored proof is wrong",
+        )
 
 
 def complete(cases):
-    """Tell whether the cases of a proof cover both branches of every choice in the formulas."""
+    """Tell whether the cases of a proof cover both branches of every conditional in the formulas."""
     if not cases or not cases[0]:
         return len(cases) == 1
     left, _, right = cases[0][0]
@@ -389,7 +426,7 @@ def complete(cases):
 
 
 def functions_of(text, name, files):
-    """Return the functions in a C text by name, as tuples (static, type, arguments, body)."""
+    """Return the functions of a C text by name, each as a tuple (static, type, arguments, body)."""
     odd = re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", text)
     require(not odd, "expected no backslash, trigraph, // comment or control character in the C text")
     known = ["#include <math.h>", f'#include "{name}.h"', *['#include "symrot_math.h"'] * ("symrot_math.h" in files)]
@@ -408,7 +445,10 @@ def functions_of(text, name, files):
 
 
 def check(path):
-    """Check a certificate; return a line that lists the checks, or raise one of REFUSALS if one of them fails."""
+    """Check a certificate; return a line that lists the checks.
+
+    A failed check raises an exception of the types REFUSALS.
+    """
     path = Path(path)
     data = recheck.certified(path)
     name, files, spec, readback = data["kernel"], data["files"], data["spec"], data["readback"]
@@ -421,7 +461,10 @@ def check(path):
         KernelCheck(function, data, c_functions).check()
     formulas = [*spec["named"], *(item[1:] for item in spec["formulas"])]
     for law in require(data["laws"], "expected laws, got none"):
-        require(complete([case["case"] for case in law["cases"]]), f"cases of the law {law['law']!r} are missing")
+        require(
+            complete([case["case"] for case in law["cases"]]),
+            f"expected a proof of the law {law['law']!r} for both branches of every conditional, got fewer cases",
+        )
         for case in law["cases"]:
             prove(law, case, formulas)
     checked = " and ".join(readback)
@@ -434,7 +477,7 @@ REFUSALS += (ValueError,)
 
 
 def sentence(reason):
-    """Return an exception that a check raised as one sentence for the user."""
+    """Return the exception of a failed check as one sentence for the user."""
     if isinstance(reason, (SyntaxError, LookupError)):
         return f"no text of kernels, or no certificate of the schema ({reason.args[0]!r})"
     text = str(reason) if isinstance(reason, (ValueError, OSError)) else f"no certificate of the schema ({reason!r})"

@@ -42,7 +42,7 @@ UNFIXED = "without it a compiler may contract a*b + c where the processor has it
 
 @dataclass(frozen=True)
 class FlagRule:
-    """A row of the table of compiler flags: a form of flag, and the properties of code that it switches on or off."""
+    """A row of the table of compiler flags: a pattern of flags, and the properties of code that they change."""
 
     form: str  # regular expression that matches the whole flag
     reason: str
@@ -140,7 +140,7 @@ _FILE = re.compile(r"[^@].*\.(?:c|cc|cpp|cxx|h|o|a|so|s|S|d|i|ii|obj|exe|lib|dll
 
 @dataclass(frozen=True)
 class FlagRemark:
-    """A remark on a flag that is set or missing: its ``effect`` on the certificate, and the reason."""
+    """A remark about a compiler flag that is set or missing: its ``effect`` on the certificate, and the reason."""
 
     flag: str
     effect: str
@@ -149,18 +149,21 @@ class FlagRemark:
 
 @dataclass(frozen=True)
 class FlagEffect:
-    """The effect of all flags of a command: whether "bits", only "bounds" or "nothing" holds, and remarks on flags."""
+    """The effect of all flags of a compiler command: whether "bits", "bounds" or "nothing" still holds, with remarks.
+
+    "bits": the code computes the same bits as the C text; "bounds": only the error bounds hold.
+    """
 
     holds: str
     remarks: tuple[FlagRemark, ...]
 
     @property
     def accepted(self) -> bool:
-        """Whether the error bounds of the certificate hold."""
+        """Whether the error bounds of the certificate hold for code compiled with these flags."""
         return self.holds != NOTHING
 
     def sentence(self) -> str:
-        """Return the effect of the flags, and the reasons for it, as one line."""
+        """Return the effect of the compiler flags, with the reasons for it, as one line."""
         effect = {
             BITS: "the bits of the C text and its error bounds hold",
             BOUNDS: "the error bounds hold, not the bits",
@@ -175,7 +178,7 @@ class FlagEffect:
 
 
 def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
-    """Return the effect of the flags of gcc or clang on a certificate; a later flag overrides an earlier one.
+    """Return the effect of flags of gcc or clang on a certificate. A later flag overrides an earlier one.
 
     Parameters
     ----------
@@ -193,7 +196,7 @@ def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
         raise InputError(f"flags: expected words as a shell reads them, got {flags!r} ({reason})") from None
     if not words:
         raise InputError(
-            "flags: expected the flags of a compiler, such as 'gcc -O2 -ffp-contract=off', got an empty text"
+            "flags: expected a compiler command or its flags, such as 'gcc -O2 -ffp-contract=off', got an empty text"
         )
     compiler, place = _compiler(words)
     switched: dict[str, str] = {}  # property that is on -> the flag that switched it on
@@ -224,7 +227,7 @@ def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
 
 
 def _compiler(words: Sequence[str]) -> tuple[str, int]:
-    """Return the compiler's name in front of the flags, or an empty text, and the index of the first flag."""
+    """Return the compiler's name at the start of a command, or an empty text, and the index of the first flag."""
     names = [re.split(r"[/\\]", word)[-1] for word in words[:2]]
     place = 1 if names[0] in LAUNCHERS and len(names) > 1 else 0
     if words[place].startswith("-") or _FILE.fullmatch(words[place]):
@@ -237,9 +240,9 @@ def _compiler(words: Sequence[str]) -> tuple[str, int]:
 
 
 def _check_file(word: str) -> None:
-    """Raise InputError if a word is neither a flag nor the name of a file."""
+    """Raise InputError if a word of a compiler command is neither a flag nor the name of a file."""
     if not _FILE.fullmatch(word):
-        raise InputError(f"flags: expected flags and names of files such as kernel.c, got {word[:80]!r}")
+        raise InputError(f"flags: expected flags (-O2) and names of files (kernel.c), got {word[:80]!r}")
 
 
 def _rule(flag: str) -> FlagRule:
@@ -251,7 +254,7 @@ def _rule(flag: str) -> FlagRule:
 
 
 def flags_section() -> dict[str, object]:
-    """Return the certificate's section ``flags``: which flags it requires, allows or forbids, with reasons."""
+    """Return the certificate's section ``flags``: compiler flags that it requires, allows or forbids, with reasons."""
     void = ("-ffast-math", "-Ofast", "-funsafe-math-optimizations", "-fassociative-math", "-freciprocal-math",
             "-ffinite-math-only", "-fno-signed-zeros", "-fapprox-func", "-mdaz-ftz", "-mfpmath=387",
             "-fsingle-precision-constant")  # fmt: skip

@@ -1,4 +1,4 @@
-"""The kernels that can be certified: kernels of the library, and the equations of motion of scenes with their laws."""
+"""The kernels that can be certified: those of the library, and the equations of motion of a scene with their laws."""
 
 from collections.abc import Mapping, Sequence
 from functools import reduce
@@ -23,7 +23,7 @@ DOUBLE_AND_FLOAT, ONLY_DOUBLE = {"": "double", "f": "float"}, {"": "double"}
 def library_kernel_under_test(
     kernel: Definition, description: Description, files: Mapping[str, str]
 ) -> KernelUnderTest:
-    """Return a kernel of the library in the form in which it is certified.
+    """Return a kernel of the library with the content of its certificate: formulas, laws, description and files.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def scene_kernel_under_test(
     description: Description,
     files: Mapping[str, str],
 ) -> KernelUnderTest:
-    """Return the kernel of a scene's equations of motion in the form in which it is certified.
+    """Return the kernel of a scene's equations of motion with everything that its certificate states.
 
     ``parameters`` are the arguments of the kernel that stand for formulas in the constants of the scene.
     """
@@ -61,22 +61,22 @@ def scene_kernel_under_test(
 
 
 def _expression(node: Node) -> Expr:
-    """Return a formula in the physical constants of a scene, given as a tree, as a SymPy expression."""
+    """Convert a formula in a scene's physical constants from its syntax tree to a SymPy expression."""
     return evaluate(node, _ConstantsByName(), number=lambda value: Rational(value.numerator, value.denominator))
 
 
 class _ConstantsByName(dict[str, Symbol]):
-    """A dictionary in which every name has a value: the symbol of the constant with that name."""
+    """A dictionary that returns, for any name, the symbol of the physical constant with that name."""
 
     def __missing__(self, name: str) -> Symbol:
         return constant(name)
 
 
 def scene_laws(equations: Equations) -> tuple[Law, ...]:
-    """Return the laws that the rates of a scene obey, stated without solving for the rates.
+    """Return the laws that the rates of a scene's state obey, as equations that are not solved for the rates.
 
-    ``I domega/dt + omega x (I omega + h)`` is the torque, in every component, also in those that are no states because
-    they stay constant; and ``dq/dt`` is ``q (0, omega) / 2``.
+    ``I domega/dt + omega x (I omega + h)`` equals the torque in every component, including the components of ``omega``
+    that stay constant and so are not states; and ``dq/dt`` equals ``q (0, omega) / 2``.
     """
     motion = equations.motion
     rate = {state: constant(f"d{state}") for state in equations.states}

@@ -1,4 +1,4 @@
-"""The self-test: check that a machine computes as the certificates assume, as C for firmware and as a command.
+"""The self-test: check that this machine's C functions and arithmetic are as accurate as the certificates assume.
 
 ``symrot emit --all`` prints ``symrot_selftest.c`` and ``.h`` into the folder of the kernels, with values of sine,
 cosine, arc tangent and square root that mpmath computed to 60 digits and rounded once. ``symrot selftest`` compiles the
@@ -45,7 +45,7 @@ class _CheckedFunction:
     arguments: Callable[[Random, int], Iterator[tuple[float, float]]]
 
     def sentence(self, suffix: str) -> str:
-        """Return the sentence for a failure of the function, for doubles or floats."""
+        """Return the sentence that reports a failure of this function, for doubles or floats."""
         if self.allowed == CORRECT:
             return f"expected {self.name}{suffix} to be rounded correctly: on this machine it is not"
         return f"expected {self.name}{suffix} right to {self.allowed} ulp: on this machine its error is larger"
@@ -98,7 +98,7 @@ NAMES = tuple(f"{function.name}{suffix}" for suffix in FORMATS for function in F
 
 
 def _rounded(value: Any, digits: int) -> float:
-    """Return a number rounded to some binary digits."""
+    """Return a number rounded to ``digits`` binary digits."""
     from mpmath import mp, workprec
 
     with workprec(digits):
@@ -148,7 +148,7 @@ def selftest_files() -> dict[str, str]:
 
 
 def _string(text: str) -> str:
-    """Return a text as C string literals, one for each line."""
+    """Return a text as C string literals, one for each line of the text."""
     return "\n".join(f'        "{line}"' for line in wrap(text, 100, drop_whitespace=False)) + ","
 
 
@@ -201,13 +201,13 @@ class SelfTest:
     flags: tuple[str, ...]
 
     def lines(self) -> list[str]:
-        """Return the result as lines of text."""
+        """Return the result of the self-test as lines of text."""
         rows = [f"  {name:<7} {ulp:.3f} ulp" for name, ulp in self.ulps.items()]
         error_lines = ["worst errors found:", *rows] if rows else []
         return [f"{'good' if self.passed else 'refused'}: {self.sentence}", *error_lines]
 
     def facts(self) -> dict[str, Any]:
-        """Return the result as data for JSON."""
+        """Return the result of the self-test as data for JSON."""
         return {"passed": self.passed, "sentence": self.sentence, "ulps": self.ulps, "compiler": self.compiler,
                 "flags": list(self.flags)}  # fmt: skip
 

@@ -30,12 +30,12 @@ def run_tool(
             command, cwd=cwd, env=environment, stdin=DEVNULL, stdout=PIPE, stderr=PIPE, start_new_session=True
         )
     except OSError as error:
-        raise CompilerError(f"{command[0]} cannot be run: {error.strerror or error}") from None
+        raise CompilerError(f"{command[0]} cannot be started: {error.strerror or error}") from None
     with process:
         try:
             out, complaint = process.communicate(timeout=seconds)
         except TimeoutExpired:
-            raise CompilerError(f"{command[0]} is stopped: no answer within {seconds:g} s") from None
+            raise CompilerError(f"{command[0]} was stopped, because it did not end within {seconds:g} s") from None
         finally:
             if process.poll() is None:
                 with suppress(ProcessLookupError):

@@ -1,4 +1,4 @@
-"""A hook that lets Ctrl-C end the command even if Python discards the KeyboardInterrupt.
+"""A hook that makes Ctrl-C end the command even at moments when Python discards the KeyboardInterrupt.
 
 Python discards an exception raised inside a weak reference's callback, a ``__del__`` method or a callback from C: it
 passes the exception to ``sys.unraisablehook`` and continues. A KeyboardInterrupt at such a moment, for example during
@@ -16,7 +16,7 @@ SECONDS = 0.02  # enough time for the interrupted callback to return
 
 
 def repeat_lost_interrupts() -> None:
-    """Install the hook; it passes other discarded exceptions to the hook that was installed before."""
+    """Install the hook that repeats a discarded KeyboardInterrupt and passes other exceptions to the old hook."""
     previous = sys.unraisablehook
 
     def hook(discarded: Any, /) -> None:
@@ -35,7 +35,7 @@ def _interrupt_later() -> None:
 
 
 def _interrupt() -> None:
-    """Interrupt the main thread; only a signal wakes it while it waits for a lock."""
+    """Interrupt the main thread by a signal, because only a signal wakes a thread that waits for a lock."""
     main = main_thread().ident
     if hasattr(signal, "pthread_kill") and main is not None:
         signal.pthread_kill(main, signal.SIGINT)

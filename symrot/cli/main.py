@@ -40,14 +40,14 @@ PAGES: dict[str, Callable[[Any], str]] = {
 
 
 class _Formatter(HelpFormatter):
-    """A help formatter that measures the terminal without shutil, which argparse uses and which is slow to import."""
+    """A help formatter that measures the terminal without the module shutil, which is slow to import."""
 
     def __init__(self, prog: str) -> None:
         super().__init__(prog, width=_columns() - 2)
 
 
 def _columns() -> int:
-    """Return the width of the terminal, as :func:`shutil.get_terminal_size` does."""
+    """Return the width of the terminal in characters, as :func:`shutil.get_terminal_size` does."""
     try:
         columns = int(os.environ.get("COLUMNS", "0"))
     except ValueError:
@@ -112,7 +112,10 @@ def _run(options: Namespace) -> int:
 
 
 def _trajectory(propagator: Any, options: Namespace) -> Any:
-    """Propagate and return the trajectory, or None after Ctrl-C; if it ends early, write the samples to ``--out``."""
+    """Propagate a motion and return its trajectory, or None after Ctrl-C.
+
+    If it ends early, the samples so far are written to the file of ``--out``.
+    """
     from symrot.propagation.progress import reporting
 
     start_time = last_update = perf_counter()
@@ -139,7 +142,7 @@ def _trajectory(propagator: Any, options: Namespace) -> Any:
 
 
 def _write_partial(error: BaseException, propagator: Any, options: Namespace) -> str:
-    """Write the samples before an error to ``--out``; return the clause about them for the error message."""
+    """Write the samples before an error to the file of ``--out``; return a clause about them for the error message."""
     part = getattr(error, "trajectory", None)
     if not options.out or part is None or not len(part):
         return ""
@@ -475,12 +478,12 @@ def _check_command(arguments: Sequence[str]) -> None:
 
 
 def _silence(stream: Any) -> None:
-    """Redirect a stream that nobody reads any more to the null device, so that Python can close it without an error."""
+    """Redirect an output stream whose reader has ended to the null device, so that Python closes it without error."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _stop_compilers() -> None:
-    """Kill running compilers, if any, because Python waits at exit for the threads that started them."""
+    """Kill running compilers, because at exit Python waits for the threads that started them."""
     cache = sys.modules.get("symrot.build.cache")
     if cache is not None:
         cache.stop_compilers()

@@ -1,4 +1,4 @@
-"""Output of commands: data on stdout, progress on stderr, and the exit codes."""
+"""Output of commands: results on stdout, progress on stderr, and the exit codes."""
 
 import os
 import sys

@@ -1,6 +1,6 @@
-"""Exact decision whether two formulas are equal.
+"""Exact decision whether two formulas are equal at all real points where both are defined.
 
-``normal_form``, ``is_zero`` and ``Decision`` are imported here on first use; ``decide`` is in
+``normal_form``, ``is_zero`` and ``Decision`` are imported here on first use; the function ``decide`` is in
 :mod:`symrot.exact.decide`.
 """
 

@@ -1,4 +1,4 @@
-"""A counted budget for one decision: how often formulas may be read into rings of polynomials.
+"""A budget for one decision: how many formulas it may convert to polynomials before it gives up.
 
 Each root inside a root and each inverse function inside another one is read into a ring of its own, and proofs about
 them read both sides again, so nested functions need many readings. The result of a reading is stored only until the
@@ -21,7 +21,7 @@ MOST_RINGS = 2000
 
 @dataclass
 class _Budget:
-    """How often one decision may still read a formula into a ring, and the stored results of earlier readings."""
+    """The number of formulas that one decision may still convert to polynomials, and stored conversions."""
 
     left: int = MOST_RINGS
     results: dict[Hashable, Any] = field(default_factory=dict)
@@ -32,7 +32,7 @@ _current: ContextVar[_Budget | None] = ContextVar("budget of the decision", defa
 
 @contextmanager
 def one_decision() -> Iterator[None]:
-    """Count the readings of one decision; a decision inside another one shares the budget of the outer one."""
+    """Count the conversions of formulas to polynomials in one decision; a decision inside another shares its budget."""
     if _current.get() is not None:
         yield
         return
@@ -54,7 +54,7 @@ def remembered(key: Hashable, compute: Callable[[], Any]) -> Any:
 
 
 def spend_ring() -> None:
-    """Subtract one reading of a formula into a ring from the budget of the decision.
+    """Count one more conversion of a formula to polynomials against the budget of the current decision.
 
     Raises
     ------
@@ -66,4 +66,7 @@ def spend_ring() -> None:
         return
     budget.left -= 1
     if budget.left < 0:
-        raise TooLarge(f"nested functions need more than {MOST_RINGS} readings of parts of the formula; split it")
+        raise TooLarge(
+            f"expected a formula that needs at most {MOST_RINGS} conversions of nested parts to "
+            "polynomials, got more; split it"
+        )

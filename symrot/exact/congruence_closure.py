@@ -1,8 +1,8 @@
-"""Congruence closure: of inverse functions or logarithms that are proven equal, one replaces the others.
+"""Congruence closure: among inverse functions or logarithms that are proven equal, one replaces the others.
 
-The ring of ``sqrt(asin(x))`` and ``sqrt(atan2(x, sqrt(1 - x^2)))`` contains two independent symbols, although the two
-inverse functions are equal. If a pair is proven to satisfy ``f - g = 0`` or ``f + g = pi/2``, one is expressed by the
-other in the formula, which is then read again.
+``asin(x)`` and ``atan2(x, sqrt(1 - x^2))`` are equal, but the polynomial ring of their roots ``sqrt(..)`` has an
+independent variable for each. If a pair f, g is proven to satisfy ``f - g = 0`` or ``f + g = pi/2``, f is replaced by g
+or pi/2 - g in the formula, which is then read again.
 """
 
 from collections.abc import Iterator, Sequence
@@ -26,7 +26,7 @@ MOST_SYMBOLS = 6
 def proof_by_congruence(
     left: Expr, right: Expr, hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> tuple[FormulaRing, ...] | None:
-    """Return the rings that prove ``left = right`` once equal inverse functions are merged, or None without a proof."""
+    """Prove ``left = right`` by replacing inverse functions by equal ones; return the rings of the proof, or None."""
     rings: list[FormulaRing] = []
     while True:
         ring = FormulaRing([left, right], hypotheses, domain)
@@ -48,7 +48,7 @@ def proof_by_congruence(
 def _equal_pairs(
     names: Sequence[Expr], hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> Iterator[tuple[Expr, Expr, tuple[FormulaRing, ...]]]:
-    """Yield (symbol, its value in terms of another symbol, the rings that prove the value)."""
+    """Yield inverse functions that equal another one: (symbol, its value by another symbol, the rings of the proof)."""
     for first, second in combinations(names, 2):
         for other in (first, pi / 2 - first):
             if not hypotheses and not seems_zero(second - other, domain):

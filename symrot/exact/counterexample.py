@@ -53,7 +53,10 @@ _TURNS = [Rational(n, d) * pi for n, d in ((1, 1), (-1, 1), (2, 1), (1, 2), (-1,
 
 @dataclass(frozen=True)
 class FreeChoice:
-    """Generators whose values are chosen together, with their possible values, simplest first."""
+    """Variables whose values are chosen together, such as sine and cosine of an angle, with their possible values.
+
+    Simple values come first.
+    """
 
     generators: tuple[int, ...]
     simple: tuple[tuple[Fraction, ...], ...]
@@ -64,9 +67,9 @@ class FreeChoice:
 def rational_witness(
     ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
 ) -> Counterexample | None:
-    """Return a rational point where left and right differ, or None if none is found or if a side is not real there.
+    """Return a rational point where ``left`` and ``right`` differ, or None if no such point is found.
 
-    Both formulas must be readable in the ring.
+    The result is also None if a side is not real. Both formulas must be convertible to polynomials of ``ring``.
     """
     if ring.outside_scope or ring.roots or ring.fine or ring.exponentials or not _angles_are_free(ring):
         return None
@@ -75,7 +78,7 @@ def rational_witness(
     domain = [ring.ratio(formula) for formula in ring.domain]
 
     def point(choices: Sequence[tuple[Fraction, ...]]) -> dict[int, Fraction] | None:
-        """Return the value of every generator, or None if a side is undefined or the sides are equal."""
+        """Return the value of every variable, or None if a side is undefined there or both sides are equal."""
         values: dict[int, Fraction] = {}
         for coordinate, choice in zip(coordinates, choices, strict=True):
             values.update(zip(coordinate.generators, choice, strict=True))
@@ -115,9 +118,10 @@ def rational_witness(
 
 
 def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[dict[int, Fraction]], bool], int]:
-    """Return a test whether both sides are defined and differ at given values of the generators, and its cost in terms.
+    """Return a function that tests whether both sides are defined and differ at given values, and the test's cost.
 
-    The test evaluates the polynomial of the difference or, if that is longer, the formulas as written.
+    The cost is a number of terms. The test evaluates the polynomial of the difference or, if that has more terms, the
+    formulas as they are written.
     """
     written = pieces((left, right))
     try:
@@ -140,7 +144,7 @@ def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[d
 def closed_form_witness(
     ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
 ) -> Counterexample | None:
-    """Return a point with rational symbols where 50-digit intervals of left and right are disjoint, or None.
+    """Return a point with rational symbols at which 50-digit intervals prove that both sides differ, or None.
 
     Hypotheses are satisfied by rational points of spheres and by solving linear equations, as in
     :func:`rational_witness`.
@@ -194,7 +198,7 @@ def closed_form_witness(
 def _move_within(
     formulas: Sequence[Expr], values: dict[Expr, Expr], movable: Sequence[Expr], simple: Sequence[Expr]
 ) -> None:
-    """For each negative formula, change the value of the first symbol that can make it nonnegative."""
+    """Change values so that negative formulas become nonnegative: for each, the first symbol that can achieve this."""
     for formula in formulas:
         if _seems_nonnegative(formula, values) and _nonnegative(formula, values):
             continue
@@ -205,14 +209,14 @@ def _move_within(
 
 
 def _pure_angles(ring: FormulaRing) -> set[Expr]:
-    """Return the symbols and functions of time that occur only as angles, alone or times a number."""
+    """Return the symbols and functions of time that occur only inside sines and cosines, alone or times a number."""
     inside = [atom for atom in ring.bases if atom.is_Symbol or isinstance(atom, AppliedUndef)]
     others = [*ring.symbols, *ring.exponent_bases, *(atom for atom in ring.bases if atom not in inside)]
     return {atom for atom in inside if not any(other.has(atom) for other in others)}
 
 
 def _enclosure(formula: Expr, values: dict[Expr, Expr]) -> Any:
-    """Return an interval that contains the value of a formula at a point, or None.
+    """Return an interval that contains the value of a formula at a point, or None if none is found.
 
     If interval arithmetic alone fails, SymPy substitutes the point into the formula first.
     """
@@ -221,13 +225,16 @@ def _enclosure(formula: Expr, values: dict[Expr, Expr]) -> Any:
 
 
 def _nonnegative(formula: Expr, values: dict[Expr, Expr]) -> bool:
-    """Return whether a formula is proven to be nonnegative at a point; ``1 + cos(x)`` is exactly zero at pi."""
+    """Return whether a formula is proven to be nonnegative at a point.
+
+    The proof works also where the formula is exactly zero, as ``1 + cos(x)`` is at pi.
+    """
     is_proven = is_nonnegative_at(formula, values)
     return is_proven or (_is_flat(formula) and surely_nonnegative_number(formula.xreplace(values)))
 
 
 def _seems_nonnegative(formula: Expr, values: dict[Expr, Expr]) -> bool:
-    """Return whether a formula is nonnegative in double precision: a fast test before the proof by intervals."""
+    """Return whether a formula is nonnegative in double precision, a fast test before the proof by intervals."""
     try:
         return float_at(formula, {leaf: float(value) for leaf, value in values.items()}, {}) > -1e-9
     except (NoValue, TypeError, OverflowError):
@@ -246,7 +253,7 @@ def _is_flat(formula: Expr, deep: int = MOST_NESTED) -> bool:
 
 
 def _shortest(number: Expr) -> Expr:
-    """Return a number as a rational if it is rational and contains few roots; otherwise return it unchanged."""
+    """Return a number as a rational if it is rational and contains few roots; otherwise return it as it is."""
     if number.is_Rational or not number.is_number:
         return number
     try:
@@ -260,7 +267,7 @@ def _shortest(number: Expr) -> Expr:
 
 
 def _occurring(poly: PolyElement) -> set[int]:
-    """Return the indices of the variables (generators of the ring) that occur in a polynomial."""
+    """Return the indices of the ring's variables that occur in a polynomial."""
     return {number for mono in poly for number, power in enumerate(mono) if power}
 
 
@@ -268,9 +275,9 @@ def _occurring(poly: PolyElement) -> set[int]:
 
 
 def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, PolyElement]]]:
-    """Return the coordinates that can be chosen freely, and the hypotheses that then determine one generator each.
+    """Return the coordinates that can be chosen freely, and the hypotheses that each determine one more variable.
 
-    Each of these hypotheses is linear in the generator that it determines.
+    Each of these hypotheses is linear in the variable that it determines.
     """
     fixed: set[int] = set()
     coordinates: list[FreeChoice] = []
@@ -298,7 +305,7 @@ def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, P
 
 
 def _sphere(poly: PolyElement) -> tuple[int, ...] | None:
-    """Return the generators if the hypothesis is ``sum of their squares = 1``, else None."""
+    """Return the variables of a hypothesis of the form ``sum of their squares = 1``; None for any other hypothesis."""
     if not poly:
         return None
     constant = poly.coeff(1)
@@ -313,13 +320,13 @@ def _sphere(poly: PolyElement) -> tuple[int, ...] | None:
 
 
 def _simple_circle() -> tuple[tuple[Fraction, ...], ...]:
-    """Return (sine, cosine) of the multiples of pi/2 and of the angles of the 3-4-5 triangle."""
+    """Return pairs (sine, cosine) of simple angles: multiples of pi/2 and the angles of the 3-4-5 triangle."""
     points = ("0 1", "1 0", "0 -1", "-1 0", "3/5 4/5", "4/5 3/5")
     return tuple(tuple(map(Fraction, point.split())) for point in points)
 
 
 def _simple_sphere(size: int) -> tuple[tuple[Fraction, ...], ...]:
-    """Return simple rational points of a unit sphere: on the axes, (3/5, 4/5), (1, 2, 2)/3 and (1, 1, 1, 1)/2."""
+    """Return simple rational unit vectors: on the axes, (3/5, 4/5), (1, 2, 2)/3 and (1, 1, 1, 1)/2."""
     points = [tuple(Fraction(int(i == j)) for i in range(size)) for j in range(size)]
     for numbers in ("3/5 4/5", "1/3 2/3 2/3", "1/2 1/2 1/2 1/2"):
         seed = tuple(map(Fraction, numbers.split()))
@@ -333,7 +340,7 @@ def _simple_sphere(size: int) -> tuple[tuple[Fraction, ...], ...]:
 
 
 def _random_sphere(size: int) -> Callable[[Random], tuple[Fraction, ...]]:
-    """Return a function that draws rational points of the unit sphere, by stereographic projection."""
+    """Return a function that draws random rational unit vectors, by stereographic projection."""
 
     def draw(source: Random) -> tuple[Fraction, ...]:
         flat = [Fraction(source.randint(-9, 9), source.randint(1, 5)) for _ in range(size - 1)]
@@ -344,7 +351,7 @@ def _random_sphere(size: int) -> Callable[[Random], tuple[Fraction, ...]]:
 
 
 def _random_number(leaf: Expr) -> Callable[[Random], tuple[Fraction, ...]]:
-    """Return a function that draws rational numbers that satisfy the assumptions on a symbol."""
+    """Return a function that draws random rational numbers which satisfy the assumptions on a symbol (positive, ..)."""
 
     def draw(source: Random) -> tuple[Fraction, ...]:
         for _ in range(20):
@@ -357,7 +364,7 @@ def _random_number(leaf: Expr) -> Callable[[Random], tuple[Fraction, ...]]:
 
 
 def _assumed(leaf: Expr, value: Any) -> bool:
-    """Return whether a rational value agrees with the assumptions on a symbol."""
+    """Return whether a rational value agrees with the assumptions on a symbol, such as positive or integer."""
     return not (
         (leaf.is_positive and value <= 0)
         or (leaf.is_negative and value >= 0)
@@ -368,7 +375,7 @@ def _assumed(leaf: Expr, value: Any) -> bool:
 
 
 def _solve(hypothesis: PolyElement, generator: int, values: dict[int, Fraction]) -> bool:
-    """Solve a hypothesis that is linear in a generator for that generator; return False if this is impossible."""
+    """Solve a hypothesis that is linear in a variable for that variable; return False if this is impossible."""
     values[generator] = Fraction(0)
     if any(power and place not in values for mono in hypothesis for place, power in enumerate(mono)):
         return False
@@ -397,7 +404,7 @@ def _ratio_value(ring: FormulaRing, ratio: Ratio, values: dict[int, Fraction]) -
 
 
 def _formula_value(ring: FormulaRing, node: Expr, values: dict[int, Fraction], known: dict[Expr, Fraction]) -> Fraction:
-    """Return the value of a formula as it is written; raise ``ZeroDivisionError`` if a divisor is zero."""
+    """Return a formula's value at a point, operation by operation; raise ``ZeroDivisionError`` at a zero divisor."""
     if node in ring.symbols:
         return values[ring.symbols[node]]
     if node not in known:
@@ -416,7 +423,10 @@ def _formula_value(ring: FormulaRing, node: Expr, values: dict[int, Fraction], k
 def _named(
     ring: FormulaRing, coordinates: list[FreeChoice], values: dict[int, Fraction], used: set[Expr]
 ) -> Iterator[tuple[Expr, Expr]]:
-    """Yield each used symbol or angle with its value: multiples of pi/2 as angles, others as cosine and sine."""
+    """Yield each used symbol or angle of a point with its value.
+
+    Multiples of pi/2 are shown as angles, all other angles by their cosine and sine.
+    """
     zero, one = Fraction(0), Fraction(1)
     quarter_turns = {(zero, one): 0, (one, zero): 1, (zero, -one): 2, (-one, zero): 3}
     for leaf, number in ring.symbols.items():
@@ -439,7 +449,7 @@ def _rational(value: Fraction) -> Rational:
 
 
 def _angles_are_free(ring: FormulaRing) -> bool:
-    """Return whether the angles can be given any values independently of the symbols.
+    """Return whether the angles can take any values, independently of each other and of the symbols.
 
     They can if each angle is proportional to a symbol or function of time that occurs in no other angle. Time
     derivatives at one instant are independent of the value of the function.
@@ -459,7 +469,7 @@ def _angles_are_free(ring: FormulaRing) -> bool:
 
 
 def _variables(expression: Expr) -> list[Expr]:
-    """Return symbols, functions of time and their derivatives, outermost first, in an order that is always the same."""
+    """Return symbols, functions of time and their derivatives in an expression, outermost first, in a fixed order."""
     variables: list[Expr] = []
     stack = [expression]
     while stack:

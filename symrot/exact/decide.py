@@ -93,7 +93,7 @@ def is_zero(expression: Any, relations: Sequence[Any] = ()) -> bool:
 
 
 def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Decision:
-    """Decide whether ``left = right`` holds under hypotheses, and return the verdict with its evidence.
+    """Decide whether ``left = right`` holds under hypotheses; return the verdict with its evidence.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class _FormulaCase(Case):
     normal_forms: dict[int, Expr] = field(default_factory=dict)
 
     def residual(self) -> Any:
-        """Return the normal form of left - right; entries that are proven equal are zero."""
+        """The normal form of left - right; entries that are proven equal are zero."""
         forms = {place: self.normal_forms[place] for place in self.unproven}
         return _shaped([forms.get(place, Integer(0)) for place in range(len(self.lefts))], self.shape)
 
@@ -137,11 +137,11 @@ class _FormulaCase(Case):
         return tuple(sorted(unique, key=written))
 
     def confirmed(self) -> Decision:
-        """Return the verdict "true", or "undecided" if no point is known where both sides are defined.
+        """Return "true", or "undecided" if no point is known where both sides are defined.
 
         Without roots, logarithms and inverse functions the sides are defined on a dense set; otherwise a search for
-        such a point decides. The caller must know that the hypotheses can be satisfied. Formulas with ``i`` are complex
-        and defined wherever no divisor is zero.
+        such a point decides. The caller must know that the hypotheses can be satisfied. Formulas with the imaginary
+        unit ``i`` are complex and defined wherever no divisor is zero.
         """
         needs = [need for need in needs_of(self.sides) if not need.formula.has(I)]
         if not any(side.has(I) for side in self.sides):
@@ -150,7 +150,7 @@ class _FormulaCase(Case):
             return Decision("true", self.conditions)
         nowhere = next((need for need in needs_of(self.sides) if fails_everywhere(need)), None)
         if nowhere is not None:
-            raise InputError(f"the sides are real numbers nowhere: {nowhere} does not hold at any real point")
+            raise InputError(f"expected sides that are real numbers somewhere, but {nowhere} holds at no real point")
         nonzero = [Need(condition.lhs, "!= 0") for condition in self.conditions if isinstance(condition, Ne)]
         if known_point([*(need for need in needs if need.sign != "real"), *nonzero]) is None:
             return Decision("undecided", self.conditions, stopped_by=tuple(need.formula for need in needs))
@@ -161,7 +161,7 @@ class _FormulaCase(Case):
 
 
 def normalise(case: _FormulaCase) -> None:
-    """Bring unproven entries into normal form, which may show that they are zero."""
+    """Convert the open entries of an equation to normal form, which may show that their two sides are equal."""
     case.normal_forms = {place: case.ring.expression(case.residuals[place]) for place in case.unproven}
     case.unproven = [place for place, form in case.normal_forms.items() if form != 0]
 
@@ -173,7 +173,7 @@ def witness(case: _FormulaCase) -> None:
 
 
 def leave_open(case: _FormulaCase) -> Decision:
-    """Return the verdict "undecided" with the terms about which too little is known."""
+    """Return the verdict "undecided" with the terms, such as nested roots, that prevent a decision."""
     ring = case.ring
     stopped_by = (*ring.outside_scope, *(root.expression for root in ring.roots), *ring.hypotheses)
     return Decision("undecided", case.conditions, stopped_by=stopped_by)

@@ -1,8 +1,9 @@
 """The decision engine: an equation passes through named stages until one of them decides it.
 
-A stage is a function of a case. It returns a decision, or None to pass the case to the next stage, and it stores its
-proofs or its counterexample in the case for later stages. :mod:`symrot.exact.decide` lists the stages for plain
-formulas, :mod:`symrot.checker.decide.decision` the longer list for claims.
+A stage is a function of a case (an equation with the evidence so far). It returns a decision, or None to pass the case
+to the next stage, and it stores its proofs or its counterexample in the case for later stages.
+:mod:`symrot.exact.decide` lists the stages for plain formulas, :mod:`symrot.checker.decide.decision` the longer list
+for claims.
 """
 
 from abc import ABC, abstractmethod
@@ -107,23 +108,26 @@ class Case(ABC):
 
     @abstractmethod
     def conditions_of(self, rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
-        """Return the relations that hold where both sides are defined and proofs in further rings are valid."""
+        """Return the relations that hold where both sides are defined and the proofs in further ``rings`` are valid."""
 
     @abstractmethod
     def confirmed(self) -> Decision:
         """Return the verdict "true" if a point is known where both sides are defined, else "undecided"."""
 
     def rely_on(self, rings: tuple[FormulaRing, ...]) -> None:
-        """Add further rings to the evidence, and their divisors to the conditions."""
+        """Add the rings of a proof to the evidence of the case.
+
+        The divisors in these rings, which must not be zero, become conditions.
+        """
         self.rings, self.conditions = rings, self.conditions_of(rings)
 
     @cached_property
     def sides(self) -> tuple[Expr, ...]:
-        """The entries of both sides."""
+        """The entries of the left side, then those of the right side."""
         return (*self.lefts, *self.rights)
 
     def search(self, *searches: Search, places: Sequence[int] | None = None) -> Counterexample | None:
-        """Return the first counterexample that a search finds, in the given entries (default: the unproven ones).
+        """Return the first counterexample that ``search`` finds, in the given entries (default: the unproven ones).
 
         A point that provably violates a hypothesis is skipped.
         """
@@ -145,7 +149,12 @@ C = TypeVar("C", bound=Case)
 
 
 def first_decision(case: C, stages: Sequence[Callable[[C], Decision | None]]) -> Decision:
-    """Return the decision of the first stage that makes one; the last stage always makes one."""
+    """Pass an equation (``case``) through stages of decision; return the decision of the first stage that decides.
+
+    The last stage always decides.
+
+    The last stage always decides.
+    """
     for stage in stages:
         decision = stage(case)
         if decision is not None:
@@ -157,7 +166,7 @@ def first_decision(case: C, stages: Sequence[Callable[[C], Decision | None]]) ->
 
 
 def subtract(case: Case) -> None:
-    """Form left - right of each entry and try to prove that it is zero."""
+    """Compute left - right for each entry of an equation and try to prove that it is zero; decide nothing yet."""
     ring = case.ring
     case.residuals = [ring.difference(a, b) for a, b in zip(case.lefts, case.rights, strict=True)]
     proofs = [proof(ring, residual.numerator) for residual in case.residuals]
@@ -166,7 +175,7 @@ def subtract(case: Case) -> None:
 
 
 def prove(case: Case) -> Decision | None:
-    """Decide a case if all its entries are proven, else return None."""
+    """Return the verdict "true" if all entries of an equation are proven equal, else None."""
     if case.unproven:
         return None
     case.rely_on(case.proof_rings)
@@ -174,14 +183,14 @@ def prove(case: Case) -> Decision | None:
 
 
 def refute(case: Case) -> Decision | None:
-    """Decide a case if it has a counterexample, else return None."""
+    """Return the verdict "false" if a counterexample to an equation is found, else None."""
     if case.counterexample is None:
         return None
     return Decision("false", case.conditions, counterexample=case.counterexample)
 
 
 def congruence(case: Case) -> Decision | None:
-    """Decide a case if its unproven entries hold once inverse functions are proven equal, else return None."""
+    """Decide an equation whose open entries become equal if inverse functions replace equal ones; else return None."""
     ring = case.ring
     proofs = [proof_by_congruence(case.lefts[n], case.rights[n], ring.hypotheses, ring.domain) for n in case.unproven]
     if None in proofs:
@@ -195,7 +204,7 @@ def congruence(case: Case) -> Decision | None:
 
 
 class ShapeMismatch(InputError):
-    """The error raised for two sides of different shapes; ``shapes`` are (rows, columns), or None for a scalar."""
+    """The exception for two sides of different shapes; ``shapes`` are (rows, columns), or None for a scalar."""
 
     def __init__(self, left: Shape, right: Shape) -> None:
         self.shapes = (left, right)
@@ -203,7 +212,7 @@ class ShapeMismatch(InputError):
 
 
 def matched_sides(left: Any, right: Any) -> tuple[list[Expr], list[Expr], Shape]:
-    """Return the entries of both sides of an equation and their common shape; 0 means a zero matrix of any shape.
+    """Return the entries of both sides of an equation and their common shape; 0 becomes a zero matrix of any shape.
 
     Raises
     ------
@@ -241,7 +250,10 @@ def flatten(expression: Any) -> tuple[list[Expr], Shape]:
 
 
 def place_in_matrix(number: int, shape: Shape) -> tuple[int, int] | None:
-    """Return (row, column), from 1, of a matrix entry counted row by row from 0; None if the shape is a scalar's."""
+    """Return (row, column), counted from 1, of a matrix entry with a number counted row by row from 0.
+
+    Return None if ``shape`` is that of a scalar.
+    """
     return None if shape is None else (number // shape[1] + 1, number % shape[1] + 1)
 
 

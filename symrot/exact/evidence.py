@@ -1,4 +1,4 @@
-"""The evidence of a decision: the point of a counterexample, and the requirement of a conditional claim."""
+"""The evidence of a decision: the point of a counterexample, and the condition under which a claim holds."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -39,17 +39,17 @@ class Counterexample:
 
     @cached_property
     def values(self) -> dict[str, str]:
-        """The point as text: names and their values."""
+        """The point of the counterexample as text: each name with its value."""
         return {as_text(name): as_text(value) for name, value in self.point}
 
     @cached_property
     def lhs(self) -> str:
-        """The value of the left side as text."""
+        """The value of the equation's left side as text."""
         return as_text(self.left)
 
     @cached_property
     def rhs(self) -> str:
-        """The value of the right side as text."""
+        """The value of the equation's right side as text."""
         return as_text(self.right)
 
     def __str__(self) -> str:
@@ -60,7 +60,7 @@ class Counterexample:
 
 @dataclass(frozen=True)
 class Requirement:
-    """A condition under which a claim holds: its code, its text, and the formulas that it makes zero or nonnegative."""
+    """A condition under which a claim holds: a short code, a text, and formulas that must be zero or nonnegative."""
 
     code: str
     text: str

@@ -18,7 +18,7 @@ CLEARLY = 1e-4
 
 
 class NoValue(ArithmeticError):
-    """The error raised if a formula has no real value at a point, or contains an unknown function."""
+    """The exception for a formula that has no real value at a point, or contains an unknown function."""
 
 
 def _cosecant(function: Any) -> Any:

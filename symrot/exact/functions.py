@@ -1,4 +1,4 @@
-"""Tables of the functions that exact decision can read, and the test for free quantities such as functions of time."""
+"""Tables of the functions that exact decision can read, and the test for functions of time and matrix entries."""
 
 import sympy
 from sympy import Derivative, Expr, S, preorder_traversal
@@ -32,7 +32,7 @@ TRIGONOMETRIC = {
 
 
 def is_function_of_time(node: Expr) -> bool:
-    """Return whether a node is a free quantity: a function of time, its derivative, or a matrix entry.
+    """Return whether a node of an expression is a function of time, its derivative, or a matrix entry.
 
     Raises
     ------

@@ -28,7 +28,7 @@ Value = Any  # Fraction or an interval of mpmath
 
 
 class Undefined(ValueError):
-    """The error raised for a formula that is proven to be no real number at a point."""
+    """The exception for a formula that is proven to have no real value at a point."""
 
 
 def _asin(x: Any) -> Any:
@@ -62,7 +62,7 @@ def _log(x: Any) -> Any:
 
 def _atan2(y: Any, x: Any) -> Any:
     if 0 in y and 0 in x:
-        raise ValueError("atan2 is undefined at the origin")
+        raise ValueError("expected atan2(y, x) away from the origin, where it is undefined")
     return iv.atan2(y, x)
 
 
@@ -75,7 +75,7 @@ def _bounded(x: Any) -> Any:
 
 def _sign(x: Any) -> Any:
     if 0 in x:
-        raise ValueError("expected a number that is not zero in a sign")
+        raise ValueError("expected a number of known sign, got one that may be zero")
     return iv.mpf(1 if x.a > 0 else -1)
 
 
@@ -155,7 +155,7 @@ def _value(node: Expr, values: Mapping[Expr, Any], known: dict[Expr, Value]) -> 
             if max(value.numerator.bit_length(), value.denominator.bit_length()) > MOST_BITS_EXACT:
                 value = _interval(value)
         elif not (value.a > -iv.inf and value.b < iv.inf):
-            raise ValueError(f"{node} has a pole in its interval")
+            raise ValueError(f"expected {node} to be finite on an interval, but it has a pole there")
         known[node] = value
     return known[node]
 

@@ -33,21 +33,22 @@ _NAMES = (*INVERSE, log)
 
 @dataclass(frozen=True)
 class Lift:
-    """A sufficient condition for a factor of a residual to be zero: all ``numerators``, in another ring, are zero."""
+    """A sufficient condition for a factor to be zero: all ``numerators``, polynomials of another ring, are zero."""
 
     ring: FormulaRing
     numerators: tuple[PolyElement, ...]
 
 
 def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
-    """Return whether a numerator is proven to be zero, by the relations of the ring or by one of its factors."""
+    """Return whether a numerator is proven to be zero, by the relations of the ring or because one factor is zero."""
     return proof(ring, numerator) is not None
 
 
 def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] | None:
-    """Return the further rings that prove a numerator to be zero (an empty tuple if the relations suffice), or None.
+    """Prove that a numerator is zero; return the further rings of the proof, or None if no proof was found.
 
-    The proof holds where no divisor of those rings vanishes. None means that no proof was found.
+    The tuple is empty if the relations of ``ring`` suffice. The proof holds where no divisor of the further rings is
+    zero.
     """
     numerator = ring.reduce(numerator)
     if not numerator:
@@ -60,7 +61,7 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
 
 
 def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) -> Iterator[Lift]:
-    """Yield sufficient conditions for the factors of a reduced numerator to be zero.
+    """Yield conditions, each of which suffices to make a factor of a numerator zero.
 
     With ``only_zero``, factors that are clearly nonzero in double precision are skipped.
     """
@@ -91,7 +92,7 @@ def _lifts_of(ring: FormulaRing, factor: PolyElement, used: set[int]) -> Iterato
 
 @dataclass(frozen=True)
 class PrincipalValueProof:
-    """A proof by ``rings`` that a residual is zero wherever the formulas ``least`` and ``most`` are nonnegative."""
+    """A proof that an expression is zero where the formulas ``least`` and ``most`` are nonnegative, by ``rings``."""
 
     least: Expr
     most: Expr
@@ -99,9 +100,10 @@ class PrincipalValueProof:
 
 
 def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
-    """Return where a residual ``asin(S) - w``, with ``S = sin w`` proven, is zero; also for acos and atan.
+    """Return where ``asin(S) - w`` is zero, if ``S = sin w`` is proven; likewise for acos and atan.
 
-    The residual is zero exactly where w is a principal value: in [-pi/2, pi/2] for asin and atan, in [0, pi] for acos.
+    The difference is zero exactly where w is a principal value: in [-pi/2, pi/2] for asin and atan, in [0, pi] for
+    acos.
     """
     names = {number: leaf for leaf, number in ring.symbols.items() if type(leaf) in _PRINCIPAL}
     if not names or len(numerator) > MOST_TERMS:
@@ -136,7 +138,7 @@ def _lifted(ring: FormulaRing, equations: Sequence[tuple[Expr, Expr]]) -> Lift:
 
 
 def _combination(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> list[tuple[Expr, Fraction]] | None:
-    """Return a factor as a rational combination of inverse functions and pi, or None."""
+    """Return a factor as a rational combination of inverse functions and pi, or None if it has another form."""
     terms = []
     for mono, coefficient in factor.items():
         places = [number for number, power in enumerate(mono) if power]
@@ -148,7 +150,7 @@ def _combination(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr])
 
 
 def _keeps_within(terms: Sequence[tuple[Expr, Fraction]], period: int) -> bool:
-    """Return whether the value of a combination lies strictly between ``-period * pi`` and ``period * pi``."""
+    """Return whether a sum of inverse functions lies strictly between ``-period * pi`` and ``period * pi``."""
     low, high = Fraction(0), Fraction(0)
     low_taken = high_taken = True
     for leaf, coefficient in terms:
@@ -173,6 +175,6 @@ def _range(leaf: Expr) -> tuple[Fraction, Fraction, bool, bool]:
 
 
 def _fraction(end: Any) -> Fraction:
-    """Return the exact value of an endpoint of an interval."""
+    """Return the exact value of an endpoint of an interval as a fraction."""
     sign, mantissa, power, _ = end._mpi_[0]
     return (-1 if sign else 1) * int(mantissa) * Fraction(2) ** int(power)

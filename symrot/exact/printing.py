@@ -1,4 +1,4 @@
-"""Text of SymPy values in the language of claims."""
+"""SymPy values as text in the language of claims, such as ``diff(phi(t), t)``."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ __all__ = ["as_text"]
 
 
 class _Printer(StrPrinter):  # type: ignore[misc]
-    """A SymPy printer whose output the reader of claims can read: ``diff(phi(t), t)`` for a derivative."""
+    """A SymPy printer whose output is a valid claim text: a derivative is printed as ``diff(phi(t), t)``."""
 
     def _print_Derivative(self, node: Derivative) -> str:
         variables = ", ".join(self._print(v) for v, times in node.variable_count for _ in range(int(times)))
@@ -24,5 +24,5 @@ class _Printer(StrPrinter):  # type: ignore[misc]
 
 
 def as_text(value: Any) -> str:
-    """Return a SymPy value as text in the language of claims."""
+    """Return a SymPy value as text in the language of claims, such as ``diff(phi(t), t)`` for a derivative."""
     return str(_Printer().doprint(value))

@@ -1,4 +1,4 @@
-"""A chain of equal expressions from one side of an equation to the other, which shows the steps of the decision.
+"""Chains of equal expressions from the left side of an equation to the right side, as a proof that people can follow.
 
 Each side is rewritten to its normal form: angles become sums of base angles, products are expanded, relations are
 substituted, and common factors are cancelled. Both sides have the same normal form. So the chain is the rewriting of
@@ -24,7 +24,7 @@ __all__ = ["Chain", "Link", "chains"]
 
 @dataclass(frozen=True)
 class Link:
-    """One expression of a chain, and the reason why it equals the expression before.
+    """One expression of a chain, and the reason why it equals the expression before it in the chain.
 
     ``rule`` is (left, right) of the relation that was substituted, if any. ``cofactors`` pairs polynomials with
     consequences of the hypotheses; the products of the pairs were subtracted.
@@ -38,14 +38,17 @@ class Link:
 
 @dataclass(frozen=True)
 class Chain:
-    """The chain from left to right for one matrix entry, which is (row, column) from 1, or None for a scalar."""
+    """The chain of equal expressions from left to right for one matrix entry, or for a scalar.
+
+    The entry is (row, column), counted from 1; None for a scalar.
+    """
 
     entry: tuple[int, int] | None
     links: tuple[Link, ...]
 
 
 def chains(left: Any, right: Any, relations: Sequence[Any] = ()) -> tuple[Chain, ...]:
-    """Return the chain from left to right for every entry whose two sides are different expressions.
+    """Return, for every entry whose sides differ as written, a chain of equal expressions from left to right.
 
     Parameters
     ----------
@@ -83,14 +86,14 @@ def _chain(left: Expr, right: Expr, hypotheses: list[Expr]) -> tuple[Link, ...]:
 
 
 def _reversed(start: Expr, way: list[Link]) -> Iterator[Link]:
-    """Yield a chain from its end to its start; each reason stays between the same two expressions."""
+    """Yield a chain from its end to its start; each reason stays between the two expressions that it explains."""
     places = [start, *(link.expression for link in way)]
     for number in range(len(way) - 1, -1, -1):
         yield Link(places[number], way[number].reason, way[number].rule, way[number].cofactors)
 
 
 def _cleaned(links: list[Link]) -> tuple[Link, ...]:
-    """Return the links of a chain, except those that repeat the expression before."""
+    """Return the expressions of a chain without those that repeat the expression before."""
     distinct = links[:1]
     for link in links[1:]:
         if link.expression != distinct[-1].expression:
@@ -99,7 +102,7 @@ def _cleaned(links: list[Link]) -> tuple[Link, ...]:
 
 
 def _way(ring: FormulaRing, side: Expr) -> Iterator[Link]:
-    """Yield the expressions that lead from a side, which is not included, to its normal form."""
+    """Yield the equal expressions that lead from a side, which is not included, to its normal form."""
     angles = {node: value for node, value in _angles(ring, side) if value != node}
     if angles:
         yield Link(side.xreplace(angles), "sums and multiples of angles")
@@ -124,7 +127,7 @@ def _way(ring: FormulaRing, side: Expr) -> Iterator[Link]:
 
 
 def _angles(ring: FormulaRing, side: Expr) -> Iterator[tuple[Expr, Expr]]:
-    """Yield every trigonometric function of a side with its value in sines and cosines of base angles."""
+    """Yield each trigonometric function of a side, with its value in sines and cosines of base angles."""
     base = {base_angle(atom, coefficient) for atom, coefficient in ring.bases.items()}
     for node in sorted(side.atoms(*TRIGONOMETRIC), key=str):
         if not (isinstance(node, (sin, cos)) and node.args[0] in base):
@@ -138,7 +141,7 @@ def _plain(ring: FormulaRing, poly: PolyElement) -> Expr:
 
 
 def _fraction(ring: FormulaRing, numerator: PolyElement, value: Ratio) -> Expr:
-    """Return a numerator over the denominator of a fraction, with the denominator's factors not expanded."""
+    """Return a numerator over the denominator of another fraction, whose factors are not multiplied out."""
     below = [_plain(ring, ring.ratios.factors[number]) ** power for number, power in value.factors]
     return Mul(_plain(ring, numerator), Mul(*below, Integer(value.constant)) ** -1)
 

@@ -1,4 +1,4 @@
-"""The size of a formula as it is written."""
+"""The size of a formula: the number of its subexpressions."""
 
 from collections.abc import Iterable
 

@@ -11,7 +11,7 @@ __all__ = ["check_target", "write"]
 
 
 def check_target(path: Path, suffixes: Sequence[str], option: str) -> None:
-    """Raise InputError if a file cannot be written there; called before its content is computed.
+    """Raise InputError if a file cannot be written at a path; called early, before the content is computed.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Definitions of kernels: arguments, formulas, domain, and laws of the outputs."""
+"""Definitions of kernels: arguments, formulas, domain, and laws (identities that the outputs obey)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -16,10 +16,11 @@ Box = dict[str, tuple[Fraction, Fraction]]  # name of an input component -> smal
 
 @dataclass(frozen=True)
 class Law:
-    """A law of a kernel's outputs, valid for all inputs: the formulas ``vanishing`` are zero if ``relations`` are zero.
+    """An identity that a kernel's outputs obey for all inputs, such as "the norm is 1".
 
-    The formulas contain inputs and outputs by their symbols. A law describes the outputs independently of the way in
-    which their formulas were derived; a certificate proves the law from the formulas.
+    The formulas ``vanishing`` are zero wherever the formulas ``relations`` (hypotheses) are zero. They contain inputs
+    and outputs by their symbols. A law describes the outputs independently of the way in which their formulas were
+    derived; a certificate proves the law from the formulas.
     """
 
     text: str
@@ -29,7 +30,7 @@ class Law:
 
 @dataclass(frozen=True)
 class Definition:
-    """A kernel: its arguments in order, the formulas of its outputs, its domain, and its laws."""
+    """A kernel: its arguments in order, the formulas of its outputs, its domain, and the laws of its outputs."""
 
     name: str
     title: str
@@ -43,7 +44,7 @@ class Definition:
 
     @property
     def formulas(self) -> tuple[tuple[str, Expr], ...]:
-        """Return all formulas as pairs (output component, formula), in the order of the outputs."""
+        """Return all formulas of the kernel as pairs (output component, formula), in the order of the outputs."""
         return tuple(
             (component[0], formula)
             for target, expressions in self.results
@@ -71,15 +72,15 @@ def scalar(component: Symbol, meaning: str) -> Argument:
 def result(
     name: str, formulas: Matrix | Sequence[Expr], components: Sequence[Symbol], meaning: str, unit: str = ""
 ) -> tuple[Argument, tuple[Expr, ...]]:
-    """Return an output argument and the formulas of its components; a matrix is stored row by row."""
+    """Return an output argument, and the formulas of its components; a matrix is stored row by row."""
     return argument(name, "out", components, meaning, unit), tuple(formulas)
 
 
 def interval(low: Fraction | int | str, high: Fraction | int | str) -> tuple[Fraction, Fraction]:
-    """Return the exact range of an input from its two ends."""
+    """Return the range of an input, from ``low`` to ``high``, in exact numbers."""
     return Fraction(low), Fraction(high)
 
 
 def boxed(components: Sequence[Symbol], low: Fraction | int | str, high: Fraction | int | str) -> Box:
-    """Return the ranges of several inputs, by name, if all have the same range."""
+    """Return ranges of several inputs, by name, which are all from ``low`` to ``high``."""
     return {str(component): interval(low, high) for component in components}

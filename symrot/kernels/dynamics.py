@@ -64,7 +64,7 @@ def _symbols(name: str, count: int = 3) -> tuple[Symbol, ...]:
 
 
 def _solved(inertia: Matrix, omega: Matrix, torque: Matrix) -> tuple[Named, Matrix]:
-    """Return the formulas of the angular acceleration, and the named quantities that they use."""
+    """Return the formulas of the angular acceleration, and the intermediate quantities that they use."""
     if inertia.is_diagonal():
         return (), angular_acceleration(inertia, omega, torque)
     momentum, moment = Matrix(_symbols("L")), Matrix(_symbols("M"))
@@ -136,7 +136,10 @@ _DISTANCE = symbols.h
 
 
 def _heavy_top(name: str, body: str) -> Definition:
-    """Return the kernel of a heavy top's right-hand side; a symmetric top has its centre of mass on body axis 3."""
+    """Return the kernel of the equations of motion of a heavy top.
+
+    A symmetric top has its centre of mass on body axis 3.
+    """
     _, inertia = _BODIES[body]
     symmetric = body == "symmetric"
     center = Matrix([0, 0, _DISTANCE]) if symmetric else Matrix(symbols.center_of_mass)
@@ -166,7 +169,10 @@ def _heavy_top(name: str, body: str) -> Definition:
 
 
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
-    """Return twice the weight times the centre of mass as symbols (zero for zero components), and their definitions."""
+    """Return symbols for twice the weight times the centre of mass, and their definitions.
+
+    A zero component needs no symbol: it is 0.
+    """
     components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
     return Matrix(components), tuple(
         (symbol, 2 * _WEIGHT * c) for symbol, c in zip(components, center, strict=True) if c

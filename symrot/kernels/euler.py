@@ -1,4 +1,4 @@
-"""Kernels of Euler angles, for all 24 sequences: the dcm, both rate Jacobians and their inverses, and quaternions."""
+"""Kernels of Euler angles for all 24 sequences: rotation matrix, rate Jacobians and inverses, quaternions."""
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
@@ -26,7 +26,7 @@ QUATERNION = argument("q", "in", symbols.quaternion, "attitude, body to space")
 
 
 def prefix(sequence: str) -> str:
-    """Return the first part of the names of a sequence's kernels.
+    """Return the beginning of the names of the kernels of an Euler sequence, such as ``"euler_zxz"``.
 
     Names of intrinsic and extrinsic sequences differ in more than upper and lower case.
     """
@@ -52,17 +52,17 @@ def _lock(sequence: str) -> str:
 
 
 def _regular_box(sequence: str) -> Box:
-    """Return ranges of angles away from lock: the middle angle is within 1.4 rad of its value farthest from lock."""
+    """Return ranges of Euler angles away from gimbal lock: the middle angle is within 1.4 rad of its best value."""
     axes, _ = parse_sequence(sequence)
     proper = axes[0] == axes[2]
     return ANGLE_BOX | {"theta": interval("1/10", "304/100") if proper else interval("-7/5", "7/5")}
 
 
 def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
-    """Return the entries of a matrix, written with named products of functions of the first and the last angle.
+    """Return the entries of a matrix, written with products of functions of the first and last angle as new quantities.
 
-    The named products come first in the result. In a sum, a common factor, which depends on the middle angle, is
-    factored out.
+    These intermediate quantities come first in the result. In a sum, a common factor, which depends on the middle
+    angle, is factored out.
     """
     named: dict[Expr, Symbol] = {}
     formulas = []
@@ -133,10 +133,11 @@ def _rates(frame: str, name: str, sequence: str) -> Definition:
 
 
 def _solved(jacobian: RateMatrix, omega: Matrix) -> tuple[Named, list[Expr]]:
-    """Return the rates of all three Euler angles, with the rate of the first or last angle as a named quantity.
+    """Return the rates of all three Euler angles; the rate of the first or last angle is an intermediate quantity.
 
-    The axis of the other outer angle is an axis of the frame; along it, omega is the sum of that angle's rate and a
-    part of the named rate. Only the formula of the named rate contains a division, by the determinant.
+    The axis of the other outer angle is an axis of the frame; along that axis, omega is the sum of that angle's rate
+    and a part of the intermediate rate. Only the formula of the intermediate rate contains a division, by the
+    determinant.
     """
     matrix, determinant = Matrix(jacobian), jacobian.determinant
     last = next(place for place in (0, 2) if not matrix[:, place].free_symbols)

@@ -18,7 +18,7 @@ def _table() -> dict[str, Callable[[], Definition]]:
 
 
 def kernel_names() -> tuple[str, ...]:
-    """Return the names of all kernels, in the order in which they are printed."""
+    """Return the names of all kernels of the library, in the order in which they are printed."""
     return tuple(_table())
 
 

@@ -1,4 +1,4 @@
-"""Kernels of unit quaternions: conversion to and from the dcm, product, rotation of a vector, rates in both frames."""
+"""Kernels of unit quaternions: conversion to and from the rotation matrix, product, rotation of a vector, rates."""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -39,7 +39,7 @@ def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
 
 
 def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -> tuple[Named, ImmutableMatrix]:
-    """Return the dcm in the form ``1 + scalar [t] + [t][axis]``, and the named quantities ``t = doubled`` in it.
+    """Return the rotation matrix as ``1 + scalar [t] + [t][axis]``, and the intermediate quantities ``t = doubled``.
 
     Here [v] is the matrix of the cross product with v. For a unit quaternion (q0, u), pass q0, u and t = 2 u. Because t
     is parallel to the axis, [t][axis] is symmetric, so each of its products is computed once.
@@ -54,7 +54,7 @@ def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -
 
 
 def halved(omega: Sequence[Expr]) -> tuple[Named, tuple[Symbol, ...]]:
-    """Return the components of half an angular velocity as named quantities, and their symbols."""
+    """Return the components of half an angular velocity as intermediate quantities, and their symbols."""
     half = tuple(Symbol(f"half_{i}", real=True) for i in "123")
     return tuple(zip(half, (w / 2 for w in omega), strict=True)), half
 
@@ -116,14 +116,17 @@ Branch = tuple[Expr, list[Expr]]  # four times the square of a component, and it
 
 
 def _branch(matrix: Matrix, pivot: int) -> Branch:
-    """Return ``4 q_pivot^2`` and the row ``4 q_pivot q`` of the quaternion of a dcm; both are linear in the dcm."""
+    """Return ``4 q_pivot^2`` and the row ``4 q_pivot q``, both linear in the rotation matrix of the quaternion q.
+
+    Dividing the row by twice the root of ``4 q_pivot^2`` gives q, without loss of digits if ``q_pivot`` is large.
+    """
     q = quaternion_of_dcm(matrix, pivot)
     square = 4 * q[pivot] ** 2
     return square, [entry * 2 * sqrt(square) for entry in q]
 
 
 def _larger(left: Branch, right: Branch) -> Branch:
-    """Return the branch whose component has the larger square."""
+    """Return the one of two branches (quaternion formulas) whose component has the larger square."""
     (a, row_a), (b, row_b) = left, right
     return select_ge(a, b, a, b), [select_ge(a, b, x, y) for x, y in zip(row_a, row_b, strict=True)]
 
@@ -186,9 +189,10 @@ def _rotate(towards: str, name: str) -> Definition:
 
 
 def turned(q: Sequence[Expr], vector: Matrix) -> tuple[Named, Matrix]:
-    """Return the vector rotated by the quaternion ``q = (q0, u)``, as ``v + q0 h + u x h`` with ``h = 2 u x v``.
+    """Return the vector ``v`` rotated by the quaternion ``q = (q0, u)``, as ``v + q0 h + u x h`` with ``h = 2 u x v``.
 
-    The definition of h as named quantities comes first in the result. This takes fewer operations than the dcm.
+    The definition of h as an intermediate quantity comes first in the result. This takes fewer operations than the
+    rotation matrix.
     """
     scalar, axis = q[0], Matrix([*q][1:])
     half = Matrix([Symbol(f"twice_cross_{i}", real=True) for i in "123"])

@@ -61,7 +61,7 @@ class Removable:
     about: str
 
     def formula(self, x: Expr) -> Expr:
-        """Return the function at x as a quotient."""
+        """Return the function at ``x`` as a quotient, undefined at zero."""
         return self.numerator.xreplace({_x: x}) / x**self.power
 
     def coefficients(self, precision: str = "binary64") -> tuple[Fraction, ...]:
@@ -120,7 +120,7 @@ _EXPLICIT: dict[str, Callable[..., Any]] = {
 
 
 def explicit(expr: Expr) -> Expr:
-    """Return an expression in which functions with a removable singularity, such as sinc, are written as quotients.
+    """Write functions with a removable singularity, such as sinc, as quotients in an expression, and return it.
 
     The quotients are valid except where their denominator is zero.
     """

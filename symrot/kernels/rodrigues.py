@@ -1,4 +1,4 @@
-"""Kernels of classical and modified Rodrigues parameters: dcm, conversion to and from quaternions, rates."""
+"""Kernels of classical and modified Rodrigues parameters: rotation matrix, conversion to quaternions, rates."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -41,9 +41,9 @@ _SQUARE = Symbol("square", real=True)  # square of the length of the parameters
 
 
 def _ray(which: Projection) -> tuple[Named, Expr]:
-    """Return the scalar s for which the quaternion (s, parameters), not normalised, describes the given attitude.
+    """Return the scalar s for which the quaternion (s, parameters), before normalisation, describes the attitude.
 
-    The named quantities in the formula of s come first in the result.
+    The intermediate quantities in the formula of s come first in the result.
     """
     if not which.centre:
         return (), Integer(1)

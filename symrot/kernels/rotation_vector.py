@@ -1,4 +1,4 @@
-"""Kernels of rotation vectors: exponential map and logarithm, dcm, rates in both frames; accurate at zero and pi."""
+"""Kernels of rotation vectors: exponential map and logarithm, rotation matrix, rates; accurate at zero and pi."""
 
 from collections.abc import Callable, Iterator
 from functools import partial

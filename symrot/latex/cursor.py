@@ -1,4 +1,4 @@
-"""The cursor with which an interpreter reads a row of the LaTeX tree, item by item, each item before its scripts."""
+"""The cursor with which the tree of a LaTeX formula is read, item by item; an index or power follows its item."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import ClassVar, TypeVar
@@ -13,7 +13,7 @@ Value = TypeVar("Value")
 
 
 class Cursor:
-    """The current position of an interpreter in a row of the LaTeX tree.
+    """A position in a row of items of the LaTeX tree, from which the next item is read.
 
     Spaces are skipped, ``\\left`` and ``\\right`` are removed from delimiters, and indices and powers follow the item
     that they belong to.
@@ -37,11 +37,11 @@ class Cursor:
         self.enter(row)
 
     def fail(self, expected: str, item: Node | None = None) -> InputError:
-        """Return the InputError that names the expected text, at the given item or else at the next one."""
+        """Return the InputError that names the expected text and the position of an item (default: the next item)."""
         return complaint(self.source, self.where, (item or self.peek()).start, expected)
 
     def enter(self, node: Node) -> None:
-        """Move the cursor to the beginning of a row, or of a single item as a row."""
+        """Start to read another row of the LaTeX tree, or a single item as if it were a row, from its beginning."""
         self.items: list[Node] = []
         self.index = 0
         self.flatten(node.items if isinstance(node, Row) else (node,))
@@ -65,7 +65,7 @@ class Cursor:
                 space = False
 
     def inside(self, node: Node, read: Callable[[], Value], closing: str = "'}'") -> Value:
-        """Read a row or a single item to its end with ``read``, then return to the position before it."""
+        """Read a row or a single item of the LaTeX tree with ``read``, then go back to the position before it."""
         outside = self.items, self.index, self.open_bars
         self.enter(node)
         self.open_bars = ()
@@ -76,7 +76,7 @@ class Cursor:
         return value
 
     def listed(self, read: Callable[[], Value], closing: str) -> list[Value]:
-        """Read values that are separated by commas, and the closing bracket."""
+        """Read values separated by commas, up to and including the closing bracket."""
         bars, self.open_bars = self.open_bars, ()
         values = [read()]
         while self.take(","):
@@ -86,7 +86,7 @@ class Cursor:
         return values
 
     def barred(self, read: Callable[[], Value], bar: str) -> Value:
-        """Read a value between two bars, after the opening bar, and the closing bar."""
+        """Read a value between two bars: the cursor is behind the opening bar, and moves past the closing bar."""
         outside, self.open_bars = self.open_bars, (*self.open_bars, bar)
         value = read()
         self.expect(bar)
@@ -106,7 +106,7 @@ class Cursor:
         return item
 
     def take(self, text: str) -> bool:
-        """Skip the next item if it has the given text, and return whether it had."""
+        """Skip the next item if its text is ``text``; return whether it was skipped."""
         is_next = self.items[self.index].text == text
         self.index += is_next
         return is_next
@@ -116,7 +116,10 @@ class Cursor:
             raise self.fail(f"'{text}'")
 
     def script(self, mark: str) -> Script | None:
-        """Return the next item and move past it if it is a script (index or power) with this mark, else return None."""
+        """Return the next item and move past it if it is an index or power with this mark (``_``, ``^``).
+
+        Otherwise return None.
+        """
         item = self.items[self.index]
         if isinstance(item, Script) and item.text == mark:
             self.index += 1

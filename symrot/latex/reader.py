@@ -35,7 +35,10 @@ class _Reader:
         return complaint(self.source, self.where, token.start, expected)
 
     def row(self, closing: str, *stops: str) -> Row:
-        """Read items up to a token whose kind or text is one of ``stops``; that token stays unread."""
+        """Read items of a formula up to a token whose kind or text is in ``closing``; return them as a row.
+
+        The closing token stays unread.
+        """
         items: list[Node] = []
         first = token = self.tokens[self.place]
         while token.kind not in stops and token.text not in stops:
@@ -50,7 +53,7 @@ class _Reader:
         return Row(tuple(items), first.start, token.start)
 
     def group(self, opening: Token, closing: str = "}") -> Row:
-        """Read a row and the token that closes it."""
+        """Read a row of items of a formula and the token that closes it, such as a brace."""
         row = self.row(closing, closing)
         self.place += 1
         return Row(row.items, opening.start, row.end)
@@ -71,7 +74,7 @@ class _Reader:
         return Scripts(base, tuple(scripts.values()), base.start)
 
     def mark(self) -> Token | None:
-        """Skip the mark of a script and spaces before it, if a script is next, and return the mark."""
+        """Read the mark of an index or power (``_`` or ``^``) and the spaces before it; return None if none follows."""
         place = self.place
         while self.tokens[place].kind == "space":
             place += 1
@@ -82,7 +85,7 @@ class _Reader:
         return token
 
     def argument(self) -> Node:
-        """Read a group in braces or a single item; of a number without braces, one digit, as LaTeX does."""
+        """Read the argument of a command: a group in braces, a single item, or one digit of a number, as LaTeX does."""
         while self.tokens[self.place].kind == "space":
             self.place += 1
         token = self.tokens[self.place]

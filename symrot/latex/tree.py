@@ -1,8 +1,8 @@
 """The tree of a LaTeX formula: how the formula is written, without its meaning.
 
-Operators, relations and brackets such as ``(`` and ``|`` are separate tokens of a row, because the meaning decides
+Operators, relations and brackets such as ``(`` and ``|`` are separate tokens of a row, because only the meaning decides
 which bracket closes which and what is a product. Every node has ``start``, its position in the source, ``text``, its
-first command or mark, and ``kind``; only tokens have more than one kind.
+first command or mark, and ``kind``. Each class of nodes has one kind, except tokens.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,10 @@ __all__ = ["Accent", "Delimited", "Font", "Fraction", "Node", "Root", "Row", "Sc
 
 @dataclass(frozen=True)
 class Row:
-    """A row of items: a whole formula, a group in braces, or a cell of a table; ``end`` is the position of its end."""
+    """A row of items of a formula: a whole formula, a group in braces, or a cell of a table.
+
+    ``end`` is the position of its end in the source.
+    """
 
     items: tuple["Node", ...]
     start: int
@@ -25,7 +28,10 @@ class Row:
 
 @dataclass(frozen=True)
 class Command:
-    """A command with one argument, or a script with its content; ``text`` is the command, or the mark of the script."""
+    """A LaTeX command with one argument, or an index or power with its content.
+
+    ``text`` is the command, or the mark ``_`` or ``^``.
+    """
 
     text: str
     inside: "Node"
@@ -47,7 +53,7 @@ class Script(Command):
 
 @dataclass(frozen=True)
 class Scripts:
-    """An item with its scripts: index and primes in the order in which they are written, then the power."""
+    """An item with its indices, primes and power: indices and primes as they are written, then the power."""
 
     base: "Node"
     scripts: tuple[Script, ...]
@@ -108,7 +114,7 @@ def alone(node: Node) -> Node:
 
 
 def divided(row: Row, mark: str) -> list[Row]:
-    """Return the rows between the tokens ``mark`` of a row."""
+    """Split a row at the tokens ``mark``; return the rows between them."""
     rows, first = [], 0
     for place, item in enumerate(row.items):
         if item.text == mark:

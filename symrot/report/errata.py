@@ -1,4 +1,4 @@
-"""Findings about the claims of four textbooks and courses: a table for the terminal, and ``generated/errata.md``."""
+"""The findings about the claims of four textbooks and courses, as a table and as the page ``generated/errata.md``."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -16,7 +16,7 @@ Survey = list[tuple[Document, list[Finding]]]
 def survey(
     names: Sequence[str] = DOCUMENTS, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Survey:
-    """Decide the claims of some documents and return the findings: true or false, with corrections."""
+    """Decide the claims of some textbooks and return the findings: each true or false, with a correction."""
     documents = []
     for name in names:
         source = document(name)
@@ -74,7 +74,7 @@ def facts(survey: Survey) -> list[dict[str, Any]]:
 
 
 def page(survey: Survey) -> str:
-    """Return the text of ``errata.md``: the claims that do not hold, with correction, reason and proof, by document."""
+    """Return the text of ``errata.md``: the claims that do not hold, with correction, reason and proof, by textbook."""
     text = [
         "# Errata",
         "",

@@ -18,7 +18,10 @@ FREE = frozenset({"neg"})  # a minus sign counts as part of its addition or mult
 
 
 def _operations(structure: Structure) -> Counter[str]:
-    """Return the numbers of operations, by kind, in one evaluation of the rates of a structure."""
+    """Return the numbers of operations, by kind, in one evaluation of the equations of motion.
+
+    ``structure`` describes the body and its torques: symmetry, parameters and states.
+    """
     from symrot.codegen.scene_kernels import rates_program
     from symrot.dynamics.equations import equations_of_motion
 
@@ -32,7 +35,7 @@ def _row(item: str, skipped: bool, why: str, derivation: str = "", operations: C
 
 
 def _ladder(plan: Plan) -> "list[PlanRow]":
-    """Return one row for each rule of the plan, with the operations that remain after it and those it saves."""
+    """Return one table row for each rule of a plan: the operations that remain after the rule, and the saved ones."""
     from symrot.planning.plan import general_structure
 
     general = _operations(general_structure(plan.scene, bool(plan.switches)))
@@ -47,7 +50,7 @@ def _ladder(plan: Plan) -> "list[PlanRow]":
 
 
 def _others(plan: Plan) -> "list[PlanRow]":
-    """Return the rows of the table that do not come from rules: states, method, outputs, cached kernel."""
+    """Return the table rows that do not come from rules: states, integration method, outputs, cached kernel."""
     from symrot.build import cache as library
     from symrot.propagation.compiled_models import kernel_key
     from symrot.propagation.method import choose_method
@@ -73,7 +76,7 @@ BENDS = frozenset({"abs", "min", "max", "clip"})
 
 
 def _formulas(plan: Plan, method: str) -> "list[PlanRow]":
-    """Return the rows about safeguards for torques by formula: no step misses a narrow feature or a switch."""
+    """Return the table rows on torques by formula: how no step misses a narrow feature or a switch of the torque."""
     from symrot.propagation.compiled_models import has_formulas
 
     if not has_formulas(plan):
@@ -101,7 +104,7 @@ def _narrow_features(plan: Plan) -> "PlanRow":
 
 
 def _switches(functions: list[str]) -> "PlanRow":
-    """Return the row of the table about functions with jumps or kinks."""
+    """Return the table row about functions with jumps or kinks, such as sign(x)."""
     named = [(text, text.partition("(")[0] in BENDS) for text in dict.fromkeys(functions)]
     parts = [
         f"{', '.join(text for text, bent in named if bent is bends)} {verb}"
@@ -116,7 +119,7 @@ def _switches(functions: list[str]) -> "PlanRow":
 
 
 def _samples(plan: Plan) -> "list[PlanRow]":
-    """Return the row of the table about a torque given by samples, whose operations are not counted."""
+    """Return the table row about a torque that is a table of samples, whose operations are not counted."""
     table = plan.scene.table
     if table is None:
         return []
@@ -129,7 +132,7 @@ def _samples(plan: Plan) -> "list[PlanRow]":
 def facts(plan: Plan) -> "PlanReport":
     """Return the explained plan as data for JSON.
 
-    In each row, ``operations`` counts the remaining operations by kind, and ``saved`` is the change by this row.
+    In each row, ``operations`` counts the remaining operations by kind, and ``saved`` is the number saved by the row.
     """
     scene = plan.scene
     ladder = _ladder(plan)
@@ -153,7 +156,7 @@ def _counts_text(counts: dict[str, int] | None) -> str:
 
 
 def lines(report: "PlanReport") -> list[str]:
-    """Return the explained plan, as :func:`facts` returns it, as lines of text; the first line is the title."""
+    """Return the explained plan, data from :func:`facts`, as lines of text; the first line is the title."""
     rows = [HEAD]
     for row in report["rows"]:
         changed = row["saved"] != 0

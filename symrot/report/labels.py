@@ -33,7 +33,10 @@ FRAMES = {
 
 
 class Labelled(NamedTuple):
-    """One quantity of a trajectory: name, values of shape (n,) or (n, ...), components, unit, frame and meaning."""
+    """One quantity of a trajectory with its labels: name, components, unit, frame and meaning.
+
+    Its values have the shape (n,) or (n, ...) for n samples.
+    """
 
     name: str
     values: NDArray[Any]

@@ -25,12 +25,12 @@ def one_line(text: str) -> str:
 
 
 def number_text(value: float | Fraction, digits: int = 6) -> str:
-    """Return a number as text with the given number of significant digits."""
+    """Return a number as text with ``digits`` significant digits."""
     return f"{float(value):.{digits}g}"
 
 
 def apart(*values: float) -> list[str]:
-    """Return numbers as text with enough digits to distinguish the two closest ones."""
+    """Return numbers as text with so many digits that the two closest numbers differ in their texts."""
     ordered = sorted({float(value) for value in values})
     nearest = min((after - before for before, after in pairwise(ordered)), default=math.inf)
     digits = 6
@@ -40,7 +40,7 @@ def apart(*values: float) -> list[str]:
 
 
 def exact(value: Fraction) -> str:
-    """Return a fraction as text for programs: exact if that is short, such as ``"51/80"``, else the nearest double."""
+    """Return a fraction as text: exact if that is short, such as ``"51/80"``, otherwise the nearest double."""
     return str(value) if value.denominator <= LONGEST_DENOMINATOR else repr(float(value))
 
 
@@ -74,7 +74,7 @@ def _wrapped(text: str, width: int) -> list[str]:
 
 
 def fields(rows: Iterable[tuple[str, str]], width: int | None = None) -> list[str]:
-    """Return pairs (name, text) as aligned and wrapped lines; a pair with an empty name continues the row above."""
+    """Return pairs (name, text) as aligned, wrapped lines; a pair with an empty name continues the pair before."""
     rows, width = list(rows), room() if width is None else width
     first = max((len(name) for name, _ in rows), default=0) + 2
     return [
@@ -122,7 +122,7 @@ def columns(
 
 
 def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequence[int]) -> list[int]:
-    """Return the widths of the columns of a table: the length of the longest text, less for wrapped columns."""
+    """Return the widths of a table's columns: the length of the longest text, but less for wrapped columns."""
     count = len(rows[0])
     widths = [max(len(row[i]) for row in rows) for i in range(count)]
     left = width - 2 * (count - 1) - sum(size for i, size in enumerate(widths) if i != wrap)

@@ -1,4 +1,4 @@
-"""Writing of trajectories to NPZ or CSV files with labels, units, conventions and source.
+"""Writing of trajectories to NPZ or CSV files with labels, units, conventions and the name of their scene.
 
 Equal motions give equal bytes.
 """
@@ -25,7 +25,7 @@ ROWS_AT_ONCE = 4096
 
 
 def metadata(trajectory: "Trajectory", arrays: list[Labelled], tolerance: float) -> "FileRecord":
-    """Return the description in a file of a trajectory: scene, method, meaning of each array, and conventions."""
+    """Return the description for the head of a trajectory file: scene, method, meaning of each array, conventions."""
     scene, stats = trajectory.scene, trajectory.stats
     return {
         "symrot": __version__,
@@ -86,7 +86,7 @@ def _csv(stream: BinaryIO, arrays: list[Labelled], about: "FileRecord") -> None:
 
 
 def _printed(item: Labelled, part: slice) -> list[list[str]]:
-    """Return a quantity as columns of text, from which the same doubles can be read back."""
+    """Return a quantity as columns of numbers in text, with all the digits that restore the same doubles."""
     values = item.values[part].reshape(-1, len(item.components)).T
     return [[str(int(x)) if item.name == LOCK else repr(x) for x in column] for column in values.tolist()]
 

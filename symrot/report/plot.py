@@ -43,7 +43,9 @@ UNDATED: dict[str, dict[str, Any]] = {
 def require_matplotlib() -> None:
     """Raise InputError if matplotlib is missing."""
     if find_spec("matplotlib") is None:
-        raise InputError("--plot: expected matplotlib, which is not installed: pip install 'symrot[plot]'")
+        raise InputError(
+            "--plot: expected matplotlib, but it is not installed; install it with pip install 'symrot[plot]'"
+        )
 
 
 def _times(trajectory: Any) -> tuple[Floats, str]:
@@ -53,7 +55,7 @@ def _times(trajectory: Any) -> tuple[Floats, str]:
 
 
 def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -> None:
-    """Draw components over time; a nearly constant component, which would flatten the others, goes into the legend."""
+    """Draw components over time; a nearly constant one is written into the legend, as it would flatten the others."""
     low, high = columns.min(axis=0), columns.max(axis=0)
     largest = np.maximum(np.abs(low), np.abs(high))
     steady = high - low <= QUIET * largest
@@ -70,7 +72,7 @@ def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -
 
 
 def _unwrapped(angles: Floats, turn: float) -> Floats:
-    """Return angles with NaN at each jump by a full rotation, so that no line is drawn across the jump."""
+    """Return angles with NaN at each jump by a full rotation, so that a plot has no line across the jump."""
     gaps = np.zeros_like(angles, dtype=bool)
     gaps[1:] = np.abs(np.diff(angles)) > 0.5 * turn
     return np.where(gaps, np.nan, angles)
@@ -205,7 +207,7 @@ def _words(page: Any, trajectory: Any, tolerance: float) -> None:
 
 
 def save(propagator: Any, trajectory: Any, path: Path) -> None:
-    """Draw a motion into a file; a scene with too few or too many samples is propagated again for the plot.
+    """Draw a motion into a file; if the scene has too few or too many samples for a plot, propagate it again.
 
     Parameters
     ----------

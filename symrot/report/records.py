@@ -38,14 +38,14 @@ BodyRecord = TypedDict(
 
 
 class InitialRecord(TypedDict):
-    """The initial state of a run: omega, rad/s, as exact text, and the quaternion."""
+    """The initial state of a run: angular velocity omega (rad/s) as exact text, and the quaternion."""
 
     omega: list[str]
     quaternion: list[float]
 
 
 class SpanRecord(TypedDict):
-    """The span of time of a run, s, as exact text, and its number of samples."""
+    """The time span of a run: start and end (s) as exact text, and the number of samples."""
 
     start: str
     stop: str
@@ -53,7 +53,7 @@ class SpanRecord(TypedDict):
 
 
 class MethodRecord(TypedDict):
-    """The method of a run, the reason for it, and the tolerance."""
+    """The integration method of a run, the reason for it, and its tolerance."""
 
     name: str
     reason: str
@@ -61,7 +61,7 @@ class MethodRecord(TypedDict):
 
 
 class RuleRecord(TypedDict):
-    """The decision of one rule of a plan, as in :class:`symrot.planning.plan.RuleOutcome`."""
+    """The decision of one rule of a plan, such as using a symmetry; see :class:`symrot.planning.plan.RuleOutcome`."""
 
     item: str
     skipped: bool
@@ -70,7 +70,7 @@ class RuleRecord(TypedDict):
 
 
 class CostRecord(TypedDict):
-    """The cost of a motion: steps, evaluations and seconds."""
+    """The cost of a motion: numbers of steps and of evaluations of the equations of motion, and seconds."""
 
     steps: int
     rejected: int
@@ -80,7 +80,7 @@ class CostRecord(TypedDict):
 
 
 class SwitchingRecord(TypedDict):
-    """A switching of a function at a time, s, see :class:`symrot.propagation.steppers.stepping.Switching`."""
+    """A time (s) of a jump or kink of a function, see :class:`symrot.propagation.steppers.stepping.Switching`."""
 
     t: float
     function: str
@@ -88,7 +88,7 @@ class SwitchingRecord(TypedDict):
 
 
 class InvariantRecord(TypedDict):
-    """A conserved quantity along a trajectory, see :class:`symrot.propagation.trajectory.Invariant`."""
+    """A conserved quantity and its drift along a trajectory; see :class:`symrot.propagation.trajectory.Invariant`."""
 
     name: str
     unit: str
@@ -99,7 +99,7 @@ class InvariantRecord(TypedDict):
 
 
 class LostRecord(TypedDict):
-    """A candidate for a conserved quantity that is not conserved, and the reason."""
+    """A candidate for a conserved quantity, such as a momentum component, that this motion does not conserve."""
 
     name: str
     unit: str
@@ -107,7 +107,7 @@ class LostRecord(TypedDict):
 
 
 class FinalRecord(TypedDict):
-    """The last sample of a motion: t, s, omega, rad/s, and the quaternion if it was computed."""
+    """The last sample of a motion: t (s), omega (rad/s), and the quaternion if it was computed."""
 
     t: float
     omega: list[float]
@@ -115,7 +115,7 @@ class FinalRecord(TypedDict):
 
 
 class WrittenRecord(TypedDict):
-    """A file that a run wrote; for a file with samples, also their number and the names of the arrays."""
+    """A file that a run wrote; for a file of samples, also their number and the names of the arrays."""
 
     file: str
     samples: NotRequired[int]
@@ -148,9 +148,9 @@ class RunReport(TypedDict):
 
 
 class PlanRow(TypedDict):
-    """A row of an explained plan.
+    """A row of the table that explains a plan: an item computed or skipped, and the operations saved.
 
-    ``operations`` counts the operations by kind after the row, ``saved`` is the change.
+    ``operations`` counts the remaining operations by kind, ``saved`` is the number saved by the row.
     """
 
     item: str
@@ -162,7 +162,7 @@ class PlanRow(TypedDict):
 
 
 class OperationsRecord(TypedDict):
-    """Operations of one evaluation of the rates, for the general structure and for the structure of the plan."""
+    """Operations in one evaluation of the rates: of the general equations, and of those that the plan simplified."""
 
     general: int
     specialised: int
@@ -197,7 +197,7 @@ class ArrayRecord(TypedDict):
 
 
 class DriftRecord(TypedDict):
-    """The drift of one conserved quantity, in a file of samples."""
+    """The drift of one conserved quantity over a motion, as recorded in a file of samples."""
 
     name: str
     unit: str

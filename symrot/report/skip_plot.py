@@ -1,4 +1,4 @@
-"""The figure of the operations and the time that specialised kernels save, from the general kernel to a scene's own."""
+"""The figure of the operations and the time that specialised kernels save, from a general kernel to a scene's own."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -21,7 +21,7 @@ LEAST = 0.6  # position on the logarithmic axis of a motion without any operatio
 
 
 def figure(ladder: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of the savings that :func:`symrot.bench.skip.measure` measured."""
+    """Return a matplotlib Figure of the savings that :func:`symrot.bench.skip.measure` measured, kernel by kernel."""
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
@@ -65,7 +65,7 @@ def figure(ladder: Mapping[str, Any]) -> Any:
 
 
 def save(ladder: Mapping[str, Any], path: Path) -> None:
-    """Draw the savings by specialised kernels into a file; the suffix decides the format."""
+    """Draw the savings by specialised kernels into a file, whose suffix decides the format."""
     import matplotlib
 
     with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):

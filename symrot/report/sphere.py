@@ -22,7 +22,7 @@ MOST_VECTORS = 6000  # largest number of segments drawn as vectors in a PDF or S
 
 
 def prefixed(size: float, unit: str) -> tuple[float, str]:
-    """Return a divisor that makes numbers of a given size easy to read, and the unit after the division (mm for m)."""
+    """Return a divisor that makes numbers of a given size easy to read, and the resulting unit, such as mm for m."""
     factor, prefix = next((pair for pair in PREFIXES if size >= 0.1 * pair[0]), PREFIXES[-1])
     return (factor, f"{prefix}{unit}") if size > 0 else (1.0, unit)
 
@@ -36,7 +36,7 @@ def _unit(vectors: Floats) -> Floats:
 
 
 def _eye(directions: Floats) -> Floats:
-    """Return the axes of a view in which the path is in front: rows right, up, toward the eye, shape (3, 3)."""
+    """Return the axes of a view with the path in front, shape (3, 3): the rows are right, up and toward the eye."""
     middle = directions.mean(axis=0)
     level = np.hypot(middle[0], middle[1])
     azimuth = ASIDE + (np.arctan2(middle[1], middle[0]) if level > 0.05 else 0.0)
@@ -89,7 +89,7 @@ def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats]) -> None:
 
 
 def _path(axes: Any, points: Floats, front: NDArray[np.bool_] | None = None) -> None:
-    """Draw a path in the plane, shape (n, 2), coloured from its start (dark) to its end (light)."""
+    """Draw a path in the plane, points of shape (n, 2), coloured from dark at its start to light at its end."""
     from matplotlib import colormaps
     from matplotlib.collections import LineCollection
 

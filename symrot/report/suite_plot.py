@@ -1,4 +1,4 @@
-"""Two figures of a benchmark suite: times of other programs relative to symrot's, and all work-precision curves."""
+"""Two figures of a benchmark: times of other programs relative to symrot's, and curves of time against error."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,7 +17,7 @@ PEERS = ("heyoka", "heyoka, best setting", "SciPy LSODA", "SciPy DOP853", "SciPy
 
 
 def figure(suite: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of time ratios: a row for each motion, a dot for each decade of error, a bar."""
+    """Return a matplotlib Figure of ratios of times: a row for each motion, a dot for each decade of error."""
     from matplotlib.figure import Figure
 
     studies = list(suite["studies"].values())

@@ -95,7 +95,7 @@ def _numbers(values: list[Any], digits: int = 6) -> str:
 
 
 def _value(text: str) -> float:
-    """Return the number that an exact text such as ``"51/80"``, ``"5"`` or ``"1e-9"`` represents."""
+    """Return the number that an exact text represents, such as ``"51/80"``, ``"5"`` or ``"1e-9"``."""
     numerator, _, denominator = text.partition("/")
     return float(numerator) / float(denominator or 1)
 
@@ -187,7 +187,7 @@ def _conserved(report: "RunReport") -> list[str]:
 
 
 def _lost(candidates: "list[LostRecord]") -> list[tuple[str, str]]:
-    """Return rows of text about candidates that are not conserved, one row for each reason."""
+    """Return rows of text about quantities that the motion does not conserve, one row for each reason."""
     names: dict[str, list[str]] = {}
     for item in candidates:
         names.setdefault(item["reason"], []).append(item["name"])
@@ -218,7 +218,7 @@ def _holding(item: "WrittenRecord") -> str:
 
 
 def summary(report: "RunReport") -> list[str]:
-    """Return the report of a run, as :func:`facts` returns it, as lines of text; the first line is the title."""
+    """Return the report of a run, data from :func:`facts`, as lines of text; the first line is the title."""
     scene = report["scene"]
     source = [f"  {line}" for line in fields([("", one_line(scene["source"]))])] if scene["source"] else []
     settings = [f"  {line}" for line in fields(_settings(report) + _skipped(report))]

@@ -22,7 +22,7 @@ def check(
     repair: bool,
     progress: Callable[[str], None] = lambda text: None,
 ) -> list[Verdict]:
-    """Decide a claim (text or LaTeX) or all claims of a file, and return the verdicts.
+    """Decide a claim (text or LaTeX), or all claims of a file, and return the verdicts.
 
     A claim of a file that cannot be read gets the verdict ``"refused"``.
 

@@ -1,4 +1,4 @@
-"""Work-precision studies (time against error, for several methods) as lines of text, and the comparison of two."""
+"""Work-precision studies (time against error for several methods) as text, and the comparison of two studies."""
 
 import json
 import math
@@ -25,7 +25,7 @@ def _number(value: float) -> str:
 
 
 def _decades(study: Mapping[str, Any]) -> list[str]:
-    """Return a table with a column for each decade of the error: the least time, and all times relative to it."""
+    """Return a study as a table with a column for each decade of the error: the least time, and the ratios to it."""
     table = study["decades"]
     names = list(dict.fromkeys(name for row in table for name in row["methods"]))
     rows = [["error <=", *(f"{row['error']:.0e}" for row in table)]]
@@ -128,7 +128,9 @@ def read_study(path: Path) -> dict[str, Any]:
     except (KeyError, TypeError, AttributeError, ValueError, IndexError, OverflowError):
         whole = False
     if not whole:
-        raise InputError(f"{label}: expected a whole study of `symrot bench`, got one with parts missing or impossible")
+        raise InputError(
+            f"{label}: expected a whole study of `symrot bench`, got one with missing parts or impossible numbers"
+        )
     return study
 
 
@@ -141,7 +143,7 @@ def _positive(study: Mapping[str, Any]) -> bool:
 
 
 def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
-    """Compare a second study with a first one: return ratios of times by decade, and the least errors.
+    """Return the ratios of the times of two studies by decade of the error, and the least errors.
 
     Raises
     ------
@@ -150,10 +152,11 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
     """
     names = [study["scene"]["name"] for study in (first, second)]
     if names[0] != names[1]:
-        raise InputError(f"--compare: expected two studies of one scene, got {names[0]!r} and {names[1]!r}")
+        raise InputError(f"--compare: expected two studies of the same scene, got {names[0]!r} and {names[1]!r}")
     if len({study["scene"].get("digest") for study in (first, second)}) > 1:
         raise InputError(
-            f"--compare: expected two studies of one scene, got two motions that are both named {names[0]!r}"
+            "--compare: expected two studies of the same scene, got two different motions with the "
+            f"same name {names[0]!r}"
         )
     before = {row["error"]: row["methods"] for row in first["decades"]}
     methods: dict[str, Any] = {}
@@ -164,7 +167,9 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
                 methods.setdefault(name, {})[f"{row['error']:.0e}"] = now["seconds"] / then["seconds"]
     floors = [_least_errors(study) for study in (first, second)]
     if not methods:
-        raise InputError("--compare: expected studies with a method and a decade of the error in common, got none")
+        raise InputError(
+            "--compare: expected two studies with a common method and a common decade of the error, got none in common"
+        )
     return {
         "format": "symrot comparison 1",
         "scene": second["scene"],
@@ -186,7 +191,7 @@ def _least_errors(study: Mapping[str, Any]) -> dict[str, float]:
 
 
 def lines_of_comparison(comparison: Mapping[str, Any]) -> list[str]:
-    """Return the comparison of two studies, as :func:`compared` returns it, as lines of text."""
+    """Return the comparison of two studies, data from :func:`compared`, as lines of text."""
     errors = sorted(
         {error for item in comparison["ratios"].values() for error in item["decades"]}, key=float, reverse=True
     )

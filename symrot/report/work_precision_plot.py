@@ -24,7 +24,7 @@ OUTERMOST = 1.5  # runs with larger errors are not shown
 
 
 class Look(NamedTuple):
-    """Appearance of a method's curve: colour, marker and dash."""
+    """The look of a method's curve: colour, marker and dash."""
 
     colour: str
     marker: str
@@ -58,7 +58,7 @@ METHOD_LABELS = {
 
 
 def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
-    """Return the runs that no other run beats in both error and time, ordered by error, and the remaining runs."""
+    """Return the runs that no other run beats in both error and time, sorted by error, and then the other runs."""
     points = sorted((max(float(run["error"]), LEAST_ERROR), float(run["seconds"])) for run in runs)
     points = [point for point in points if point[0] < OUTERMOST]
     best: list[tuple[float, float]] = []
@@ -71,7 +71,7 @@ def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float
 
 
 def _names(axes: Any, ends: list[tuple[float, str, str]]) -> None:
-    """Write the names of methods at the right edge, each as close as possible to its curve's end, without overlap."""
+    """Write the names of methods at the right edge of a plot, close to the ends of their curves, without overlap."""
     low, high = np.log10(axes.get_ylim())
     ends = sorted(ends)
     heights = [(np.log10(value) - low) / (high - low) for value, *_ in ends]

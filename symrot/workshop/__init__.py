@@ -1,1 +1,1 @@
-"""The functions behind the commands that emit, certify, audit and bound kernels, and that check an installation."""
+"""The functions that emit, certify, audit and bound kernels and that check an installation, for the command line."""

@@ -27,12 +27,12 @@ SPARE = 1e-9  # relative tolerance: versions of NumPy may add numbers in differe
 
 
 def _texts() -> dict[str, str]:
-    """Return the C text of each kernel without its head comment, which states the bounds."""
+    """Return the C text of each kernel without the comment at its head, which would state the bounds."""
     return {name: c_functions(kernel_program(name), (DOUBLE, FLOAT), near=True) for name in kernel_names()}
 
 
 def library_tasks() -> dict[str, BoundTask]:
-    """Return the computations of the bounds of all kernels of the library, by the key of the bound in the table."""
+    """Return the tasks to bound the kernels of the library, by the keys under which the table stores the bounds."""
     by_key: dict[str, BoundTask] = {}
     for name, text in _texts().items():
         for operations in operations_of(name, text):
@@ -44,7 +44,7 @@ def library_tasks() -> dict[str, BoundTask]:
 
 
 def table_faults() -> list[str]:
-    """Return the faults of the table, one sentence each; an empty list if the table is complete and up to date."""
+    """Return the faults of the table of bounds, one sentence each; an empty list if it is complete and up to date."""
     required, known = library_tasks(), table()["bounds"]
     faults = [] if table()["method"] == method() else ["another version of the method computed the table"]
     if lacking := len(set(required) - set(known)):
@@ -57,12 +57,12 @@ def table_faults() -> list[str]:
 
 
 def understated(required: Mapping[str, BoundTask]) -> list[str]:
-    """Return the keys of the bounds in the table that are smaller than the error at the worst point that they name."""
+    """Return the keys of the bounds in the table that are smaller than the error at their stored worst point."""
     return [key for key, task in required.items() if not _is_consistent(task, STORE.get(key))]
 
 
 def _is_consistent(task: BoundTask, search: SearchResult | None) -> bool:
-    """Return whether a bound is finite and not smaller than the error that the method computes at its worst point."""
+    """Return whether a bound is finite and not smaller than the error at the worst point stored with it."""
     if search is None or len(search.worst) != len(task.low):
         return False
     point = np.array(search.worst)
@@ -75,7 +75,7 @@ def _is_consistent(task: BoundTask, search: SearchResult | None) -> bool:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Write the table of bounds, or check it; return the exit code."""
+    """Write the table of bounds, or with ``--check`` only check it; return the exit code."""
     parser = ArgumentParser(prog="python -m symrot.workshop.bound_table", description="Bounds of the library.")
     parser.add_argument("--check", action="store_true", help="compare only")
     parser.add_argument("--workers", type=int, default=2, help="processes (2)")

@@ -121,7 +121,7 @@ def section(kernel: str, ranges: Sequence[str]) -> dict[str, Any]:
 
 @contextmanager
 def _in_scene_names(kernel: str) -> Iterator[None]:
-    """Replace the indices of states in error messages ("y[2]") by the names that the scene gives them."""
+    """Replace the index texts of states in error messages, such as "y[2]", by the names that the scene gives them."""
     try:
         yield
     except InputError as reason:
@@ -149,7 +149,7 @@ def facts(kernel: str, ranges: Sequence[str], precision: str) -> dict[str, Any]:
 
 
 def _names(kernel: str) -> dict[str, str]:
-    """Return the scene's names of a kernel's inputs and outputs; keys are indices such as "y[2]"."""
+    """Return the scene's names of a kernel's inputs and outputs by index text, such as "y[2]"."""
     if kernel in kernel_names():
         return {}
     return {place: symbol for place, (symbol, _) in scene_inputs(kernel).components.items()}
@@ -176,7 +176,7 @@ def _region_lines(section: Mapping[str, Any]) -> list[str]:
 
 
 def lines(section: Mapping[str, Any]) -> list[str]:
-    """Return the bounds of rounding errors, as :func:`facts` returns them, as lines of text."""
+    """Return bounds of rounding errors, data from :func:`facts`, as lines of text."""
     part = section["precisions"][0]
     names = section["names"]
     unit = f"2^-{DIGITS[part['precision']]}"
@@ -239,7 +239,7 @@ def _free(kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fra
 
 
 def target_lines(resized: Mapping[str, Any]) -> list[str]:
-    """Return the largest box, as :func:`target_facts` returns it, as lines of text."""
+    """Return the largest box, data from :func:`target_facts`, as lines of text."""
     return [
         f"{resized['kernel']}: no error is larger than {resized['target']:g}",
         f"for {_box_text(resized['box'], resized['names'])}", *_region_lines(resized),

@@ -1,6 +1,7 @@
-"""Comparison of a kernel's files with the certified files: the first line and the output that changed.
+"""Comparison of a kernel's files on disk with the emitted ones, to explain a failed hash.
 
-A hash tells only that a file changed; the comparison tells whether the kernel still computes its formulas.
+A hash tells only that a file changed. The comparison names the first changed line, and the first output that is no
+longer computed by its formula.
 """
 
 from pathlib import Path
@@ -28,7 +29,7 @@ def kernel_of(name: str) -> str | None:
 
 
 def difference(certificate: Path) -> str:
-    """Return ": " and the first difference of the files next to a certificate from the emitted files.
+    """Return ": " and the first difference between the files on disk next to a certificate and the emitted files.
 
     The text is empty if the files are equal.
     """
@@ -60,7 +61,7 @@ def _first_line(text: str, emitted: str) -> str:
 
 
 def _meaning(text: str, emitted: KernelUnderTest) -> str:
-    """Return, in brackets, how an edited C text differs in meaning from the formulas of its kernel.
+    """Return, in brackets, how an edited C text differs: no longer the kernel's formulas, or other operations.
 
     The result is empty if the text has the same operations.
     """

@@ -69,7 +69,7 @@ class Certificate:
 
     @property
     def refuted(self) -> bool:
-        """Whether object code was compared in this call and differs where its bits must equal those of the C text."""
+        """Whether compared object code differs from the C text under flags that must keep its bits."""
         return self.objects_compared and certificates.refuted([dict(self.data)])
 
     def __str__(self) -> str:
@@ -427,7 +427,7 @@ def _check_precision(precision: str) -> None:
 
 
 def _ranges(box: Ranges) -> Sequence[str]:
-    """Return ranges as texts NAME=LOW:HIGH; a float is written as the fraction that it represents."""
+    """Return the ranges of inputs as texts NAME=LOW:HIGH; a float is written as the fraction that it represents."""
     if isinstance(box, str):
         raise InputError(f"box: expected a mapping or a list of texts NAME=LOW:HIGH, got one text, {box[:60]!r}")
     if not isinstance(box, Mapping):

@@ -44,7 +44,7 @@ MANY = 12  # smallest number of certificates that several processes audit at onc
 
 
 def _proven_statement(data: Data) -> Data | None:
-    """Return the section of a kernel's certificate that symrot can prove itself, or None for an unknown kernel.
+    """Return the section of a certificate that symrot can prove for this kernel; None for an unknown kernel.
 
     The section is derived and proven once, then stored in the cache under the digest of the programs.
     """
@@ -66,7 +66,7 @@ def _proven_statement(data: Data) -> Data | None:
 
 @cache
 def _programs() -> str:
-    """Return the SHA-256 of all sources of symrot and of the version of SymPy."""
+    """Return the SHA-256 of all source files of symrot and of the version of SymPy."""
     root = Path(symrot.__file__).parent
     digest = sha256(version("sympy").encode())
     for path in sorted(source for source in root.rglob("*") if source.suffix in (".py", ".toml", ".v", ".c")):
@@ -78,7 +78,7 @@ def audit_file(
     path: Path, object_file: Path | None = None, rerun: bool = False, coq: bool = False,
     progress: Callable[[str], object] = lambda text: None,
 ) -> list[str]:  # fmt: skip
-    """Return the statements of a certificate that were checked and hold, one line each.
+    """Audit a certificate; return the statements that were checked and hold, one line each.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def audit_files(
     paths: Sequence[Path], object_file: Path | None = None, rerun: bool = False, coq: bool = False,
     progress: Callable[[str], object] = lambda text: None,
 ) -> dict[str, list[str]]:  # fmt: skip
-    """Return the lines of :func:`audit_file` for each path; several processes audit a long list at once.
+    """Audit certificates, many of them in several processes; return the lines of :func:`audit_file` for each path.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def _recomputed_bounds(data: Data, text: str, progress: Callable[[str], object])
 
 
 def flag_lines(flags: str) -> list[str]:
-    """Return one line, in a list, on the statements of any certificate that hold under given compiler flags.
+    """Return a list of one line: the statements of any certificate that hold under given compiler flags.
 
     Raises
     ------
@@ -180,7 +180,7 @@ def certify(
     kernel: str, ranges: Sequence[str] = (), directory: Path | None = None, objects: bool = False,
     bounds: bool = True, progress: Callable[[str], object] = lambda text: None,
 ) -> tuple[Data, list[Path]]:  # fmt: skip
-    """Return the certificate of a kernel and the files written; parts of it may come from the cache.
+    """Return the certificate of a kernel and the paths of the files written; parts of it may come from the cache.
 
     Parameters
     ----------
@@ -209,7 +209,7 @@ def certify(
     if objects:
         object_code.require_compiler()
     if ranges and not bounds:
-        raise InputError(f"--box: expected a box alone, got {ranges[0]!r} with --no-bounds too; leave out --no-bounds")
+        raise InputError(f"--box: expected --box or --no-bounds, got both ({ranges[0]!r}); leave out one of them")
     rounding = None
     if bounds and (ranges or name in kernel_names()):
         progress("bounding ..")
@@ -230,7 +230,7 @@ def certify(
 def certify_all(
     directory: Path | None = None, objects: bool = False, progress: Callable[[str], object] = lambda text: None,
 ) -> tuple[dict[str, Data], list[Path]]:  # fmt: skip
-    """Return the certificates of the library and of the kernels of shipped scenes, and the files written.
+    """Return the certificates of the library and of the shipped scenes' kernels, and the paths of the files written.
 
     Several processes share the work. Certificates made by the same version of symrot come from the cache, unless files
     are written or object code is compared.
@@ -269,7 +269,7 @@ def _certified(name: str, directory: Path | None, objects: bool) -> tuple[Data, 
 
 
 def all_lines(certificates: Mapping[str, Data]) -> list[str]:
-    """Return a line for each kernel with the proofs in its certificate, then a line for each proof with its count."""
+    """Return a line for each kernel with the kinds of proof in its certificate, then the count of each kind."""
     by_kernel = {name: proofs(data) for name, data in certificates.items()}
     width = max(map(len, by_kernel))
     text_lines = [
@@ -283,7 +283,7 @@ def all_lines(certificates: Mapping[str, Data]) -> list[str]:
 
 
 def refuted(certificates: Iterable[Data]) -> bool:
-    """Return whether object code was compared and differs from the C text under flags that must preserve its bits."""
+    """Return whether compared object code differs from the C text under flags that must preserve its bits."""
     return any(data.get("objects") and not object_code.holds(data["objects"]) for data in certificates)
 
 

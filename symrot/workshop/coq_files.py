@@ -1,4 +1,4 @@
-"""Files with theorems for Coq: writing them, having Coq check them, and reporting the result with the axioms used."""
+"""Coq files of theorems: writing them, checking them with Coq, and reporting the result with the axioms used."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -16,7 +16,7 @@ MISSING = "coqc is not on the path (Debian package coq)"
 
 
 def prove(directory: Path, demanded: bool, progress: Callable[[str], object]) -> tuple[list[Path], CoqResult | None]:
-    """Write all files of theorems into a folder and have Coq check them; return the changed files and Coq's result.
+    """Write all Coq files into a folder and check them with Coq; return the changed files and Coq's result.
 
     If Coq is not installed, the files are written and the result is None.
 
@@ -35,7 +35,7 @@ def prove(directory: Path, demanded: bool, progress: Callable[[str], object]) ->
 
 
 def facts(directory: Path, written: list[Path], result: CoqResult | None) -> dict[str, Any]:
-    """Return Coq's result on the theorems, as :func:`prove` returns it, as data for JSON."""
+    """Return Coq's result on the theorems, from :func:`prove`, as data for JSON."""
     report: dict[str, Any] = {
         "directory": str(directory),
         "files": [f"{name}.v" for name in (RULES, *coq_file_names(), ASSUMPTIONS)],
@@ -53,7 +53,7 @@ def facts(directory: Path, written: list[Path], result: CoqResult | None) -> dic
 
 
 def lines(directory: Path, result: CoqResult | None) -> list[str]:
-    """Return Coq's result on the theorems, as :func:`prove` returns it, as lines of text."""
+    """Return Coq's result on the theorems, from :func:`prove`, as lines of text."""
     if result is None:
         count = sum(len(coq_file(name).theorems) for name in coq_file_names())
         return [f"{count} theorems written to {directory}, not checked: {MISSING}"]

@@ -32,7 +32,7 @@ def _version(package: str) -> str | None:
 
 
 def _first_line(command: tuple[str, ...]) -> str:
-    """Return the first line that a compiler prints about its version."""
+    """Return the first line of the version text that a compiler command prints."""
     import subprocess
 
     try:
@@ -45,7 +45,7 @@ def _first_line(command: tuple[str, ...]) -> str:
 
 @contextmanager
 def _empty_cache() -> Iterator[None]:
-    """Use an empty cache inside the block, so that the compiler runs instead of an older result being loaded."""
+    """Replace the cache by an empty one inside a ``with`` block, so that the compiler really runs."""
     from tempfile import TemporaryDirectory
 
     before = os.environ.get("SYMROT_CACHE")
@@ -61,7 +61,7 @@ def _empty_cache() -> Iterator[None]:
 
 
 def _compiled_and_run() -> str:
-    """Compile and run a tiny kernel; return the reason if that fails, else an empty text."""
+    """Compile and run a tiny kernel as a test; return the reason if that fails, else an empty text."""
     import ctypes
 
     try:
@@ -169,7 +169,7 @@ ROWS: tuple[tuple[str, Callable[[DoctorReport], str]], ...] = (  # label -> text
 
 
 def lines(report: DoctorReport) -> list[str]:
-    """Return the state of this installation, as :func:`facts` returns it, as lines of text."""
+    """Return the state of this installation, data from :func:`facts`, as lines of text."""
     rows = [(name, text(report)) for name, text in ROWS]
     for extra, versions in report["extras"].items():
         hint = "" if all(versions.values()) else f" (pip install 'symrot[{extra}]')"

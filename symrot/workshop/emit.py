@@ -1,4 +1,4 @@
-"""The public functions that plan a scene, explain the plan, and emit the text of a kernel."""
+"""The public functions that plan a scene, explain its plan, and emit the text of a kernel."""
 
 import re
 from collections.abc import Mapping
@@ -65,7 +65,7 @@ class Emitted(_Texts):
     def of(
         cls, kernel: Any, bounds: Mapping[str, Any] | None, name: str, source: str, header: str = ""
     ) -> "Emitted":  # fmt: skip
-        """Return the emitted texts of a kernel, with the kernel and its rounding bounds for the certificate."""
+        """Return an :class:`Emitted`: the texts of a kernel, with the data from which its certificate is proven."""
         emitted = cls(name, source, header)
         emitted.kernel, emitted.bounds = kernel, bounds
         return emitted
@@ -120,7 +120,7 @@ def plan(scene: Scene | str | Path) -> Plan:
 
 
 def explain(scene: Scene | str | Path) -> str:
-    """Return the plan of a scene as a table of text: item, kept or skipped, rule, derivation, operations saved.
+    """Return the plan of a scene as a table of text: item, computed or skipped, rule, derivation, operations saved.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def explain(scene: Scene | str | Path) -> str:
 
 
 def _formulas(scene: Scene | str | Path) -> Plan:
-    """Return the plan of a scene whose torques are all formulas.
+    """Return the plan of a scene whose torques are all formulas, as a kernel requires.
 
     Raise InputError for a scene with another torque: such a scene has no kernel.
     """
@@ -200,7 +200,7 @@ def _is_kernel(kernel: Any) -> bool:
 
 
 def subject(kernel: Scene | str | Path, bounds: Mapping[str, Any] | None = None) -> "KernelUnderTest":
-    """Return a kernel of the library or of a scene with its emitted texts, as the subject of a certificate.
+    """Return a kernel with its emitted texts, as the object that a certificate is made for.
 
     ``bounds`` are the rounding bounds with which a scene's kernel is emitted (see :func:`emit`).
     """
@@ -244,7 +244,7 @@ def kernel_names() -> tuple[str, ...]:
 
 @cache
 def _library_kernel(name: str, target: str) -> Emitted:
-    """Return the text of a kernel of the library with its rounding bounds; each text is printed once per process.
+    """Return the text of a kernel of the library with its rounding bounds; it is computed once per process.
 
     The head comment states the bounds of the operations below it, so the operations are printed and bounded first.
     """
@@ -306,7 +306,7 @@ def scene_kernel_name(scene: str) -> str:
 def _scene_rates(
     scene_plan: Plan, equations: Any, target: str, contract_lines: tuple[Any, ...] = ()
 ) -> tuple[Any, Any]:
-    """Return the right-hand side of a plan's equations as a program, and the description for the emitted file."""
+    """Return the right-hand side of a plan's equations of motion as a program, and the emitted file's description."""
     from symrot.codegen.scene_kernels import rates_program, scene_description
 
     if not scene_plan.states:

@@ -1,4 +1,4 @@
-"""The reader of ``--box NAME=LOW:HIGH``: ranges of a kernel's inputs and of a scene's physical constants."""
+"""The reader of ``--box NAME=LOW:HIGH``, the option with ranges of inputs and of a scene's physical constants."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
@@ -20,7 +20,7 @@ FORM = "expected NAME=LOW:HIGH, such as theta=-1.4:1.4"
 
 
 def input_box(kernel_problem: RoundingProblem, inputs: SceneInputs | None, ranges: Sequence[str]) -> dict[str, Ends]:
-    """Return the box of a kernel, with the user's ranges instead of the kernel's own where they are given.
+    """Return the box of a kernel: the user's range of an input, or the kernel's own range if there is none.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def _check_finite(name: str, ends: Ends, text: str) -> None:
 
 
 def _place(kernel_problem: RoundingProblem, inputs: SceneInputs | None, name: str, text: str) -> str:
-    """Return the index of a named input (such as ``angles[1]``), or the name of a constant in a scene's parameters."""
+    """Return the index text of an input, such as ``angles[1]``, or the name of a constant in a scene's parameters."""
     for place, symbol in kernel_problem.symbols.items():
         if name in (place, symbol):
             return place

@@ -1,4 +1,4 @@
-"""Files of emitted kernels: writing one or all, and comparing the files on disk with the kernels emitted now."""
+"""Files of emitted kernels: writing one or all, and comparing the files on disk with newly emitted kernels."""
 
 import json
 import os
@@ -37,9 +37,10 @@ def kernel_lines() -> list[str]:
 
 
 def kernel_files(kernel: str | Path, target: str, bounds: Mapping[str, Any] | None = None) -> dict[str, str]:
-    """Return the files of a kernel of the library or of a scene, file name -> text; in C the header comes first.
+    """Return the files of a kernel of the library or of a scene, as a mapping from file name to text.
 
-    ``bounds`` are the rounding bounds for the head comment of a scene's C (see :func:`symrot.emit`).
+    In C the header comes first. ``bounds`` are the rounding bounds for the comment at the head of a scene's C file (see
+    :func:`symrot.emit`).
     """
     emitted = emit(kernel, target, bounds)
     if target == "numpy":
@@ -54,7 +55,7 @@ def kernel_files(kernel: str | Path, target: str, bounds: Mapping[str, Any] | No
 def certificate_files(
     kernel: str | Path, directory: Path, bounds: Mapping[str, Any] | None = None
 ) -> dict[str, str]:  # fmt: skip
-    """Return the certificate file of a kernel, file name -> text.
+    """Return the certificate file of a kernel, as a mapping from file name to text.
 
     Verdicts on object code from the certificate on disk are kept if they still hold. Bounds of rounding errors are on
     the kernel's own box; for a scene, they are ``bounds``.
@@ -66,7 +67,7 @@ def certificate_files(
 
 
 def stored_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, Any] | None:
-    """Return the rounding bounds of a scene's kernel from its certificate in a folder, checked as in an audit.
+    """Return the rounding bounds of a scene's kernel from its certificate in a folder, after an audit of them.
 
     The result is None for a kernel of the library, which has its own bounds. It is also None if there is no
     certificate, or if its bounds are missing, belong to other operations, or fail the check.
@@ -88,7 +89,7 @@ def stored_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, An
 
 
 def _slots(path: Path) -> dict[str, Any]:
-    """Return the certificate on disk, whose bounds and verdicts can be reused; an empty dict if there is none."""
+    """Return the certificate on disk, to reuse its bounds and verdicts; an empty dict if there is no certificate."""
     try:
         certificate = json.loads(read_input(path, LARGEST))
     except (OSError, ValueError, RecursionError):
@@ -97,7 +98,7 @@ def _slots(path: Path) -> dict[str, Any]:
 
 
 def _files_of(name: str, subfolder: str, targets: Sequence[str], directory: Path) -> dict[str, str]:
-    """Return all files of one kernel, its certificate included, as path -> text."""
+    """Return all files of one kernel, its certificate included, as a mapping from path to text."""
     files: dict[str, str] = {}
     for target in targets:
         bounds = stored_bounds(name, directory / target / subfolder) if target == "c" else None
@@ -109,7 +110,7 @@ def _files_of(name: str, subfolder: str, targets: Sequence[str], directory: Path
 
 
 def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str], object]) -> dict[str, str]:
-    """Return all files of the library and of the kernels of shipped scenes as path -> text.
+    """Return all files of the library and of the shipped scenes' kernels, as a mapping from path to text.
 
     Several processes share the work.
     """
@@ -133,7 +134,7 @@ def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str]
 
 
 def _printed_before(directory: Path, targets: Sequence[str]) -> list[str]:
-    """Return the paths of all kernel files on disk, including those of kernels that no longer exist."""
+    """Return the paths of all kernel files on disk, also of kernels that symrot no longer has."""
     return [
         path.relative_to(directory).as_posix()
         for target in targets
@@ -182,7 +183,7 @@ def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str],
 
 
 def stale(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[str]:
-    """Return a unified diff from the kernels on disk to the kernels emitted now; an empty list if they are equal.
+    """Return a unified diff between the kernels on disk and newly emitted ones; an empty list if they are equal.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Comparison of object code with the C text of a kernel, for the compilers of this machine or a user's object file."""
+"""Comparison of object code with a kernel's C text, for the compilers of this machine or a user's object file."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -29,7 +29,7 @@ def require_compiler() -> None:
 
 
 def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
-    """Compile a kernel, compare the object code with its C text, and return that section of the certificate.
+    """Compile a kernel, compare the object code with its C text, and return the certificate's section on object code.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
 
 
 def holds(section: Data | None) -> bool:
-    """Return whether all object code equals the C text under every flag that must preserve its bits."""
+    """Return whether all object code equals the C text under every set of flags that must preserve its bits."""
     strict = [item for item in _objects(section) if item["flags_hold"] == BITS]
     return bool(strict) and all(function["verdict"] == IDENTICAL for item in strict for function in item["functions"])
 
@@ -67,7 +67,7 @@ def lines(section: Data | None) -> list[str]:
 
 
 def table(sections: Mapping[str, Data | None]) -> list[str]:
-    """Return lines with the number of accepted kernels for each compiler and its flags, and each rejected kernel."""
+    """Return lines with the number of accepted kernels by compiler and flags, and each rejected kernel."""
     by_flags: dict[str, dict[str, Data]] = {}
     for name, section in sections.items():
         for item in _objects(section):

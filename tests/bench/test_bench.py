@@ -324,7 +324,7 @@ def test_studies_of_two_scenes_are_not_compared(found):
     with pytest.raises(InputError, match="'short' and 'other'"):
         compared(found, other)
     changed = found | {"scene": found["scene"] | {"digest": "another"}}
-    with pytest.raises(InputError, match="two motions that are both named 'short'"):
+    with pytest.raises(InputError, match="two different motions with the same name 'short'"):
         compared(found, changed)
     with pytest.raises(InputError, match="in common"):
         compared(found, found | {"decades": []})
@@ -344,7 +344,7 @@ def test_a_study_with_an_impossible_time_is_refused(found, value, tmp_path):
     broken["decades"][0]["methods"]["taylor"]["seconds"] = value
     path = tmp_path / "x.json"
     path.write_text(json.dumps(broken))
-    with pytest.raises(InputError, match="missing or impossible"):
+    with pytest.raises(InputError, match="missing parts or impossible"):
         read_study(path)
 
 
@@ -356,7 +356,7 @@ def test_the_lines_name_references_and_every_method(found):
 
 @pytest.mark.parametrize(
     ("content", "said"),
-    [("{", "not JSON"), ("[]", "format"), ('{"format": "symrot work-precision 1"}', "parts missing")],
+    [("{", "not JSON"), ("[]", "format"), ('{"format": "symrot work-precision 1"}', "missing parts")],
 )
 def test_a_file_that_is_no_study_is_refused(tmp_path, content, said):
     path = tmp_path / "x.json"

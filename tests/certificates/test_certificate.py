@@ -175,14 +175,14 @@ def edit(files, name, old, new):
 
 def test_a_kernel_edited_by_hand_is_refused(dcm):
     edit(dcm, "quaternion_dcm.c", " - ", " + ")
-    refused(dcm, "quaternion_dcm.c is not what was certified")
+    refused(dcm, "quaternion_dcm.c was changed after it was certified")
 
 
 def test_a_header_with_a_macro_is_refused(dcm):
     source, header = (dcm.texts[f"quaternion_dcm{end}"] for end in (".c", ".h"))
     check_header(header, source, "quaternion_dcm")
     edit(dcm, "quaternion_dcm.h", "#include <stddef.h>", "#include <stddef.h>\n#define sin cos")
-    refused(dcm, "quaternion_dcm.h is not what was certified")
+    refused(dcm, "quaternion_dcm.h was changed after it was certified")
     for old, new in (
         ("#include <stddef.h>", "#include <stddef.h>\n#define sin cos"), ("#include <stddef.h>", "#include <math.h>"),
         ("__restrict\n", "__restrict\n#define q p\n"), ("double dcm[9]);", "float dcm[9]);"),
@@ -208,7 +208,7 @@ def test_the_span_of_a_batch_in_parts_is_a_number_that_headers_may_set():
 def test_a_certificate_of_another_file_is_refused(kernels, dcm):
     other = kernels["mrp_shadow"]
     dcm.path.write_text(other.path.read_text(encoding="utf-8"), encoding="utf-8")
-    refused(dcm, "of another file")
+    refused(dcm, "belongs to another file")
 
 
 @pytest.mark.parametrize(
@@ -321,7 +321,7 @@ def test_recheck_refuses_a_text_that_rounds_more_than_it_says(name, term, huge, 
     (files.directory / f"{name}.c").write_text(text, encoding="utf-8")
     hashes = files.data["files"] | {f"{name}.c": sha256(text.encode()).hexdigest()}
     files.path.write_text(certificate_json(files.data | {"files": hashes}), encoding="utf-8")
-    with pytest.raises(ValueError, match=f"{name} is rounded by more than its bounds"):
+    with pytest.raises(ValueError, match=f"{name} has a larger rounding error than its bound"):
         recheck.check(files.path)
     bare = {key: value for key, value in files.data.items() if key != "rounding"}
     files.path.write_text(certificate_json(bare | {"files": hashes}), encoding="utf-8")
@@ -456,9 +456,9 @@ EDITS = {  # file, what is edited -> what takes its place, what is said of it
     "arguments": (".c", "(const double angles[3], const double omega[3]", "(const double omega[3], const double angles[3]",
                   "is 'void symrot_euler_zyx_body_rates(const double omega[3], const double angles[3]", "but symrot emits"),
     "constant": (".c", "cos_theta;\n", "cos_theta*1.0000000000000002;\n", "1.0000000000000002", "but symrot emits"),
-    "header": (".h", "double dangles[3]);", "double dangles[4]);", "double dangles[4]);'", "euler_zyx_body_rates.h is not"),
-    "more": (".h", "\n#endif\n", "\n#endif\n#define sin cos\n", "'#define sin cos', but symrot emits no such line", ".h is not"),
-    "ends": (".c", "\n", "\r\n", "its line endings differ", "is not what was certified"),
+    "header": (".h", "double dangles[3]);", "double dangles[4]);", "double dangles[4]);'", "euler_zyx_body_rates.h was changed"),
+    "more": (".h", "\n#endif\n", "\n#endif\n#define sin cos\n", "'#define sin cos', but symrot emits no such line", ".h was changed"),
+    "ends": (".c", "\n", "\r\n", "its line endings differ", "was changed after it was certified"),
     "none": (".c", None, None, "expected its file euler_zyx_body_rates.c in the same folder", "it is not there"),
 }  # fmt: skip
 
@@ -490,7 +490,7 @@ def test_an_edited_file_is_refused_with_its_line_and_what_it_computes(edit, tmp_
         (["certify", "quaternion_dc.cert.json"], "did you mean 'quaternion_dcm'?"),
         (["certify", "nowhere/quaternion_dcm.c"], "a readable file of at most 16 MB, got No such file or directory"),
         (["bound", str(KERNELS / "quaternion_dcm.c")], "did you mean 'quaternion_dcm'?"),
-        (["audit", "quaternion_dcm.c"], "the certificate of this one is quaternion_dcm.cert.json"),
+        (["audit", "quaternion_dcm.c"], "certificate, quaternion_dcm.cert.json"),
     ],
     ids=lambda value: Path(value[1]).name if isinstance(value, list) else "",
 )

@@ -143,31 +143,31 @@ UPPER = ("vmovsd xmm17,QWORD PTR [rdi]{}; vmulsd xmm18,xmm17,QWORD PTR [rdi+8]; 
          "vaddsd xmm18,xmm18,xmm17; vmovsd QWORD PTR [rsi],xmm18; ret")  # fmt: skip
 STRANGE = (
     (f"{GOOD}; ret", IDENTICAL, ""),
-    (f"{GOOD}; xor ebx,ebx; ret", NOT_UNDERSTOOD, "rbx is not as it was"),
+    (f"{GOOD}; xor ebx,ebx; ret", NOT_UNDERSTOOD, "expected the same value of register rbx"),
     (f"sub rsp,8; {GOOD}; ret", NOT_UNDERSTOOD, "'ret"),
-    (f"{GOOD}; movsd QWORD PTR [rdi],xmm1; ret", NOT_UNDERSTOOD, "a write outside the outputs, to x"),
-    (f"{GOOD}; movsd QWORD PTR [rsi+8],xmm1; ret", NOT_UNDERSTOOD, "a write outside the outputs, to y"),
-    (f"{GOOD}; movsd QWORD PTR [rsp+8],xmm1; ret", NOT_UNDERSTOOD, "a write to stack"),
-    (f"movsd xmm2,QWORD PTR [rdi+16]; {GOOD}; ret", NOT_UNDERSTOOD, "a read outside the array x"),
-    (f"movsd xmm2,QWORD PTR [rsi]; {GOOD}; ret", NOT_UNDERSTOOD, "which is not written yet"),
-    (f"movapd xmm3,XMMWORD PTR [rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "an aligned access to x"),
+    (f"{GOOD}; movsd QWORD PTR [rdi],xmm1; ret", NOT_UNDERSTOOD, "expected writes inside the output arrays, got one outside, to x"),
+    (f"{GOOD}; movsd QWORD PTR [rsi+8],xmm1; ret", NOT_UNDERSTOOD, "expected writes inside the output arrays, got one outside, to y"),
+    (f"{GOOD}; movsd QWORD PTR [rsp+8],xmm1; ret", NOT_UNDERSTOOD, "got one to stack"),
+    (f"movsd xmm2,QWORD PTR [rdi+16]; {GOOD}; ret", NOT_UNDERSTOOD, "expected a read inside the array x, got one outside"),
+    (f"movsd xmm2,QWORD PTR [rsi]; {GOOD}; ret", NOT_UNDERSTOOD, "before it is read, got none"),
+    (f"movapd xmm3,XMMWORD PTR [rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "expected an aligned address, got one in x"),
     (f"movsd xmm2,QWORD PTR fs:[rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "segment fs"),
     (f"movsd xmm2,QWORD PTR fs:[rip+f]; {GOOD}; ret", NOT_UNDERSTOOD, "segment fs"),
-    ("ret", NOT_UNDERSTOOD, "y[0] is not written"),
-    (f"{GOOD}", NOT_UNDERSTOOD, "no instruction"),
-    (f"cvtsd2si eax,xmm0; {GOOD}; ret", NOT_UNDERSTOOD, "an unknown instruction"),
-    (f"ldmxcsr DWORD PTR [rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "an unknown instruction"),
+    ("ret", NOT_UNDERSTOOD, "expected every path through the code to write y[0]"),
+    (f"{GOOD}", NOT_UNDERSTOOD, "expected an instruction, got none"),
+    (f"cvtsd2si eax,xmm0; {GOOD}; ret", NOT_UNDERSTOOD, "expected an instruction whose effect is known, got another"),
+    (f"ldmxcsr DWORD PTR [rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "expected an instruction whose effect is known, got another"),
     (f"call tgamma; {GOOD}; ret", NOT_UNDERSTOOD, "16 bytes"),
-    (f"sub rsp,8; call tgamma; {GOOD}; add rsp,8; ret", NOT_UNDERSTOOD, "a call of tgamma"),
-    (f"jmp rax; {GOOD}; ret", NOT_UNDERSTOOD, "a jump to an address that is computed"),
-    ("1: jmp 1b; ret", NOT_UNDERSTOOD, "more than"),
+    (f"sub rsp,8; call tgamma; {GOOD}; add rsp,8; ret", NOT_UNDERSTOOD, "expected a call of a known C library function, got tgamma"),
+    (f"jmp rax; {GOOD}; ret", NOT_UNDERSTOOD, "expected a jump to a fixed address, got a computed one"),
+    ("1: jmp 1b; ret", NOT_UNDERSTOOD, "executed instructions, got more"),
     (GOOD.replace("addsd xmm1,xmm0", "addsd xmm1,xmm3") + "; ret", DIFFERS, "a value that nobody set"),
     (GOOD.replace("mulsd", "divsd") + "; ret", DIFFERS, "div(x[0], x[1])"),
     (GOOD.replace("addsd xmm1,xmm0", "subsd xmm1,xmm0") + "; ret", DIFFERS, "the object code"),
     (UPPER.format(""), IDENTICAL, ""),  # registers that AVX-512 has
     (UPPER.format("; vzeroupper"), IDENTICAL, ""),
-    (UPPER.replace("xmm18,xmm18,", "xmm18{{k1}},xmm18,").format(""), NOT_UNDERSTOOD, "an unknown instruction"),
-    (UPPER.replace("xmm18,xmm18,xmm17", "xmm18,xmm18,xmm17,{{ru-sae}}").format(""), NOT_UNDERSTOOD, "an unknown instruction"),
+    (UPPER.replace("xmm18,xmm18,", "xmm18{{k1}},xmm18,").format(""), NOT_UNDERSTOOD, "expected an instruction whose effect is known, got another"),
+    (UPPER.replace("xmm18,xmm18,xmm17", "xmm18,xmm18,xmm17,{{ru-sae}}").format(""), NOT_UNDERSTOOD, "expected an instruction whose effect is known, got another"),
     (UPPER.replace("vaddsd", "vsubsd").format(""), DIFFERS, "the object code"),
     ("movsd xmm0,QWORD PTR [rdi]; movsd xmm1,QWORD PTR [rdi+8]; vfmadd213sd xmm1,xmm0,xmm0; movsd QWORD PTR [rsi],xmm1; ret",
      CONTRACTED, ""),
@@ -222,7 +222,7 @@ def test_files_that_are_no_object_files_are_refused_in_one_sentence(tmp_path):
     compile_object("gcc", ("-O2",), source, target)
     with pytest.raises(CertificateError, match="expected machine code of g, got that of f"):
         compare_object(TEXT.replace("void f(", "void g("), target)
-    with pytest.raises(CertificateError, match="expected a definition of h"):
+    with pytest.raises(CertificateError, match="expected a function named h"):
         compare_object(TEXT, target, ["h"])
     subprocess.run(["gcc", "-shared", "-o", tmp_path / "kernel.so", target], check=True)
     with pytest.raises(CertificateError, match="linked"):

@@ -109,7 +109,7 @@ def test_functions_of_the_file_and_choices_are_read():
         ("return x*x;", "x*x;", "expected"),
         ("static", "#define cos sin\nstatic", "#include"),
         ("static", '#include "other/file.h"\nstatic', "#include"),
-        ("static", "int x; static", "function of double or float"),
+        ("static", "int x; static", "a function whose arguments are of type double or float"),
         ("static", "/\\\n* */ static", "backslash"),
         ("< 0.0", "< 0.0 < 1.0", "'?'"),
         ("cos(t)", "cos(t", "expected"),

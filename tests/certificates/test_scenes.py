@@ -243,7 +243,7 @@ def test_what_does_not_overflow_is_bounded_to_the_largest_numbers(capsys):
         (["bound", "t_handle", *_options(CUBE), "--target", "1e-13", "--variable", "t"], "it does not use t"),
         (["bound", "t_handle", "--precision", "float"], "expected double for a scene"),
         (["bound", "t_handl"], "did you mean 't_handle'?"),
-        (["certify", "t_handle", "--no-bounds", "--box", "omega_1=0:1"], "leave out --no-bounds"),
+        (["certify", "t_handle", "--no-bounds", "--box", "omega_1=0:1"], "leave out one of them"),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )

@@ -43,7 +43,7 @@ def test_a_program_that_hangs_is_stopped_with_all_that_it_started(wait, hanging,
     module, limit, call = WAITS[wait]
     monkeypatch.setattr(module, limit, 0.5)
     start = time.perf_counter()
-    with pytest.raises(CompilerError, match=r"is stopped: no answer within 0\.5 s"):
+    with pytest.raises(CompilerError, match=r"was stopped, because it did not end within 0\.5 s"):
         call(hanging)
     assert time.perf_counter() - start < 20
     for pid in map(int, (hanging / "pids").read_text().split()):
@@ -63,18 +63,18 @@ def _gone(pid):
 
 def test_a_theorem_whose_check_hangs_is_not_checked(hanging):
     complaint, printed = coq_check._compile("coqc", hanging, "rotation", 0.5)
-    assert "no answer within 0.5 s" in complaint and printed == ""
+    assert "it did not end within 0.5 s" in complaint and printed == ""
 
 
 def test_the_command_ends_in_a_sentence_when_a_compiler_hangs(hanging, monkeypatch, capsys):
     monkeypatch.setattr(object_code_build, "SECONDS_TO_ANSWER", 0.5)
     assert main(["certify", "quaternion_dcm", "--objects"]) == 2
-    assert "is stopped: no answer within 0.5 s" in capsys.readouterr().err
+    assert "was stopped, because it did not end within 0.5 s" in capsys.readouterr().err
 
 
 def test_a_program_that_cannot_be_run_is_named(tmp_path):
     (tmp_path / "gcc").write_text("no program")
-    with pytest.raises(CompilerError, match="gcc cannot be run: Permission denied"):
+    with pytest.raises(CompilerError, match="gcc cannot be started: Permission denied"):
         run_tool([str(tmp_path / "gcc")], 1)
 
 

@@ -1,1 +1,1 @@
-"""Theorems of Coq about the formulas of kernels."""
+"""Theorems about the formulas of kernels, for the proof assistant Coq."""

@@ -1,4 +1,4 @@
-"""Run Coq on files of theorems and verify that nothing is admitted and that only axioms of the real numbers are used.
+"""Run Coq on files of theorems; verify that no proof is skipped and that only axioms of the real numbers are used.
 
 The files are checked in a temporary folder, into which Coq also writes its own files.
 """
@@ -33,7 +33,7 @@ _PLACE = re.compile(r'File "[^"]*?([^/"]+)", line (\d+), characters [^:]*:\s*(.*
 
 @dataclass(frozen=True)
 class TheoremResult:
-    """The outcome of a theorem: ``"ok"``, ``"refused"``, or ``"not reached"`` if Coq refused an earlier theorem."""
+    """The outcome of a theorem: ``"ok"``, ``"refused"`` by Coq, or ``"not reached"`` after an earlier refusal."""
 
     file: str
     name: str
@@ -66,18 +66,24 @@ class CoqResult:
 
 
 def coqc() -> str | None:
-    """Return the path of Coq's compiler, from the variable ``COQC`` or the search path; None if it is not installed."""
+    """Return the path of Coq's compiler ``coqc``, from the variable ``COQC`` or the search path.
+
+    None if it is not installed.
+    """
     return shutil.which(os.environ.get("COQC") or "coqc")
 
 
 def coq_version(compiler: str) -> str:
-    """Return the version of a compiler, e.g. ``"8.16.1"``."""
+    """Return the version of a Coq compiler, e.g. ``"8.16.1"``."""
     done = run_tool([compiler, "--print-version"], SECONDS_TO_ANSWER)
     return (done.stdout.split() or ["unknown"])[0]
 
 
 def unproven(text: str) -> tuple[str, ...]:
-    """Return the keywords in a file of Coq that assume a statement or skip its proof, ignoring comments."""
+    """Return the words of a Coq file that assume a statement or skip a proof, such as ``Admitted``.
+
+    Comments are ignored.
+    """
     return tuple(match[0] for match in _UNPROVEN.finditer(_COMMENT.sub(" ", text)))
 
 
@@ -91,7 +97,10 @@ def check_kernel(kernel: str, seconds: float = SECONDS) -> CoqResult:
     """
     section = coq_section(kernel)
     if section is None:
-        raise CertificateError(f"{kernel}: expected a kernel with a theorem in Coq; `symrot prove` lists them")
+        raise CertificateError(
+            f"{kernel}: expected the name of a kernel about which there is a Coq theorem; `symrot "
+            "prove` lists these kernels"
+        )
     name = str(section["file"]).removesuffix(".v")
     return check_texts(coq_texts((name,)), seconds=seconds)
 
@@ -163,14 +172,17 @@ def _required(text: str) -> set[str]:
 
 
 def _levels(sources: Mapping[str, str]) -> list[list[str]]:
-    """Return files of theorems in groups, so that each file requires only files of earlier groups."""
+    """Return files of theorems in groups, so that each file needs only files of earlier groups.
+
+    The files of a group are checked in parallel.
+    """
     levels: list[list[str]] = []
     left, done = dict(sources), set[str]()
     while left:
         ready = [name for name, text in left.items() if _required(text) & sources.keys() <= done]
         if not ready:
             raise CertificateError(
-                f"expected files of theorems that do not require each other in a circle, got {', '.join(left)}"
+                f"expected Coq files that do not require each other in a circle, got {', '.join(left)}"
             )
         levels.append(ready)
         done |= set(ready)
@@ -179,7 +191,7 @@ def _levels(sources: Mapping[str, str]) -> list[list[str]]:
 
 
 def _compile(compiler: str, place: Path, name: str, seconds: float) -> tuple[str | None, str]:
-    """Check one file with Coq; return Coq's error message, or None if it accepted the file, and its output."""
+    """Check one file with Coq; return Coq's error message (None if it accepted the file) and Coq's output."""
     command = [compiler, "-q", "-R", ".", "symrot", f"{name}.v"]
     try:
         done = run_tool(command, seconds, place)
@@ -194,12 +206,12 @@ def _compile(compiler: str, place: Path, name: str, seconds: float) -> tuple[str
 
 
 def _axioms(printed: str) -> tuple[str, ...]:
-    """Return the names of the axioms in the output of ``Print Assumptions``."""
+    """Return the names of the axioms that Coq's command ``Print Assumptions`` printed."""
     return tuple(sorted({match[1] or match[2] for match in _AXIOM.finditer(printed) if match[0] != "Axioms:"}))
 
 
 def _results(name: str, text: str, complaint: str | None) -> list[TheoremResult]:
-    """Return the outcome of each theorem of a file, given Coq's error message about the file, or None."""
+    """Return the outcome of each theorem of a file from Coq's error message; None means that Coq accepted the file."""
     if name in (RULES, ASSUMPTIONS):
         return []
     theorems = [(text.count("\n", 0, match.start()) + 1, match[1]) for match in _THEOREM.finditer(text)]

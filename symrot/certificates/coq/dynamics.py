@@ -30,7 +30,7 @@ _POWER = " + ".join(
 
 
 def dynamics_file() -> CoqFile:
-    """Return the file about Euler's equations, angular momentum, energy and the inertia tensor in space axes."""
+    """Return the Coq file about Euler's equations, angular momentum, energy and the inertia tensor in space axes."""
     kernels = (*(f"euler_equations_{body}" for body in _BODIES), "kinetic_energy", "angular_momentum_body",
                "angular_momentum_space", "inertia_rotated")  # fmt: skip
     return CoqFile(

@@ -1,9 +1,9 @@
-"""Theorems of Coq about Euler angles: for each of the 24 sequences, the rates agree with the derivative of the dcm.
+"""Theorems of Coq about Euler angles: the angle rates agree with the derivative of the rotation matrix (24 sequences).
 
-The dcm is the product of three rotations with an angular velocity each. The angular velocity of the product is their
-sum, after each is carried into one frame by the rotations in between (``three_turns_body`` and ``three_turns_space`` in
-``rotation.v``). It remains to prove that the printed rate Jacobian is that sum: three identities of products of sines
-and cosines.
+The rotation matrix (dcm) is the product of three rotations with an angular velocity each. The angular velocity of the
+product is the sum of the three, after the rotations in between carry each of them into one common frame
+(``three_turns_body`` and ``three_turns_space`` in ``rotation.v``). It remains to prove that the printed rate Jacobian
+is that sum: three identities of products of sines and cosines.
 """
 
 from sympy import cos, sin
@@ -38,12 +38,12 @@ _PRINTED = {
 
 
 def euler_files() -> dict[str, str]:
-    """Return the names of the files of theorems about Euler angles, each with its axis sequence."""
+    """Return the names of the Coq files about Euler angles, each with its axis sequence such as ``"zxz"``."""
     return {prefix(sequence): sequence for sequence in SEQUENCES}
 
 
 def euler_file(sequence: str) -> CoqFile:
-    """Return the file of theorems about one Euler sequence: its kernels as definitions, and the theorems on them."""
+    """Return the Coq file about one Euler sequence: the formulas of its kernels, and theorems about them."""
     name = prefix(sequence)
     kind = "intrinsic" if parse_sequence(sequence)[1] else "extrinsic"
     return CoqFile(
@@ -62,7 +62,7 @@ def euler_file(sequence: str) -> CoqFile:
 
 
 def _rotations(sequence: str) -> list[tuple[str, str]]:
-    """Return the axis letter and the angle of each of the three rotations whose product is the dcm, left to right."""
+    """Return axis letter and angle of the three rotations whose product is the rotation matrix, left to right."""
     return [(AXES[factor.axis].lower(), str(factor.angle)) for factor in factors(sequence)]
 
 

@@ -1,4 +1,4 @@
-"""Files of Coq: definitions, and theorems with their proofs."""
+"""Data types for Coq files: definitions, and theorems with their proofs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class Theorem:
 
     @property
     def text(self) -> str:
-        """The theorem as text of Coq, with its comment and proof."""
+        """The theorem as Coq text, with its comment and proof."""
         lines = [f"Theorem {self.name} :", *f"{self.statement}.".split("\n"), "Proof.", *self.proof.split("\n"), "Qed."]
         return "\n".join([comment(self.about), *(_short(line) for line in lines)])
 
@@ -52,7 +52,7 @@ class CoqFile:
 
     @property
     def text(self) -> str:
-        """The file's text; the same formulas give the same bytes."""
+        """The file as Coq text; the same formulas give the same bytes."""
         opening = [
             comment(f"{self.title} Printed by `symrot prove --coq`; do not edit."),
             "",
@@ -69,17 +69,20 @@ class CoqFile:
 
 
 def _short(line: str) -> str:
-    """Return a line of Coq, folded into several indented lines if it is too long."""
+    """Fold a line of Coq text into several indented lines if it is too long."""
     return folded(line, len(line) - len(line.lstrip()) + 2)
 
 
 def derivatives(functions: Sequence[str], rates: Sequence[str]) -> str:
-    """Return Coq hypotheses, each with an arrow, that some functions of time have given derivatives at t."""
+    """Return Coq hypotheses: each function of time in ``functions`` has at t the derivative in ``rates``.
+
+    Each hypothesis is followed by ``->``.
+    """
     pairs = zip(functions, rates, strict=True)
     return folded("  " + " ".join(f"derivable_pt_lim {each} t {rate} ->" for each, rate in pairs), 2)
 
 
 def statement(quantified: str, *hypotheses: str, conclusion: str) -> str:
-    """Return the statement of a theorem: variables, hypotheses (each ending in an arrow), conclusion, line by line."""
+    """Return a theorem's statement as lines of Coq: variables, hypotheses (each followed by ``->``), conclusion."""
     lines = [folded(f"  forall {quantified},", 4), *hypotheses, *(f"  {line}" for line in conclusion.split("\n"))]
     return "\n".join(line for line in lines if line)

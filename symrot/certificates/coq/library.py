@@ -1,4 +1,4 @@
-"""The files of Coq theorems that symrot prints, and a look-up of the theorem about a kernel."""
+"""The Coq files that symrot prints, and the search for the theorem about a kernel."""
 
 from collections.abc import Callable
 from functools import cache, partial
@@ -47,13 +47,13 @@ _FILES: dict[str, tuple[tuple[str, ...], Callable[[], CoqFile]]] = {
 
 
 def coq_file_names() -> tuple[str, ...]:
-    """Return the names of the files of theorems without ``.v``, in an order that Coq can check them in."""
+    """Return the names of the Coq files without ``.v``; each file comes after the files that it needs."""
     return tuple(_FILES)
 
 
 @cache
 def coq_file(name: str) -> CoqFile:
-    """Return a file of theorems.
+    """Return a Coq file from its name.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def coq_file(name: str) -> CoqFile:
         If there is no file of that name.
     """
     if name not in _FILES:
-        raise InputError(f"expected the name of a file of theorems, such as euler_zxz, got {name!r}")
+        raise InputError(f"expected the name of a Coq file of theorems, such as euler_zxz, got {name!r}")
     _, make = _FILES[name]
     return make()
 
@@ -73,7 +73,7 @@ def rules_text() -> str:
 
 
 def assumptions_text(names: tuple[str, ...]) -> str:
-    """Return the file that makes Coq print the axioms on which the theorems of some files rest, all together."""
+    """Return a Coq file that prints the axioms on which any theorem of the given files rests."""
     lines = [f"  let _ := {name}.{theorem.name} in" for name in names for theorem in coq_file(name).theorems]
     return "\n".join([
         "(* The axioms on which the theorems rest, all together. Printed by `symrot prove --coq`; do not edit. *)",
@@ -83,7 +83,7 @@ def assumptions_text(names: tuple[str, ...]) -> str:
 
 
 def with_required(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return some files of theorems, together with the files that they require, in an order for Coq."""
+    """Return some Coq files and all files that they require, each after the files that it needs."""
     files_needed = set(names)
     for name in names:
         files_needed |= set(coq_file(name).requires) - {RULES}
@@ -91,9 +91,9 @@ def with_required(names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def coq_texts(names: tuple[str, ...] | None = None) -> dict[str, str]:
-    """Return files of theorems (default: all) and the files that checking them needs, as file name -> text.
+    """Return Coq files (default: all) and everything that checking them needs, as a mapping from file name to text.
 
-    ``_CoqProject`` lists them for ``coq_makefile``.
+    The file ``_CoqProject`` among them lists all files for the build tool ``coq_makefile``.
     """
     names_needed = with_required(coq_file_names() if names is None else names)
     printed = {name: coq_file(name).text for name in names_needed}
@@ -113,7 +113,9 @@ def _theorem_about(kernel: str) -> tuple[str, Theorem] | None:
 
 
 def coq_section(kernel: str) -> dict[str, Any] | None:
-    """Return the section ``coq`` of a certificate, about the theorem on a kernel; None if there is no theorem.
+    """Return the section ``coq`` of a kernel's certificate, which states the theorem about the kernel.
+
+    None without a theorem.
 
     The section is made without Coq: it states the theorem and does not say that Coq has checked it
     (:func:`symrot.certificates.coq.check.check_kernel` checks it).

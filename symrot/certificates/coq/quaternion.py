@@ -19,7 +19,7 @@ _ORDER = {"body": "{q} *q pure {v}", "space": "pure {v} *q {q}"}
 
 
 def quaternion_file() -> CoqFile:
-    """Return the file about unit quaternions."""
+    """Return the Coq file about unit quaternions."""
     kernels = ("dcm", "body_rates", "space_rates", "product", "to_space", "to_body")
     return CoqFile(
         "quaternions",
@@ -75,7 +75,7 @@ def _wrapped(text: str) -> str:
 
 
 def _path(name: str, parameters: Sequence[str]) -> tuple[str, str]:
-    """Return a dcm as text of Coq, twice: as a function of time, and as its value at time t."""
+    """Return the Coq text of a rotation matrix (dcm), twice: as a function of time, and as its value at time t."""
     return (f"fun u => {name} " + " ".join(f"({each} u)" for each in parameters),
             f"{name} " + " ".join(f"({each} t)" for each in parameters))  # fmt: skip
 

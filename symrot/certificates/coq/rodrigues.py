@@ -13,7 +13,7 @@ _RATES = {"rodrigues": tuple(map(str, symbols.rodrigues_rates)), "mrp": tuple(ma
 
 
 def rodrigues_file(name: str) -> CoqFile:
-    """Return the file about ``"rodrigues"`` or ``"mrp"``."""
+    """Return the Coq file about ``"rodrigues"`` (classical Rodrigues parameters) or ``"mrp"`` (modified ones)."""
     which = projection(name)
     parameters = tuple(map(str, which.parameters))
     return CoqFile(
@@ -36,7 +36,7 @@ def rodrigues_file(name: str) -> CoqFile:
 
 
 def _norm(parameters: tuple[str, ...], at: str = "") -> str:
-    """Return 1 + the sum of squares of the parameters, by which the formulas divide, as text of Coq."""
+    """Return the Coq text of 1 + the sum of squares of the parameters, the divisor in the formulas."""
     return " + ".join(f"{each}{at} ^ 2" for each in parameters) + " + 1"
 
 

@@ -21,7 +21,7 @@ _SUM, _PRODUCT, _POWER, _ATOM = range(4)  # precedence of the outermost operatio
 
 
 def coq_expression(expression: Expr) -> str:
-    """Return the text of a real expression.
+    """Return the Coq text of a real expression.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def coq_expression(expression: Expr) -> str:
 
 
 def _print(expression: Expr) -> tuple[str, int]:
-    """Return the Coq text of an expression and the precedence of its outermost operation, which decides on brackets."""
+    """Return the Coq text of an expression, and the precedence of its outermost operation, for brackets."""
     if isinstance(expression, Symbol):
         return str(expression), _ATOM
     if isinstance(expression, Rational):
@@ -46,7 +46,9 @@ def _print(expression: Expr) -> tuple[str, int]:
         return _power(expression)
     if expression.func in _FUNCTIONS:
         return f"{_FUNCTIONS[expression.func]} {_within(expression.args[0], _ATOM)}", _POWER
-    raise CertificateError(f"expected a rational function of variables, sines, cosines and roots, got {expression}")
+    raise CertificateError(
+        f"expected a formula of sums, products, quotients, sines, cosines and square roots, got {expression}"
+    )
 
 
 def _within(expression: Expr, least: int) -> str:
@@ -92,11 +94,11 @@ def _power(expression: Pow) -> tuple[str, int]:
         return f"1 / {_within(base**-exponent, _POWER)}", _PRODUCT
     if isinstance(exponent, Integer):
         return f"{_within(base, _ATOM)} ^ {exponent}", _POWER
-    raise CertificateError(f"expected a whole power or a square root, got {expression}")
+    raise CertificateError(f"expected an integer power or a square root, got {expression}")
 
 
 def folded(text: str, indent: int = 0) -> str:
-    """Return a text folded into lines of at most :data:`WIDTH` characters, all but the first indented."""
+    """Fold a text into lines of at most :data:`WIDTH` characters; all lines but the first are indented."""
     return fill(text, WIDTH, subsequent_indent=" " * indent, break_long_words=False, break_on_hyphens=False)
 
 
@@ -106,7 +108,7 @@ def comment(text: str) -> str:
 
 
 def _record(formulas: Sequence[Expr]) -> str:
-    """Return formulas as Coq text of a vector, quaternion or matrix (row by row); one formula stays a number."""
+    """Return formulas as a Coq vector, quaternion or matrix (row by row); a single formula is returned as a number."""
     if len(formulas) == 1:
         return folded(f"  {coq_expression(formulas[0])}", 4)
     texts = [_within(formula, _ATOM) for formula in formulas]
@@ -122,12 +124,12 @@ def _defined(name: str, variable_names: Iterable[str], size: int, body: str) -> 
 
 
 def matrix_text(name: str, variable_names: Iterable[str], formulas: Sequence[Expr]) -> str:
-    """Return the definition of a function of real variables whose value is a vector, quaternion or matrix."""
+    """Return the Coq definition of a function of real variables, whose value is a vector, quaternion or matrix."""
     return _defined(name, variable_names, len(formulas), _record(formulas))
 
 
 def definition_text(kernel: Definition, name: str, output: str | None = None) -> str:
-    """Return the definition of an output of a kernel, as a function of the components of its inputs in order.
+    """Return an output of a kernel as a Coq function, whose arguments are the components of the inputs in order.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Proofs of the laws of a kernel, and of the equality of its C text with its formulas."""
+"""Proofs that a kernel's formulas obey their laws (such as "the norm is 1") and that its C text computes them."""

@@ -1,10 +1,11 @@
-"""Prove that the operations read back from C are the formulas of a kernel, exactly, as functions of real numbers.
+"""Prove that the operations of a C text compute the formulas of a kernel, exactly, as functions of real numbers.
 
-Both sides become fractions of polynomials over the inputs, pi and atoms: values of functions such as ``sin(psi)``. An
-atom of the C text equals one of the formula if their arguments are equal fractions. A function with a removable
-singularity (:mod:`symrot.kernels.removable`) is recognised by its two branches: each is proven to be what it has to be,
-and a series gets a bound of its truncation. A constant that is not a short binary fraction stands for the simplest
-fraction or multiple of pi that rounds to it. If the formula has another number there, the proof fails.
+Both sides become fractions of polynomials over the inputs, pi and atoms; an atom is a symbol for the value of a
+function such as ``sin(psi)``. An atom of the C text equals an atom of the formula if their arguments are equal
+fractions. A function with a removable singularity (:mod:`symrot.kernels.removable`) is recognised by its two branches:
+one is proven to be the function's formula, the other its limit or its series, whose truncation error is bounded. A
+constant that is not a short binary fraction stands for the simplest fraction or multiple of pi that rounds to it. If
+the formula has another number there, the proof fails.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -42,8 +43,9 @@ class Truncation:
 class Equality:
     """The proof that each output of the C text is its formula.
 
-    ``atoms`` are tuples (symbol, function, arguments) and ``formulas`` tuples (place, numerator, denominator), as text
-    over inputs, pi and atoms. ``rounded`` are the constants that stand for another number than they are.
+    ``atoms`` are tuples (symbol, function, arguments): each symbol stands for the value of a function such as
+    ``sin(x)``. ``formulas`` are tuples (output such as ``"q[1]"``, numerator, denominator), as text over inputs, pi and
+    atoms. ``rounded`` are the constants of the C text that stand for an exact number, such as 1/3.
     """
 
     atoms: tuple[tuple[str, str, tuple[str, ...]], ...]
@@ -53,24 +55,32 @@ class Equality:
 
 
 class _AtomField(FractionField):
-    """A field of fractions over inputs, pi and atoms (values of functions); atoms are added when they first occur."""
+    """A field of fractions of polynomials over inputs, pi and symbols for function values such as ``sin(psi)``.
+
+    An atom is a symbol for the value of a function, added at its first use.
+    """
 
     def __init__(self, inputs: Sequence[str], name: str) -> None:
         super().__init__(PolyRing([*inputs, "pi", *(f"atom_{k}" for k in range(MOST_ATOMS))], QQ, lex), name)
         self.atoms: dict[tuple[str, tuple[Quotient, ...]], str] = {}
 
     def atom(self, function: str, arguments: tuple[Quotient, ...]) -> Quotient:
-        """Return the value of a function; equal arguments give the same atom."""
+        """Return the symbol (atom) for the value of a function; equal arguments give the same symbol."""
         key = (function, arguments)
         if key not in self.atoms:
             if len(self.atoms) == MOST_ATOMS:
-                raise CertificateError(f"expected a kernel with at most {MOST_ATOMS} different function values")
+                raise CertificateError(
+                    f"expected a kernel with at most {MOST_ATOMS} different function values such as sin(x), got more"
+                )
             self.atoms[key] = f"atom_{len(self.atoms)}"
         return self.generator(self.atoms[key])
 
 
 class _Formulas(FormulaReader):
-    """A converter of SymPy formulas to fractions of polynomials over atoms."""
+    """A converter of SymPy formulas to fractions of polynomials; functions such as ``sin(x)`` become symbols.
+
+    Values of functions such as ``sin(x)`` become symbols.
+    """
 
     def __init__(self, fractions: _AtomField, named: Sequence[tuple[Symbol, Expr]] = ()) -> None:
         self.fractions: _AtomField = fractions
@@ -91,7 +101,10 @@ class _Formulas(FormulaReader):
 
 @dataclass(frozen=True)
 class FunctionWithLimit:
-    """A function that the C text computes with a choice: by its limit at zero, by its formula elsewhere."""
+    """A function that the C text computes by a conditional: its limit at zero, its formula elsewhere.
+
+    ``sin(x)/x`` is one.
+    """
 
     name: str
     formula: Expr
@@ -109,7 +122,7 @@ FUNCTIONS_WITH_LIMIT = (
 
 
 class _EqualityProver:
-    """A prover that the operations of a C text are the formulas: it evaluates the operations in exact fractions."""
+    """A prover that a C text computes the formulas: it evaluates the operations of the C text in exact fractions."""
 
     def __init__(
         self,
@@ -125,7 +138,7 @@ class _EqualityProver:
         self.in_series: set[int] = set()
 
     def run(self) -> dict[str, Quotient]:
-        """Return the exact value of each output, by its place such as ``"q[1]"``."""
+        """Return the exact value of each output component, by its index text such as ``"q[1]"``."""
         nodes = self.operations.nodes
         for node in nodes:
             if node[0] == "select" and node[1] == "<":
@@ -135,18 +148,21 @@ class _EqualityProver:
         return {place: self.values[index] for place, index in self.operations.outputs}
 
     def _below(self, index: int, leaf: int) -> set[int]:
-        """Return the nodes of the operations that form a polynomial in the value of the node ``leaf``."""
+        """Return the nodes of the graph of operations that form a polynomial in the value of the node ``leaf``."""
         if index == leaf:
             return set()
         node = self.operations.nodes[index]
         if node[0] == "const":
             return {index}
         if node[0] not in ("add", "mul"):
-            raise CertificateError(f"{self.operations.name}: expected a polynomial where a series is summed")
+            raise CertificateError(
+                f"{self.operations.name}: expected a polynomial in the branch of a conditional that "
+                "holds a series, got another formula"
+            )
         return {index} | self._below(node[1], leaf) | self._below(node[2], leaf)
 
     def _value(self, node: tuple[Any, ...]) -> Quotient:
-        """Return the exact value of an operation, given the values of the operations before it."""
+        """Return the exact value of an operation from the values of the operations before it."""
         fractions, kind = self.fractions, node[0]
         if kind == "in":
             if node[1] not in self.symbol_of:
@@ -174,7 +190,7 @@ class _EqualityProver:
         return self.fractions.multiply(number, self.fractions.generator("pi")) if intended.times_pi else number
 
     def _choice(self, node: tuple[Any, ...]) -> Quotient:
-        """Return the value of a choice ``a < b ? x : y`` in C, matched with a function or choice of the formulas."""
+        """Return the value of ``a < b ? x : y`` in C: a function with a limit, or a conditional of the formulas."""
         _, relation, *places = node
         if relation == "<":
             return self._series(*places)
@@ -191,19 +207,20 @@ class _EqualityProver:
                     ):
                         return self.fractions.generator(atom)
         raise CertificateError(
-            f"{self.operations.name}: expected a choice that the formula makes too, got one by {relation!r}"
+            f"{self.operations.name}: expected a conditional that the formula contains too, got one "
+            f"with the relation {relation!r}"
         )
 
     def _is_limit_or_formula(
         self, function: FunctionWithLimit, arguments: tuple[Quotient, ...], then: Quotient, other: Quotient
     ) -> bool:
-        """Tell whether the branches of a choice are the limit of a function at zero and its formula."""
+        """Tell whether the branches of a conditional are a function's limit at zero and its formula elsewhere."""
         reader = _Formulas(self.fractions)
         reader.values.update(zip(function.arguments, arguments, strict=True))
         return then == reader.read(function.limit) and other == reader.read(function.formula)
 
     def _series(self, square: int, split: int, near: int, far: int) -> Quotient:
-        """Return the atom of the function whose series is the branch ``near`` and whose formula is ``far``."""
+        """Return the symbol for the function with the series ``near`` and the formula ``far``, two branches in C."""
         for (name, arguments), atom in list(self.fractions.atoms.items()):
             if name not in REMOVABLE or self.fractions.multiply(arguments[0], arguments[0]) != self.values[square]:
                 continue
@@ -215,10 +232,13 @@ class _EqualityProver:
             if kind == "const":
                 self.truncations.append(self._truncated(name, limit, self._coefficients(near, square)))
                 return self.fractions.generator(atom)
-        raise CertificateError(f"{self.operations.name}: expected the series of a function of the formula")
+        raise CertificateError(
+            f"{self.operations.name}: expected a series that belongs to a function of the formula, got "
+            "another polynomial"
+        )
 
     def _coefficients(self, index: int, leaf: int) -> list[Fraction]:
-        """Return the coefficients of a polynomial in the value of ``leaf``, the constant first."""
+        """Return the coefficients of a polynomial in the value of the node ``leaf``, the constant term first."""
         if index == leaf:
             return [Fraction(0), Fraction(1)]
         node = self.operations.nodes[index]
@@ -234,7 +254,7 @@ class _EqualityProver:
         return product
 
     def _truncated(self, name: str, split: Fraction, written: list[Fraction]) -> Truncation:
-        """Check the coefficients of a series and return its truncation, with a bound of its error."""
+        """Check the coefficients of a truncated series in the C text; return the series with a bound of its error."""
         exact = REMOVABLE[name].taylor(len(written) + 1)
         for value, true in zip(written, exact, strict=False):
             if not IntendedConstant(value, true, False).rounds(self.operations.precision):
@@ -243,7 +263,8 @@ class _EqualityProver:
         terms = [abs(a) * split**k for k, a in enumerate(exact)]
         if sorted(terms, reverse=True) != terms or any(a * b >= 0 for a, b in pairwise(exact)):
             raise CertificateError(
-                f"{self.operations.name}: expected a series with decreasing terms up to x^2 = {split}"
+                f"{self.operations.name}: expected a series whose terms decrease up to x^2 = {split}, "
+                "got one whose terms do not"
             )
         return Truncation(name, split, len(written), terms[-1] / (terms[0] - terms[1]))
 
@@ -264,7 +285,7 @@ def prove_equal(
     named: Sequence[tuple[Symbol, Expr]] = (),
     parameters: Mapping[str, Expr] | None = None,
 ) -> Equality:
-    """Prove that operations compute formulas, for all real inputs at which both are defined.
+    """Prove that the operations of a C text compute formulas, for all real inputs at which both are defined.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """Exact arithmetic with fractions of polynomials over the rationals, and SymPy formulas as such fractions.
 
-The proofs of laws and of the equality of C text and formulas share this arithmetic. They prove different statements, so
-neither checks the other; the check that is independent of both is :mod:`symrot.certificates.exact_check`, which uses no
-polynomials at all.
+The proofs of laws and of the equality of C text and formulas share this arithmetic, although they prove different
+statements. Neither checks the other; the check that is independent of both is :mod:`symrot.certificates.exact_check`,
+which uses no polynomials at all.
 """
 
 from abc import ABC, abstractmethod
@@ -22,7 +22,7 @@ Quotient = tuple[PolyElement, PolyElement]  # numerator, denominator, in lowest 
 class FractionField:
     """The field of fractions of a polynomial ring; equal fractions are equal tuples.
 
-    ``name`` is the name of the kernel, for errors.
+    ``name`` is the name of the kernel, for error messages.
     """
 
     def __init__(self, ring: PolyRing, name: str) -> None:
@@ -30,19 +30,20 @@ class FractionField:
         self.generators = dict(zip(map(str, ring.symbols), ring.gens, strict=True))
 
     def number(self, value: Fraction | int) -> Quotient:
-        """Return a rational number as a fraction of the field."""
+        """Return a rational number as a constant fraction of polynomials."""
         value = Fraction(value)
         return self.ring.ground_new(QQ(value.numerator, value.denominator)), self.ring.one
 
     def generator(self, name: str) -> Quotient:
-        """Return the generator of the ring with a name."""
+        """Return the variable of the polynomial ring that has the given name."""
         return self.generators[name], self.ring.one
 
     def lowest(self, above: PolyElement, below: PolyElement) -> Quotient:
-        """Return a fraction in lowest terms, whose denominator has the leading coefficient 1."""
+        """Return ``above/below`` in lowest terms; the denominator is scaled to the leading coefficient 1."""
         if not below:
             raise CertificateError(
-                f"{self.name}: expected a formula that is defined at some point, got one that divides by zero"
+                f"{self.name}: expected a formula that is defined somewhere, got one that divides by "
+                "an expression that is zero everywhere"
             )
         if not below.is_ground:
             above, below = above.cancel(below)
@@ -50,43 +51,43 @@ class FractionField:
         return (above, below) if lead == 1 else (above.quo_ground(lead), below.quo_ground(lead))
 
     def add(self, a: Quotient, b: Quotient) -> Quotient:
-        """Return a + b."""
+        """Return the sum of two fractions of polynomials, ``a + b``."""
         if a[1] == b[1]:
             return self.lowest(a[0] + b[0], a[1])
         return self.lowest(a[0] * b[1] + b[0] * a[1], a[1] * b[1])
 
     def negative(self, a: Quotient) -> Quotient:
-        """Return -a."""
+        """Return the negative of a fraction of polynomials, ``-a``."""
         return -a[0], a[1]
 
     def subtract(self, a: Quotient, b: Quotient) -> Quotient:
-        """Return a - b."""
+        """Return the difference of two fractions of polynomials, ``a - b``."""
         return self.add(a, self.negative(b))
 
     def multiply(self, a: Quotient, b: Quotient) -> Quotient:
-        """Return a*b."""
+        """Return the product of two fractions of polynomials, ``a*b``."""
         return self.lowest(a[0] * b[0], a[1] * b[1])
 
     def divide(self, a: Quotient, b: Quotient) -> Quotient:
-        """Return a/b; raise CertificateError if b is zero."""
+        """Return the quotient of two fractions of polynomials, ``a/b``; raise CertificateError if ``b`` is zero."""
         return self.lowest(a[0] * b[1], a[1] * b[0])
 
     def power(self, a: Quotient, exponent: int) -> Quotient:
-        """Return ``a**exponent``; the exponent may be negative."""
+        """Return a fraction of polynomials to an integer power, which may be negative."""
         above, below = a if exponent > 0 else (a[1], a[0])
         return self.lowest(above ** abs(exponent), below ** abs(exponent))
 
 
 def quotient_text(value: Quotient) -> str:
-    """Return a fraction as text."""
+    """Return a fraction of polynomials as text."""
     above, below = value
     return str(above) if below == 1 else f"({above})/({below})"
 
 
 class FormulaReader(ABC):
-    """A converter of SymPy formulas to fractions; subclasses define the conversion of symbols, roots and functions.
+    """A converter of SymPy formulas to fractions; subclasses define how symbols, roots and functions are converted.
 
-    ``values`` holds the formulas that were read before.
+    ``values`` stores the fractions of the formulas that were converted before.
     """
 
     fractions: FractionField
@@ -94,7 +95,7 @@ class FormulaReader(ABC):
 
     @abstractmethod
     def symbol(self, name: str) -> Quotient:
-        """Return a symbol, or pi, as a fraction of polynomials."""
+        """Return a symbol, or the number pi, as a fraction of polynomials."""
 
     @abstractmethod
     def root(self, square: Quotient) -> Quotient:
@@ -102,10 +103,10 @@ class FormulaReader(ABC):
 
     @abstractmethod
     def function(self, expr: Expr) -> Quotient:
-        """Return a function call, such as ``sin(x)``, as a fraction of polynomials."""
+        """Return the value of a function call, such as ``sin(x)``, as a fraction of polynomials."""
 
     def read(self, expr: Expr) -> Quotient:
-        """Return a formula as a fraction."""
+        """Return a SymPy formula as a fraction of polynomials."""
         if expr not in self.values:
             self.values[expr] = self._read(expr)
         return self.values[expr]

@@ -1,7 +1,7 @@
-"""An attempt to prove a law: write each entry as a sum of cofactors times relations, over a polynomial ring.
+"""An attempt to prove a law: each expression that must be zero is written as a sum of cofactors times relations.
 
-An entry is an expression that is zero by the law; a relation is a polynomial that is known to be zero. Each value of a
-function is a generator of the ring.
+An entry is an expression that the law states to be zero; a relation is a polynomial that is known to be zero. The value
+of each function, such as ``cos(x)``, is a variable (generator) of the ring.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -39,7 +39,7 @@ ProofStep = tuple[Any, ...]  # kind, arguments
 
 @dataclass(frozen=True)
 class EntryProof:
-    """The proof that an entry is zero: the entry times ``factor`` is the sum of cofactors times relations."""
+    """The proof that an expression of a law is zero: expression * ``factor`` is a sum of cofactors times relations."""
 
     factor: str
     cofactors: Cofactors
@@ -47,7 +47,7 @@ class EntryProof:
 
 @dataclass(frozen=True)
 class CaseProof:
-    """The proof of a law in one case of its choices.
+    """The proof of a law in one case: for one selection of the branches of all conditionals in the formulas.
 
     ``steps`` are the facts that the proof uses, in order: tuples that begin with a kind; x and y are expressions as
     text::
@@ -66,24 +66,26 @@ class CaseProof:
 
 
 class UndecidedChoice(Exception):
-    """An exception for a choice that the current case does not decide; its arguments are the compared sides."""
+    """The exception for a conditional whose branch is not chosen yet; its arguments are both compared sides.
+
+    Its arguments are both compared sides.
+    """
 
 
 class BaseAngleTooLarge(Exception):
-    """An exception for an angle that is not an integer multiple of the base angle chosen for it.
+    """The exception for an angle, such as x/2, that is no integer multiple of its base angle, such as x.
 
-    The arguments are the monomial of which both are multiples, and the coefficient of the smaller base angle that is
-    needed.
+    Its arguments are the monomial x of which both are multiples, and the coefficient of the smaller base angle needed.
     """
 
 
 class OutOfGenerators(Exception):
-    """An exception for a proof that needs more generators than the polynomial ring has."""
+    """The exception for a proof that needs more variables (generators) than the polynomial ring has."""
 
 
 @dataclass
 class LawProver(FormulaReader):
-    """One attempt to prove a law in one case of its choices, over one ring."""
+    """One attempt to prove a law over one polynomial ring, for one selection of the branches of its conditionals."""
 
     name: str
     law: Law
@@ -113,7 +115,10 @@ class LawProver(FormulaReader):
         self.pool = sum(name.endswith("_") and name[0] == "g" and name[1:-1].isdigit() for name in generators)
 
     def run(self, decided: Sequence[Choice]) -> CaseProof:
-        """Return the proof in one case; raise CertificateError if an entry is not a combination of the relations."""
+        """Return the proof of one case.
+
+        Raise CertificateError if an expression of the law is not a combination of the relations.
+        """
         self.decided = {(left, right): relation for left, relation, right in decided}
         hypotheses = [self.read(relation) for relation in self.law.relations]
         if any(below != 1 for _, below in hypotheses):
@@ -132,17 +137,20 @@ class LawProver(FormulaReader):
         return CaseProof(tuple(decided), tuple(self.steps), relations, tuple(entries))
 
     def step(self, *step: Any) -> None:
-        """Record a fact that the rest of the proof uses."""
+        """Record a fact, such as ``sin^2 + cos^2 = 1`` for an angle, that the rest of the proof uses."""
         self.steps.setdefault(step)
 
     # --- expressions --------------------------------------------------------------------------------------------------
 
     def symbol(self, name: str) -> Quotient:
-        """Return a symbol's value: its formula if it has one, otherwise the ring's generator of its name."""
+        """Return a symbol's value: its formula if it has one, otherwise the variable of the ring with its name."""
         return self.read(self.formulas[name]) if name in self.formulas else self.fractions.generator(name)
 
     def function(self, expr: Expr) -> Quotient:
-        """Return a function call in generators; record the facts that this uses."""
+        """Return a function call, such as ``sin(x)``, in variables of the ring.
+
+        Record the facts that the conversion uses.
+        """
         name = "abs" if isinstance(expr, Abs) else expr.func.__name__
         if isinstance(expr, (cos, sin)):
             return self.cosine_and_sine(self.angle(expr.args[0]))[isinstance(expr, sin)]
@@ -157,18 +165,23 @@ class LawProver(FormulaReader):
             return self.read(expr.args[2 if self.takes_first_branch(expr) else 3])
         plain = explicit(expr)
         if plain == expr:
-            raise CertificateError(f"{self.name}: expected functions of kernels in a law, got {name}")
+            raise CertificateError(
+                f"{self.name}: expected functions that kernels use, such as sin, in a law, got {name}"
+            )
         return self.read(plain)
 
     def takes_first_branch(self, choice: Expr) -> bool:
-        """Tell whether the current case takes the first branch of a choice."""
+        """Tell whether the current proof takes the first branch of a conditional in a formula."""
         left, right = (quotient_text(self.read(argument)) for argument in choice.args[:2])
         if (left, right) not in self.decided:
             raise UndecidedChoice(left, right)
         return self.decided[left, right] == ">="
 
     def generator(self, meaning: str) -> PolyElement:
-        """Return a new generator for a function; raise :class:`OutOfGenerators` if the ring has no more."""
+        """Return a new variable of the ring for the value of a function.
+
+        Raise :class:`OutOfGenerators` if none is left.
+        """
         if self.generator_count == self.pool:
             raise OutOfGenerators
         self.generator_count += 1
@@ -177,7 +190,10 @@ class LawProver(FormulaReader):
         return self.fractions.generators[name]
 
     def root(self, square: Quotient) -> Quotient:
-        """Return the square root of a fraction, reduced by the relations first; a polynomial if that is a square."""
+        """Return the square root of a fraction, reduced by the relations first.
+
+        The root of a perfect square is a polynomial.
+        """
         if square not in self.roots:
             above, below = self.fractions.lowest(self.remainder(square[0]), self.remainder(square[1]))
             if not self.is_nonnegative(below):
@@ -189,12 +205,14 @@ class LawProver(FormulaReader):
                 factor = square[1] * value[1] ** 2
                 cofactors = self.cofactors(square[0] * value[1] ** 2 - value[0] ** 2 * square[1])
                 if cofactors is None:
-                    raise CertificateError(f"{self.name}: expected the square of a root to equal its radicand")
+                    raise CertificateError(
+                        f"{self.name}: expected the square of a root to equal its radicand, but it differs"
+                    )
                 self.step("square", quotient_text(square), quotient_text(value), str(factor), cofactors)
         return self.roots[square]
 
     def radical(self, inside: PolyElement) -> PolyElement:
-        """Return the square root of a polynomial: a polynomial if it is a perfect square, else a generator."""
+        """Return the square root of a polynomial: a polynomial if it is a perfect square, else a new variable."""
         if inside not in self.radicals:
             root = self.perfect(inside)
             if root is None:
@@ -206,7 +224,10 @@ class LawProver(FormulaReader):
         return self.radicals[inside]
 
     def perfect(self, inside: PolyElement) -> PolyElement | None:
-        """Return the root of a polynomial that is a perfect square, if that root is never negative; None otherwise."""
+        """Return the root of a polynomial that is a perfect square, if the root is never negative; otherwise None.
+
+        Otherwise None.
+        """
         content, factors = inside.factor_list()
         roots = [isqrt(abs(int(number))) for number in (content.numerator, content.denominator)]
         if content < 0 or roots[0] ** 2 != content.numerator or roots[1] ** 2 != content.denominator:
@@ -219,14 +240,14 @@ class LawProver(FormulaReader):
         return value
 
     def is_nonnegative(self, value: PolyElement) -> bool:
-        """Tell whether every term of a polynomial is a product of even powers and of nonnegative generators."""
+        """Tell whether every term of a polynomial is a product of even powers and of variables that are nonnegative."""
         return all(
             coefficient > 0 and all(not n % 2 or place in self.nonnegative for place, n in enumerate(monomial))
             for monomial, coefficient in value.items()
         )
 
     def sign(self, value: Quotient) -> PolyElement:
-        """Return the generator for the sign of a value, 1 or -1; sign times value is the absolute value."""
+        """Return the variable of the ring for the sign of a value, 1 or -1; sign times value is the absolute value."""
         if value not in self.signs:
             generator = self.signs[value] = self.generator(f"copysign(1, {quotient_text(value)})")
             self.step("sign", quotient_text(value))
@@ -234,7 +255,7 @@ class LawProver(FormulaReader):
         return self.signs[value]
 
     def arc(self, y: Quotient, x: Quotient) -> PolyElement:
-        """Return the generator for ``atan2(y, x)``, and record the angle's cosine and sine."""
+        """Return the variable of the ring for ``atan2(y, x)``, and record the cosine and sine of this angle."""
         if (y, x) not in self.arcs:
             radius = self.root(self.fractions.add(self.fractions.power(x, 2), self.fractions.power(y, 2)))
             generator = self.arcs[y, x] = self.generator(f"atan2({quotient_text(y)}, {quotient_text(x)})")
@@ -248,7 +269,7 @@ class LawProver(FormulaReader):
     # --- angles -------------------------------------------------------------------------------------------------------
 
     def angle(self, expr: Expr) -> Quotient:
-        """Return an angle modulo 2 pi: the angle before wrapping replaces an angle that is wrapped to [-pi, pi]."""
+        """Return an angle modulo 2 pi; for an angle wrapped to [-pi, pi], return the angle before wrapping."""
         while str(expr) in self.formulas and expr.is_Symbol:
             expr = self.formulas[str(expr)]
         if isinstance(expr, select_ge) and isinstance(expr.args[2], select_ge):
@@ -262,10 +283,12 @@ class LawProver(FormulaReader):
         return self.read(expr)
 
     def cosine_and_sine(self, angle: Quotient) -> tuple[Quotient, Quotient]:
-        """Return cosine and sine of an angle, which must be a sum of multiples of base angles and of right angles."""
+        """Return cosine and sine of an angle, which must be a sum of integer multiples of base angles and of pi/2."""
         above, below = angle
         if below != 1:
-            raise CertificateError(f"{self.name}: expected a sum of angles under a sine, got {quotient_text(angle)}")
+            raise CertificateError(
+                f"{self.name}: expected a sum of angles as the argument of a sine or cosine, got {quotient_text(angle)}"
+            )
         right_angles, angle_so_far, result = (
             Fraction(0),
             self.ring.zero,
@@ -277,7 +300,9 @@ class LawProver(FormulaReader):
                 Fraction(int(coefficient.numerator), int(coefficient.denominator)),
             )
             if unit == 1:
-                raise CertificateError(f"{self.name}: expected a sine of angles and multiples of pi alone, got {above}")
+                raise CertificateError(
+                    f"{self.name}: expected angles and multiples of pi as the argument of a sine or cosine, got {above}"
+                )
             if unit == self.fractions.generators["pi"]:
                 right_angles = 2 * multiple
                 continue
@@ -286,7 +311,10 @@ class LawProver(FormulaReader):
                 self.step("sum", str(angle_so_far), str(coefficient * unit))
             angle_so_far, result = angle_so_far + coefficient * unit, self._sum_of_angles(result, pair)
         if right_angles.denominator != 1:
-            raise CertificateError(f"{self.name}: expected the sine of angles and a multiple of pi/2, got {above}")
+            raise CertificateError(
+                f"{self.name}: expected angles and integer multiples of pi/2 as the argument of a sine "
+                f"or cosine, got {above}"
+            )
         for _ in range(abs(int(right_angles))):
             direction = 1 if right_angles > 0 else -1
             self.step("quarter" if direction > 0 else "quarter back", str(angle_so_far))
@@ -297,13 +325,13 @@ class LawProver(FormulaReader):
         return result
 
     def _sum_of_angles(self, a: tuple[Quotient, Quotient], b: tuple[Quotient, Quotient]) -> tuple[Quotient, Quotient]:
-        """Return cosine and sine of the sum of two angles."""
+        """Return cosine and sine of ``a + b`` from cosine and sine of two angles."""
         add, subtract, multiply = self.fractions.add, self.fractions.subtract, self.fractions.multiply
         cosine = subtract(multiply(a[0], b[0]), multiply(a[1], b[1]))
         return cosine, add(multiply(a[1], b[0]), multiply(a[0], b[1]))
 
     def _multiple(self, unit: PolyElement, coefficient: Fraction) -> tuple[Quotient, Quotient]:
-        """Return cosine and sine of ``coefficient*unit``, computed from those of the base angle."""
+        """Return cosine and sine of ``coefficient*unit``, computed from the cosine and sine of the base angle."""
         base = self._base(unit, coefficient)
         first = unit * QQ(base.numerator, base.denominator)
         result = pair = self._pair(unit, first)
@@ -316,10 +344,16 @@ class LawProver(FormulaReader):
         return result if times > 0 else (result[0], (-result[1][0], result[1][1]))
 
     def _base(self, unit: PolyElement, coefficient: Fraction) -> Fraction:
-        """Return the coefficient of a monomial's base angle; raise BaseAngleTooLarge if a smaller one is needed."""
+        """Return the coefficient of a monomial's base angle; raise BaseAngleTooLarge if it must be smaller.
+
+        Raise BaseAngleTooLarge if a smaller base angle is needed.
+        """
         if unit in self.angle_functions and unit in self.arcs.values():
             if coefficient.denominator != 1:
-                raise CertificateError(f"{self.name}: expected whole multiples of an arc tangent under a sine")
+                raise CertificateError(
+                    f"{self.name}: expected integer multiples of an arc tangent as the argument of a "
+                    "sine or cosine, got a fraction of one"
+                )
             return Fraction(1)
         known = self.bases.get(str(unit), self.first_coefficients.setdefault(str(unit), abs(coefficient)))
         if (coefficient / known).denominator != 1:
@@ -331,7 +365,7 @@ class LawProver(FormulaReader):
         return known
 
     def _pair(self, unit: PolyElement, angle: PolyElement) -> tuple[Quotient, Quotient]:
-        """Return the cosine and sine of a base angle as two generators of the ring."""
+        """Return the cosine and sine of a base angle as two variables of the polynomial ring."""
         if unit not in self.angle_functions:
             cosine, sine = self.generator(f"cos({angle})"), self.generator(f"sin({angle})")
             self.step("circle", str(angle))
@@ -342,15 +376,18 @@ class LawProver(FormulaReader):
     # --- cofactors ----------------------------------------------------------------------------------------------------
 
     def remainder(self, value: PolyElement) -> PolyElement:
-        """Return a polynomial's remainder after division by relations, and by the hypothesis if there is just one."""
+        """Return a polynomial's remainder after division by the relations, and by a single hypothesis."""
         basis = [*self.rules, *(self.hypotheses if len(self.hypotheses) == 1 else ())]
         return value.rem(basis) if basis else value
 
     def cofactors(self, value: PolyElement) -> Cofactors | None:
-        """Return cofactors such that a polynomial is the sum of cofactors times relations; None if the method fails.
+        """Return cofactors for which a polynomial is the sum of cofactors times relations.
 
-        The rules have different leading generators, so division by them decides. If dividing by the hypotheses too
-        leaves a remainder, constants and then linear polynomials are tried as their cofactors, by linear algebra.
+        None if no cofactors are found.
+
+        The relations have different leading variables, so division by them decides. If a division by the relations and
+        the hypotheses leaves a remainder, constants and then linear polynomials are tried as cofactors, by linear
+        algebra.
         """
         if not value:
             return ()
@@ -365,14 +402,17 @@ class LawProver(FormulaReader):
         return tuple((place, str(cofactor)) for place, cofactor in enumerate(by_relation) if cofactor)
 
     def _combined(self, value: PolyElement, degree: int) -> tuple[list[PolyElement], PolyElement]:
-        """Return a polynomial's quotients and remainder in a division by relations and hypotheses."""
+        """Divide a polynomial by the relations and the hypotheses; return the quotients and the remainder."""
         by_rules, remainder = value.div(self.rules) if self.rules else ([], value)
         by_hypotheses = _combination(remainder, self.hypotheses, degree)
         return (list(by_rules), remainder) if by_hypotheses is None else ([*by_rules, *by_hypotheses], self.ring.zero)
 
 
 def _combination(polynomial: PolyElement, relations: Sequence[PolyElement], degree: int) -> list[PolyElement] | None:
-    """Return cofactors of a degree (0 or 1) whose products with relations add up to a polynomial, or None."""
+    """Return cofactors of a degree (0 or 1) for which the sum of cofactors times relations is a polynomial.
+
+    None if there are none.
+    """
     ring = polynomial.ring
     occurring = {
         place for p in (polynomial, *relations) for monomial in p for place, power in enumerate(monomial) if power

@@ -1,11 +1,11 @@
 """Prove the laws of a kernel from its formulas, as polynomial identities with cofactors that anyone can multiply out.
 
 In a law the outputs are replaced by their formulas. The result is a fraction of polynomials over the inputs and over
-generators: cosine and sine of base angles, roots, signs, arc tangents. Its numerator is a sum of cofactors times
-relations: the hypotheses of the law, ``s^2 + c^2 - 1`` of a base angle, ``r^2 - P`` of a root, ``g^2 - 1`` of a sign.
-The way from functions to generators is recorded in steps, each an instance of a fact about functions (the tables FACTS
-and RELATIONS of :mod:`symrot.certificates.exact_check`), so that a second program can follow the proof. Each branch of
-a choice is a case of its own. A law holds wherever no denominator that occurs is zero.
+generators: variables for cosine and sine of base angles, roots, signs and arc tangents. Its numerator is a sum of
+cofactors times relations: the hypotheses of the law, ``s^2 + c^2 - 1`` for a base angle, ``r^2 - P`` for a root, ``g^2
+- 1`` for a sign. The way from functions to generators is recorded in steps, each an instance of a fact about functions
+(the tables FACTS and RELATIONS of :mod:`symrot.certificates.exact_check`), so that a second program can follow the
+proof. Each branch of a conditional is a case of its own. A law holds wherever no denominator that occurs is zero.
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,7 +36,7 @@ FEWEST = 8  # generators in the ring of the first attempt at a proof; a later at
 
 @dataclass(frozen=True)
 class LawProof:
-    """A law of a kernel with its proof in every case of its choices.
+    """A law of a kernel with its proof in every case (each selection of the branches of its conditionals).
 
     ``vanishing`` are the expressions that the law says are zero, as text. ``hypothesis_names`` are the symbols that the
     hypotheses of the law are about: components of a unit vector or unit quaternion, or the nine entries of a rotation
@@ -51,7 +51,7 @@ class LawProof:
 
 
 def prove_law(name: str, law: Law, formulas: Mapping[str, Expr]) -> LawProof:
-    """Prove a law about quantities with formulas; symbols without a formula may take any value.
+    """Prove a law about quantities that have formulas; symbols without a formula may take any value.
 
     Parameters
     ----------
@@ -95,14 +95,17 @@ ENTRIES = 9  # of a rotation matrix
 
 
 def hypotheses(symbols: Sequence[Symbol]) -> tuple[Expr, ...]:
-    """Return expressions that are zero for the components of a unit vector, or for the nine entries of a rotation."""
+    """Return expressions that are zero if the symbols are a unit vector, a unit quaternion or a rotation matrix."""
     if len(symbols) == ENTRIES:
         return rotation_relations(Matrix(3, 3, symbols))
     return (sum(each**2 for each in symbols) - 1,) if symbols else ()
 
 
 def _hypothesis_names(name: str, law: Law) -> tuple[str, ...]:
-    """Return the names of the symbols in the hypotheses of a law; raise CertificateError for other hypotheses."""
+    """Return the names of the symbols in a law's hypotheses.
+
+    Raise CertificateError unless they are unit vectors or rotations.
+    """
     symbols = sorted({symbol for relation in law.relations for symbol in relation.free_symbols}, key=str)
     if hypotheses(symbols) != law.relations:
         expected = "hypotheses that some numbers have squares that sum to one, or are the entries of a rotation"
@@ -119,7 +122,7 @@ UNIT: dict[int, tuple[int, ...]] = {
 
 
 def _witness(name: str, law: Law, hypothesis_names: Sequence[str], names: Sequence[str]) -> tuple[tuple[str, str], ...]:
-    """Return a point at which the hypotheses hold exactly: unit vectors, unit quaternions, rotation matrices."""
+    """Return an exact point at which the hypotheses hold: unit vectors, unit quaternions, rotation matrices."""
     point: dict[str, Expr] = {each: Rational(2 * k + 3, 7) for k, each in enumerate(names)}
     numbers = UNIT.get(4 if len(hypothesis_names) == ENTRIES else len(hypothesis_names), ())
     unit = tuple(Rational(each) / sqrt(sum(n * n for n in numbers)) for each in numbers)
@@ -134,7 +137,7 @@ def _witness(name: str, law: Law, hypothesis_names: Sequence[str], names: Sequen
 
 
 def _inputs(law: Law, formulas: Mapping[str, Expr]) -> list[str]:
-    """Return pi and the symbols without a formula on which a law depends, in a fixed order."""
+    """Return the free variables of a law, in a fixed order: pi, and the symbols without a formula."""
     inputs: set[str] = set()
     waiting, seen = [*law.vanishing, *law.relations], set()
     while waiting:
@@ -147,5 +150,8 @@ def _inputs(law: Law, formulas: Mapping[str, Expr]) -> list[str]:
 
 
 def _pool(size: int) -> list[str]:
-    """Return names of new generators, the last name first, so that later generators lead in the order of monomials."""
+    """Return names of variables that a proof may still add, the last name first.
+
+    Later variables then lead in the order of monomials.
+    """
     return [f"g{k}_" for k in reversed(range(size))]

@@ -1,1 +1,1 @@
-"""Object code compared with the C text it was compiled from, rounding for rounding."""
+"""Proofs that compiled object code performs the same roundings as the C text it was compiled from."""

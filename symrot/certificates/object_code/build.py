@@ -49,7 +49,7 @@ def compile_object(compiler: str, flags: Sequence[str], source: Path, target: Pa
 
 
 def compiler_version(compiler: str) -> str:
-    """Return the first line that a compiler prints for ``--version``; an empty text if it is not installed.
+    """Return the first line that ``compiler --version`` prints; an empty text if the compiler is not installed.
 
     Raises
     ------
@@ -124,7 +124,7 @@ MEANS = (
 def _object(
     source: Path, text: str, functions: Sequence[str], compiler: str, version: str, flags: tuple[str, ...]
 ) -> dict[str, Any]:
-    """Compile a C file with one compiler and one set of flags; return the entry about it in the section ``objects``."""
+    """Compile a C file with one compiler and one set of flags; return its entry in the section ``objects``."""
     with TemporaryDirectory(prefix="symrot-") as directory:
         target = Path(directory) / f"{source.stem}.o"
         compile_object(compiler, flags, source, target)

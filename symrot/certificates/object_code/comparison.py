@@ -1,4 +1,4 @@
-"""Prove that object code computes what its C text says, rounding for rounding, in the one-sample functions of a kernel.
+"""Prove that the object code of a kernel's one-sample functions performs the same roundings as the C text.
 
 The machine code of a function is executed on symbolic terms (:mod:`symrot.certificates.object_code.machine`), the C
 text is read back (:mod:`symrot.certificates.readback.readback`), and both results are compared as terms under bit-exact
@@ -46,10 +46,10 @@ MAX_CASES = 20_000
 class ObjectVerdict:
     """The verdict on the machine code of one function.
 
-    ``verdict`` is "identical", "identical up to contraction" (each fused multiply-add replaces a product and a sum of
-    the C text with one rounding fewer; the sign of a sum that is zero may differ), "differs" (``output`` is the first
-    output that does, ``reason`` says how) or "not understood" (``reason`` names the instruction and its address). Only
-    the first two verdicts accept the function.
+    ``verdict`` is "identical"; "identical up to contraction" (each fused multiply-add replaces a product and a sum of
+    the C text with one rounding fewer; the sign of a sum that is zero may differ); "differs" (``output`` is the first
+    output that differs, ``reason`` says how); or "not understood" (``reason`` names the instruction and its address).
+    Only the first two verdicts accept the function.
     """
 
     function: str
@@ -61,11 +61,11 @@ class ObjectVerdict:
 
     @property
     def accepted(self) -> bool:
-        """Whether the verdict accepts the function."""
+        """Whether the verdict accepts the function: its bits, or at least its error bounds, are those of the C text."""
         return self.verdict in (IDENTICAL, CONTRACTED)
 
     def sentence(self) -> str:
-        """Return function, verdict and reason as one line."""
+        """Return a function's name, its verdict and the reason as one line."""
         where = f", output {self.output}" if self.output else ""
         return f"{self.function}: {self.verdict}{where}{f': {self.reason}' if self.reason else ''}"
 
@@ -73,7 +73,7 @@ class ObjectVerdict:
 def compare_object(
     text: str, path: Path, functions: Sequence[str] = (), where: str = "kernel"
 ) -> tuple[ObjectVerdict, ...]:
-    """Compare functions of an object file with the C text from which they were compiled.
+    """Compare functions of an object file with the C text from which they were compiled; return a verdict on each.
 
     Parameters
     ----------
@@ -98,13 +98,15 @@ def compare_object(
     names = tuple(functions) or one_sample_functions(functions_in_text)
     unknown = [name for name in names if name not in functions_in_text]
     if unknown:
-        raise CertificateError(f"{where}: expected a definition of {unknown[0]}, got {', '.join(functions_in_text)}")
+        raise CertificateError(
+            f"{where}: expected a function named {unknown[0]}, got only {', '.join(functions_in_text)}"
+        )
     listing = read_listing(path)
     return tuple(compare_function(read_kernel(text, name, where), functions_in_text[name], listing) for name in names)
 
 
 def one_sample_functions(functions: Mapping[str, CFunction]) -> tuple[str, ...]:
-    """Return the names of the functions that compute one sample."""
+    """Return the names of the functions that compute one sample, without the batch functions (``*_batch``)."""
     return tuple(
         name
         for name, function in functions.items()
@@ -113,7 +115,7 @@ def one_sample_functions(functions: Mapping[str, CFunction]) -> tuple[str, ...]:
 
 
 def compare_function(text: Operations, function: CFunction, listing: Listing) -> ObjectVerdict:
-    """Compare the operations of a C function with the machine code of the same name."""
+    """Compare the operations of a C function with the machine code of the same function; return the verdict."""
     start = listing.function(function.name)
     masked = any(
         instruction.mnemonic == "and" and instruction.text.split(None, 1)[1].startswith("rsp,")
@@ -131,7 +133,7 @@ def compare_function(text: Operations, function: CFunction, listing: Listing) ->
 def _compare(
     text: Operations, function: CFunction, listing: Listing, start: tuple[str, int], top: int
 ) -> ObjectVerdict:
-    """Compare the C operations of a function with its machine code, for one alignment of the stack at the call."""
+    """Compare a C function with its machine code, assuming one alignment of the stack pointer at the call."""
     width, terms = WIDTH[text.precision], Terms()
     expected = _terms_from_operations(text, terms, width)
     pointers = [p for p in function.parameters if p.size > 0]
@@ -150,7 +152,7 @@ def _compare(
                     reason = reason or f"the product {split} is rounded in one place and fused in another"
                     return ObjectVerdict(function.name, DIFFERS, output, reason, cases, instructions)
                 if cases > MAX_CASES:
-                    raise NotUnderstood(f"more than {MAX_CASES} cases of comparisons")
+                    raise NotUnderstood(f"expected at most {MAX_CASES} cases of comparisons, got more")
             worst = CONTRACTED if known is not path.known else worst
     except NotUnderstood as reason:
         return ObjectVerdict(function.name, NOT_UNDERSTOOD, "", str(reason), cases, instructions)
@@ -158,7 +160,7 @@ def _compare(
 
 
 def _terms_from_operations(text: Operations, terms: Terms, width: int) -> list[int]:
-    """Return the outputs of the C text as symbolic terms."""
+    """Return the outputs that the C text computes as symbolic terms."""
     known: list[int] = []
     binary = {"add": terms.add, "sub": terms.sub, "mul": terms.mul, "div": terms.div, "copysign": terms.copysign}
     unary = {"neg": terms.neg, "abs": terms.abs, "sqrt": terms.sqrt}
@@ -181,23 +183,22 @@ def _terms_from_operations(text: Operations, terms: Terms, width: int) -> list[i
 
 
 def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) -> list[int]:
-    """Return the symbolic terms in the output arrays at the end of one execution path of the machine code."""
+    """Return the symbolic terms in the output arrays when one path through the machine code has ended."""
     outputs = []
     for place, _ in text.outputs:
         name, index = place.removesuffix("]").split("[")
         words = [path.memory.get((name, (int(index) * width + 32 * part) // 8)) for part in range(width // 32)]
         if None in words:
-            raise NotUnderstood(f"a path through the code at whose end {place} is not written")
+            raise NotUnderstood(f"expected every path through the code to write {place}, got one that does not")
         outputs.append(words[0] if width == 32 else terms.join(*(word for word in words if word is not None)))
     return [item for item in outputs if item is not None]
 
 
 def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Known, str]:
-    """Return the machine code's terms with each fused multiply-add replaced by a rounded product and a sum.
+    """Return the machine code's terms after each fused multiply-add is replaced by a rounded product and a rounded sum.
 
-    The last value is the text of a product that is fused in one place and rounded in another, or whose comparison
-    contradicts
-    another one; an empty text if there is none.
+    The second result is a text, empty if all is well: the product that is fused in one place and rounded in another, or
+    whose comparison contradicts another comparison.
     """
     pairs = [operand for pair in known for operand in pair]
     if not any(terms.kind(index) in ("fma", "fnma") for index in terms.order(got + pairs)):
@@ -216,9 +217,9 @@ def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Kno
 def _cases(
     terms: Terms, text: Operations, expected: list[int], got: list[int], known: Known, fused: bool
 ) -> Iterable[tuple[str, str]]:
-    """Compare the outputs in every case of the undecided comparisons.
+    """Compare the outputs of C text and machine code in every case of the comparisons that depend on the inputs.
 
-    Yields for each case the first output that differs and the reason, or two empty texts if all agree.
+    Yield for each case the first output that differs and the reason, or two empty texts if all outputs agree.
     """
     waiting = [dict(known)]
     while waiting:
@@ -238,14 +239,19 @@ def _cases(
 
 
 def _apart_from_zeros(terms: Terms, first: list[int], second: list[int]) -> bool:
-    """Tell whether two lists of outputs differ at most in signs of zeros: gcc fuses -(a*b + c) into (-a)*b + (-c)."""
+    """Tell whether two lists of outputs differ at most in signs of zeros.
+
+    They do if gcc fuses -(a*b + c) into (-a)*b + (-c).
+    """
     return terms.without_signs_of_zero(first) == terms.without_signs_of_zero(second)
 
 
 def _split_product(terms: Terms, roots: list[int]) -> str:
-    """Return the text of a product that is rounded in one place and fused in another; an empty text if there is none.
+    """Return the text of a product that is rounded in one place and fused in another.
 
-    Where its rounding error cancels in the C text, it no longer cancels in the object code.
+    An empty text without such a product.
+
+    Its rounding error may cancel in the C text, but then does not cancel in the object code.
     """
     below = terms.order(roots)
     fused = {terms.mul(*terms.nodes[index][2:4]) for index in below if terms.kind(index) in ("fma", "fnma")}
@@ -254,14 +260,14 @@ def _split_product(terms: Terms, roots: list[int]) -> str:
 
 
 def _is_exact(terms: Terms, product: int) -> bool:
-    """Tell whether a product needs no rounding because a factor is 2."""
+    """Tell whether a product needs no rounding because one factor is 2."""
     width = terms.width(product)
     return any(terms.constant(factor) == terms.constant(terms.number(width, Fraction(2)))
                for factor in terms.nodes[product][2:])  # fmt: skip
 
 
 def _difference(terms: Terms, expected: int, got: int) -> str:
-    """Return a sentence that shows where the C text and the object code first compute different terms."""
+    """Return a sentence that shows the first operation in which C text and object code differ."""
     while True:
         first, second = terms.operands(expected), terms.operands(got)
         left, right = terms.nodes[expected], terms.nodes[got]
@@ -279,7 +285,7 @@ def _difference(terms: Terms, expected: int, got: int) -> str:
 
 
 def term_text(terms: Terms, index: int, depth: int = 3) -> str:
-    """Return a term as text; operations nested deeper than ``depth`` are abbreviated."""
+    """Return a symbolic term as text; operations nested deeper than ``depth`` are abbreviated."""
     node = terms.nodes[index]
     kind = node[0]
     if kind == "in":

@@ -1,4 +1,4 @@
-"""Read an object file through ``objdump``: its instructions, its constants and the targets of its relocations.
+"""Read an object file through the program ``objdump``: its instructions, its constants and its relocations.
 
 Only the output of ``objdump`` is read, and a line that cannot be parsed is an error; the file itself is never opened.
 The meaning of instructions is defined in :mod:`symrot.certificates.object_code.machine`.
@@ -57,21 +57,24 @@ _PART = re.compile(r"(?P<sign>[+-]?)(?:(?P<register>[a-z]\w*)(?:\*(?P<scale>[124
 
 @dataclass(frozen=True)
 class Register:
-    """A register operand, by the name that the instruction uses."""
+    """A register operand of an instruction, by the name that the instruction uses."""
 
     name: str
 
 
 @dataclass(frozen=True)
 class Constant:
-    """An immediate operand: a number inside an instruction, or the target address of a jump."""
+    """An immediate operand of an instruction: a number inside the instruction, or the target address of a jump."""
 
     value: int
 
 
 @dataclass(frozen=True)
 class Memory:
-    """A memory operand: ``size`` bytes at base + index*scale + offset; size 0 where the instruction names none."""
+    """A memory operand: ``size`` bytes at base + index*scale + offset; size 0 if the instruction states none.
+
+    Size 0 if the instruction does not state a size.
+    """
 
     size: int
     segment: str
@@ -86,7 +89,7 @@ Operand = Register | Constant | Memory
 
 @dataclass(frozen=True)
 class Relocation:
-    """An address in the code that the linker fills in; ``addend`` is relative to the end of the instruction."""
+    """An address in the code that the linker fills in later; ``addend`` is relative to the end of the instruction."""
 
     kind: str
     symbol: str
@@ -116,7 +119,7 @@ class Listing:
     constants: Mapping[str, bytes]  # name of a read-only section without relocations -> its bytes
 
     def function(self, name: str) -> tuple[str, int]:
-        """Return the section and address of a function.
+        """Return the section and address at which a function begins.
 
         Raises
         ------
@@ -161,7 +164,7 @@ def read_listing(path: Path) -> Listing:
         raise CertificateError(f"{path}: expected an object file, got an empty one")
     header = _objdump(path, "-f")
     if "In archive " in header:
-        raise CertificateError(f"{where}: expected one object file as `cc -c` makes it, got an archive of them")
+        raise CertificateError(f"{where}: expected one object file as `cc -c` makes it, got an archive of object files")
     format_match = re.search(r"file format (\S+)", header)
     if format_match is None or format_match[1] != FORMAT or "DYNAMIC" in header or "EXEC_P" in header:
         kind = (
@@ -207,7 +210,7 @@ def _symbols(text: str, where: str) -> dict[str, tuple[str, int]]:
 
 
 def _constants(path: Path, where: str) -> dict[str, bytes]:
-    """Return the bytes of the read-only sections that need no relocation."""
+    """Return the bytes of the read-only sections that hold only constants, no addresses for the linker to fill in."""
     constants: dict[str, bytes] = {}
     for line in _objdump(path, "-h", "-w").splitlines():
         match = _SECTION.fullmatch(line)
@@ -222,10 +225,13 @@ def _constants(path: Path, where: str) -> dict[str, bytes]:
             row = _BYTES.match(dumped)
             if row is not None:
                 if int(row["address"], 16) != len(content):
-                    raise CertificateError(f"{where}: expected the bytes of {name} at consecutive addresses")
+                    raise CertificateError(
+                        f"{where}: expected the bytes of section {name} in increasing order of "
+                        "addresses, got another order from objdump"
+                    )
                 content += bytes.fromhex(row["words"])
         if len(content) != size:
-            raise CertificateError(f"{where}: expected {size} bytes in {name}, objdump shows {len(content)}")
+            raise CertificateError(f"{where}: expected {size} bytes in section {name}, got {len(content)}")
         constants[name] = bytes(content)
     return constants
 
@@ -246,7 +252,7 @@ def _code(text: str, where: str) -> dict[tuple[str, int], Instruction]:
         if row is None and body.strip() and body.strip() != "...":
             alone = _RELOCATION.fullmatch(body)
             if alone is None:
-                raise CertificateError(f"{where}: expected a line of objdump, got {body.strip()[:80]!r}")
+                raise CertificateError(f"{where}: expected a line as objdump prints it, got {body.strip()[:80]!r}")
         if row is not None:
             rows.append((section, int(row["address"], 16), bytes.fromhex(row["bytes"]), row["text"] or "(bad)"))
         for relocation in [alone, *(_RELOCATION.fullmatch(item) for item in relocated)]:
@@ -255,7 +261,7 @@ def _code(text: str, where: str) -> dict[tuple[str, int], Instruction]:
                 relocations[section, int(relocation["address"], 16)] = (relocation["kind"], relocation["symbol"], plus)
     code = {(row[0], row[1]): _instruction(*row, relocations, where) for row in rows}
     if len(code) != len(rows):
-        raise CertificateError(f"{where}: expected one instruction at each address, got two sections of one name")
+        raise CertificateError(f"{where}: expected a different name for each section, got two sections of one name")
     return code
 
 
@@ -263,14 +269,15 @@ def _instruction(
     section: str, address: int, content: bytes, text: str,
     relocations: Mapping[tuple[str, int], tuple[str, str, int]], where: str,
 ) -> Instruction:  # fmt: skip
-    """Return the instruction in one line of objdump's disassembly, with the relocation inside it."""
+    """Return the instruction in one line of objdump's listing, with the address that the linker fills in."""
     inside = [
         (at, relocations[section, at]) for at in range(address, address + len(content)) if (section, at) in relocations
     ]
     relocation = None
     if len(inside) > 1:
         raise CertificateError(
-            f"{where}: expected at most one relocation in the instruction at {address:#x} of {section}"
+            f"{where}: expected at most one relocation (address filled in by the linker) in the "
+            f"instruction at {address:#x} of {section}, got more"
         )
     for at, (kind, symbol, plus) in inside:
         relocation = Relocation(kind, symbol, plus + address + len(content) - at)
@@ -288,7 +295,7 @@ def _instruction(
 
 @cache
 def _operands(text: str) -> tuple[Operand, ...] | None:
-    """Return the operands in the text of an instruction, or None if one of them cannot be parsed."""
+    """Return the operands in the text of an instruction, or None if any of them cannot be parsed."""
     operands = [_operand(item.strip()) for item in text.split(",")]
     return None if None in operands else tuple(item for item in operands if item is not None)
 
@@ -309,7 +316,7 @@ def _operand(text: str) -> Operand | None:
 
 
 def _address(inside: str, size: int, segment: str) -> Memory | None:
-    """Return a memory operand from the text between its brackets, or None if it cannot be parsed."""
+    """Return the memory operand whose address is the text ``inside`` brackets, or None if it cannot be parsed."""
     base = index = ""
     scale, offset, position = 1, 0, 0
     while position < len(inside):

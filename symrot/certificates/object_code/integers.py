@@ -1,4 +1,4 @@
-"""The effect of machine instructions on integers and addresses, and access to the operands of any instruction."""
+"""The effect of machine instructions on integers and addresses, and the reading and writing of operands."""
 
 from collections.abc import Callable
 
@@ -43,22 +43,25 @@ CONDITIONS = set(OF_NUMBERS) | set(OF_INTEGERS)
 
 
 def memory_place(state: MachineState, instruction: Instruction, operand: Memory) -> tuple[str, int]:
-    """Return the base and offset of a memory operand, which may be relative to the instruction pointer."""
+    """Return the base and offset of a memory operand, also of one relative to the instruction pointer."""
     if operand.base != "rip":
         return state.address(operand)
     if operand.segment or operand.index:
-        raise NotUnderstood(f"an address in the segment {operand.segment}")
+        raise NotUnderstood(f"expected an address without a segment, got one in the segment {operand.segment}")
     return relocated_place(state, instruction, RELATIVE)
 
 
 def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[str, ...]) -> tuple[str, int]:
-    """Return the base and offset of an address that the linker fills in; the base is "" for another file's symbol."""
+    """Return the base and offset of an address that the linker fills in.
+
+    The base of another file's symbol is an empty text.
+    """
     relocation = instruction.relocation
     if relocation is None or relocation.kind not in kinds:
-        raise NotUnderstood("an address without a relocation of a known kind")
+        raise NotUnderstood("expected an address that a relocation of a known kind defines, got another")
     place = state.context.listing.symbols.get(relocation.symbol)
     if place is None:
-        raise NotUnderstood(f"the unknown symbol {relocation.symbol}")
+        raise NotUnderstood(f"expected a symbol that the code may read, got {relocation.symbol}")
     section, offset = place
     return (f"section {section}", offset + relocation.addend) if section else ("", relocation.addend)
 
@@ -67,15 +70,15 @@ def symbol_of(state: MachineState, instruction: Instruction) -> int:
     """Return the address of a symbol of another file, which the instruction reads from the global offset table."""
     base, offset = relocated_place(state, instruction, INDIRECT)
     if base or offset or instruction.relocation is None:
-        raise NotUnderstood("an address that only the linker knows")
+        raise NotUnderstood("expected an address within the object file, got one that only the linker knows")
     return state.context.terms.address(f"symbol {instruction.relocation.symbol}", 0)
 
 
 def read(state: MachineState, instruction: Instruction, operand: object, size: int) -> Words:
-    """Return the 32-bit words of a source operand: a general register, memory or a constant."""
+    """Return the 32-bit words of a source operand: a general-purpose register, memory or a constant."""
     if isinstance(operand, Register):
         if GENERAL.get(operand.name, ("", 0))[1] != size:
-            raise NotUnderstood(f"a use of the register {operand.name} as {size} bytes")
+            raise NotUnderstood(f"expected {size} bytes, got the register {operand.name} of another size")
         return state.register(operand.name)
     if isinstance(operand, Constant):
         terms = state.context.terms
@@ -86,18 +89,20 @@ def read(state: MachineState, instruction: Instruction, operand: object, size: i
     if operand.base == "rip" and instruction.relocation is not None and instruction.relocation.kind in INDIRECT:
         return state.halves(symbol_of(state, instruction))
     if operand.size not in (size, 0) or size < 4:
-        raise NotUnderstood(f"an access to {operand.size} bytes of memory")
+        raise NotUnderstood(
+            f"expected an access to memory of the instruction's operand size, got one to {operand.size} bytes"
+        )
     return state.load(*memory_place(state, instruction, operand), size // 4)
 
 
 def write(state: MachineState, instruction: Instruction, operand: object, words: Words) -> None:
-    """Write 32-bit words to a destination operand: a general register or memory."""
+    """Write 32-bit words to a destination operand: a general-purpose register or memory."""
     if isinstance(operand, Register):
         state.set_register(operand.name, words)
     elif isinstance(operand, Memory) and operand.size == 4 * len(words):
         state.store(*memory_place(state, instruction, operand), words)
     else:
-        raise NotUnderstood("a destination of an unexpected kind")
+        raise NotUnderstood("expected a general-purpose register or memory as destination, got another operand")
 
 
 def _size(instruction: Instruction) -> int:
@@ -107,7 +112,7 @@ def _size(instruction: Instruction) -> int:
             return GENERAL[operand.name][1]
         if isinstance(operand, Memory) and operand.size:
             return operand.size
-    raise NotUnderstood("operands whose size is not known")
+    raise NotUnderstood("expected an operand whose size is known, got none")
 
 
 # --- integers and addresses -------------------------------------------------------------------------------------------
@@ -121,7 +126,7 @@ def _mov(state: MachineState, instruction: Instruction) -> None:
 def _lea(state: MachineState, instruction: Instruction) -> None:
     target, source = operands_of(instruction, 2)
     if not isinstance(source, Memory) or _size(instruction) != 8:
-        raise NotUnderstood("an address of less than 64 bits")
+        raise NotUnderstood("expected an address of 64 bits, got a shorter one")
     terms = state.context.terms
     try:
         base, offset = memory_place(state, instruction, source)
@@ -139,9 +144,11 @@ def _lea(state: MachineState, instruction: Instruction) -> None:
 
 
 def operands_of(instruction: Instruction, count: int) -> tuple[object, ...]:
-    """Return the operands of an instruction; raise NotUnderstood if their number is not ``count``."""
+    """Return the operands of an instruction; raise NotUnderstood unless there are ``count`` of them."""
     if len(instruction.operands) != count:
-        raise NotUnderstood(f"an unexpected number of operands, {len(instruction.operands)}")
+        raise NotUnderstood(
+            f"expected as many operands as the instruction table lists, got {len(instruction.operands)}"
+        )
     return instruction.operands
 
 
@@ -162,10 +169,10 @@ def _arithmetic(name: str) -> Callable[[MachineState, Instruction], None]:
 
 
 def _byte_test(state: MachineState, instruction: Instruction, name: str) -> None:
-    """Execute ``test al, al`` and similar instructions on one byte, whose value must be known."""
+    """Execute a test of one byte, such as ``test al, al``; the value of the byte must be known."""
     target, source = instruction.operands
     if name not in ("test", "or", "and") or target != source or not isinstance(target, Register):
-        raise NotUnderstood("an operation on single bytes")
+        raise NotUnderstood("expected operands of 4 or 8 bytes, got single bytes")
     value = _known_byte(state, target.name)
     state.flags = ("integers", (int(value == 0), value >> 7, 0, 0))
 
@@ -174,12 +181,12 @@ def _known_byte(state: MachineState, name: str) -> int:
     whole, size = GENERAL.get(name, ("", 0))
     low = state.context.terms.lowest_byte(state.general[whole][0]) if size == 1 else None
     if low is None:
-        raise NotUnderstood("an operation on single bytes")
+        raise NotUnderstood("expected operands of 4 or 8 bytes, got single bytes")
     return low
 
 
 def _computed(state: MachineState, name: str, first: Words, second: Words) -> tuple[Words, tuple[str, tuple[int, ...]]]:
-    """Return the result of an instruction on integers or addresses, and the processor's flags after it."""
+    """Return the result of an instruction on two integers or addresses, and the processor's flags after it."""
     terms, bits = state.context.terms, 32 * len(first)
     x, y = state.integer(first), state.integer(second)
     a, b = state.whole(first), state.whole(second)
@@ -193,12 +200,12 @@ def _computed(state: MachineState, name: str, first: Words, second: Words) -> tu
     if node[0] == "address" and y is not None and name in ("add", "sub", "and"):
         signed = y - (1 << bits) if y >> bits - 1 else y
         if name == "and" and (node[2] != STACK or signed not in (-16, -32, -64)):
-            raise NotUnderstood("a bit mask applied to an address")
+            raise NotUnderstood("expected integers under a bit mask, got an address")
         offset = {"add": node[3] + signed, "sub": node[3] - signed, "and": node[3] & signed}[name]
         return state.halves(terms.address(node[2], offset)), unknown
     if name in ("and", "or", "xor"):
         return state.halves({"and": terms.bit_and, "or": terms.bit_or, "xor": terms.bit_xor}[name](a, b)), unknown
-    raise NotUnderstood("integers whose values are not known")
+    raise NotUnderstood("expected integers of known value, got unknown ones")
 
 
 _INTEGER: dict[str, Callable[[int, int], int]] = {
@@ -220,7 +227,7 @@ def _flags(name: str, x: int, y: int, value: int, bits: int) -> tuple[int, int, 
 
 
 def _one(name: str, number: int) -> Callable[[MachineState, Instruction], None]:
-    """Return the effect of the instruction ``inc`` or ``dec``: adding or subtracting 1."""
+    """Return the function that executes ``inc`` or ``dec``: the operation ``name`` with the constant ``number``."""
 
     def step(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)
@@ -238,7 +245,7 @@ def _shift(name: str) -> Callable[[MachineState, Instruction], None]:
         target, count = instruction.operands if len(instruction.operands) == 2 else (*instruction.operands, Constant(1))
         size = _size(instruction)
         if not isinstance(count, Constant) or count.value >= 8 * size:
-            raise NotUnderstood("a shift by an amount that is not constant")
+            raise NotUnderstood("expected a shift by a constant, got a variable shift")
         words, _ = _computed(state, name, read(state, instruction, target, size), read(state, instruction, count, size))
         write(state, instruction, target, words)
         state.flags = ("unknown", ())
@@ -250,7 +257,7 @@ def _imul(state: MachineState, instruction: Instruction) -> None:
     target, *sources = instruction.operands
     size = _size(instruction)
     if not 1 <= len(sources) <= 2:
-        raise NotUnderstood("operands of an unexpected kind")
+        raise NotUnderstood("expected operands of the kinds that the instruction table lists, got others")
     first, second = (
         read(state, instruction, item, size) for item in (sources if len(sources) == 2 else (target, *sources))
     )
@@ -273,7 +280,7 @@ def _pop(state: MachineState, instruction: Instruction) -> None:
 
 
 def pop_words(state: MachineState) -> Words:
-    """Pop 8 bytes from the stack and return their words."""
+    """Pop 8 bytes from the stack and return them as two 32-bit words."""
     base, offset = stack_place(state)
     words = state.load(base, offset, 2)
     state.general["rsp"] = state.halves(state.context.terms.address(base, offset + 8))
@@ -284,7 +291,7 @@ def stack_place(state: MachineState) -> tuple[str, int]:
     """Return the base and offset to which the stack pointer points."""
     node = state.context.terms.nodes[state.whole(state.general["rsp"])]
     if node[0] != "address" or node[2] != STACK:
-        raise NotUnderstood("a stack pointer that does not point into the stack")
+        raise NotUnderstood("expected a stack pointer that points into the stack, got another value")
     return node[2], node[3]
 
 
@@ -294,21 +301,21 @@ def _leave(state: MachineState, instruction: Instruction) -> None:
 
 
 def condition_holds(state: MachineState, condition: str) -> bool:
-    """Tell whether a jump condition, such as ``ne``, holds for the processor's current flags."""
+    """Tell whether the condition of a jump, such as ``ne`` (not equal), holds for the processor's current flags."""
     kind, values = state.flags
     if kind == "numbers" and condition in OF_NUMBERS:
         return state.decide(OF_NUMBERS[condition], values[0], values[1])
     if kind == "integers" and condition in OF_INTEGERS:
         zero, sign, carry, overflow = values
         return bool(OF_INTEGERS[condition](zero, sign, carry, overflow))
-    raise NotUnderstood("a condition whose outcome is not known")
+    raise NotUnderstood("expected a condition whose outcome is known, got an unknown one")
 
 
 def _set(condition: str) -> Callable[[MachineState, Instruction], None]:
     def set_byte(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)
         if not isinstance(target, Register) or GENERAL.get(target.name, ("", 0))[1] != 1:
-            raise NotUnderstood("an operation on single bytes")
+            raise NotUnderstood("expected operands of 4 or 8 bytes, got single bytes")
         whole, terms = GENERAL[target.name][0], state.context.terms
         low = terms.constant(state.general[whole][0])
         is_set = condition_holds(state, condition)
@@ -323,7 +330,7 @@ def _set(condition: str) -> Callable[[MachineState, Instruction], None]:
 def _movzx(state: MachineState, instruction: Instruction) -> None:
     target, source = operands_of(instruction, 2)
     if not isinstance(source, Register) or not isinstance(target, Register):
-        raise NotUnderstood("an operation on single bytes")
+        raise NotUnderstood("expected operands of 4 or 8 bytes, got single bytes")
     byte = _known_byte(state, source.name)
     state.set_register(target.name, read(state, instruction, Constant(byte), GENERAL[target.name][1]))
 

@@ -1,8 +1,8 @@
 """Symbolic execution of a function of an object file, along every path that its comparisons allow.
 
-Integers and addresses must have known values, so that loops and tables are followed as they are. A comparison of
-numbers whose outcome is not known is followed both ways. An instruction that is in no table, or a state of stack,
-registers or arrays that the calling convention (System V, x86-64) forbids, raises :class:`NotUnderstood`.
+Integers and addresses must have known values, so that each loop runs a known number of times. A comparison of
+floating-point numbers whose outcome is not known is followed both ways. An instruction that is in no table, or a state
+of stack, registers or arrays that the calling convention (System V, x86-64) forbids, raises :class:`NotUnderstood`.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -47,7 +47,7 @@ NO_OPERATION = {"nop", "endbr64"}
 
 @dataclass(frozen=True)
 class ExecutionPath:
-    """One path through a function: the memory at its end, and the outcomes of comparisons that lead there."""
+    """One path through a function: the memory when it returns, and the outcomes of comparisons that lead there."""
 
     memory: Mapping[tuple[str, int], int]
     known: Mapping[tuple[int, int], Outcomes]
@@ -58,7 +58,7 @@ class ExecutionPath:
 def state_at_call(
     context: CallContext, names: tuple[str, ...], numbers: tuple[str, ...], start: tuple[str, int]
 ) -> MachineState:
-    """Return the processor's state when a function is called with some arrays and numbers as arguments."""
+    """Return the processor's state at the call of a function whose arguments are some arrays and numbers."""
     terms = context.terms
     state = MachineState(context, start, {}, {})
     for name in (*CALLER_SAVED, *CALLEE_SAVED, "rsp"):
@@ -73,7 +73,7 @@ def state_at_call(
             at = context.top + 8 * (place - len(POINTERS) + 1)
             state.memory |= {(STACK, at): pointer[0], (STACK, at + 4): pointer[1]}
     if len(numbers) > 8:
-        raise NotUnderstood("more than eight numbers as arguments")
+        raise NotUnderstood("expected at most eight numbers as arguments, got more")
     for place, name in enumerate(numbers):
         words = state.halves(terms.input(context.width, name))
         state.vector[f"ymm{place}"][: len(words)] = words
@@ -96,7 +96,7 @@ def execution_paths(state: MachineState) -> Iterator[ExecutionPath]:
         current, steps, visited = waiting.pop()
         count += 1
         if count > MAX_PATHS:
-            raise NotUnderstood(f"more than {MAX_PATHS} paths through the function")
+            raise NotUnderstood(f"expected at most {MAX_PATHS} paths through the function, got more")
         seen = set(visited)
         try:
             while current.at != ("", 0):
@@ -104,7 +104,7 @@ def execution_paths(state: MachineState) -> Iterator[ExecutionPath]:
                 _run_step(current)
                 steps += 1
                 if steps > MAX_INSTRUCTIONS:
-                    raise NotUnderstood(f"more than {MAX_INSTRUCTIONS} instructions")
+                    raise NotUnderstood(f"expected at most {MAX_INSTRUCTIONS} executed instructions, got more")
         except UndecidedBranch as split:
             for outcomes in reversed(split.branches):
                 waiting.append((current.branch(split.pair, outcomes), steps, frozenset(seen)))
@@ -113,10 +113,10 @@ def execution_paths(state: MachineState) -> Iterator[ExecutionPath]:
 
 
 def _run_step(state: MachineState) -> None:
-    """Execute the next instruction; if it is not understood, raise NotUnderstood with its address."""
+    """Execute the next instruction; for an instruction that is not understood, raise NotUnderstood with its address."""
     instruction = state.context.listing.code.get(state.at)
     if instruction is None:
-        raise NotUnderstood(f"no instruction at {state.at[1]:#x} of {state.at[0]}")
+        raise NotUnderstood(f"expected an instruction, got none at {state.at[1]:#x} of {state.at[0]}")
     try:
         state.at = _run_instruction(state, instruction)
     except NotUnderstood as reason:
@@ -126,7 +126,7 @@ def _run_step(state: MachineState) -> None:
 
 
 def _run_instruction(state: MachineState, instruction: Instruction) -> tuple[str, int]:
-    """Execute one instruction and return the place of the next one."""
+    """Execute one instruction and return the section and address of the next one."""
     mnemonic = instruction.mnemonic
     following = (instruction.section, instruction.address + instruction.size)
     if (
@@ -134,7 +134,7 @@ def _run_instruction(state: MachineState, instruction: Instruction) -> tuple[str
         and mnemonic not in FLOW
         and not any(isinstance(item, Memory) and item.base == "rip" for item in instruction.operands)
     ):
-        raise NotUnderstood("an address that only the linker knows")
+        raise NotUnderstood("expected an address within the object file, got one that only the linker knows")
     if mnemonic in NO_OPERATION or (mnemonic == "xchg" and instruction.operands == (Register("ax"), Register("ax"))):
         return following
     flow = FLOW.get(mnemonic)
@@ -152,7 +152,7 @@ def _run_instruction(state: MachineState, instruction: Instruction) -> tuple[str
 
 
 def _target(state: MachineState, instruction: Instruction) -> tuple[str, int] | str:
-    """Return where a jump leads: an address in this file, or the name of a function that another file defines."""
+    """Return where a jump leads: an address in this object file, or the name of a function of another file."""
     (operand,) = operands_of(instruction, 1)
     if isinstance(operand, Constant):
         if instruction.relocation is None:
@@ -160,10 +160,10 @@ def _target(state: MachineState, instruction: Instruction) -> tuple[str, int] | 
         base, offset = relocated_place(state, instruction, RELATIVE)
         if base or not offset:
             return (base.removeprefix("section "), offset) if base else instruction.relocation.symbol
-        raise NotUnderstood("a jump into the middle of a function")
+        raise NotUnderstood("expected a jump to the beginning of a function, got one into its middle")
     node = state.context.terms.nodes[state.whole(read(state, instruction, operand, 8))]
     if node[0] != "address" or not node[2].startswith("symbol ") or node[3]:
-        raise NotUnderstood("a jump to an address that is computed")
+        raise NotUnderstood("expected a jump to a fixed address, got a computed one")
     return str(node[2].removeprefix("symbol "))
 
 
@@ -179,7 +179,7 @@ def _jump_if(condition: str) -> Callable[[MachineState, Instruction, tuple[str, 
     def jump(state: MachineState, instruction: Instruction, following: tuple[str, int]) -> tuple[str, int]:
         target = _target(state, instruction)
         if isinstance(target, str):
-            raise NotUnderstood(f"a jump to {target}")
+            raise NotUnderstood(f"expected a jump within the function, got one to {target}")
         return target if condition_holds(state, condition) else following
 
     return jump
@@ -202,13 +202,15 @@ def _return(state: MachineState, instruction: Instruction, _: tuple[str, int]) -
     node = terms.nodes[state.whole(pop_words(state))]
     if node == ("token", 64, "the return address"):
         if stack_place(state) != (STACK, state.context.top + 8):
-            raise NotUnderstood("a return at which the stack pointer is not as it was at the call")
+            raise NotUnderstood("expected the same stack pointer at the return as at the call, got another")
         for name in CALLEE_SAVED:
             if state.general[name] != state.halves(terms.token(f"{name} at the call")):
-                raise NotUnderstood(f"a return at which register {name} is not as it was at the call")
+                raise NotUnderstood(
+                    f"expected the same value of register {name} at the return as at the call, got another"
+                )
         return "", 0
     if node[0] != "address" or not node[2].startswith("section "):
-        raise NotUnderstood("a return to an address that is not known")
+        raise NotUnderstood("expected a return to the caller, got one to an unknown address")
     return node[2].removeprefix("section "), node[3]
 
 
@@ -222,7 +224,7 @@ def _call_library(state: MachineState, name: str, on_stack: int) -> None:
     terms = state.context.terms
     _, offset = stack_place(state)
     if (offset + on_stack) % 16:
-        raise NotUnderstood("a call with a stack pointer that is not aligned to 16 bytes")
+        raise NotUnderstood("expected a stack pointer aligned to 16 bytes at a call, got another")
     bare, width = (name[:-1], 32) if name.endswith("f") else (name, 64)
     operands = [state.whole(state.vector[f"ymm{place}"][: width // 32]) for place in range(2)]
     written: list[tuple[str, int, Words]] = []
@@ -231,7 +233,7 @@ def _call_library(state: MachineState, name: str, on_stack: int) -> None:
         for pointer, function in (("rdi", "sin"), ("rsi", "cos")):
             node = terms.nodes[state.whole(state.general[pointer])]
             if node[0] != "address":
-                raise NotUnderstood("a call of sincos with an address that is not known")
+                raise NotUnderstood("expected known addresses for the results of sincos, got unknown ones")
             written.append((node[2], node[3], state.halves(terms.call(function, width, operands[:1]))))
     elif bare in LIBRARY:
         result = state.halves(terms.call(bare, width, operands[: LIBRARY[bare]]))
@@ -239,7 +241,7 @@ def _call_library(state: MachineState, name: str, on_stack: int) -> None:
         count, operation = EXACT[bare]
         result = state.halves(operation(terms, *operands[:count]))
     else:
-        raise NotUnderstood(f"a call of {name}")
+        raise NotUnderstood(f"expected a call of a known C library function, got {name}")
     state.forget_below(offset)
     for place in written:
         state.store(*place)

@@ -1,4 +1,4 @@
-"""The effect of SSE2 and AVX moves and comparisons, and the look-up of every other vector instruction."""
+"""The effect of SSE2 and AVX move instructions, and the table look-up of every other vector instruction."""
 
 from collections.abc import Callable
 
@@ -19,12 +19,12 @@ def _source(state: MachineState, instruction: Instruction, operand: object, size
     if isinstance(operand, Register) and operand.name in VECTORS:
         return list(state.register(operand.name))
     if not isinstance(operand, Memory) or operand.size not in (size, 0):
-        raise NotUnderstood("operands of an unexpected kind")
+        raise NotUnderstood("expected operands of the kinds that the instruction table lists, got others")
     base, offset = memory_place(state, instruction, operand)
     is_vex = instruction.mnemonic.startswith("v")
     must_be_aligned = size >= 16 and bare not in UNALIGNED and (not is_vex or bare in ALIGNED)
     if must_be_aligned and (base in state.context.arrays or offset % size):
-        raise NotUnderstood(f"an aligned access to {base}")
+        raise NotUnderstood(f"expected an aligned address, got one in {base} that may not be aligned")
     return state.load(base, offset, size // 4)
 
 
@@ -44,14 +44,14 @@ def run_vector_instruction(state: MachineState, instruction: Instruction) -> Non
         bare = f"{bare} by words"
     operation = SHUFFLES.get(bare) or NUMERIC.get(bare)
     if operation is None or not operands:
-        raise NotUnderstood("an unknown instruction")
+        raise NotUnderstood("expected an instruction whose effect is known, got another")
     target = operands[0]
     if isinstance(target, Memory):  # vextractf128
         words = operation(state, [_source(state, instruction, item, 32, bare) for item in operands[1:]], constant or 0)
         write(state, instruction, target, words)
         return
     if not isinstance(target, Register) or target.name not in VECTORS:
-        raise NotUnderstood("operands of an unexpected kind")
+        raise NotUnderstood("expected operands of the kinds that the instruction table lists, got others")
     count = VECTORS[target.name][1]
     keeps_target = not is_vex or bare.startswith(("fmadd", "fmsub", "fnmadd", "fnmsub"))
     source_words = [
@@ -62,7 +62,10 @@ def run_vector_instruction(state: MachineState, instruction: Instruction) -> Non
 
 
 def _bytes_of(bare: str, operand: object, whole: int) -> int:
-    """Return the size in bytes of a source operand in memory, which depends on the instruction."""
+    """Return the size in bytes of a source operand in memory.
+
+    It depends on the instruction's name without the prefix ``v`` (``bare``).
+    """
     if not isinstance(operand, Memory):
         return whole
     if bare in SOURCE_BYTES:
@@ -80,7 +83,7 @@ def _move_whole(state: MachineState, instruction: Instruction, bare: str, is_vex
         words = _source(state, instruction, source, 0, bare)
         base, offset = memory_place(state, instruction, target)
         if bare in ALIGNED and (base in state.context.arrays or offset % (4 * len(words))):
-            raise NotUnderstood(f"an aligned access to {base}")
+            raise NotUnderstood(f"expected an aligned address, got one in {base} that may not be aligned")
         write(state, instruction, target, words)
         return
     assert isinstance(target, Register)
@@ -89,7 +92,7 @@ def _move_whole(state: MachineState, instruction: Instruction, bare: str, is_vex
 
 
 def _move_scalar(size: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return the effect of movss or movsd: a load from memory clears the upper words, a register move keeps them."""
+    """Return the function that executes movss or movsd: a load clears the upper words, a register move keeps them."""
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources = instruction.operands
@@ -109,7 +112,7 @@ def _move_scalar(size: int) -> Callable[[MachineState, Instruction, str, bool], 
 
 
 def _move_bits(size: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return the effect of movd or movq, which copy bits between vector registers, general registers and memory."""
+    """Return the function that executes movd or movq: copy bits between registers of any kind and memory."""
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, source = operands_of(instruction, 2)
@@ -126,7 +129,7 @@ def _move_bits(size: int) -> Callable[[MachineState, Instruction, str, bool], No
 
 
 def _move_half(start: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return the effect of movlpd or movhpd, which copy 64 bits between memory and half of a 128-bit register."""
+    """Return the function that executes movlpd or movhpd: copy 64 bits between memory and half of a vector register."""
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources = instruction.operands
@@ -137,7 +140,7 @@ def _move_half(start: int) -> Callable[[MachineState, Instruction, str, bool], N
         first = _source(state, instruction, sources[0] if len(sources) == 2 else target, 16, bare)
         words = _source(state, instruction, sources[-1], 8, bare)
         if not isinstance(sources[-1], Memory):
-            raise NotUnderstood("operands of an unexpected kind")
+            raise NotUnderstood("expected operands of the kinds that the instruction table lists, got others")
         state.set_vector(target.name, first[:start] + words + first[start + 2 :], is_vex)
 
     return move
@@ -147,7 +150,7 @@ def _extract(size: int) -> Callable[[MachineState, Instruction, str, bool], None
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, source, place = operands_of(instruction, 3)
         if not isinstance(place, Constant):
-            raise NotUnderstood("operands of an unexpected kind")
+            raise NotUnderstood("expected operands of the kinds that the instruction table lists, got others")
         start = place.value * (size // 4) % 4
         write(state, instruction, target, _source(state, instruction, source, 16, bare)[start : start + size // 4])
 
@@ -158,7 +161,7 @@ def _insert(size: int) -> Callable[[MachineState, Instruction, str, bool], None]
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources, place = instruction.operands
         if not isinstance(place, Constant) or not isinstance(target, Register):
-            raise NotUnderstood("operands of an unexpected kind")
+            raise NotUnderstood("expected operands of the kinds that the instruction table lists, got others")
         first = _source(state, instruction, sources[0] if len(sources) == 2 else target, 16, bare)
         start, words = place.value * (size // 4) % 4, read(state, instruction, sources[-1], size)
         state.set_vector(target.name, first[:start] + words + first[start + size // 4 :], is_vex)

@@ -29,14 +29,14 @@ _QUIET = (  # predicates of the same relation, which differ in the floating-poin
 
 
 def _lanes(state: MachineState, words: Words, width: int) -> list[int]:
-    """Return the terms, each ``width`` bits long, that a list of 32-bit words makes up."""
+    """Return the numbers, each ``width`` bits long, in a list of 32-bit words: a pair of words makes one double."""
     if width == 32:
         return list(words)
     return [state.whole(words[place : place + 2]) for place in range(0, len(words), 2)]
 
 
 def _each(suffix: str, operation: Callable[..., int], arguments: int = 2) -> Numeric:
-    """Return the effect of an arithmetic instruction on all lanes (packed, ``p``) or the first (scalar, ``s``)."""
+    """Return the function that executes arithmetic on all numbers (packed, ``p``) or the first one (scalar, ``s``)."""
     width, is_packed = WIDTHS[suffix[1]], suffix[0] == "p"
 
     def numeric(state: MachineState, sources: list[Words], _: int) -> Words:
@@ -76,7 +76,7 @@ def _horizontal(suffix: str, operation: Callable[..., int]) -> Numeric:
 
 
 def _bitwise(operation: Callable[..., int]) -> Numeric:
-    """Return the effect of a bitwise instruction, applied to 64 bits at a time where a source is a 64-bit term."""
+    """Return the function that executes a bitwise instruction, 64 bits at a time where a source is a 64-bit number."""
 
     def numeric(state: MachineState, sources: list[Words], _: int) -> Words:
         terms, results = state.context.terms, list[int]()
@@ -94,12 +94,12 @@ def _bitwise(operation: Callable[..., int]) -> Numeric:
 
 
 def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
-    """Return the effect of a comparison instruction, whose result is a mask."""
+    """Return the function that executes a comparison, whose result is a mask of ones where the comparison holds."""
     by_number = list(PREDICATES.values())
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         if outcomes is None and not 0 <= constant < 32:
-            raise NotUnderstood(f"a comparison with the unknown code {constant}")
+            raise NotUnderstood(f"expected a known code of comparison, got {constant}")
         chosen = by_number[constant % 16] if outcomes is None else outcomes
         return _each(suffix, lambda terms, a, b: terms.mask(WIDTHS[suffix[1]], chosen, a, b))(state, sources, 0)
 
@@ -107,9 +107,10 @@ def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
 
 
 def _fused(suffix: str, order: str, negated: bool, subtracted: tuple[bool, ...]) -> Numeric:
-    """Return the effect of a fused multiply-add: a*b + c, rounded once.
+    """Return the function that executes a fused multiply-add: a*b + c, rounded once.
 
-    ``order`` says which operands are a, b and c; ``subtracted`` whether c is subtracted, in even and odd lanes.
+    ``order`` says which operands are a, b and c. ``subtracted`` says whether c is subtracted, first for the numbers at
+    even positions of the register, then for those at odd positions.
     """
     places = tuple(int(digit) - 1 for digit in order)
 
@@ -134,7 +135,7 @@ def _greater(terms: Terms, a: int, b: int) -> int:
 
 
 def _blended(suffix: str) -> Numeric:
-    """Return the effect of a blend instruction: a choice between two sources by the sign bit of the last one."""
+    """Return the function that executes a blend: a sign bit of the last source chooses between the other two."""
 
     def one(terms: Terms, a: int, b: int, mask: int) -> int:
         value = terms.constant(mask)
@@ -151,19 +152,19 @@ def _approximate(name: str) -> Callable[..., int]:
 
 def _same(state: MachineState, sources: list[Words], _: int) -> Words:
     if sources[0] != sources[1]:
-        raise NotUnderstood("a comparison of integers")
+        raise NotUnderstood("expected a comparison of floating-point numbers, got one of integers")
     return [state.context.terms.bits(32, -1)] * len(sources[0])
 
 
 def _shifted(width: int, shift: Callable[[int, int, int], int]) -> Numeric:
-    """Return the effect of a shift instruction; only constants can be shifted, as kernels need no more."""
+    """Return the function that executes a shift; only constants can be shifted, as kernels need no more."""
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         terms, results = state.context.terms, list[int]()
         for lane in _lanes(state, sources[-1], width):
             value = terms.constant(lane)
             if value is None:
-                raise NotUnderstood("a shift of a number that is not constant")
+                raise NotUnderstood("expected a shift of a constant, got a variable")
             results += state.halves(
                 terms.bits(width, shift(value, constant, width) if constant < width else _out(shift, value, width))
             )

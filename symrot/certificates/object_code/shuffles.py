@@ -1,4 +1,4 @@
-"""The effect of SSE2 and AVX instructions that only rearrange words: unpack, shuffle, blend, insert, broadcast.
+"""The effect of SSE2 and AVX instructions that only rearrange 32-bit words: unpack, shuffle, blend, insert, broadcast.
 
 Each entry of the table takes the words of the sources and a constant, and returns the words of the result.
 """
@@ -13,7 +13,10 @@ Shuffle = Callable[[MachineState, list[Words], int], Words]
 
 
 def _pick(places: Sequence[int]) -> Shuffle:
-    """Return the effect of a shuffle by fixed places per 128 bits: 0 to 3 in the first source, 4 to 7 in the last."""
+    """Return the function that executes a shuffle of fixed words per 128 bits.
+
+    Word numbers 0 to 3 are in the first source, 4 to 7 in the last.
+    """
 
     def shuffle(_: MachineState, sources: list[Words], __: int) -> Words:
         picked: Words = []
@@ -26,7 +29,7 @@ def _pick(places: Sequence[int]) -> Shuffle:
 
 
 def _by_constant(places: Callable[[int, int], Sequence[int]]) -> Shuffle:
-    """Return the effect of a shuffle whose places follow from the instruction's constant."""
+    """Return the function that executes a shuffle whose word numbers follow from the instruction's constant."""
 
     def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:
         picked: Words = []
@@ -74,7 +77,7 @@ def _pblendw(_: MachineState, sources: list[Words], constant: int) -> Words:
     for place in range(len(sources[0])):
         chosen = constant >> 2 * (place % 4) & 3
         if chosen not in (0, 3):
-            raise NotUnderstood("a blend of 16-bit words")
+            raise NotUnderstood("expected a blend of 32-bit words, got one of 16-bit words")
         blended.append(sources[1 if chosen else 0][place])
     return blended
 
@@ -90,7 +93,7 @@ def _permute_lanes(state: MachineState, sources: list[Words], constant: int) -> 
 
 
 def _permps(state: MachineState, sources: list[Words], _: int) -> Words:
-    """Execute vpermps or vpermd: pick the words of the second source whose numbers are in the first source."""
+    """Execute vpermps or vpermd: the first source holds the numbers of the words to pick from the second source."""
     return [sources[1][_constant(state, word) & 7] for word in sources[0]]
 
 
@@ -121,7 +124,7 @@ def _insertps(state: MachineState, sources: list[Words], constant: int) -> Words
 
 def _align(_: MachineState, sources: list[Words], constant: int) -> Words:
     if constant % 4 or constant > 16:
-        raise NotUnderstood("a shift of single bytes")
+        raise NotUnderstood("expected a shift by whole 32-bit words, got one by single bytes")
     aligned: Words = []
     for start in range(0, len(sources[0]), 4):
         aligned += (sources[1][start : start + 4] + sources[0][start : start + 4])[constant // 4 :][:4]
@@ -131,7 +134,7 @@ def _align(_: MachineState, sources: list[Words], constant: int) -> Words:
 def _shift_bytes(left: bool) -> Shuffle:
     def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:
         if constant % 4:
-            raise NotUnderstood("a shift of single bytes")
+            raise NotUnderstood("expected a shift by whole 32-bit words, got one by single bytes")
         moved, shifted = min(constant // 4, 4), list[int]()
         for start in range(0, len(sources[-1]), 4):
             words, zeros = sources[-1][start : start + 4], state.zeros(moved)
@@ -144,7 +147,7 @@ def _shift_bytes(left: bool) -> Shuffle:
 def _constant(state: MachineState, word: int) -> int:
     value = state.context.terms.constant(word)
     if value is None:
-        raise NotUnderstood("a shuffle whose lane numbers are not constants")
+        raise NotUnderstood("expected a shuffle by constant word numbers, got variable ones")
     return value
 
 
@@ -157,24 +160,24 @@ def _pshufb(state: MachineState, sources: list[Words], _: int) -> Words:
         elif control[0] % 4 == 0 and all((byte & 0x8F) == (control[0] & 15) + i for i, byte in enumerate(control)):
             shuffled.append(sources[0][(place & ~3) + (control[0] & 15) // 4])
         else:
-            raise NotUnderstood("a shuffle of single bytes")
+            raise NotUnderstood("expected a shuffle of 32-bit words, got one of single bytes")
     return shuffled
 
 
 def _broadcast(count: int) -> Shuffle:
-    """Return the effect of a broadcast, which repeats the first ``count`` words over the whole register."""
+    """Return the function that executes a broadcast: it repeats the first ``count`` words over the register."""
     return lambda _, sources, __: sources[-1][:count] * (8 // count)
 
 
 def _broadcast_byte(state: MachineState, sources: list[Words], _: int) -> Words:
     byte = state.context.terms.lowest_byte(sources[-1][0])
     if byte is None:
-        raise NotUnderstood("a byte whose value is not known")
+        raise NotUnderstood("expected a byte of known value, got an unknown one")
     return [state.context.terms.bits(32, byte * 0x01010101)] * 8
 
 
 def _doubled(_: MachineState, sources: list[Words], __: int) -> Words:
-    """Execute movddup: repeat the low 64 bits of each 128."""
+    """Execute movddup: repeat the low 64 bits of each 128 bits."""
     return [word for start in range(0, len(sources[-1]), 4) for word in sources[-1][start : start + 2] * 2]
 
 

@@ -39,13 +39,13 @@ VECTORS: dict[str, tuple[str, int]] = {  # name -> the full register, size in wo
 
 
 class NotUnderstood(Exception):
-    """An exception for an instruction, or an effect of it in the current state, that the machine does not model."""
+    """The exception for an instruction, or its effect in the current state, that symbolic execution cannot follow."""
 
 
 class UndecidedBranch(Exception):
-    """An exception for a branch on a comparison of unknown outcome: both branches must be followed.
+    """The exception for a branch on a comparison of unknown outcome: execution must continue along both branches.
 
-    ``pair`` are the terms that are compared, ``branches`` the two sets of outcomes.
+    ``pair`` are the two terms that are compared; ``branches`` are the outcomes that lead to each branch.
     """
 
     def __init__(self, pair: Pair, first: Outcomes, second: Outcomes) -> None:
@@ -63,7 +63,7 @@ class ArrayArgument:
 
 @dataclass(frozen=True)
 class CallContext:
-    """The facts about a call that stay the same while the function runs: its arrays, constants and number type."""
+    """The facts about a call that stay the same while the function runs: its arrays, constants and type of numbers."""
 
     terms: Terms
     listing: Listing
@@ -74,7 +74,10 @@ class CallContext:
 
 @dataclass
 class MachineState:
-    """The state of the processor before one instruction; ``known`` holds outcomes of comparisons on the path."""
+    """The state of the processor before one instruction.
+
+    ``known`` holds the outcomes of earlier comparisons on the path.
+    """
 
     context: CallContext
     at: tuple[str, int]
@@ -85,7 +88,7 @@ class MachineState:
     flags: tuple[str, tuple[int, ...]] = ("unknown", ())
 
     def branch(self, pair: Pair, outcomes: Outcomes) -> "MachineState":
-        """Return a copy of the state in which a comparison has one of the given outcomes."""
+        """Return a copy of the state in which the comparison of ``pair`` has one of the given outcomes."""
         return replace(
             self,
             general={name: list(words) for name, words in self.general.items()},
@@ -97,7 +100,10 @@ class MachineState:
     # --- numbers ------------------------------------------------------------------------------------------------------
 
     def decide(self, outcomes: Outcomes, a: int, b: int) -> bool:
-        """Tell whether a comparison has one of the outcomes; raise :class:`UndecidedBranch` if that is not known."""
+        """Tell whether the comparison of ``a`` with ``b`` has one of the outcomes.
+
+        Raise :class:`UndecidedBranch` if unknown.
+        """
         terms = self.context.terms
         a, b = terms.rebuilt((a, b), self.known)
         inner = terms.undecided((a, b))
@@ -112,18 +118,18 @@ class MachineState:
         raise UndecidedBranch((pair[0], pair[1]), possible & accepted, possible - accepted)
 
     def integer(self, words: Words) -> int | None:
-        """Return the integer that some words hold, or None if they are not constant."""
+        """Return the integer in some 32-bit words, or None if they are not constant."""
         values = [self.context.terms.constant(word) for word in words]
         if any(value is None for value in values):
             return None
         return sum(value << 32 * place for place, value in enumerate(values) if value is not None)
 
     def whole(self, words: Words) -> int:
-        """Return one term that consists of one or two 32-bit words."""
+        """Join one or two 32-bit words into one term, and return it."""
         return words[0] if len(words) == 1 else self.context.terms.join(*words)
 
     def halves(self, term: int) -> Words:
-        """Return a term split into its 32-bit words."""
+        """Split a term into its 32-bit words, and return them."""
         terms = self.context.terms
         return [term] if terms.width(term) == 32 else [terms.word(term, 0), terms.word(term, 1)]
 
@@ -140,35 +146,38 @@ class MachineState:
             return self.vector[whole][:count]
         whole, size = GENERAL.get(name, ("", 0))
         if size < 4:
-            raise NotUnderstood(f"the use of register {name}")
+            raise NotUnderstood(f"expected a register that kernels use, got {name}")
         return self.general[whole][: size // 4]
 
     def set_register(self, name: str, words: Words) -> None:
         """Write a general register; writing its lower half sets the upper half to zero."""
         whole, size = GENERAL.get(name, ("", 0))
         if size < 4 or len(words) != size // 4:
-            raise NotUnderstood(f"the use of register {name}")
+            raise NotUnderstood(f"expected a register that kernels use, got {name}")
         self.general[whole] = words + self.zeros(2 - len(words))
 
     def set_vector(self, name: str, words: Words, is_vex: bool) -> None:
-        """Write the low words of a vector register; VEX instructions set its other words to zero."""
+        """Write the low words of a vector register.
+
+        A VEX instruction (``v...``) sets the register's other words to zero.
+        """
         if name not in VECTORS:
-            raise NotUnderstood(f"the use of register {name}")
+            raise NotUnderstood(f"expected a register that kernels use, got {name}")
         whole = VECTORS[name][0]
         self.vector[whole] = words + (self.zeros(8 - len(words)) if is_vex else self.vector[whole][len(words) :])
 
     # --- memory -------------------------------------------------------------------------------------------------------
 
     def address(self, operand: Memory) -> tuple[str, int]:
-        """Return the base and offset of a memory operand that has no relocation."""
+        """Return the base and offset of a memory operand whose address is known without the linker."""
         if operand.segment:
-            raise NotUnderstood(f"an address in the segment {operand.segment}")
+            raise NotUnderstood(f"expected an address without a segment, got one in the segment {operand.segment}")
         base, offset = "", operand.offset
         for name, scale in ((operand.base, 1), (operand.index, operand.scale)):
             if not name:
                 continue
             if GENERAL.get(name, ("", 0))[1] != 8:
-                raise NotUnderstood(f"the register {name} used for an address")
+                raise NotUnderstood(f"expected a 64-bit register in an address, got {name}")
             words = self.register(name)
             node = self.context.terms.nodes[self.whole(words)]
             value = self.integer(words)
@@ -177,15 +186,15 @@ class MachineState:
             elif value is not None:
                 offset += scale * (value - (1 << 64) if value >> 63 else value)
             else:
-                raise NotUnderstood("an address that is not known")
+                raise NotUnderstood("expected a known address, got an unknown one")
         if not base:
-            raise NotUnderstood("an address that is not known")
+            raise NotUnderstood("expected a known address, got an unknown one")
         return base, offset
 
     def load(self, base: str, offset: int, count: int) -> Words:
-        """Return ``count`` words of memory."""
+        """Return ``count`` 32-bit words of memory from a base and offset."""
         if offset % 4:
-            raise NotUnderstood("an address that is not a multiple of 4")
+            raise NotUnderstood("expected an address that is a multiple of 4, got another")
         return [self._load(base, offset + 4 * place) for place in range(count)]
 
     def _load(self, base: str, offset: int) -> int:
@@ -196,28 +205,30 @@ class MachineState:
             return terms.unknown()
         if array is not None:
             if not 0 <= offset < array.size:
-                raise NotUnderstood(f"a read outside the array {array.name}")
+                raise NotUnderstood(f"expected a read inside the array {array.name}, got one outside")
             if array.is_output:
-                raise NotUnderstood(f"a read of {array.name}, which is not written yet")
+                raise NotUnderstood(f"expected a value in {array.name} before it is read, got none")
             size = self.context.width // 8
             place = terms.input(self.context.width, f"{array.name}[{offset // size}]")
             return terms.word(place, offset % size // 4) if size == 8 else place
         content = self.context.listing.constants.get(base.removeprefix("section "), b"")
         if not base.startswith("section ") or not 0 <= offset <= len(content) - 4:
-            raise NotUnderstood(f"a read outside the constants, from {base.removeprefix('section ')}")
+            raise NotUnderstood(f"expected a read of a known constant, got one from {base.removeprefix('section ')}")
         return terms.bits(32, int.from_bytes(content[offset : offset + 4], "little"))
 
     def store(self, base: str, offset: int, words: Words) -> None:
         """Write words to memory: to the function's own part of the stack, or to an output array."""
         array = self.context.arrays.get(base)
         if offset % 4:
-            raise NotUnderstood("an address that is not a multiple of 4")
+            raise NotUnderstood("expected an address that is a multiple of 4, got another")
         for place, word in enumerate(words):
             at = offset + 4 * place
             if array is None and not (base == STACK and at < self.context.top):
-                raise NotUnderstood(f"a write to {base.removeprefix('section ')}")
+                raise NotUnderstood(
+                    f"expected writes to the stack or to output arrays, got one to {base.removeprefix('section ')}"
+                )
             if array is not None and not (array.is_output and 0 <= at < array.size):
-                raise NotUnderstood(f"a write outside the outputs, to {array.name}")
+                raise NotUnderstood(f"expected writes inside the output arrays, got one outside, to {array.name}")
             self.memory[base, at] = word
 
     def forget_below(self, offset: int) -> None:

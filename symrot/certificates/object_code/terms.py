@@ -1,8 +1,8 @@
 """Symbolic values of machine code, simplified on creation by laws that keep every bit.
 
 A term stands for 32 or 64 bits. Two terms with the same index have the same bits on every input, in rounding to
-nearest; zeros of different sign differ, NaNs of different payload do not. The laws hold exactly, also under overflow
-and underflow and for signed zeros::
+nearest; zeros of different sign count as different, NaNs of different payload as equal. The laws hold exactly, also
+under overflow and underflow and for signed zeros::
 
     a - b = a + (-b)      a + b = b + a      a*b = b*a      (-a)*b = -(a*b)      (-a)/b = a/(-b) = -(a/b)
     a + a = 2*a           2^j*(2^k*a) = 2^(j+k)*a, j, k >= 0                     a/2^k = a*2^-k
@@ -54,13 +54,13 @@ _FIRST_OPERAND: dict[str, int] = {  # kind -> place of its first operand; the re
 
 
 def number_from_bits(bits: int, width: int) -> float:
-    """Return the floating-point number with some bits, 32 or 64 of them."""
+    """Return the floating-point number that an integer of 32 or 64 bits encodes."""
     number, whole = _FORMATS[width]
     return float(unpack(number, pack(whole, bits))[0])
 
 
 def _bits_from_number(value: float, width: int) -> int | None:
-    """Return the bits of a number rounded to a width; None for a NaN or an overflow."""
+    """Return the bits of a number rounded to ``width`` bits; None for a NaN or an overflow."""
     number, whole = _FORMATS[width]
     try:
         return None if value != value else int(unpack(whole, pack(number, value))[0])
@@ -69,12 +69,12 @@ def _bits_from_number(value: float, width: int) -> int | None:
 
 
 def swapped(outcomes: Iterable[str]) -> Outcomes:
-    """Return the outcomes of a comparison after its sides are swapped."""
+    """Return the outcomes of ``b ? a`` that correspond to given outcomes of the comparison ``a ? b``."""
     return frozenset(_SWAPPED[item] for item in outcomes)
 
 
 class Terms:
-    """A store of symbolic terms that holds equal terms once; a term is referred to by its index."""
+    """A store of symbolic terms that holds equal terms once; a term is referred to by its index in the store."""
 
     def __init__(self) -> None:
         self.nodes: list[Term] = []
@@ -87,49 +87,55 @@ class Terms:
         return self.places[term]
 
     def width(self, a: int) -> int:
-        """Return the number of bits of a term, 32 or 64."""
+        """Return the number of bits of a symbolic term, 32 or 64."""
         return int(self.nodes[a][1])
 
     def kind(self, a: int) -> str:
-        """Return the kind of a term, such as ``"add"``."""
+        """Return the kind of a term, such as ``"add"`` or ``"call"``."""
         return str(self.nodes[a][0])
 
     # --- leaves ---------------------------------------------------------------------------------------------------
 
     def input(self, width: int, place: str) -> int:
-        """Return the number that the caller passes at a place, such as ``"q[1]"``."""
+        """Return the term for the number that the caller passes as an input component, such as ``"q[1]"``."""
         return self._add("in", width, place)
 
     def bits(self, width: int, value: int) -> int:
-        """Return a constant from its bits."""
+        """Return the constant term with the given bits."""
         return self._add("bits", width, value & ((1 << width) - 1))
 
     def number(self, width: int, value: Fraction) -> int:
-        """Return the constant with a value, which must be exact at the width; raise ValueError otherwise."""
+        """Return the constant term with a value; raise ValueError if ``width`` bits cannot represent it.
+
+        Raise ValueError if ``width`` bits cannot represent the value exactly.
+        """
         bits = _bits_from_number(float(value), width)
         if bits is None or Fraction(number_from_bits(bits, width)) != value:
-            raise ValueError(f"expected a number of {width} bits, got {value}")
+            raise ValueError(f"expected a number that {width} bits represent exactly, got {value}")
         return self.bits(width, bits)
 
     def unknown(self, byte: int | None = None) -> int:
-        """Return a new 32-bit term with unknown bits; ``byte`` sets the lowest byte."""
+        """Return a new 32-bit term with unknown bits.
+
+        If ``byte`` is given, the lowest byte is known and has this value.
+        """
         return self._add("unknown", 32, len(self.nodes), byte)
 
     def lowest_byte(self, a: int) -> int | None:
-        """Return the lowest byte of a word, or None if it is not known."""
+        """Return the lowest byte of a 32-bit term, or None if the byte is not known."""
         value = self.nodes[a][3] if self.kind(a) == "unknown" else self.constant(a)
         return None if value is None else int(value) & 0xFF
 
     def token(self, name: str) -> int:
-        """Return a 64-bit term known only by name, such as the content of a register before the call."""
+        """Return a 64-bit term of which only its name is known, such as a register's content before the call."""
         return self._add("token", 64, name)
 
     def address(self, base: str, offset: int) -> int:
-        """Return the address at an offset from a base: an array, the stack, a section or a symbol."""
+        """Return the term for an address: an offset from a base (an array, the stack, a section or a symbol)."""
         return self._add("address", 64, base, offset)
 
     def constant(self, a: int) -> int | None:
-        """Return the bits of a constant term, or None for any other term."""
+        """Return the bits of a symbolic term if it is constant; None for any other term."""
         return self.nodes[a][2] if self.nodes[a][0] == "bits" else None
 
     def _value(self, a: int) -> float | None:
@@ -139,14 +145,14 @@ class Terms:
     # --- words: a 64-bit term consists of two of 32 bits ----------------------------------------------------------
 
     def word(self, a: int, part: int) -> int:
-        """Return the low (``part`` 0) or high (1) half of a 64-bit term."""
+        """Return the low (``part`` is 0) or high (1) 32 bits of a 64-bit term."""
         node = self.nodes[a]
         if node[0] == "bits":
             return self.bits(32, node[2] >> 32 * part)
         return int(node[2 + part]) if node[0] == "join" else self._add("part", 32, part, a)
 
     def join(self, low: int, high: int) -> int:
-        """Return the 64-bit term with these halves."""
+        """Return the 64-bit term whose 32-bit halves are ``low`` and ``high``."""
         first, second = self.nodes[low], self.nodes[high]
         if first[0] == "bits" and second[0] == "bits":
             return self.bits(64, first[2] | second[2] << 32)
@@ -180,7 +186,7 @@ class Terms:
         return a if a == b else self._add("and", width, *sorted((a, b)))
 
     def bit_andn(self, a: int, b: int) -> int:
-        """Return ~a & b."""
+        """Return ``~a & b``."""
         mask = self.constant(a)
         if mask is not None:
             return self.bit_and(self.bits(self.width(a), ~mask), b)
@@ -245,15 +251,16 @@ class Terms:
         return self._add("sign", node[1], a)
 
     def copysign(self, a: int, b: int) -> int:
-        """Return the magnitude of a with the sign of b."""
+        """Return the magnitude of ``a`` with the sign of ``b``."""
         return self.bit_or(self.abs(a), self.sign(b))
 
     # --- rounded operations -------------------------------------------------------------------------------------------
 
     def _folded(self, a: int, b: int, operation: Callable[[float, float], float]) -> int | None:
-        """Return the finite result of an operation on two constant terms, or None if there is no such result.
+        """Return the result of an operation on two constant terms as a constant, or None if the result is not finite.
 
-        Computing in double and then rounding to float rounds correctly: double has more than twice the digits.
+        Computing a float operation in double and then rounding to float is correct: double has more than twice the
+        digits.
         """
         x, y = self._value(a), self._value(b)
         if x is None or y is None or not (isfinite(x) and isfinite(y)):
@@ -269,7 +276,7 @@ class Terms:
         return (self.neg(a), True) if value is not None and value & self._sign_bit(a) else (a, False)
 
     def add(self, a: int, b: int) -> int:
-        """Return a + b, rounded."""
+        """Return the term for ``a + b``, rounded."""
         folded = self._folded(a, b, lambda x, y: x + y)
         if folded is not None:
             return folded
@@ -281,11 +288,11 @@ class Terms:
         return self._add("add", self.width(a), *sorted((a, b)))
 
     def sub(self, a: int, b: int) -> int:
-        """Return a - b, rounded."""
+        """Return the term for ``a - b``, rounded."""
         return self.add(a, self.neg(b))
 
     def mul(self, a: int, b: int) -> int:
-        """Return a*b, rounded."""
+        """Return the term for ``a*b``, rounded."""
         folded = self._folded(a, b, lambda x, y: x * y)
         if folded is not None:
             return folded
@@ -315,7 +322,7 @@ class Terms:
         return self._add("mul", width, *sorted((a, b)))
 
     def div(self, a: int, b: int) -> int:
-        """Return a/b, rounded."""
+        """Return the term for ``a/b``, rounded."""
         if self._value(b) != 0.0:
             folded = self._folded(a, b, lambda x, y: x / y)
             if folded is not None:
@@ -330,26 +337,26 @@ class Terms:
         return self.neg(quotient) if first != second else quotient
 
     def sqrt(self, a: int) -> int:
-        """Return the square root of a, rounded."""
+        """Return the term for the square root of ``a``, rounded."""
         return self._add("sqrt", self.width(a), a)
 
     def fma(self, a: int, b: int, c: int) -> int:
-        """Return a*b + c, rounded once."""
+        """Return the term for the fused multiply-add ``a*b + c``, rounded once."""
         (a, first), (b, second) = self._signed(a), self._signed(b)
         return self._add("fnma" if first != second else "fma", self.width(a), *sorted((a, b)), c)
 
     def call(self, name: str, width: int, arguments: Iterable[int]) -> int:
-        """Return the value of a function of the C library."""
+        """Return the term for a call of a C library function, such as ``sin(x)``."""
         return self._add("call", width, name, *arguments)
 
     def opaque(self, name: str, width: int, *arguments: int) -> int:
-        """Return the result of an instruction whose rounding cannot be expressed by operations of C."""
+        """Return a term for the result of an instruction whose rounding no operation of C expresses."""
         return self.call(f"[{name}]", width, arguments)
 
     # --- choices ------------------------------------------------------------------------------------------------------
 
     def compared(self, outcomes: Outcomes, a: int, b: int) -> tuple[Outcomes, int, int]:
-        """Return a comparison in a normal form that all equivalent comparisons share."""
+        """Return a comparison in a normal form, the same for equivalent ones such as ``a < b`` and ``b > a``."""
         zero = self.bits(self.width(a), 0)
         a, b = (zero if self._value(item) == 0.0 else item for item in (a, b))
         if self.constant(a) is not None and self.constant(b) is None:
@@ -362,7 +369,7 @@ class Terms:
         return outcomes, a, b
 
     def mask(self, width: int, outcomes: Outcomes, a: int, b: int) -> int:
-        """Return the mask of a comparison: all ones if two numbers compare with one of the outcomes, else zero."""
+        """Return the mask of a comparison: all ones if ``a`` and ``b`` compare with one of the outcomes, else zero."""
         outcomes, a, b = self.compared(outcomes, a, b)
         x, y = self._value(a), self._value(b)
         if x is not None and y is not None:
@@ -373,7 +380,7 @@ class Terms:
         return self._add("mask", width, outcomes, a, b)
 
     def choose(self, mask: int, x: int, y: int) -> int:
-        """Return the term that is x if a mask is all ones, and y if it is zero."""
+        """Return the term that is ``x`` if the bits of a mask are all one, and ``y`` if they are all zero."""
         decided = self.constant(mask)
         if decided is not None and decided in (0, self._ones(mask)):
             return x if decided else y
@@ -382,12 +389,12 @@ class Terms:
     # --- the whole graph ----------------------------------------------------------------------------------------------
 
     def operands(self, a: int) -> tuple[int, ...]:
-        """Return the indices of the operands of a term."""
+        """Return the indices of the terms that are operands of a term."""
         node = self.nodes[a]
         return tuple(node[_FIRST_OPERAND[node[0]] :]) if node[0] in _FIRST_OPERAND else ()
 
     def order(self, roots: Iterable[int]) -> list[int]:
-        """Return some terms and all terms on which they depend, each after its operands."""
+        """Return some terms and all terms on which they depend, sorted so that each comes after its operands."""
         seen: set[int] = set()
         ordered: list[int] = []
         stack = [(root, False) for root in reversed(list(roots))]
@@ -402,7 +409,10 @@ class Terms:
         return ordered
 
     def rebuilt(self, roots: Iterable[int], known: Known, fused: bool = True) -> list[int]:
-        """Return terms simplified by the known outcomes of comparisons."""
+        """Return terms after simplifying them by comparisons whose outcomes are known.
+
+        With ``fused=False``, each fused multiply-add becomes a rounded product and a rounded sum.
+        """
         roots = list(roots)
         new: dict[int, int] = {}
         for index in self.order(roots):
@@ -462,7 +472,10 @@ class Terms:
         return [new[root] for root in roots]
 
     def undecided(self, roots: Iterable[int]) -> int | None:
-        """Return the mask of a comparison on which some terms depend but no other mask; None if there is none."""
+        """Return a comparison mask on which some terms depend and which depends on no other mask.
+
+        None if there is none.
+        """
         return next((index for index in self.order(roots) if self.kind(index) == "mask"), None)
 
 

@@ -1,1 +1,1 @@
-"""Read emitted C back as the operations that it computes."""
+"""The reader of emitted C text, which returns the rounded operations that the text performs."""

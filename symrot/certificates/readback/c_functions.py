@@ -1,4 +1,4 @@
-"""Split C text into the functions that it defines, each a list of tokens; refuse all C that symrot does not emit.
+"""Split C text into its functions, each a list of tokens; raise an error for any C that symrot does not emit.
 
 This module shares no code with the emitter, so that a mistake there cannot hide here.
 """
@@ -55,7 +55,9 @@ class CFunction:
 def _tokens(text: str, where: str) -> list[Token]:
     """Return the tokens of a C file without comments and directives."""
     if "??" in text or "\\" in text:  # trigraphs and spliced lines are never emitted, and could hide code from a reader
-        raise CertificateError(f"{where}: expected C as symrot emits it, got a backslash or a trigraph")
+        raise CertificateError(
+            f"{where}: expected C without backslashes and trigraphs, as symrot emits it, got one of these"
+        )
     bare = _COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
     lines = bare.split("\n")
     for number, line in enumerate(lines, 1):
@@ -72,7 +74,7 @@ def _tokens(text: str, where: str) -> list[Token]:
             match = _TOKEN.match(line, position)
             if match is None:
                 raise CertificateError(
-                    f"{where}, line {number}: expected C of the emitted subset, got {line[position]!r}"
+                    f"{where}, line {number}: expected a character of C as symrot emits it, got {line[position]!r}"
                 )
             position = match.end()
             if match.lastgroup != "space":
@@ -81,20 +83,23 @@ def _tokens(text: str, where: str) -> list[Token]:
 
 
 class Cursor:
-    """The tokens of one file or one body, with the position up to which they are read."""
+    """The tokens of a C file or of one function body, with the position of the next token to read."""
 
     def __init__(self, tokens: list[Token] | tuple[Token, ...], where: str) -> None:
         self.tokens, self.where, self.index = tokens, where, 0
 
     def peek(self, ahead: int = 0) -> str:
-        """Return the text of the current token, or of a later one; an empty text beyond the end."""
+        """Return the text of the next token, or of the token ``ahead`` places later; empty beyond the end.
+
+        An empty text beyond the end.
+        """
         index = self.index + ahead
         return self.tokens[index].text if index < len(self.tokens) else ""
 
     def next(self) -> Token:
-        """Return the current token and advance."""
+        """Return the next token and move past it."""
         if self.index >= len(self.tokens):
-            raise self.fail("more text")
+            raise self.fail("more text before the end of the file")
         self.index += 1
         return self.tokens[self.index - 1]
 
@@ -107,26 +112,26 @@ class Cursor:
         return CertificateError(f"{self.where}, line {line}: expected {expected}, got {got}")
 
     def expect(self, *marks: str) -> None:
-        """Advance past tokens that must have exactly these texts; raise CertificateError at the first difference."""
+        """Move past tokens that must have exactly these texts; raise CertificateError at the first that differs."""
         for mark in marks:
             if self.peek() != mark:
                 raise self.fail(f"'{mark}'")
             self.index += 1
 
     def name(self) -> str:
-        """Return the current token, which must be a name, and advance."""
+        """Return the next token, which must be a name, and move past it."""
         if self.index >= len(self.tokens) or self.tokens[self.index].kind != "name":
             raise self.fail("a name")
         return self.next().text
 
     def integer(self) -> int:
-        """Return the current token, which must be an integer, as a number and advance."""
+        """Return the next token, which must be an integer, as a number, and move past it."""
         if not self.peek().isdigit():
             raise self.fail("an index")
         return int(self.next().text)
 
     def block(self) -> tuple[Token, ...]:
-        """Return the tokens between the current opening brace and its closing brace, and advance past both."""
+        """Return the tokens between the next opening brace and its closing brace, and move past both braces."""
         self.expect("{")
         start, depth = self.index, 1
         while depth:
@@ -153,20 +158,20 @@ def functions_of(text: str, where: str = "kernel") -> Mapping[str, CFunction]:
             continue
         if function.name in functions:
             raise CertificateError(
-                f"{where}, line {function.line}: expected one definition of {function.name}, got two"
+                f"{where}, line {function.line}: expected one function named {function.name}, got two"
             )
         functions[function.name] = function
     return MappingProxyType(functions)
 
 
 def _function(cursor: Cursor) -> CFunction | None:
-    """Return the next function definition of a C text, or None if it is a prototype."""
+    """Read the next function of a C text; return its definition, or None for a prototype."""
     while cursor.peek() in ("static", "inline"):
         cursor.next()
     line = cursor.tokens[cursor.index].line if cursor.index < len(cursor.tokens) else 0
     returns = cursor.name()
     if returns not in ("void", "double", "float"):
-        raise cursor.fail("a function of double or float")
+        raise cursor.fail("a function whose arguments are of type double or float")
     name = cursor.name()
     cursor.expect("(")
     parameters = [_parameter(cursor)]
@@ -183,13 +188,13 @@ def _function(cursor: Cursor) -> CFunction | None:
 
 
 def _parameter(cursor: Cursor) -> Parameter:
-    """Return the next parameter of a C function."""
+    """Read the next parameter of a C function and return it."""
     is_const = cursor.peek() == "const"
     if is_const:
         cursor.next()
     kind = cursor.name()
     if kind not in ("double", "float", "size_t"):
-        raise cursor.fail("a parameter of double or float")
+        raise cursor.fail("a parameter of type double or float")
     if cursor.peek() == "*":
         cursor.next()
         if cursor.peek() in ("SYMROT_RESTRICT", "restrict"):

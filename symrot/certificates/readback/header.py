@@ -69,7 +69,9 @@ def check_header(header: str, source: str, name: str) -> None:
         Naming the first unexpected line, or a prototype without a function.
     """
     if re.search(r"\\|\?\?|[\0-\x09\x0b-\x1f]", header):
-        raise CertificateError(f"{name}.h: expected no backslash, trigraph or control character")
+        raise CertificateError(
+            f"{name}.h: expected a header without backslash, trigraph or control character, got one of these"
+        )
     lines = [line.strip() for line in _COMMENT.sub(" ", header).split("\n")]
     lines = [line for line in lines if line]
     top, end = _lines(_TOP.format(guard=f"SYMROT_{name.upper()}_H")), _lines(_END)
@@ -83,7 +85,7 @@ def check_header(header: str, source: str, name: str) -> None:
     if len(lines) < len(top) + len(end) or lines[len(lines) - len(end) :] != end:
         raise CertificateError(f"{name}.h: expected the lines {' '.join(end)!r} at the end")
     if any("#" in line for line in middle):
-        raise CertificateError(f"{name}.h: expected nothing but prototypes between the guards")
+        raise CertificateError(f"{name}.h: expected nothing but prototypes between the fixed lines, got other text")
     declared = {_words(each) for each in " ".join(middle).split(";") if each.strip()}
     defined = {_words(head) for head in re.findall(r"^(void \w+\([^()]*\))\s*\{", _COMMENT.sub(" ", source), re.M)}
     if declared != defined:

@@ -1,8 +1,8 @@
 """The operations of a kernel as a graph in which each node is one rounded floating-point operation.
 
-The reader of C text (:mod:`symrot.certificates.readback.readback`) makes such graphs; the certificates compare and
-analyse them. This module uses only the standard library and nothing of the emitter: a checker that shared code with it
-would repeat its mistakes.
+The reader of C text (:mod:`symrot.certificates.readback.readback`) makes such graphs; certificates compare them and
+bound their rounding errors. This module uses only the standard library and no code of the emitter: a checker that
+shared code with it would repeat its mistakes.
 
 A node is a tuple; operands are indices of earlier nodes::
 
@@ -65,7 +65,9 @@ class Operations:
         functions: Mapping[str, Callable[..., Any]],
         number: Callable[[Fraction], Any],
     ) -> dict[str, Any]:
-        """Return the outputs by place, computed with any kind of number.
+        """Compute the outputs in the arithmetic of the given values (such as intervals).
+
+        Return them by name, such as ``"q[1]"``.
 
         Parameters
         ----------
@@ -113,7 +115,7 @@ def _node_value(
     node: Node, known: Sequence[Any], values: Mapping[str, Any],
     functions: Mapping[str, Callable[..., Any]], number: Callable[[Fraction], Any],
 ) -> Any:  # fmt: skip
-    """Return the value of a node from the values of the nodes before it."""
+    """Return the value of a node of the graph from the values of the nodes before it."""
     kind = node[0]
     if kind == "in":
         return values[node[1]]
@@ -159,7 +161,7 @@ class GraphBuilder:
         self.places: dict[Node, int] = {}
 
     def add(self, *node: Any) -> int:
-        """Return the index of a node; the node is added if it is new."""
+        """Return the index of a node in the graph; a new node is added to the graph first."""
         if node not in self.places:
             self.places[node] = len(self.nodes)
             self.nodes.append(node)

@@ -32,7 +32,7 @@ DEEPEST = 200  # limit on the nesting of an expression
 
 @dataclass
 class _Scope:
-    """The names known inside one function: values by name, arrays by name, and the output elements assigned so far."""
+    """The names known inside one C function: values and arrays by name, and the output elements assigned so far."""
 
     values: dict[str, int] = field(default_factory=dict)
     arrays: dict[str, Parameter] = field(default_factory=dict)
@@ -43,7 +43,7 @@ class _Scope:
 
 
 class _BodyReader:
-    """A reader of the body of a C function: it turns statements into a graph of rounded operations."""
+    """A reader of the body of a C function, which turns statements into a graph of rounded operations."""
 
     def __init__(self, functions: Mapping[str, CFunction], where: str, real: str, batch: bool = False) -> None:
         self.functions, self.where, self.real, self.batch = functions, where, real, batch
@@ -55,7 +55,7 @@ class _BodyReader:
         self.vectorised_angles: set[int] | None = None
 
     def input(self, place: str) -> int:
-        """Return the node for the input at a place, such as ``"q[1]"``."""
+        """Return the node of the graph for an input component, such as ``"q[1]"``."""
         return self.inputs.setdefault(place, self.builder.add("in", place))
 
     def statements(self, cursor: Cursor, scope: _Scope) -> int | None:
@@ -76,7 +76,7 @@ class _BodyReader:
                 cursor.expect("const", self.real)
                 name = cursor.name()
                 if name in scope.values or name in scope.arrays or name in (scope.loop, scope.count):
-                    raise cursor.fail("a new name", repr(name))
+                    raise cursor.fail("a name that is not yet used", repr(name))
                 cursor.expect("=")
                 scope.values[name] = self.expression(cursor, scope)
                 cursor.expect(";")
@@ -85,7 +85,7 @@ class _BodyReader:
         return None
 
     def _known(self, cursor: Cursor, scope: _Scope, name: str) -> None:
-        """Raise CertificateError if a name is neither a number nor an array that was declared before."""
+        """Raise CertificateError unless a name belongs to a number or an array that was declared before."""
         if name not in scope.values and name not in scope.arrays:
             raise cursor.fail("the name of a parameter", repr(name))
 
@@ -100,11 +100,14 @@ class _BodyReader:
         value = self.expression(cursor, scope)
         cursor.expect(";")
         if (name, index) in scope.written:
-            raise cursor.fail(f"one assignment to {name}[{index}]", "a second one")
+            raise cursor.fail(f"one assignment to {name}[{index}]", "a second assignment")
         scope.written[name, index] = value
 
     def _index(self, cursor: Cursor, scope: _Scope, array: Parameter) -> int:
-        """Read the index of an array: ``[i]`` of a fixed size, else ``[k]``, ``[n + k]``, ``[i*n + k]``; return i."""
+        """Read an array index and return the component i: ``[i]`` of one sample.
+
+        ``[k]``, ``[n + k]`` or ``[i*n + k]`` of sample k.
+        """
         cursor.expect("[")
         if array.size > 0:
             index = cursor.integer()
@@ -112,7 +115,7 @@ class _BodyReader:
                 raise cursor.fail(f"an index below {array.size} for {array.name}", str(index))
         else:
             if not scope.loop:
-                raise cursor.fail("an array with a size", repr(array.name))
+                raise cursor.fail("an array with a length, such as q[4]", repr(array.name))
             index = 0
             if cursor.peek() == scope.count:
                 index = 1
@@ -125,10 +128,10 @@ class _BodyReader:
         return index
 
     def expression(self, cursor: Cursor, scope: _Scope) -> int:
-        """Read a choice or a sum, the whole of an expression; return its node."""
+        """Read an expression, which is ``a < b ? x : y`` or a sum; return its node."""
         self.depth += 1
         if self.depth > DEEPEST:
-            raise cursor.fail(f"an expression of at most {DEEPEST} nested levels", "a deeper one")
+            raise cursor.fail(f"an expression of at most {DEEPEST} nested levels", "a deeper expression")
         value = self.sum(cursor, scope)
         relation = cursor.peek()
         if relation in RELATIONS:
@@ -142,7 +145,7 @@ class _BodyReader:
         return value
 
     def sum(self, cursor: Cursor, scope: _Scope) -> int:
-        """Read terms with + or - between them; return the node."""
+        """Read a sum: terms with + or - between them; return its node."""
         value = self.product(cursor, scope)
         while cursor.peek() in ("+", "-"):
             kind = "add" if cursor.next().text == "+" else "sub"
@@ -150,7 +153,7 @@ class _BodyReader:
         return value
 
     def product(self, cursor: Cursor, scope: _Scope) -> int:
-        """Read factors with * or / between them; return the node."""
+        """Read a product: factors with * or / between them; return its node."""
         value = self.factor(cursor, scope)
         while cursor.peek() in ("*", "/"):
             kind = "mul" if cursor.next().text == "*" else "div"
@@ -158,7 +161,7 @@ class _BodyReader:
         return value
 
     def factor(self, cursor: Cursor, scope: _Scope) -> int:
-        """Read a sign, a bracket, a literal, a call, an array element or a name; return the node."""
+        """Read a factor: a negated factor, a bracket, a number, a call, an array element or a name; return its node."""
         if cursor.peek() == "-":
             cursor.next()
             value = self.factor(cursor, scope)
@@ -181,7 +184,10 @@ class _BodyReader:
         return scope.values[name]
 
     def _literal(self, cursor: Cursor) -> int:
-        """Read a floating-point literal of the type of the kernel; return the node."""
+        """Read a floating-point number written in the kernel's type, such as 2.0 for double or 2.0f for float.
+
+        Return its node.
+        """
         text = cursor.peek()
         is_float = text.endswith("f")  # a suffix in hexadecimal literals too: their exponent is decimal
         if is_float != (self.real == "float") or text.isdigit():
@@ -204,7 +210,7 @@ class _BodyReader:
         return self.input(f"{name}[{self._index(cursor, scope, array)}]")
 
     def _call(self, cursor: Cursor, scope: _Scope, name: str) -> int:
-        """Read the arguments of a function; return the node of the call."""
+        """Read the arguments of a function call; return the node of the call."""
         cursor.expect("(")
         arguments = [self.expression(cursor, scope)]
         while cursor.peek() == ",":
@@ -215,7 +221,7 @@ class _BodyReader:
             return self._inlined(cursor, self.functions[name], arguments)
         bare = name.removesuffix("f") if self.real == "float" else name
         if self.real == "float" and bare == name:
-            raise cursor.fail(f"the float form of {name}", repr(name))
+            raise cursor.fail(f"the function for floats instead of {name}, such as sinf for sin", repr(name))
         if bare in ROUNDED and ROUNDED[bare][1] == len(arguments):
             return self.builder.add(ROUNDED[bare][0], *arguments)
         if self.vectorised_angles is not None and bare in VECTORISED and len(arguments) == 1:
@@ -230,10 +236,10 @@ class _BodyReader:
         return self.builder.add("call", bare, tuple(arguments))
 
     def _inlined(self, cursor: Cursor, function: CFunction, arguments: list[int]) -> int:
-        """Return the result node of a call of a function in the same file, whose body is read with these arguments."""
+        """Return the node for a call of a function of the same file; its body is read with these arguments."""
         parameters = function.parameters
         if function.returns != self.real or any(p.size or p.type != self.real for p in parameters):
-            raise cursor.fail(f"a function of {self.real}", repr(function.name))
+            raise cursor.fail(f"a function of type {self.real}", repr(function.name))
         if len(parameters) != len(arguments):
             raise cursor.fail(f"{len(parameters)} arguments for {function.name}", str(len(arguments)))
         if function.name in self.calls:
@@ -260,9 +266,11 @@ def _nearest_float(digits: str, value: float) -> float:
 
 
 def _defined(functions: Mapping[str, CFunction], name: str, where: str) -> CFunction:
-    """Return the function of a name, or raise CertificateError."""
+    """Return the function with a given name; raise CertificateError if the C text does not define it."""
     if name not in functions:
-        raise CertificateError(f"{where}: expected a definition of {name}, got {', '.join(functions) or 'no function'}")
+        raise CertificateError(
+            f"{where}: expected a function named {name}, got {', '.join(functions) or 'no function'}"
+        )
     return functions[name]
 
 
@@ -270,7 +278,9 @@ def _real_of(function: CFunction, where: str) -> str:
     """Return the type of all numbers of a kernel, double or float."""
     types = {p.type for p in function.parameters} - {"size_t"}
     if function.returns != "void" or len(types) != 1:
-        raise CertificateError(f"{where}, line {function.line}: expected a kernel of one type, double or float")
+        raise CertificateError(
+            f"{where}, line {function.line}: expected only double or only float in a kernel, got both"
+        )
     return types.pop()
 
 
@@ -278,7 +288,7 @@ PRECISION = {"double": "binary64", "float": "binary32"}
 
 
 def read_kernel(text: str, name: str, where: str = "kernel") -> Operations:
-    """Return the operations of a one-sample function of a C file.
+    """Read a one-sample function of a C file and return its operations.
 
     Parameters
     ----------
@@ -313,7 +323,9 @@ def read_kernel(text: str, name: str, where: str = "kernel") -> Operations:
 
 
 def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
-    """Return the operations that a batch function performs on one sample, with the places of the one-sample function.
+    """Read a batch function.
+
+    Return the operations for one sample, with inputs and outputs named as in the one-sample function.
 
     Raises
     ------
@@ -332,7 +344,10 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
     real = _real_of(function, where)
     counts = [p.name for p in function.parameters if p.type == "size_t"]
     if len(counts) != 1:
-        raise CertificateError(f"{where}, line {function.line}: expected one number of samples for {name}")
+        raise CertificateError(
+            f"{where}, line {function.line}: expected one argument with the number of samples in "
+            f"{name}, got none or several"
+        )
     reader, scope = _BodyReader(functions, where, real, batch=True), _Scope(count=counts[0])
     scope.arrays = {p.name: p for p in function.parameters if p.type != "size_t"}
     one = functions.get(name.removesuffix("_batch"))
@@ -356,7 +371,10 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
 
 
 def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token, ...]:
-    """Read the head of the loop over the samples from ``start`` to ``end``; return the tokens of its body."""
+    """Read the head of a loop over samples from ``start`` to ``end``; return the tokens of the loop's body.
+
+    Return the tokens of the loop's body.
+    """
     if cursor.peek() == "SYMROT_INDEPENDENT":
         cursor.next()
     cursor.expect("for", "(", "size_t")
@@ -366,26 +384,26 @@ def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token
 
 
 def _parts(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
-    """Read several loops over one block of samples; each loop assigns different outputs."""
+    """Read several loops over the same block of samples, where each loop assigns other outputs."""
     _heads(cursor, scope, SPAN)
     while cursor.peek() != "}":
         part = _Scope(arrays=scope.arrays, scalars=scope.scalars, count=scope.count)
         reader.statements(Cursor(_samples(cursor, part, "start", "end"), cursor.where), part)
         twice = [f"{name}[{index}]" for name, index in part.written if (name, index) in scope.written]
         if twice:
-            raise cursor.fail(f"one assignment to {twice[0]}", "a second one in another loop")
+            raise cursor.fail(f"one assignment to {twice[0]}", "a second assignment in another loop")
         scope.written |= part.written
     cursor.expect("}")
 
 
 def _heads(cursor: Cursor, scope: _Scope, size: str) -> None:
-    """Read the head of a loop over blocks of samples, and the line that computes where the current block ends."""
+    """Read the head of a loop over blocks of ``size`` samples, and the line that computes the block's end."""
     cursor.expect(*f"for ( size_t start = 0 ; start < {scope.count} ; start + = {size} ) {{".split())
     cursor.expect(*f"const size_t end = {scope.count} - start < {size} ? {scope.count} : start + {size} ;".split())
 
 
 def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
-    """Read a loop over blocks that computes with ``symrot_math.h``, then with the C library if an angle is too large.
+    """Read a loop over blocks that computes with ``symrot_math.h``, or with the C library if an angle is too large.
 
     Both computations must be the same operations, and the test for large angles must cover every argument of
     ``symrot_sin`` and ``symrot_cos``.
@@ -414,13 +432,16 @@ def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
     reader.statements(Cursor(_samples(cursor, plain, "start", "again"), cursor.where), plain)
     cursor.expect("}")
     if plain.written != scope.written:
-        raise cursor.fail("both loops over samples to compute the same")
+        raise cursor.fail("both loops over samples to perform the same operations")
 
 
 def _finished(
     reader: _BodyReader, scope: _Scope, function: CFunction, places: list[tuple[str, int]], where: str
 ) -> Operations:
-    """Return the operations of a function whose body was read; raise CertificateError if an output is not assigned."""
+    """Return the operations of a C function after its body was read.
+
+    Raise CertificateError if an output is not assigned.
+    """
     missing = [f"{name}[{index}]" for name, index in places if (name, index) not in scope.written]
     if missing or not places:
         raise CertificateError(f"{where}: expected {function.name} to assign {', '.join(missing) or 'an output'}")

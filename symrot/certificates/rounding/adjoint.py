@@ -1,7 +1,8 @@
 """Bounds of the rounding error of one output on many boxes at once: the sum of local errors times derivatives.
 
-Let the operations 1 to k be computed with rounding and the others exactly, for k from 0 to the number of operations:
-the output moves from its exact to its computed value, by one local error at a time. By the mean value theorem,
+Let the operations 1 to k be computed with rounding and the others exactly. As k grows from 0 to the number of
+operations, the output moves from its exact to its computed value, by one operation's rounding error at a time. By the
+mean value theorem,
 
     computed - exact = sum over operations of (derivative of the output by the result) * (rounding error of the result),
 
@@ -39,11 +40,12 @@ LIBM_ULP = 1.0  # error of sin, cos and atan2, in units in the last place of the
 
 @dataclass(frozen=True)
 class Evaluation:
-    """The result of bounding the rounding error on a batch of boxes, one entry for each box.
+    """The bounds of the rounding error on many boxes; every field has one entry for each box.
 
-    ``bound`` is the error bound: infinite if there is none, -1 if the box holds no point of the region. ``obstacle`` is
-    the node that prevents a finite bound, or -1. ``undecided`` is a condition that the box does not decide, or -1.
-    ``value`` is the largest absolute value of the output. ``turns`` is whether an atan2 may jump by 2 pi.
+    ``bound`` is the error bound: infinite if no bound was found, -1 if the box holds no point of the region (the
+    allowed inputs). ``obstacle`` is the node that prevents a finite bound, or -1. ``undecided`` is a condition that may
+    hold or not on the box, or -1. ``value`` is the largest absolute value of the output. ``turns`` says whether an
+    atan2 may jump by 2 pi.
     """
 
     bound: Array
@@ -55,7 +57,7 @@ class Evaluation:
 
 @dataclass
 class _ErrorPass:
-    """The state of one pass over the nodes of a graph, on a batch of boxes."""
+    """The state of the computation of error bounds on many boxes, as it visits the nodes of a graph in order."""
 
     graph: OutputGraph
     boxes: Array  # (2, inputs, n)
@@ -73,20 +75,20 @@ class _ErrorPass:
         self.unit = 2.0 ** -DIGITS[self.precision]
 
     def rounded(self, exact: Array, factor: float = 1.0) -> tuple[Array, Array]:
-        """Return the computed values for exact results, and their errors: ``factor`` half units in the last place."""
+        """Return intervals of computed values and of errors, for errors of ``factor`` half units in the last place."""
         error = intervals.half_ulp(intervals.magnitude(exact), self.precision) * factor
         if factor != 1.0:
             return intervals.widened(exact, error), error
         return intervals.rounded_to(exact, self.precision), error
 
     def refined(self, node: Node, values: Sequence[Array], plain: Array) -> Array:
-        """Return an enclosure of an exact result, tightened by its mean value form if the pass uses these."""
+        """Return an interval that contains an exact result, tightened by the mean value form if one is used."""
         if self.centred is None:
             return plain
         return self.centred.refined(node, operand_places(node), values, plain)
 
     def relative(self, exact: Array, units: float, least: float) -> tuple[Array, Array]:
-        """Return the computed values for exact results, and their errors: ``units`` unit roundoffs plus ``least``."""
+        """Return intervals of computed values and of errors, for errors of ``units`` unit roundoffs plus ``least``."""
         error = intervals.magnitude(exact) * (units * self.unit * (1 + 2.0**-20)) + least
         return intervals.widened(exact, error), error
 
@@ -111,10 +113,10 @@ def _constant(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple
 
 @cache
 def _constant_error(written: Fraction, precision: str, use_intended: bool) -> float:
-    """Return a bound of the distance between a constant and the number that it stands for.
+    """Return a bound of the distance between a constant of the C text and the exact number that it stands for.
 
-    With ``use_intended`` that number is the one that the readback recovers. Otherwise the constant may be a coefficient
-    of a Taylor series, and the bound is that of any number rounded to it.
+    With ``use_intended`` that number is the simple fraction or multiple of pi that the reader of the C text recovers.
+    Otherwise the constant may be a coefficient of a Taylor series, and the bound covers any number that rounds to it.
     """
     if is_short(written):
         return 0.0
@@ -129,7 +131,7 @@ def _constant_error(written: Fraction, precision: str, use_intended: bool) -> fl
 
 
 def _grid_step(state: _ErrorPass, index: int) -> Array:
-    """Return a power of two such that all values of a node are multiples of it."""
+    """Return a power of two of which all values of a node are multiples, so that some sums are known to be exact."""
     node, value = state.graph.nodes[index], state.values[index]
     if node[0] == "const":
         above, below = abs(node[1].numerator), node[1].denominator
@@ -208,7 +210,7 @@ def _angle(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Ar
 
 
 def _error_of_root(state: _ErrorPass, operands: Sequence[Array], total: Array) -> Array:
-    """Return a bound of the error in the root of a sum of squares that the rounding of squares and sums causes."""
+    """Return a bound of the error in a root of a sum of squares, caused by rounding the squares and their sum."""
     squares = [intervals.half_ulp(intervals.magnitude(intervals.square(part)), state.precision) for part in operands]
     size = intervals.magnitude(total) * (1 + len(operands) * 2.0**-22)  # bound of a partial sum, its rounding included
     error = sum(squares, (len(operands) - 1) * intervals.half_ulp(size, state.precision))
@@ -253,7 +255,7 @@ GAP_CELLS = 8192
 
 @cache
 def _gap_errors(own: OutputGraph, libm_ulp: float) -> tuple[Array, ...]:
-    """Return error bounds of a gap function, (x - sin x)/x^3 or similar, on 2^k cells of [0, GAP_END], for each k."""
+    """Return error bounds of (x - sin x)/x^3, or a similar function, on 2^k equal parts of [0, GAP_END], for each k."""
     ends = np.linspace(0.0, GAP_END, GAP_CELLS + 1)
     boxes = np.stack([ends[:-1], ends[1:]])[:, None]
     sides = [evaluate(own, boxes, np.full((1, GAP_CELLS), side, np.int8), libm_ulp=libm_ulp).bound for side in (0, 1)]
@@ -297,7 +299,10 @@ def _choice(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[A
 
 
 def _truncation_error(precision: str) -> float:
-    """Return a bound of a series' truncation error relative to its value, which the proof of the C text checks."""
+    """Return a bound of the truncation error of a series relative to its value.
+
+    The proof of the C text checks this bound.
+    """
     return 2.0 ** -(DIGITS[precision] + 2) * (1 + 2.0**-20)
 
 
@@ -410,7 +415,7 @@ def evaluate(
     graph: OutputGraph, boxes: Array, decided: NDArray[np.int8], region: Region = EVERYWHERE,
     libm_ulp: float = LIBM_ULP, centred: bool = False,
 ) -> Evaluation:  # fmt: skip
-    """Return bounds of the rounding error of an output on each of some boxes.
+    """Return bounds of the rounding error of an output, one for each of some boxes.
 
     Parameters
     ----------
@@ -454,7 +459,10 @@ def evaluate(
 
 
 def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array | None:
-    """Enclose the exact and the computed values of a node; return a bound of its rounding error."""
+    """Enclose the exact and the computed values of a node in intervals.
+
+    Return a bound of the node's own rounding error.
+    """
     value, error = FORWARD[node[0]](state, node, [state.values[i] for i in operand_places(node)])
     state.values.append(value)
     if state.centred is not None:
@@ -467,7 +475,7 @@ def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array 
 
 
 def _backward_pass(state: _ErrorPass) -> tuple[Array, NDArray[np.int64], NDArray[np.bool_]]:
-    """Return the sum of errors times derivatives, the node that prevents a finite sum (or -1), and possible jumps.
+    """Return the sum of errors times derivatives, the node that makes it infinite (or -1), and jumps of angles.
 
     An angle that may jump by 2 pi must enter the output with derivative 1 or -1; the error of the output is then
     meant modulo 2 pi. A node that no possible branch uses may have any value; every other node must be finite.

@@ -54,11 +54,14 @@ STORE = Store()
 
 @dataclass(frozen=True)
 class OutputBound:
-    """The bound of one output: no error is larger than ``bound``, and at the point ``at`` the bound is ``pointwise``.
+    """The bound of one output: no error on the box is larger than ``bound``.
+
+    At the point ``at``, ``pointwise`` bounds the error.
 
     ``scale`` is a power of two that is at least the largest value of the output at the evaluated points (or 2^1023).
-    ``turns`` says that the error is meant modulo 2 pi. ``choices`` are the comparisons of rounded numbers, whose branch
-    is followed as computed. ``contraction_safe`` says that the bound also holds with fused multiply-adds.
+    ``turns`` says that the error is measured modulo 2 pi. ``choices`` are the comparisons of rounded numbers; the exact
+    formula takes the same branch as the rounded computation. ``contraction_safe`` says that the bound also holds with
+    fused multiply-adds.
     """
 
     output: str
@@ -75,7 +78,10 @@ class OutputBound:
 
 @dataclass(frozen=True)
 class BoundTask:
-    """A task: bound the error of one computation on one box. Equal tasks of different kernels are done once."""
+    """The task to bound the rounding error of one output on one box.
+
+    Equal tasks of different kernels are computed once.
+    """
 
     graph: OutputGraph
     low: tuple[float, ...]
@@ -86,7 +92,7 @@ class BoundTask:
 
     @property
     def key(self) -> str:
-        """The key under which the store holds the bound; equal tasks have equal keys."""
+        """The key under which the bound is stored, a hash; equal tasks have equal keys."""
         numbers = {place: k for k, place in enumerate(self.graph.places)}
         groups = sorted(tuple(numbers.get(place, -1) for place in group) for group in self.region.unit)
         ends = [x.hex() for x in (*self.low, *self.high)]
@@ -102,7 +108,7 @@ class BoundTask:
 def bound_tasks(
     operations: Operations, box: Box, region: Region = EVERYWHERE, budget: int = BUDGET, libm_ulp: float = LIBM_ULP
 ) -> dict[str, BoundTask]:
-    """Return the task that bounds each output.
+    """Return for each output the task to bound its rounding error.
 
     Raises
     ------
@@ -113,7 +119,10 @@ def bound_tasks(
     strangers = sorted({place for group in region.unit for place in group} - set(operations.inputs))
     if strangers:
         known = ", ".join(operations.inputs)
-        raise InputError(f"{operations.name}: expected unit groups of {known}, got {strangers[0]}")
+        raise InputError(
+            f"{operations.name}: expected only inputs {known} in the groups of inputs with unit norm, "
+            f"got {strangers[0]}"
+        )
     tasks_by_output = {}
     for place, index in operations.outputs:
         graph = output_graph(operations, index)
@@ -134,7 +143,7 @@ def _outward(value: Fraction, direction: float) -> float:
 
 
 def _check_box(operations: Operations, box: Box) -> None:
-    """Raise InputError if a box has no proper range for an input, or has one for an unknown input."""
+    """Raise InputError if a box lacks a finite range for an input, or has a range for an unknown input."""
     unknown = sorted(set(box) - set(operations.inputs))
     if unknown:
         raise InputError(
@@ -154,7 +163,7 @@ def _check_box(operations: Operations, box: Box) -> None:
 
 
 def bound_task(task: BoundTask, fresh: bool = False) -> SearchResult:
-    """Return the bound of one computation: from the store if it is there, unless ``fresh`` asks for a new search."""
+    """Return the bound of a task: from the store if it is there, or by a new search, always if ``fresh`` is true."""
     result = None if fresh else STORE.get(task.key)
     if result is None:
         with np.errstate(all="ignore"):  # a range may be a single point
@@ -167,7 +176,7 @@ def bound_outputs(
     operations: Operations, box: Box, region: Region = EVERYWHERE, budget: int = BUDGET, libm_ulp: float = LIBM_ULP,
     fresh: bool = False,
 ) -> tuple[OutputBound, ...]:  # fmt: skip
-    """Return the bound of each output on a box.
+    """Return the bound of the rounding error of each output on a box.
 
     Parameters
     ----------
@@ -298,7 +307,7 @@ def _precision_part(operations: Operations, outputs: list[dict[str, Any]]) -> di
 
 
 def _alike(a: object, b: object) -> bool:
-    """Tell whether two values have the same JSON text; unlike ``==``, this tells true from 1."""
+    """Tell whether two values have the same JSON text; unlike ``==``, this distinguishes true from 1."""
     return json.dumps(a, sort_keys=True) == json.dumps(b, sort_keys=True)
 
 
@@ -313,7 +322,7 @@ def _plain_output(bound: OutputBound, unit: float) -> dict[str, Any]:
 
 
 def _units(value: Fraction) -> str:
-    """Return a number as decimal text with four digits, rounded up."""
+    """Return a number as decimal text with four significant digits, rounded up."""
     if value == 0:
         return "0"
     exponent = len(str(int(value))) - 1 if value >= 1 else -1
@@ -329,7 +338,9 @@ def _units(value: Fraction) -> str:
 def check_section(
     section: Mapping[str, Any], operations_double: Operations, operations_float: Operations | None, rerun: bool = False
 ) -> None:
-    """Check a ``rounding`` section as far as evaluations at single points can; with ``rerun``, check every bound.
+    """Check a ``rounding`` section by evaluating the error at single points.
+
+    With ``rerun``, also compute every bound again.
 
     The section must be about these operations and all their outputs; its numbers must be finite, in order and in the
     printed form; no bound may be below the error bound at the stored point. :func:`check_bounds` proves that the bounds
@@ -361,7 +372,7 @@ def check_section(
         raise CertificateError(f"expected bounds for {' and '.join(kernels)}, got {' and '.join(precisions) or 'none'}")
     head = _section_head(box, region, budget, libm_ulp)
     if not _alike({name: value for name, value in section.items() if name != "precisions"}, head):
-        raise CertificateError("expected a box and assumptions as this method prints them, got others")
+        raise CertificateError("expected a box and assumptions in the printed form, got another form")
     if rerun:
         check_bounds(section, operations_double, operations_float, fresh=True)
 
@@ -410,10 +421,12 @@ def check_bounds(
 def _check_precision(
     part: Mapping[str, Any], operations: Operations, box: Box, region: Region, libm_ulp: float
 ) -> None:
-    """Check the part of a section about one precision, as far as single points can."""
+    """Check the part of a ``rounding`` section about double or float, by evaluating the error at single points."""
     name = operations.name
     if part["operations_sha256"] != operations.digest():
-        raise CertificateError(f"{name}: expected bounds of these operations, got bounds of others")
+        raise CertificateError(
+            f"{name}: expected bounds for the operations in the C text, got bounds for other operations"
+        )
     tasks_by_output = bound_tasks(operations, box, region, 0, libm_ulp)
     unit = 2.0 ** -DIGITS[operations.precision]
     if [item["output"] for item in part["outputs"]] != list(tasks_by_output) or float.fromhex(part["unit"]) != unit:
@@ -429,7 +442,9 @@ def _check_precision(
                 f"{name}: expected the same choices for {item['output']} as in the operations of the C text"
             )
         if at.size and not ((task.box[0] <= at) & (at <= task.box[1])).all():
-            raise CertificateError(f"{name}: expected a point of the box for {item['output']}, got another")
+            raise CertificateError(
+                f"{name}: expected a point inside the box as the worst point of {item['output']}, got one outside"
+            )
         least = error_at_point(task, at)
         if not least <= float.fromhex(item["pointwise"]) * (1 + 1e-9) or float.fromhex(item["pointwise"]) > bound:
             raise CertificateError(
@@ -439,7 +454,10 @@ def _check_precision(
 
 
 def error_at_point(task: BoundTask, at: Array) -> float:
-    """Return the error bound at one point, 0 if there is none; a bound on a box that holds the point is no smaller."""
+    """Return a bound of the error at one point, 0 if there is no error.
+
+    Any bound on a box that contains the point is at least as large.
+    """
     point = np.stack([at, at])[:, :, None]
     evaluation = evaluate(
         task.graph, point, np.full((len(task.graph.conditions), 1), -1, np.int8), task.region, task.libm_ulp

@@ -46,7 +46,7 @@ def library_section(name: str, source: str) -> Section | str:
 
 
 def library_region(name: str, source: str) -> Section:
-    """Return the entries of a kernel's section ``rounding`` besides box and bounds: region, libm error, budget."""
+    """Return the conditions of a kernel's section ``rounding``: restrictions of inputs, error of libm, budget."""
     region = library_problem(definition(name), operations_of(name, source)[0]).region
     return {
         "unit_groups": [list(group) for group in region.unit], "clearance": float(region.clearance).hex(),
@@ -55,7 +55,7 @@ def library_region(name: str, source: str) -> Section:
 
 
 def bounds_sentence(name: str, source: str) -> str:
-    """Return the bounds of a library kernel, the largest error of each result, as a sentence without a full stop."""
+    """Return the bounds of a library kernel, the largest error of each output array, as text without a full stop."""
     section = library_section(name, source)
     if isinstance(section, str):
         return f"no bound; {section.partition(': ')[2]}"
@@ -69,7 +69,7 @@ def bounds_sentence(name: str, source: str) -> str:
 
 
 def _result_phrase(section: Section, name: str, units: list[str]) -> str:
-    """Return a phrase with the largest errors of one result, in double and in float."""
+    """Return a phrase with the largest errors of one output array, in double and in float."""
     double, single = (
         rounded_up(max(
             Fraction(float.fromhex(each["absolute"]))
@@ -82,7 +82,7 @@ def _result_phrase(section: Section, name: str, units: list[str]) -> str:
 
 
 def rounded_up(value: Fraction) -> str:
-    """Return a number as decimal text with three digits, rounded up."""
+    """Return a number as decimal text with three significant digits, rounded up."""
     if not value:
         return "0"
     exponent = 0
@@ -98,12 +98,12 @@ def rounded_up(value: Fraction) -> str:
 
 
 def region_of(section: Mapping[str, Any]) -> Region:
-    """Return the region on which a section states its bounds."""
+    """Return the restrictions of the inputs, such as unit norm, under which a section's bounds hold."""
     return Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
 
 
 def region_phrases(region: Region) -> list[str]:
-    """Return the restrictions of the inputs in a region as phrases of a sentence."""
+    """Return the restrictions of the inputs, such as unit norm, as phrases of a sentence."""
     spare = f"2^{frexp(UNIT_NORM)[1] - 1}"  # exact: a rounded number would claim more than is proven
     phrases = [f"{', '.join(group)}: squares add up to 1, but for {spare}" for group in region.unit]
     if region.clearance:

@@ -1,8 +1,8 @@
-"""Enclosures of polynomials by mean value forms, from the value at the middle of a box and derivatives on the box.
+"""Intervals that contain a polynomial on a box, from its value at the middle and its derivatives (mean value form).
 
-Plain intervals of ``x*y - x*z`` ignore that both factors x are the same number. The mean value form
-``f(c) + sum of f_k'(box)*(x_k - c_k)`` accounts for it, to first order in the width. An enclosure contains
-the exact value, the computed value and all between: values of the polynomial, plus the rounding errors made so far.
+Plain interval arithmetic for ``x*y - x*z`` ignores that both factors x are the same number. The mean value form ``f(c)
++ sum of f_k'(box)*(x_k - c_k)`` accounts for it, to first order in the width. The enclosed values lie between exact and
+computed: values of the polynomial, plus at most the rounding errors of the operations so far.
 """
 
 from collections.abc import Sequence
@@ -35,7 +35,10 @@ def _scaled_gradient(gradient: Array, values: Array) -> Array:
 
 
 class CentredForms:
-    """The mean value forms of the nodes of one pass, in order; None for a node that is not a polynomial."""
+    """The mean value forms of the nodes of a graph, in the order of the nodes.
+
+    None for a node that is not a polynomial.
+    """
 
     def __init__(self, boxes: Array) -> None:
         self.boxes = boxes
@@ -45,7 +48,7 @@ class CentredForms:
         self.waiting: _CentredForm | None = None
 
     def refined(self, node: Node, places: Sequence[int], values: Sequence[Array], plain: Array) -> Array:
-        """Return an enclosure of an exact result: the intersection of the plain one with the mean value form."""
+        """Return an interval that contains a node's exact result: ``plain``, cut by the node's mean value form."""
         self.waiting = form = self._combined(node, [self.forms[i] for i in places], values)
         if form is None:
             return plain

@@ -1,8 +1,8 @@
-"""Choices between branches on boxes: the possible branches, and the ranges of the compared numbers in a branch.
+"""Conditionals on boxes: the branches that are possible, and the ranges of the compared numbers in each branch.
 
-A choice compares computed numbers, so only ranges of computed numbers may be narrowed. If one number is at least
-another, its range starts no lower than that of the other. And the larger of RN(p + q) and RN(p - q) is at least p,
-because q or -q is not negative and rounding keeps order.
+A conditional compares computed numbers, so only ranges of computed numbers may be narrowed. If a >= b in a branch, the
+range of a starts no lower than the range of b. If b is computed as the larger of RN(p + q) and RN(p - q) (RN rounds to
+nearest), then b is at least p, because q or -q is not negative and rounding keeps order.
 """
 
 from collections.abc import Callable, Sequence
@@ -34,7 +34,7 @@ _NOT_LESS = {  # relation -> the branch in which left >= right, the branch in wh
 def decide_branches(
     relation: str, a: Array, b: Array, decision: NDArray[np.int8]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Decide a condition on the boxes where only one branch is possible; ``decision`` is changed in place.
+    """Decide a condition on the boxes where only one branch is possible; the array ``decision`` is changed in place.
 
     Returns which boxes lie outside the branch that was decided for them before, and on which both branches are
     possible.
@@ -48,7 +48,7 @@ def decide_branches(
 
 
 def narrow_to_branch(graph: OutputGraph, number: int, decision: NDArray[np.int8], computed: list[Array]) -> None:
-    """Narrow enclosures of computed numbers, in place, to the values possible in the decided branch of a condition."""
+    """Shrink the ranges of computed numbers, in place, to the values possible in the branch chosen for a condition."""
     relation, i, j = graph.conditions[number]
     larger, smaller = _NOT_LESS[relation]
     _narrow_ordered(graph.nodes, i, j, decision == larger, computed)
@@ -56,7 +56,7 @@ def narrow_to_branch(graph: OutputGraph, number: int, decision: NDArray[np.int8]
 
 
 def _narrow_ordered(nodes: Sequence[Node], i: int, j: int, here: NDArray[np.bool_], computed: list[Array]) -> None:
-    """Narrow the enclosures of two numbers on the boxes marked in ``here``, where the first is at least the second."""
+    """Shrink the ranges of the numbers ``i`` and ``j`` on the boxes ``here``, where number i is at least number j."""
     least, most = computed[j][0], computed[i][1]
     middle = _middle(nodes[i], nodes[j])
     if middle is not None:
@@ -66,7 +66,7 @@ def _narrow_ordered(nodes: Sequence[Node], i: int, j: int, here: NDArray[np.bool
 
 
 def _narrow_end(nodes: Sequence[Node], k: int, row: int, end: Array, computed: list[Array]) -> None:
-    """Narrow the enclosure of a number at its lower end (``row`` 0) or its upper end (1)."""
+    """Raise the lower end (``row`` 0) or reduce the upper end (``row`` 1) of a number's range to ``end``."""
     kind = nodes[k][0]
     if kind in ("mul", "square"):  # a fused sum uses the unrounded product, for which the comparison says nothing
         return
@@ -80,7 +80,7 @@ def _narrow_end(nodes: Sequence[Node], k: int, row: int, end: Array, computed: l
 
 
 def _middle(one: Node, other: Node) -> int | None:
-    """Return the node p if two nodes are p + q and p - q, in any order; None otherwise."""
+    """Return the node p if the two nodes are p + q and p - q, in any order; otherwise None."""
     if (one[0], other[0]) == ("sub", "add"):
         one, other = other, one
     if (one[0], other[0]) != ("add", "sub") or set(one[1:]) != set(other[1:]):

@@ -1,4 +1,4 @@
-"""Ranges of a scene kernel's parameters from ranges of the physical constants in them, by interval arithmetic.
+"""Ranges of a scene kernel's parameters, computed from ranges of the physical constants by interval arithmetic.
 
 The arguments of a kernel are parameters such as ``(B - C)/A``, not the moments of inertia themselves. If the moments
 may vary, each parameter gets a range that contains all its values. Only the standard library is used.
@@ -21,7 +21,10 @@ SPARE = Fraction(1, 2**240)  # larger than the error of irrational numbers, whic
 
 @dataclass(frozen=True)
 class ExactRange:
-    """The numbers from ``low`` to ``high``; operations return a range that contains all results."""
+    """The range of numbers from ``low`` to ``high``; an operation returns a range that contains all results.
+
+    An operation on ranges returns a range that contains all results.
+    """
 
     low: Fraction
     high: Fraction
@@ -61,7 +64,7 @@ class ExactRange:
         return ExactRange(base.low**exponent, base.high**exponent)
 
     def parts(self, count: int) -> Iterator["ExactRange"]:
-        """Return ``count`` equal ranges that together are this one."""
+        """Split this range into ``count`` equal ranges."""
         step = (self.high - self.low) / count
         return (ExactRange(self.low + k * step, self.low + (k + 1) * step) for k in range(count))
 
@@ -86,7 +89,7 @@ _FUNCTIONS: dict[str, Callable[[ExactRange], ExactRange]] = {
 def parameter_range(
     name: str, formula: Node, constants: Mapping[str, Fraction], ranges: Mapping[str, tuple[Fraction, Fraction]]
 ) -> tuple[Fraction, Fraction]:
-    """Return a lower and an upper bound of a parameter.
+    """Return a lower and an upper bound of a parameter whose formula contains constants with given ranges.
 
     Parameters
     ----------

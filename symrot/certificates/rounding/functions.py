@@ -1,4 +1,4 @@
-"""Enclosures of sine, cosine, arc tangent and related functions on intervals, from ``+ - * / sqrt`` alone.
+"""Intervals that contain sine, cosine, arc tangent and related functions, computed from ``+ - * / sqrt`` alone.
 
 The C library's sine differs between machines, but bounds must be the same everywhere. So arguments are reduced by
 multiples of pi/2, which is split in two parts, and Taylor series are summed. The absolute error stays below 1e-15;
@@ -76,17 +76,17 @@ def _circular(x: Array, quarter_turns: int) -> Array:
 
 
 def sine(x: Array) -> Array:
-    """Return an enclosure of the sine on intervals."""
+    """Return, for each interval of angles, an interval that contains the sine of every angle in it."""
     return _circular(x, 0)
 
 
 def cosine(x: Array) -> Array:
-    """Return an enclosure of the cosine on intervals."""
+    """Return, for each interval of angles, an interval that contains the cosine of every angle in it."""
     return _circular(x, 1)
 
 
 def _size(x: Array) -> Array:
-    """Return enclosures of |x| for intervals x."""
+    """Return intervals that contain |x| for every x in given intervals."""
     size = np.abs(x)
     return np.stack([np.where(contains_zero(x), 0.0, size.min(axis=0)), size.max(axis=0)])
 
@@ -105,7 +105,7 @@ class _EvenFunction:
     crude: float
 
     def __call__(self, x: Array) -> Array:
-        """Return an enclosure of the even function on intervals."""
+        """Return intervals that contain the values of the even function on given intervals."""
         size = _size(x)
         low = np.minimum(size, self.end)
         far = np.maximum(low, 2.0)
@@ -153,7 +153,7 @@ _tangent_gap_factor = _EvenFunction(
 
 
 def tangent_gap_slope(x: Array) -> Array:
-    """Return an enclosure of the derivative of ``tangent_gap``.
+    """Return intervals that contain the derivative of ``tangent_gap``, the function (sin x - x cos x)/x^3.
 
     It is -x times ``j2(x)/x^2``, which decreases from 1/15 at x = 0 until x = 5.7.
     """
@@ -161,7 +161,7 @@ def tangent_gap_slope(x: Array) -> Array:
 
 
 def sine_gap_slope(x: Array) -> Array:
-    """Return an enclosure of the derivative of ``sine_gap``.
+    """Return intervals that contain the derivative of ``sine_gap``, the function (x - sin x)/x^3.
 
     It is -x times the integral of (1-s)^2 s sin(xs)/(2x) over s from 0 to 1, which decreases until x = 4.4.
     """
@@ -169,7 +169,7 @@ def sine_gap_slope(x: Array) -> Array:
 
 
 def sinc_slope(x: Array) -> Array:
-    """Return an enclosure of the derivative of sin(x)/x, which is ``-x (sin x - x cos x)/x^3``."""
+    """Return intervals that contain the derivative of sin(x)/x, which is ``-x (sin x - x cos x)/x^3``."""
     return negative(multiply_loosely(x, tangent_gap(x)))
 
 
@@ -185,7 +185,7 @@ def _arc(z: Array) -> Array:
 
 
 def arc_tangent(y: Array, x: Array) -> Array:
-    """Return an enclosure of atan2(y, x); it is [-pi, pi] if y contains zero and x is not positive."""
+    """Return intervals that contain atan2(y, x); the interval is [-pi, pi] if y contains zero and x is not positive."""
     with np.errstate(all="ignore"):
         right, up = divide(y, x), divide(x, y)
         sloped = [_arc(np.where(np.isfinite(q), q, 0.0)) for q in (right, up[::-1])]
@@ -195,14 +195,17 @@ def arc_tangent(y: Array, x: Array) -> Array:
 
 
 def arc_slope(a: Array, b: Array) -> Array:
-    """Return the tightest enclosure of a/(a^2 + b^2), a derivative of atan2; infinite where both contain zero."""
+    """Return the tightest intervals that contain a/(a^2 + b^2), a derivative of atan2.
+
+    They are infinite where both ``a`` and ``b`` contain zero.
+    """
     return np.stack([-_steepest(negative(a), b), _steepest(a, b)])
 
 
 def _steepest(a: Array, b: Array) -> Array:
-    """Return an upper bound of a/(a^2 + b^2).
+    """Return an upper bound of a/(a^2 + b^2) for given intervals of a and b.
 
-    If a may be positive, the maximum is at the least |b|, otherwise at the largest. As a function of a, the quotient
+    If a may be positive, the quotient is largest at the least |b|, otherwise at the largest |b|. As a function of a, it
     increases until a = |b| and decreases from there on.
     """
     size = _size(b)
@@ -218,7 +221,7 @@ def _slope_at(a: Array, b: Array) -> Array:
 
 
 def arc_ratio_terms(s: Array, c: Array, radius: Array) -> tuple[Array, Array, Array]:
-    """Return enclosures of atan2(s, c)/s and of its derivatives by s and by c, for s, c >= 0, not both 0.
+    """Return intervals of atan2(s, c)/s and of its derivatives by s and by c, for s, c >= 0, not both 0.
 
     With ``s = r sin(a)``, ``c = r cos(a)`` they are ``1/(r sinc a)``, ``-4 a sine_gap(2a)/(r sinc a)^2`` and
     ``-1/r^2``, which are finite at ``a = 0``.

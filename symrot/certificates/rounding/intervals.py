@@ -29,7 +29,7 @@ _LEAST = {"binary64": ETA, "binary32": 2.0**-150}  # bound of the error of a sub
 
 
 def point(value: float, count: int) -> Array:
-    """Return ``count`` intervals that hold just one number."""
+    """Return ``count`` intervals that each hold only the number ``value``."""
     return np.full((2, count), value)
 
 
@@ -55,12 +55,15 @@ def contains_zero(a: Array) -> NDArray[np.bool_]:
 
 
 def negative(a: Array) -> Array:
-    """Return enclosures of -a."""
+    """Return intervals that contain ``-x`` for every x in the intervals ``a``."""
     return -a[::-1]
 
 
 def add(a: Array, b: Array) -> Array:
-    """Return enclosures of a + b; an end that is computed exactly is not rounded outward."""
+    """Return intervals that contain all sums of numbers in ``a`` and ``b``.
+
+    An end that is computed exactly is not rounded outward.
+    """
     total = a + b
     back = total - a
     error = (a - (total - back)) + (b - back)
@@ -69,13 +72,16 @@ def add(a: Array, b: Array) -> Array:
 
 
 def _short(a: Array) -> NDArray[np.bool_]:
-    """Tell which numbers have at most 26 significant bits, so that their products are exact."""
+    """Tell which numbers have at most 26 significant bits; the product of two such numbers is an exact double."""
     large = a * SPLIT
     return np.asarray(large - (large - a) == a)
 
 
 def multiply(a: Array, b: Array) -> Array:
-    """Return enclosures of a * b; an end that is computed exactly is not rounded outward."""
+    """Return intervals that contain all products of numbers in ``a`` and ``b``.
+
+    An end that is computed exactly is not rounded outward.
+    """
     products = a[:, None] * b[None]
     exact = (_short(a)[:, None] & _short(b)[None]) & (np.abs(products) > TINY)
     exact |= (a == 0)[:, None] | (b == 0)[None]
@@ -84,13 +90,16 @@ def multiply(a: Array, b: Array) -> Array:
 
 
 def multiply_loosely(a: Array, b: Array) -> Array:
-    """Return a * b with every end moved outward; cheaper, for derivatives, where the last bit does not matter."""
+    """Return intervals that contain all products of numbers in ``a`` and ``b``, always rounded outward.
+
+    This is cheaper than :func:`multiply`, for derivatives, where the last bit does not matter.
+    """
     products = (a[:, None] * b[None]).reshape(4, -1)
     return widened(np.stack([products.min(axis=0), products.max(axis=0)]), 0.0)
 
 
 def square(a: Array) -> Array:
-    """Return enclosures of a^2; the lower end is never negative."""
+    """Return intervals that contain the squares of all numbers in ``a``; the lower end is never negative."""
     size = np.abs(a)
     low = np.where(contains_zero(a), 0.0, size.min(axis=0))
     ends = np.stack([low, size.max(axis=0)])
@@ -101,7 +110,7 @@ def square(a: Array) -> Array:
 
 
 def divide(a: Array, b: Array) -> Array:
-    """Return enclosures of a / b, infinite where b contains zero."""
+    """Return intervals that contain all quotients of numbers in ``a`` and ``b``, infinite where ``b`` contains zero."""
     quotients = a[:, None] / b[None]
     exact = _short(quotients) & _short(b)[None] & (quotients * b[None] == a[:, None]) & (np.abs(quotients) > TINY)
     exact |= (a == 0)[:, None] & (b != 0)[None]
@@ -112,7 +121,10 @@ def divide(a: Array, b: Array) -> Array:
 
 
 def square_root(a: Array) -> Array:
-    """Return enclosures of the square root of a, infinite where a contains negative numbers."""
+    """Return intervals that contain the square roots of all numbers in ``a``.
+
+    They are infinite where ``a`` contains negative numbers.
+    """
     roots = np.sqrt(np.maximum(a, 0.0))
     step = (roots * PHI + ETA) * ~(_short(roots) & (roots * roots == a))
     result = np.stack([np.maximum(roots[0] - step[0], 0.0), roots[1] + step[1]])
@@ -133,7 +145,7 @@ def half_ulp(size: Array, precision: str) -> Array:
 
 
 def rounded_to(a: Array, precision: str) -> Array:
-    """Return intervals that contain the given ones and all roundings of their numbers to a precision."""
+    """Return intervals that contain given intervals and all numbers in them rounded to a precision."""
     if precision == "binary64":
         return a
     with np.errstate(over="ignore"):

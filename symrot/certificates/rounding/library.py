@@ -30,14 +30,17 @@ LARGEST = 2.0**10  # largest size that is tried, relative to the box of the kern
 
 @dataclass(frozen=True)
 class RoundingProblem:
-    """The problem to bound a kernel: its box, the region in the box, and the symbols of its inputs."""
+    """The data for bounding a kernel's rounding errors: box, restrictions of inputs, and the inputs' symbols."""
 
     box: Mapping[str, tuple[Fraction, Fraction]]
     region: Region
     symbols: Mapping[str, str]  # place -> component, such as "angles[1]" -> "theta"
 
     def place(self, name: str) -> str:
-        """Return the place of an input, such as ``"q[1]"``, from its place or symbol; raise InputError for others."""
+        """Return the index text of an input, such as ``"q[1]"``, from this text or from its symbol.
+
+        Raise InputError for others.
+        """
         for place, symbol in self.symbols.items():
             if name in (place, symbol):
                 return place
@@ -45,11 +48,11 @@ class RoundingProblem:
 
 
 def library_problem(kernel: Definition, operations: Operations) -> RoundingProblem:
-    """Return the box and region of a library kernel.
+    """Return the box of a library kernel's inputs and the restrictions of the inputs in it, such as unit norm.
 
-    The region is usually the whole box: a matrix is any nine numbers in [-1, 1], a quaternion any four. Only kernels
-    that compute angles from a quaternion are bounded for unit quaternions, at a distance of at least 1/10 from the
-    points where an angle is undefined.
+    Usually there is no restriction: a matrix is any nine numbers in [-1, 1], a quaternion any four. Only kernels that
+    compute angles from a quaternion are bounded for unit quaternions, at a distance of at least 1/10 from the points
+    where an angle is undefined.
     """
     symbols = {
         (each.name if each.is_scalar else f"{each.name}[{i}]"): component[0]
@@ -70,7 +73,7 @@ def library_problem(kernel: Definition, operations: Operations) -> RoundingProbl
 
 
 def operations_of(name: str, text: str) -> tuple[Operations, Operations]:
-    """Return the operations of the function for doubles and of the one for floats in a kernel's C text."""
+    """Read a kernel's C text; return the operations of its function for doubles and of its function for floats."""
     function, file = f"symrot_{name}", f"{name}.c"
     return read_kernel(text, function, file), read_kernel(text, f"{function}f", file)
 
@@ -122,7 +125,7 @@ def prepare(
 
 
 def resized(box: Box, size: float, places: Sequence[str]) -> dict[str, tuple[Fraction, Fraction]]:
-    """Return a box with the ranges at some places widened ``size`` times about their middles."""
+    """Return a box in which the ranges of the inputs ``places`` are widened ``size`` times about their middles."""
     wider = dict(box)
     for place in places:
         low, high = box[place]
@@ -162,7 +165,7 @@ def largest_box(
     low, high = 0.0, 1.0
     if not holds(low):
         raise InputError(
-            f"{operations.name}: expected a target of at least the error in the middle of the box, got {target:g}"
+            f"{operations.name}: expected a target error of at least the error in the middle of the box, got {target:g}"
         )
     while holds(high):
         low, high = high, 2 * high

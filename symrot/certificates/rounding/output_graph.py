@@ -50,7 +50,7 @@ class OutputGraph:
 
     @cached_property
     def inputs_of(self) -> tuple[frozenset[int], ...]:
-        """The numbers of the inputs on which each node depends."""
+        """The indices of the inputs on which each node depends."""
         inputs: list[frozenset[int]] = []
         for node in self.nodes:
             if node[0] == "in":
@@ -64,7 +64,7 @@ class OutputGraph:
 
     @cached_property
     def is_polynomial(self) -> bool:
-        """Whether the output is a polynomial in the inputs."""
+        """Whether the output is a polynomial in the inputs, so that a mean value form can enclose it."""
         return all(node[0] in POLYNOMIAL for node in self.nodes)
 
     @cached_property
@@ -88,7 +88,7 @@ class OutputGraph:
 
     @cached_property
     def exact(self) -> tuple[bool, ...]:
-        """Whether each node has no rounding error: inputs, their signs and absolute values, short constants."""
+        """Whether each node has no rounding error, as inputs, their signs and absolute values, short constants."""
         flags: list[bool] = []
         for node in self.nodes:
             kind = node[0]
@@ -98,7 +98,7 @@ class OutputGraph:
 
     @cached_property
     def choices(self) -> tuple[tuple[str, bool], ...]:
-        """The conditions on rounded numbers: text, and whether the branches differ by multiples of 2 pi only."""
+        """The conditions that compare rounded numbers: text, and whether branches differ by multiples of 2 pi only."""
         choices = []
         for number, (relation, i, j) in enumerate(self.conditions):
             if (self.exact[i] and self.exact[j]) or relation == "<":
@@ -125,7 +125,10 @@ class OutputGraph:
         return f"{node[0]}({', '.join(operands)})"
 
     def singular_operand(self, index: int) -> int:
-        """Return the operand that can make a node infinite, such as a divisor or radicand; otherwise the node."""
+        """Return the operand that can make a node infinite, such as a divisor or radicand.
+
+        The node itself if there is none.
+        """
         node = self.nodes[index]
         return int({"div": node[-1], "sqrt": node[-1]}.get(node[0], index))
 
@@ -138,7 +141,7 @@ _SIGNS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 
 
 def operand_places(node: Node) -> tuple[int, ...]:
-    """Return the indices of the operands of a node of a graph."""
+    """Return the indices of the nodes that are operands of a node of a graph."""
     if node[0] in ("in", "const"):
         return ()
     if node[0] == "gap":
@@ -147,14 +150,14 @@ def operand_places(node: Node) -> tuple[int, ...]:
 
 
 def is_short(value: Fraction) -> bool:
-    """Tell whether a constant stands for itself because it has few significant bits, as the readback decides too."""
+    """Tell whether a constant has so few significant bits that it stands for itself, as the reader of C decides."""
     above = abs(value.numerator)
     odd = above // (above & -above) if above else 0
     return odd.bit_length() <= SHORT and value.denominator & (value.denominator - 1) == 0
 
 
 def _modulo_two_pi(graph: OutputGraph, index: int, sign: int = 1) -> tuple[int, int]:
-    """Return a node and a sign to which a node is equal modulo 2 pi: constants near 2 pi are dropped from sums."""
+    """Return a node and a sign whose product equals a node modulo 2 pi: constants near 2 pi are dropped from sums."""
     node = graph.nodes[index]
     if node[0] == "neg":
         return _modulo_two_pi(graph, node[1], -sign)
@@ -188,14 +191,14 @@ class _GraphReader:
         self.root = -1  # the output of the graph inside a gap, which must not become a gap again
 
     def put(self, *node: Any) -> int:
-        """Return the index of a node in the graph; add the node if it is new."""
+        """Return the index of a node in the graph; a new node is added to the graph first."""
         if node not in self.known:
             self.known[node] = len(self.nodes)
             self.nodes.append(node)
         return self.known[node]
 
     def read(self, index: int) -> int:
-        """Return the index of the graph's node for an operation of the kernel."""
+        """Return the index of the graph's node for an operation of the kernel, which is copied if necessary."""
         if index not in self.done:
             self.done[index] = self._read(self.source[index], index)
         return self.done[index]
@@ -229,7 +232,10 @@ class _GraphReader:
         return self.put(kind, *(self.read(i) for i in operands(node)))
 
     def squares(self, index: int, depth: int = 0) -> list[tuple[int, int]] | None:
-        """Return the terms of a sum of squares, each with its number of roundings; None for other nodes."""
+        """Return the squared terms of a sum of squares, each with its number of roundings.
+
+        None if the node is no such sum.
+        """
         node = self.source[index]
         if node[0] == "mul" and node[1] == node[2]:
             return [(node[1], depth + 1)]
@@ -248,7 +254,7 @@ def _norm(reader: _GraphReader, node: Node) -> int | None:
 
 
 def _at_zero(reader: _GraphReader, node: Node) -> tuple[Node, Node] | None:
-    """Return both branches if the operation is ``x == 0 ? limit : y/x``, otherwise None."""
+    """Return the branches ``limit`` and ``y/x`` if the operation is ``x == 0 ? limit : y/x``, otherwise None."""
     if node[0] != "select" or node[1] != "==" or reader.source[node[3]] != ("const", Fraction(0)):
         return None
     then, other = reader.source[node[4]], reader.source[node[5]]
@@ -282,7 +288,10 @@ _GAPS = {"sine_gap": Fraction(1, 6), "tangent_gap": Fraction(1, 3)}  # function 
 
 
 def _at_origin(reader: _GraphReader, index: int, square: int) -> Fraction | None:
-    """Return the value at zero of a polynomial in the node ``square``; None if the node is not such a polynomial."""
+    """Return the value of a polynomial in the node ``square`` where that node is 0.
+
+    None if the node is no such polynomial.
+    """
     node = reader.source[index]
     if index == square:
         return Fraction(0)
@@ -297,7 +306,7 @@ def _at_origin(reader: _GraphReader, index: int, square: int) -> Fraction | None
 
 
 def _gap(reader: _GraphReader, node: Node) -> int | None:
-    """Return the node ``gap`` if the operation is a choice between a series and its formula, otherwise None."""
+    """Return a node ``gap`` if the operation chooses between a series near zero and its formula, otherwise None."""
     if node[0] != "select" or node[1] != "<" or reader.source[node[2]][0] != "mul":
         return None
     leaf, other = reader.source[node[2]][1:]
@@ -318,7 +327,7 @@ _PATTERNS: tuple[Callable[[_GraphReader, Node], int | None], ...] = (_norm, _sin
 
 
 def output_graph(operations: Operations, index: int) -> OutputGraph:
-    """Return the graph of one node of a kernel.
+    """Return the graph of the operations on which one node of a kernel depends.
 
     Raises
     ------

@@ -34,12 +34,12 @@ EVERYWHERE = Region()
 
 
 def _numbers(region: Region, places: Sequence[str]) -> list[list[int]]:
-    """Return, for each group of inputs with unit norm, the indices of its inputs within a list of places."""
+    """Return, for each group of inputs with unit norm, the positions of its inputs within the list ``places``."""
     return [[places.index(place) for place in group if place in places] for group in region.unit]
 
 
 def off_unit(boxes: Array, region: Region, places: Sequence[str]) -> NDArray[np.bool_]:
-    """Tell which boxes, shape (2, inputs, n), hold no point of a region because no squares in them sum to 1."""
+    """Tell which boxes, shape (2, inputs, n), hold no allowed inputs because no squares in them sum to 1."""
     outside = np.zeros(boxes.shape[2], bool)
     for group, numbers in zip(region.unit, _numbers(region, places), strict=True):
         total = intervals.point(0.0, boxes.shape[2])
@@ -52,7 +52,10 @@ def off_unit(boxes: Array, region: Region, places: Sequence[str]) -> NDArray[np.
 
 
 def narrowed(boxes: Array, region: Region, places: Sequence[str]) -> Array:
-    """Return boxes shrunk to the points of a region in them; boxes without such a point are not changed."""
+    """Return boxes shrunk to the allowed inputs in them, such as unit quaternions; others are not changed.
+
+    Boxes without any are not changed.
+    """
     shrunk = boxes
     for group, numbers in zip(region.unit, _numbers(region, places), strict=True):
         for number in numbers:
@@ -70,7 +73,7 @@ def narrowed(boxes: Array, region: Region, places: Sequence[str]) -> Array:
 
 
 def _left_by(others: Sequence[Array], count: int) -> tuple[Array, Array]:
-    """Return the least and the largest |x| for which x^2 and the squares of some other numbers sum to 1."""
+    """Return the least and the largest |x| for which x^2 and the squares of ``others`` sum to 1."""
     rest = intervals.point(1.0, count) + np.array([[-UNIT_NORM], [UNIT_NORM]])
     for other in others:
         rest = intervals.add(rest, intervals.negative(intervals.square(other)))

@@ -27,7 +27,7 @@ ANY, UNIT = (-LARGEST, LARGEST), (Fraction(-1), Fraction(1))
 class SceneInputs:
     """The arguments of a scene's kernel, the values of its parameters, and its first and last time (s).
 
-    ``formulas`` maps the place of a parameter (``"p[0]"``) to its name and formula; ``constants`` holds the values of
+    ``formulas`` maps a parameter's index text (``"p[0]"``) to its name and formula; ``constants`` holds the values of
     the physical constants in these formulas.
     """
 
@@ -39,7 +39,7 @@ class SceneInputs:
 
     @property
     def components(self) -> dict[str, tuple[str, str]]:
-        """The symbol and unit of each input, by place such as ``"y[0]"``."""
+        """The symbol and unit of each input component, by its index text such as ``"y[0]"``."""
         return {
             (each.name if each.is_scalar else f"{each.name}[{i}]"): component[:2]
             for each in self.arguments
@@ -48,7 +48,7 @@ class SceneInputs:
 
 
 def scene_problem(inputs: SceneInputs, operations: Operations) -> RoundingProblem:
-    """Return the box and region that follow from a scene: fixed parameters, its time span, a unit quaternion.
+    """Return the box and the restrictions that a scene sets: fixed parameters, its time span, a unit quaternion.
 
     States other than the quaternion are missing from the box; an input that the kernel does not use may be any number.
     """
@@ -63,7 +63,7 @@ def scene_problem(inputs: SceneInputs, operations: Operations) -> RoundingProble
 
 
 def header_lines(inputs: SceneInputs, section: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
-    """Return the lines about bounds in the header comment of a scene's C, each as title and text."""
+    """Return the lines about rounding bounds in the header comment of a scene's C file, each as (title, text)."""
     names: dict[tuple[float, float], list[str]] = {}
     parameters = {f"p[{i}]": value for i, value in enumerate(inputs.parameters)}
     for place, ends in section["box"].items():

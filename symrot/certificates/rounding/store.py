@@ -26,14 +26,14 @@ _NUMBERS = ("bound", "pointwise", "largest_value")
 
 @cache
 def method() -> str:
-    """Return the SHA-256 of the sources of the bounding method; stored bounds of another version are not used."""
+    """Return the SHA-256 of the source files that compute bounds; bounds stored by other versions are not used."""
     here = Path(__file__).parent
     return hashlib.sha256(b"".join((here / f"{name}.py").read_bytes() for name in _METHOD)).hexdigest()
 
 
 @cache
 def table() -> Mapping[str, Any]:
-    """Return the table of bounds that comes with symrot, with the hash of the method that computed them."""
+    """Return the table of bounds that comes with symrot, and the hash of the source files that computed it."""
     try:
         return dict(json.loads(TABLE.read_text(encoding="utf-8")))
     except OSError:
@@ -57,13 +57,18 @@ def _from_json(plain: Mapping[str, Any]) -> SearchResult:
 
 
 class Store:
-    """A store of rounding error bounds by key: in memory, in the table of symrot and in the cache."""
+    """A store of rounding error bounds by key (a hash of the task): in memory, in symrot's table and in the cache."""
 
     def __init__(self) -> None:
         self.memory: dict[str, SearchResult] = {}
 
     def get(self, key: str, with_table: bool = True) -> SearchResult | None:
-        """Return the bound of a key, or None; without ``with_table`` the table of symrot is not searched."""
+        """Return the bound of a rounding error by its key, or None.
+
+        With ``with_table=False`` the table of bounds that comes with symrot is not searched.
+
+        With ``with_table=False`` the table of symrot is not searched.
+        """
         if with_table and key in table()["bounds"]:
             return _from_json(table()["bounds"][key])
         if key not in self.memory:
@@ -74,6 +79,6 @@ class Store:
         return self.memory[key]
 
     def put(self, key: str, bound: SearchResult) -> None:
-        """Store the bound of a key in memory and in the cache."""
+        """Store a bound of a rounding error under its key, in memory and in the cache."""
         self.memory[key] = bound
         cache_files.store(f"rounding {method()} {key}", json.dumps(_to_json(bound)))

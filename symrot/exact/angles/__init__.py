@@ -1,1 +1,1 @@
-"""Arguments of sines and cosines: sums of symbols, rational multiples of pi, and inverse functions."""
+"""Arguments of sines and cosines: sums of symbols, rational multiples of pi, and inverse functions such as asin."""

@@ -31,10 +31,10 @@ class LinearForm:
 
 
 def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
-    """Return the linear form of an angle (rad) with rational coefficients.
+    """Return the linear form of an angle (rad): atoms (such as symbols) with rational factors, and a multiple of pi.
 
     Products are expanded; every factor that is not a number is an atom. With ``turns=False``, used for the exponent of
-    an exponential, ``pi`` is an atom like any other.
+    an exponential, ``pi`` is an atom as any symbol is.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
 
 
 def base_coefficients(forms: Iterable[LinearForm]) -> dict[Expr, Fraction]:
-    """Return, for each atom, the largest rational number of which all its coefficients are integer multiples.
+    """Return, for each atom (symbol), the largest rational number of which all its coefficients are integer multiples.
 
     The base angle of the atom is this number times the atom: ``theta/2`` if ``theta`` and ``theta/2`` occur.
     """
@@ -88,12 +88,12 @@ def constant_cosine_sine(half_turns: Fraction) -> tuple[Expr, Expr]:
 
 
 def base_angle(atom: Expr, coefficient: Fraction) -> Expr:
-    """Return the angle, rad, of which all multiples of an atom are whole multiples: a coefficient times the atom."""
+    """Return the base angle (rad) of an atom, such as ``theta/2``, as an expression."""
     return Rational(coefficient.numerator, coefficient.denominator) * atom
 
 
 def chebyshev(multiple: int) -> tuple[list[int], list[int]]:
-    """Return the integer coefficients (lowest power first) of the Chebyshev polynomials T_n and U_(n-1), ``n >= 1``.
+    """Return the Chebyshev polynomials T_n and U_(n-1), ``n >= 1``, as integer coefficients, lowest power first.
 
     ``cos(n x) = T_n(cos x)`` and ``sin(n x) = sin(x) U_(n-1)(cos x)``.
     """

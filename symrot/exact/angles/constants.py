@@ -1,9 +1,9 @@
-"""Proof that a number made of roots and of cosines of rational angles is zero, or not, by a separation bound.
+"""Prove that a number made of roots and of cosines of rational multiples of pi is zero or is not zero.
 
-A sum of products of algebraic integers is an algebraic integer. If it is not zero, the product of its conjugates is a
-nonzero whole number, so its size is at least ``B^(1 - D)``, where B bounds all its conjugates and D is the degree of
-the field (Burnikel, Funke, Mehlhorn, Schirra, Schmitt, A separation bound for real algebraic expressions, 2001). An
-interval around the number that is narrower than this bound decides.
+The method is a separation bound. A sum of products of algebraic integers is an algebraic integer. If it is not zero,
+the product of its conjugates is a nonzero whole number, so its size is at least ``B^(1 - D)``, where B bounds all its
+conjugates and D is the degree of the field (Burnikel, Funke, Mehlhorn, Schirra, Schmitt, A separation bound for real
+algebraic expressions, 2001). An interval around the number that is narrower than this bound decides.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -41,16 +41,19 @@ class Number:
 
 
 class NotReal(ArithmeticError):
-    """The error raised for an even root of a negative number."""
+    """The exception for an even root of a negative number, which is not real."""
 
 
 def cosine_number(place: int, degree: int, order: int) -> Number:
-    """Return the description of ``2 cos(pi/order)`` as an algebraic number; ``place`` is its variable in the ring."""
+    """Return ``2 cos(pi/order)`` as an algebraic number; ``place`` is the index of its variable in the ring."""
     return Number(place, degree, 1, 1, order)
 
 
 def root_number(place: int, index: int, inside: PolyElement, known: Mapping[int, Number]) -> Number:
-    """Return the description of a root of a polynomial in known numbers; ``place`` is its variable in the ring."""
+    """Return a root of a polynomial in known numbers as an algebraic number.
+
+    ``place`` is the index of its variable in the ring; ``inside`` is the polynomial.
+    """
     needs = _places(inside)
     needs = needs.union(*(known[n].needs for n in needs)) if needs else needs
     multiplier, bound = _integral(inside.items(), known)

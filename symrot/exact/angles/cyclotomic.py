@@ -28,17 +28,20 @@ Beyond it a constant stays a symbol."""
 
 
 def order(denominator: int) -> int:
-    """Return the even N such that sines and cosines of multiples of pi/denominator are polynomials in 2 cos(pi/N)."""
+    """Return the even N for which every cosine and sine of k pi/denominator is a polynomial in 2 cos(pi/N)."""
     return denominator if denominator % 2 == 0 else 2 * denominator
 
 
 def needs_cyclotomic_field(denominator: int) -> bool:
-    """Return whether sines of multiples of pi/denominator can be expressed within the limit of the degree."""
+    """Return whether the field of 2 cos(pi/N), needed for multiples of pi/denominator, has an allowed degree.
+
+    The limit is ``LARGEST_DEGREE``; N is ``order(denominator)``.
+    """
     return order(denominator) <= 12 * LARGEST_DEGREE and degree(order(denominator)) <= LARGEST_DEGREE
 
 
 def degree(n: int) -> int:
-    """Return the degree of 2 cos(pi/n) over the rationals, n >= 2."""
+    """Return the degree over the rationals of the algebraic number 2 cos(pi/n), n >= 2."""
     return int(totient(2 * n)) // 2
 
 
@@ -71,7 +74,7 @@ def doubled_cosine(times: int, n: int) -> tuple[int, ...]:
 
 
 def multiples(turns: Fraction, n: int) -> tuple[int, int]:
-    """Return (k, l) with ``cos(turns pi) = cos(k pi/n)`` and ``sin(turns pi) = cos(l pi/n)``.
+    """Return (k, l) with ``cos(turns*pi) = cos(k*pi/n)`` and ``sin(turns*pi) = cos(l*pi/n)``.
 
     The product ``n * turns`` must be a whole number.
     """

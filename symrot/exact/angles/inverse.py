@@ -33,7 +33,7 @@ def _atan2(y: Expr, x: Expr) -> Pair:
 
 
 def _half(cosine: Expr, sine: Expr) -> Pair:
-    """Return the (cosine, sine) of half an angle strictly between -pi and pi."""
+    """Return the cosine and sine of half an angle from those of the angle, which lies strictly between -pi and pi."""
     below = sqrt(HALF + cosine / 2)
     return below, sine / (2 * below)
 
@@ -43,7 +43,7 @@ INVERSE: dict[type, Callable[..., Pair]] = {asin: _asin, acos: _acos, atan: _ata
 
 
 def cosine_sine(angle: Expr, halvings: int) -> Pair:
-    """Return the cosine and sine of the value of an inverse function divided by ``2**halvings``."""
+    """Return the cosine and sine of ``angle / 2**halvings``, where ``angle`` is an inverse function such as asin(u)."""
     pair = INVERSE[type(angle)](*angle.args)
     if halvings and isinstance(angle, acos):  # the range of acos ends at pi, half of which is included too
         (u,) = angle.args
@@ -61,7 +61,10 @@ _QUARTER = Fraction(1, 2)
 
 
 def range_of(angle: Expr) -> Range:
-    """Return a range that contains all values of an inverse function; known signs of the arguments narrow it."""
+    """Return a range that contains all values of an inverse function such as atan(u).
+
+    Known signs of its arguments narrow the range.
+    """
     first, second = (*angle.args, Integer(1))[:2]
     closed = not isinstance(angle, atan)
     if isinstance(angle, acos):

@@ -1,4 +1,4 @@
-"""Multiples of inverse trigonometric functions, as angles whose sine and cosine can be computed."""
+"""Multiples of inverse trigonometric functions, such as 2 asin(u), as angles whose sine and cosine are computable."""
 
 from collections.abc import Iterator
 from fractions import Fraction
@@ -12,20 +12,23 @@ __all__ = ["halved", "is_bound", "parts_of", "unbound"]
 
 
 def is_bound(atom: Expr, coefficient: Fraction) -> bool:
-    """Return whether the sine and cosine of ``coefficient * atom`` can be computed.
+    """Return whether the cosine and sine of ``coefficient * atom`` have formulas without trigonometric functions.
 
-    They can if the atom is an inverse trigonometric function and the denominator of the coefficient is a power of two.
+    They have if the atom is an inverse trigonometric function and the coefficient's denominator is a power of two.
     """
     return type(atom) in INVERSE and coefficient.denominator in (1, 2, 4, 8)
 
 
 def unbound(form: LinearForm) -> LinearForm:
-    """Return an angle without its multiples of inverse trigonometric functions (see :func:`is_bound`)."""
+    """Return an angle without its multiples of inverse trigonometric functions, such as 2 asin(u).
+
+    :func:`is_bound` decides which multiples these are.
+    """
     return LinearForm(tuple(term for term in form.terms if not is_bound(*term)), form.half_turns)
 
 
 def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
-    """Yield pairs (h, n) such that ``coefficient`` times an angle is the sum of n times the angle halved h times."""
+    """Yield pairs (h, n) for which ``coefficient`` is the sum of all n/2^h; h says how often an angle is halved."""
     left, halvings = coefficient, 0
     while left:
         times = int(left)
@@ -35,5 +38,5 @@ def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
 
 
 def parts_of(atom: Expr, coefficient: Fraction) -> list[Expr]:
-    """Return the cosines and sines that make up the cosine and sine of a multiple of an inverse function."""
+    """Return cosines and sines of angles whose sum is a multiple of an inverse trigonometric function."""
     return [part for halvings, _ in halved(coefficient) for part in cosine_sine(atom, halvings)]

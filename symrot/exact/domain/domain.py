@@ -12,7 +12,9 @@ __all__ = ["divisors", "is_dense", "radicands", "signs", "split_radicands"]
 
 
 def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
-    """Return the divisors, which must not be zero, as (divisor as written, its factor), except the ``granted`` factors.
+    """Return the divisors of formulas, each as (divisor as written, factor that must not be zero).
+
+    The ``granted`` factors are left out.
 
     A factor that is a root is replaced by its radicand.
     """
@@ -34,7 +36,7 @@ def _inside(root: Root) -> Expr:
 
 
 def radicands(ring: FormulaRing) -> list[Expr]:
-    """Return the formulas that must not be negative: radicands, arguments of logarithms, 1 - x^2 of asin and acos."""
+    """Return formulas that must not be negative: radicands, arguments of logarithms, 1 - x^2 of asin(x) and acos(x)."""
     bases = [radical.base for node, radical in ring.radicals.items() if isinstance(node, Pow)]
     formulas = [base for base in bases if not _is_square(base)]
     formulas += [formula for leaf in _leaves(ring) for formula in _nonnegative(leaf)]
@@ -43,7 +45,7 @@ def radicands(ring: FormulaRing) -> list[Expr]:
 
 
 def split_radicands(ring: FormulaRing) -> list[Expr]:
-    """Return the radicands that must not be negative for proofs to hold, although the formulas may be real elsewhere.
+    """Return the radicands that must not be negative for proofs to hold, although formulas may be real without this.
 
     ``sqrt(P f^2)`` is read as ``|f| sqrt(P)``, which is not real where f is zero and P is negative.
     """
@@ -52,10 +54,10 @@ def split_radicands(ring: FormulaRing) -> list[Expr]:
 
 
 def is_dense(ring: FormulaRing) -> bool:
-    """Return whether the points at which no divisor is zero are known to be dense.
+    """Return whether the points at which no divisor is zero are known to be dense among all real points.
 
-    They are dense for formulas in the decidable scope, but maybe not with roots, with numbers that are not algebraic,
-    or with angles and exponents that may depend on each other, as ``x log(4)`` and ``x log(2)`` do.
+    They are dense for formulas in the decidable scope, but maybe not if roots occur, or numbers that are not algebraic,
+    or angles and exponents that may depend on each other, as ``x log(4)`` and ``x log(2)`` do.
     """
     return not ring.roots and not ring.outside_scope and all(map(_is_plain, (*ring.bases, *ring.exponent_bases)))
 
@@ -70,13 +72,13 @@ def _is_plain(atom: Expr) -> bool:
 
 
 def signs(ring: FormulaRing) -> list[Expr]:
-    """Return formulas that are nonnegative wherever the formulas of the ring are defined, in all known forms."""
+    """Return formulas that are nonnegative wherever the formulas of the ring are defined, such as radicands."""
     sides = [1 + sign * leaf.args[0] for leaf in _leaves(ring) if isinstance(leaf, asin | acos) for sign in (1, -1)]
     return [*radicands(ring), *sides]
 
 
 def _leaves(ring: FormulaRing) -> Iterable[Expr]:
-    """Return the inverse functions and logarithms of a ring, alone or inside sines and cosines."""
+    """Return the inverse functions and logarithms in the formulas of a ring, also those inside sines and cosines."""
     return [*ring.symbols, *(atom for form in ring.forms.values() for atom, _ in form.terms)]
 
 

@@ -1,4 +1,4 @@
-"""The range of a formula over all real points: bounds that hold for all values of its symbols.
+"""Bounds of a formula that hold for all real values of its symbols.
 
 ``cos(x) - 2`` lies between -3 and -1, so its root is real nowhere. Bounds are exact fractions or infinite; a formula
 whose range is not known gets the bounds (-inf, inf), which exclude nothing.
@@ -26,13 +26,13 @@ MOST_BITS = 2000
 
 
 def fails_everywhere(need: Need) -> bool:
-    """Return whether a condition (see :class:`Need`) is proven to hold at no real point."""
+    """Return whether a condition, such as ``x >= 0`` (see :class:`Need`), is proven to hold at no real point."""
     low, high = range_everywhere(need.formula)
     return bool({">= 0": high < 0, "> 0": high <= 0, "!= 0": low == high == 0}.get(need.sign, False))
 
 
 def range_everywhere(formula: Expr) -> Range:
-    """Return bounds (low, high) of a formula over all real points at which it is defined."""
+    """Return bounds (low, high) that hold for a formula at all real points at which it is defined."""
     return _range(formula, {})
 
 
@@ -68,7 +68,7 @@ def _of_number(node: Expr) -> Range:
 
 
 def _end(value: Any) -> Fraction:
-    """Return the exact value of an endpoint of an interval."""
+    """Return the exact value of an endpoint of an interval as a fraction."""
     sign, mantissa, power, _ = value._mpi_[0]
     if abs(power) > MOST_BITS:
         raise OverflowError
@@ -114,7 +114,7 @@ def _power(base: Range, exponent: Expr) -> Range:
 
 
 def _monotone(function: Callable[[Expr], Expr], least: Bound, most: Bound) -> Callable[[Range], Range]:
-    """Return the function that maps the range of an argument to the range of an increasing function of it.
+    """Return a function that maps the range of an argument to the range of an increasing function such as log.
 
     ``least`` and ``most`` are the limits of the increasing function at the ends of its domain.
     """

@@ -36,7 +36,7 @@ Point = dict[Expr, Any]
 
 
 def holds(need: Need, point: Point) -> bool:
-    """Return whether a condition (see :class:`Need`) is proven to hold at a point."""
+    """Return whether a condition, such as ``x >= 0`` (see :class:`Need`), is proven to hold at a point."""
     if need.sign == "real":
         return False
     held = enclosure(need.formula, point)
@@ -46,7 +46,7 @@ def holds(need: Need, point: Point) -> bool:
 
 
 def known_point(needs: Sequence[Need], equations: Sequence[Expr] = ()) -> Point | None:
-    """Return a point at which the conditions and the equations are proven to hold, or None if none is found.
+    """Return a point at which conditions and equations are proven to hold, or None if no such point is found.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class _Search:
         return None
 
     def whole(self, point: Point) -> bool:
-        """Return whether all symbols that are assumed to be integers have integer values."""
+        """Return whether all symbols that are assumed to be integers have integer values at a point."""
         return all(not leaf.is_integer or getattr(value, "denominator", 0) == 1 for leaf, value in point.items())
 
     def starts(self, source: Random) -> Iterator[Point]:
@@ -107,7 +107,7 @@ class _Search:
         return source.choice(fitting) if fitting else Fraction(1)
 
     def broken(self, point: Point) -> list[Need]:
-        """Return the conditions that do not hold in double precision."""
+        """Return the conditions that are violated at a point, computed in double precision."""
         values = {leaf: float(value) for leaf, value in point.items()}
         known: dict[Expr, float] = {}
         return [need for need in self.needs if not self.seems(need, values, known)]
@@ -121,12 +121,12 @@ class _Search:
         return value >= -TOLERANCE if need.sign == ">= 0" else value > 0 if need.sign == "> 0" else value != 0
 
     def moved(self, point: Point) -> Point:
-        """Return a point improved one value at a time, as long as fewer conditions are violated after each change."""
+        """Improve a point one value at a time, as long as fewer conditions are violated after each change."""
         point = self.jumped(point)
         return self.climbed(point) if self.broken(point) else point
 
     def climbed(self, point: Point) -> Point:
-        """Return a point reached by steps that violate the conditions less; a step without effect is halved."""
+        """Improve a point by steps that reduce the violation of the conditions; a step without effect is halved."""
         size, depth = Fraction(1), self.depth(point)
         while depth < 0 and size > SMALLEST_STEP and self.looks < MOST_LOOKS:
             trials = ({**point, leaf: point[leaf] + sign * size}
@@ -139,7 +139,7 @@ class _Search:
         return point
 
     def depth(self, point: Point) -> float:
-        """Return minus the size of the violation of the conditions in double precision; zero if all hold."""
+        """Return minus the total violation of the conditions at a point, in double precision; zero if all hold."""
         values = {leaf: float(value) for leaf, value in point.items()}
         known: dict[Expr, float] = {}
         self.looks += len(self.needs)
@@ -172,7 +172,7 @@ class _Search:
 
 
 def _allowed(leaf: Expr, value: Fraction) -> bool:
-    """Return whether a rational value agrees with the assumptions on a symbol."""
+    """Return whether a rational value agrees with the assumptions on a symbol, such as positive or integer."""
     return not (
         (leaf.is_positive and value <= 0) or (leaf.is_negative and value >= 0) or (leaf.is_nonnegative and value < 0)
         or (leaf.is_nonpositive and value > 0) or (leaf.is_nonzero and value == 0)

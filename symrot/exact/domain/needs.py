@@ -1,9 +1,9 @@
-"""The needs of a formula: conditions on its radicands, logarithms and divisors under which it is a real number.
+"""The conditions under which a formula is a real number: on its radicands, logarithms and divisors.
 
 All functions take real values for real arguments, on their principal branch. A power ``u^(p/q)`` with a fraction in
-lowest terms, even with odd q, is real only for u >= 0, and for u > 0 if p < 0: SymPy's cube root of -8 is
-``1 + sqrt(3) i``. A term that SymPy cancels while it builds the formula (``0*log(x)``) cannot be seen here; the reader
-of claims notes it.
+lowest terms, even with odd q, is real only for u >= 0, and for u > 0 if p < 0: SymPy's cube root of -8 is ``1 + sqrt(3)
+i``. A term that SymPy cancels while it builds the formula (``0*log(x)``) cannot be seen here; the module that reads
+claims records it.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -50,14 +50,17 @@ The function ``sign`` is the derivative of an absolute value, which does not exi
 
 
 def is_leaf(node: Expr) -> bool:
-    """Return whether a node is a free real number: a symbol, a function of time, its derivative, or a matrix entry."""
+    """Return whether a node of an expression is a free real number: a symbol, function of time or matrix entry.
+
+    A time derivative of a function of time is free too.
+    """
     if isinstance(node, sympy.Derivative):
         return isinstance(node.expr, AppliedUndef)
     return bool(node.is_Symbol) or isinstance(node, AppliedUndef | MatrixElement)
 
 
 def leaves_of(formulas: Iterable[Expr]) -> list[Expr]:
-    """Return the symbols, functions of time and derivatives that occur, each once, in a reproducible order."""
+    """Return the symbols, functions of time and derivatives in formulas, each once, in the same order in every run."""
     leaves = {node for node in _pieces(formulas) if is_leaf(node)}
     return sorted(leaves, key=lambda leaf: (str(leaf), type(leaf).__name__))
 
@@ -70,7 +73,7 @@ def assumptions_of(leaf: Expr) -> list[Need]:
 
 
 def needs_of(formulas: Iterable[Expr]) -> list[Need]:
-    """Return the conditions under which formulas, and these conditions, are real; obvious ones are left out."""
+    """Return the conditions under which formulas and these conditions are real; obvious ones are omitted."""
     needs: dict[Need, None] = {}
     for node in _pieces(formulas):
         for need in _needs(node):
@@ -98,7 +101,7 @@ def _needs(node: Expr) -> Iterator[Need]:
 
 
 def _granted(need: Need) -> bool:
-    """Return whether a need follows from the assumptions on symbols; needs of constants are always proven."""
+    """Return whether a condition follows from the assumptions on symbols; a condition on a constant does not."""
     formula = need.formula
     if need.sign == "real" or not (formula.is_Rational or formula.free_symbols):
         return False
@@ -107,7 +110,7 @@ def _granted(need: Need) -> bool:
 
 
 def _pieces(formulas: Iterable[Expr]) -> Iterator[Expr]:
-    """Yield every subexpression once, without recursion; leaves are not entered."""
+    """Yield every subexpression of formulas once, without recursion; the inside of symbols is skipped."""
     stack, seen = list(formulas), set()
     while stack:
         node = stack.pop()

@@ -32,7 +32,7 @@ Row = list[float]
 
 
 class EquationSystem:
-    """Equations ``formula = 0`` in given unknowns, solved from a starting point.
+    """Equations ``formula = 0`` in given unknowns, which Newton's method solves from a starting point.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class EquationSystem:
         self.slopes = [[formula.diff(name) for name in self.names.values()] for formula in self.formulas]
 
     def solved(self, start: Mapping[Expr, float]) -> dict[Expr, float] | None:
-        """Return the point to which Newton's method with steps of least length converges, or None."""
+        """Return the point to which Newton's method with shortest steps converges, or None if it diverges."""
         values = {self.names[leaf]: float(start[leaf]) for leaf in self.leaves}
         for _ in range(MOST_STEPS if self.small else 0):
             try:
@@ -67,7 +67,7 @@ class EquationSystem:
         return None
 
     def box(self, near: Mapping[Expr, float]) -> dict[Expr, Any] | None:
-        """Return intervals and fractions for the unknowns that provably contain a solution, or None."""
+        """Return intervals and fractions for the unknowns that provably contain a solution near a point, or None."""
         values = {self.names[leaf]: near[leaf] for leaf in self.leaves}
         try:
             rows = [[float_at(slope, values, {}) for slope in row] for row in self.slopes]
@@ -117,7 +117,7 @@ def _point(value: Fraction) -> Any:
 
 
 def _shortest(rows: list[Row], residuals: Row) -> Row | None:
-    """Return the shortest step with ``rows * step = residuals``, slightly damped if the rows are dependent."""
+    """Return the shortest vector ``step`` with ``rows * step = residuals``, damped if the rows are dependent."""
     gram = [[sum(a * b for a, b in zip(p, q, strict=True)) for q in rows] for p in rows]
     size = max(gram[n][n] for n in range(len(gram)))
     if not size:
@@ -150,7 +150,7 @@ def _inverted(rows: list[Row]) -> list[Row] | None:
 
 
 def _pivots(rows: list[Row]) -> list[int] | None:
-    """Return as many columns as there are rows, chosen so that they are independent, best pivot first, or None."""
+    """Return indices of independent columns, as many as there are rows, best pivot first; None if there are too few."""
     work = [list(row) for row in rows]
     chosen: list[int] = []
     for step in range(len(work)):

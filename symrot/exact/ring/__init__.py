@@ -1,1 +1,1 @@
-"""Polynomials, fractions and relations: the ring in which each formula has a unique normal form."""
+"""Polynomials, fractions and relations: the ring of polynomials in which each formula has a unique normal form."""

@@ -59,7 +59,10 @@ class _Basis:
     def spend(self, products: int) -> None:
         self.spent[0] += products * self.weight
         if self.spent[0] > self.most:
-            raise TooLarge(f"the hypotheses need more than {self.most} products of terms; use fewer or simpler ones")
+            raise TooLarge(
+                f"expected hypotheses that need at most {self.most} products of terms, got more; use "
+                "fewer or simpler hypotheses"
+            )
 
     def of(self, polynomials: Sequence[PolyElement]) -> tuple[PolyElement, ...]:
         pairs: list[tuple[Any, ...]] = []
@@ -73,7 +76,10 @@ class _Basis:
         return self.reduced()
 
     def add(self, terms: Terms, pairs: list[tuple[Any, ...]]) -> None:
-        """Add a reduced polynomial to the basis, and its pairs to the queue, smallest least common multiple first."""
+        """Add a reduced polynomial to the basis, and its pairs with the other members to the queue.
+
+        The pair with the smallest least common multiple is first.
+        """
         if not terms:
             return
         lead = max(terms, key=self.key)
@@ -89,7 +95,7 @@ class _Basis:
             pairs.clear()  # a constant generates the whole ring
 
     def idle(self, i: int, j: int) -> bool:
-        """Return whether a third polynomial makes a pair superfluous (Buchberger's chain criterion on older pairs)."""
+        """Return whether a third polynomial makes the pair (i, j) superfluous (Buchberger's chain criterion)."""
         both = tuple(map(max, self.leads[i], self.leads[j]))
         return any(
             k < i and _divides(lead, both) and tuple(map(max, lead, self.leads[i])) != both
@@ -106,7 +112,7 @@ class _Basis:
         return total
 
     def subtract(self, total: Terms, terms: Terms, shift: Monomial, times: Any) -> None:
-        """Subtract ``times * shift`` times a polynomial from ``total``, in place."""
+        """Subtract ``times * shift`` times a polynomial (``terms``) from the polynomial ``total``, in place."""
         self.spend(len(terms))
         zero = self.ring.domain.zero
         for mono, coefficient in terms.items():
@@ -118,7 +124,10 @@ class _Basis:
                 del total[place]
 
     def normal(self, terms: Terms, members: Sequence[Terms]) -> Terms:
-        """Return the remainder of a polynomial: no leading term of a member divides any of its terms."""
+        """Return the remainder of a polynomial after division by the members of a basis.
+
+        No leading term of a member divides a term of the remainder.
+        """
         leads = self.leads if members is self.members else [max(member, key=self.key) for member in members]
         left: Terms = {}
         while terms:

@@ -24,10 +24,10 @@ Outside = tuple[tuple[Root | Expr, int], ...]
 
 
 def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Expr]) -> tuple[Expr, Outside, bool]:
-    """Return (P, outside, loose) with ``above/below = P * product(factor^(2 n))``, where no factor is negative.
+    """Split a fraction above/below into P and squares of nonnegative factors; return (P, factors, loose).
 
-    The result is loose if a factor f may be zero where P is negative; there ``sqrt(P f^2)`` is real but ``sqrt(P)`` is
-    not.
+    ``above/below`` is P times the product of all factor^(2 n). The result is loose if a factor f may be zero where P is
+    negative; there ``sqrt(P f^2)`` is real but ``sqrt(P)`` is not.
     """
     whole = above.ring.clone(domain=ZZ)
     above, below = above.set_ring(whole), below.set_ring(whole)
@@ -67,7 +67,7 @@ def _irreducible(poly: PolyElement) -> list[tuple[PolyElement, int]]:
 
 @dataclass(frozen=True)
 class Dependence:
-    """A square root as a product of others: ``sqrt(number) * product(roots) / product(factor^n)``."""
+    """A square root as a product of other square roots: ``sqrt(number) * product(roots) / product(factor^n)``."""
 
     number: Rational
     roots: tuple[Root, ...]
@@ -75,7 +75,7 @@ class Dependence:
 
 
 def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr]) -> dict[Root, Dependence]:
-    """Return, for each square root that is a product of others, the expression by these others.
+    """Return, for each square root that is a product of other roots, its expression by these roots.
 
     The method is linear algebra modulo 2: a root is represented by the irreducible factors with odd exponents in its
     radicand.

@@ -1,8 +1,8 @@
-"""Fractions of polynomials whose denominators are products of known factors.
+"""Fractions of polynomials whose denominators are stored as products of factors, each factor with an exponent.
 
 Formulas of rotation divide often by a few factors (``sin(theta)``, a moment of inertia, ``1 + q0``). Each factor is
 stored once and represented by an exponent, so that a sum over equal denominators is a sum of polynomials. With each
-factor the expression is stored in which it first was a divisor: it is a condition for the formula to be defined.
+factor its first divisor is stored as it was written: the formula is defined only where that divisor is not zero.
 """
 
 from collections.abc import Callable, Sequence
@@ -26,12 +26,15 @@ The claims of the four textbooks and courses need at most 27 000."""
 
 
 class TooLarge(InputError):
-    """The error raised for a formula that cannot be expanded within the budget."""
+    """The exception for a formula whose expansion takes more products of terms than the budget allows."""
 
 
 @dataclass(frozen=True)
 class Ratio:
-    """A fraction ``numerator / (constant * product of factors)``; factors are (number, exponent), increasing."""
+    """A fraction ``numerator / (constant * product of factors)``.
+
+    ``factors`` are pairs (number of the factor, exponent), sorted by number.
+    """
 
     numerator: PolyElement
     constant: int = 1
@@ -64,11 +67,11 @@ class Ratios:
         self.products = 0  # products of terms used so far
 
     def number(self, numerator: int, denominator: int = 1) -> Ratio:
-        """Return a rational number as a fraction of the ring."""
+        """Return the rational number numerator/denominator as a fraction of the ring."""
         return Ratio(self.ring.ground_new(self.ring.domain(numerator)), denominator)
 
     def add(self, terms: Sequence[Ratio]) -> Ratio:
-        """Return the sum of fractions; those with equal denominators are added before any cross-multiplication."""
+        """Return the sum of fractions of polynomials; fractions with equal denominators are added first."""
         groups: dict[tuple[int, tuple[tuple[int, int], ...]], PolyElement] = {}
         for term in terms:
             key = (term.constant, term.factors)
@@ -93,7 +96,7 @@ class Ratios:
         return Ratio(total, common_constant, tuple(sorted(common.items())))
 
     def multiply(self, factors: Sequence[Ratio]) -> Ratio:
-        """Return the product of fractions, multiplying small numerators first."""
+        """Return the product of fractions of polynomials; small numerators are multiplied first."""
         numerator, constant = self.ring.one, 1
         below: dict[int, int] = {}
         for factor in sorted(factors, key=lambda f: len(f.numerator)):
@@ -105,7 +108,7 @@ class Ratios:
         return Ratio(numerator, constant, tuple(sorted(below.items())))
 
     def power(self, base: Ratio, exponent: int) -> Ratio:
-        """Return a fraction to a power >= 0."""
+        """Return a fraction of polynomials to an integer power >= 0."""
         if exponent == 0:
             return Ratio(self.ring.one)
         self._spend(_most_terms(base.numerator, exponent) * len(base.numerator))
@@ -113,7 +116,7 @@ class Ratios:
         return Ratio(base.numerator**exponent, base.constant**exponent, below)
 
     def invert(self, value: Ratio, source: Expr) -> Ratio:
-        """Return 1/value; new factors of its numerator are stored with ``source``, the divisor as it is written.
+        """Return 1/value; its divisor is stored together with ``source``, the divisor as the formula writes it.
 
         Raises
         ------
@@ -128,7 +131,7 @@ class Ratios:
         return Ratio(above if constant > 0 else -above, abs(constant.numerator), below)
 
     def denominator(self, value: Ratio) -> PolyElement:
-        """Return the denominator of a fraction as an expanded polynomial."""
+        """Return the denominator of a fraction of polynomials as an expanded polynomial."""
         below = self.ring.ground_new(self.ring.domain(value.constant))
         for number, power in value.factors:
             below = below * self.factors[number] ** power
@@ -137,10 +140,12 @@ class Ratios:
     def _spend(self, products: int) -> None:
         self.products += products * (1 + len(self.generators) // 8)  # a long monomial costs more
         if self.products > MOST_PRODUCTS:
-            raise TooLarge(f"expanding the formula takes more than {MOST_PRODUCTS} products of terms")
+            raise TooLarge(
+                f"expected a formula whose expansion takes at most {MOST_PRODUCTS} products of terms, got more"
+            )
 
     def _split(self, poly: PolyElement, source: Expr) -> tuple[Fraction, tuple[tuple[int, int], ...]]:
-        """Return a polynomial as a rational constant times known factors; new factors are stored."""
+        """Return a polynomial as a rational constant times factors; factors that are new are stored."""
         constant, poly = _primitive(poly)
         powers: dict[int, int] = {}
         shared = [min(column) for column in zip(*poly, strict=True)]
@@ -164,7 +169,7 @@ class Ratios:
         return constant, tuple(sorted(powers.items()))
 
     def _value(self, poly: PolyElement) -> int:
-        """Return the value of a polynomial with integer coefficients at a fixed point."""
+        """Return the value of a polynomial with integer coefficients at a fixed point, to test divisibility."""
         return sum(
             int(coefficient) * prod(base**power for base, power in zip(self.point, mono, strict=True) if power)
             for mono, coefficient in poly.items()
@@ -191,7 +196,7 @@ class Ratios:
 
 
 def _most_terms(poly: PolyElement, exponent: int) -> int:
-    """Return an upper bound on the number of terms of a power, from the terms and the degrees of the polynomial."""
+    """Return an upper bound on the number of terms of a polynomial's power."""
     if len(poly) < 2 or exponent == 1:
         return len(poly)
     by_degrees = prod(int(degree) * exponent + 1 for degree in poly.degrees())
@@ -199,7 +204,7 @@ def _most_terms(poly: PolyElement, exponent: int) -> int:
 
 
 def _primitive(poly: PolyElement) -> tuple[Fraction, PolyElement]:
-    """Return (c, P) with poly = c*P, where P has coprime integer coefficients and a positive leading coefficient."""
+    """Return (c, P) with ``poly = c*P``; P has coprime integer coefficients, the leading one positive."""
     scale: Any = 1
     if poly.ring.domain is QQ:
         scale, poly = poly.clear_denoms()

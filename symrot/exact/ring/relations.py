@@ -1,8 +1,9 @@
-"""Relations between generators, and the normal form of a polynomial modulo them.
+"""Relations between the variables of a polynomial ring, and the normal form of a polynomial modulo these relations.
 
-A relation ``g^n = P``, with ``P`` in lower generators only, is a rule that replaces the power ``g^n``. Rules are
-applied from the highest generator down, in one pass each. Their leading powers belong to different generators and are
-coprime, so rules alone are a Groebner basis. With any other hypothesis Buchberger's algorithm computes the basis.
+A relation ``g^n = P``, where g is a variable (generator) and ``P`` contains only lower variables, is a rule that
+replaces the power ``g^n``. Rules are applied from the highest variable down, in one pass each. Their leading powers
+belong to different variables and are coprime, so rules alone are a Groebner basis. With any other hypothesis
+Buchberger's algorithm computes the basis.
 """
 
 from collections.abc import Sequence
@@ -23,10 +24,10 @@ MOST_TERMS = 500_000
 
 @dataclass(frozen=True)
 class Rule:
-    """A rule ``generator^power = replacement``, where the replacement contains no higher generator.
+    """A rule ``generator^power = replacement`` for a variable (generator); the replacement contains no higher variable.
 
-    The replacement does not contain the generator itself either, except if the rule is the ``minimal`` polynomial of a
-    number; then it contains no other generator.
+    The replacement does not contain the variable itself either, except if the rule is the ``minimal`` polynomial of an
+    algebraic number; then it contains no other variable.
     """
 
     generator: int
@@ -36,13 +37,13 @@ class Rule:
 
     @property
     def polynomial(self) -> PolyElement:
-        """The polynomial ``generator^power - replacement``, which is zero."""
+        """The polynomial ``generator^power - replacement`` of the ring, which the rule says is zero."""
         return self.replacement.ring.gens[self.generator] ** self.power - self.replacement
 
 
 @dataclass(frozen=True)
 class Relations:
-    """The relations of a ring: rules, highest generator first, or, if rules do not suffice, a Groebner basis."""
+    """The relations of a polynomial ring: rules, highest variable first, or a Groebner basis if necessary."""
 
     rules: tuple[Rule, ...] = ()
     basis: tuple[PolyElement, ...] = ()
@@ -55,12 +56,12 @@ class Relations:
 
     @property
     def contradictory(self) -> bool:
-        """Whether the relations imply 1 = 0."""
+        """Whether the relations contradict each other, that is, imply 1 = 0."""
         return any(poly.is_ground for poly in self.basis)
 
 
 def relate(rules: Sequence[Rule], hypotheses: Sequence[PolyElement]) -> Relations | None:
-    """Return the relations that follow from rules and further hypotheses, or None if they need fractions."""
+    """Return the relations that follow from rules and hypotheses, or None if they need fractional coefficients."""
     known = _ordered(rules)
     for hypothesis in hypotheses:
         poly = known.reduce(hypothesis)
@@ -82,7 +83,7 @@ def _ordered(rules: Sequence[Rule]) -> Relations:
 
 
 def _as_rule(poly: PolyElement, known: Relations) -> Rule | None:
-    """Return ``poly = 0`` as a rule for a generator that has no rule yet, or None."""
+    """Return ``poly = 0`` as a rule for a variable that has no rule yet, or None if that is impossible."""
     lead = poly.leading_expv()
     places = [number for number, power in enumerate(lead) if power]
     if len(places) != 1 or any(rule.generator == places[0] for rule in known.rules):
@@ -97,7 +98,7 @@ def _as_rule(poly: PolyElement, known: Relations) -> Rule | None:
 
 
 def _replace(poly: PolyElement, rule: Rule) -> PolyElement:
-    """Return a polynomial in which every power >= ``rule.power`` of the rule's generator is replaced, in one pass."""
+    """Apply a rule once: replace every power >= ``rule.power`` of its variable in a polynomial."""
     place, power = rule.generator, rule.power
     low: dict[tuple[int, ...], Any] = {}
     high: dict[int, dict[tuple[int, ...], Any]] = {}
@@ -119,7 +120,7 @@ def _replace(poly: PolyElement, rule: Rule) -> PolyElement:
 
 
 def _divide(poly: PolyElement, rule: Rule) -> PolyElement:
-    """Return the remainder of a polynomial after division by the minimal polynomial of one generator."""
+    """Return the remainder of a polynomial after division by the minimal polynomial of one algebraic number."""
     place, power = rule.generator, rule.power
     groups: dict[tuple[int, ...], dict[int, Any]] = {}
     for mono, coefficient in poly.items():

@@ -1,4 +1,4 @@
-"""Expressions as fractions of polynomials, in a ring made for the formulas of one problem.
+"""Formulas as fractions of polynomials, in a ring of polynomials made for the formulas of one problem.
 
 The generators are, highest first: roots (outer before inner), sines, symbols and functions of time, exponentials of
 base exponents, and cosines. Inverse trigonometric functions are angles whose sine and cosine are known. The order of
@@ -72,11 +72,11 @@ def as_zero(relation: Any) -> Expr:
 
 
 class NeedsFractions(ArithmeticError):
-    """The error raised if a relation has coefficients that are not integers in a ring over the integers."""
+    """The exception for a relation whose coefficients are not integers, in a ring over the integers."""
 
 
 class FormulaRing:
-    """The polynomial ring of a fixed set of expressions, with its relations and its known denominators.
+    """The polynomial ring for a fixed set of expressions, with relations between its variables and known denominators.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ class FormulaRing:
             (self.fine_place,) = self._number([(pi, 2 * cos(pi / self.fine))]).values()
 
     def _number(self, named: Iterable[tuple[Any, Expr]]) -> dict[Any, int]:
-        """Append generators to the ring and return the index of each by its key."""
+        """Append variables to the ring; return the index of each by its key."""
         numbers = {}
         for key, expression in named:
             numbers[key] = len(self.generators)
@@ -156,7 +156,10 @@ class FormulaRing:
     # -- what occurs ------------------------------------------------------------------------------------------------
 
     def _collect(self, expressions: Iterable[Expr]) -> None:
-        """Collect the angles, roots and leaves of expressions; constant angles add the square roots of their sines."""
+        """Collect the angles, roots and symbols in expressions.
+
+        Constant angles add the square roots that occur in their sines and cosines.
+        """
         stack, seen = list(expressions), set()
         while stack:
             node = stack.pop()
@@ -192,13 +195,13 @@ class FormulaRing:
                 self.leaves[node] = is_function_of_time(node)
 
     def _radicand(self, base: Expr, index: int) -> Radicand:
-        """Return a radicand in lowest terms, reduced by the hypotheses that contain no roots themselves."""
+        """Return a radicand in lowest terms, reduced by those hypotheses that contain no roots."""
         plain = tuple(each for each in self.hypotheses if not any(map(is_root, preorder_traversal(each))))
         radicand: Radicand = remembered(("radicand", base, index, plain), lambda: _taken_apart(base, index, plain))
         return radicand
 
     def _dependences(self) -> dict[Root, Dependence]:
-        """Return the square roots that are products of other generators, if there are several."""
+        """Return the square roots that are products of other roots of the ring, with their expressions."""
         places = {root: n for root, n in self.roots.items() if root.index == 2 and not root.power_expression.is_number}
         plain = [root for root in places if not isinstance(root.expression, Abs)]
         if not plain or len(places) < 2:
@@ -206,7 +209,7 @@ class FormulaRing:
         return dependences({root: self._polynomial(root) for root in places}, self.generators)
 
     def _without_circles(self, dependences: dict[Root, Dependence]) -> dict[Root, Dependence]:
-        """Return the dependences without those that express a root by itself, directly or through other roots."""
+        """Return the dependences without circles, in which a root is expressed by itself or through others."""
         accepted: dict[Root, Dependence] = {}
         for root, dependence in dependences.items():
             stack, seen = _named(dependence), set()
@@ -220,21 +223,24 @@ class FormulaRing:
         return accepted
 
     def _take_fine_constants(self) -> int:
-        """Return N of the number 2 cos(pi/N) that expresses constant angles, or 0 if multiples of pi/24 suffice."""
+        """Return N if constant angles need the number 2 cos(pi/N), or 0 if all are multiples of pi/24."""
         if pi not in self.bases or not cyclotomic.needs_cyclotomic_field(self.bases[pi].denominator):
             return 0
         return cyclotomic.order(self.bases.pop(pi).denominator)
 
     @property
     def outside_scope(self) -> tuple[Expr, ...]:
-        """Functions between which unknown relations may hold; with them a nonzero normal form proves nothing."""
+        """Functions between which unknown relations may hold.
+
+        If there are any, a nonzero normal form does not prove that the formula is not zero.
+        """
         atoms = [atom for atom in self.bases if atom.is_number or atom.has(*INVERSE, sympy.log)]
         return tuple(sorted([*atoms, *(leaf for leaf, known in self.leaves.items() if not known)], key=_order))
 
     # -- the ring and its relations ---------------------------------------------------------------------------------
 
     def _relate(self, domain: Any) -> Relations | None:
-        """Build the ring over a domain of coefficients and return its relations; None if they need fractions."""
+        """Build the polynomial ring; return its relations, or None if they need fractional coefficients."""
         self.ring = PolyRing([f"x{number}" for number in range(len(self.generators))], domain, lex)
         self.relations = Relations()
         self.numbers: dict[int, Number] = {}
@@ -256,11 +262,14 @@ class FormulaRing:
         return relate(rules, self.hypothesis_numerators)
 
     def _polynomial(self, root: Root) -> PolyElement:
-        """Return the polynomial that a power of a root equals; raise ``NeedsFractions`` for fractional coefficients."""
+        """Return the polynomial P of the relation ``g^n = P`` of a root g.
+
+        Raise ``NeedsFractions`` if P has fractional coefficients.
+        """
         value = self.ratio(root.power_expression)
         above, below = self.reduce(value.numerator).cancel(self.ratios.denominator(value))
         if not below.is_ground:
-            raise InputError(f"the square root {root.expression} has a radicand that is no polynomial: {above}/{below}")
+            raise InputError(f"expected a polynomial as the radicand of {root.expression}, got {above}/{below}")
         if abs(below.LC) == 1:
             return above.mul_ground(below.LC)
         if self.ring.domain is ZZ:
@@ -268,7 +277,7 @@ class FormulaRing:
         return above.quo_ground(below.LC)
 
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
-        """Return the generators that are algebraic numbers and between which unknown relations may hold.
+        """Return the variables that are algebraic numbers between which unknown relations may hold.
 
         Square roots of primes have no unknown relations. The result is empty if one of the numbers is imaginary.
         """
@@ -288,7 +297,10 @@ class FormulaRing:
         return self._without_zeros(poly) if self.numbers and poly else poly
 
     def _without_zeros(self, poly: PolyElement) -> PolyElement:
-        """Return a polynomial without coefficients that are sums of dependent numbers and proven to be zero."""
+        """Return a polynomial without terms whose coefficients are proven to be zero.
+
+        Such a coefficient is a sum of dependent algebraic numbers.
+        """
         groups: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
         for mono, coefficient in poly.items():
             free = tuple(0 if n in self.numbers else power for n, power in enumerate(mono))
@@ -303,14 +315,14 @@ class FormulaRing:
     # -- reading ----------------------------------------------------------------------------------------------------
 
     def ratio(self, expression: Expr) -> Ratio:
-        """Return the expression as a fraction; raise ``InputError`` if a divisor is zero everywhere."""
+        """Return an expression as a fraction of polynomials; raise ``InputError`` if a divisor is zero everywhere."""
         known = self._read_already.get(expression)
         if known is None:
             known = self._read_already[expression] = self._read(expression)
         return known
 
     def difference(self, left: Expr, right: Expr) -> Ratio:
-        """Return left - right as a fraction of the ring."""
+        """Return left - right as a fraction of polynomials."""
         minus_right = self.ratios.multiply([self.ratios.number(-1), self.ratio(right)])
         return self.ratios.add([self.ratio(left), minus_right])
 
@@ -358,7 +370,7 @@ class FormulaRing:
         return self.ratios.multiply([number, *map(self._root, (*primes, *dependence.roots)), *divisors])
 
     def _outside(self, factors: Iterable[tuple[Root | Expr, int]]) -> Iterator[Ratio]:
-        """Yield the powers of the factors in front of a root: absolute values and nonnegative expressions."""
+        """Yield the powers of the factors that were extracted from a root: absolute values, nonnegative expressions."""
         for factor, times in factors:
             if isinstance(factor, Root):
                 yield self._power(self._root(factor), times, factor.expression)
@@ -374,7 +386,7 @@ class FormulaRing:
         return self.ratios.multiply(factors)
 
     def _cosine_sine(self, argument: Expr) -> tuple[Ratio, Ratio]:
-        """Return the cosine and sine of an angle in terms of the base angles (angle addition, Chebyshev)."""
+        """Return the cosine and sine of an angle as polynomials in the cosines and sines of base angles."""
         known = self._angles_read.get(argument)
         if known is not None:
             return known
@@ -406,7 +418,7 @@ class FormulaRing:
         return turned
 
     def _turned(self, angle: tuple[Ratio, Ratio], by: tuple[Ratio, Ratio]) -> tuple[Ratio, Ratio]:
-        """Return the cosine and sine of a sum of two angles."""
+        """Return the cosine and sine of a sum of two angles from the cosine and sine of each."""
         (cosine, sine), (c0, s0) = angle, by
         minus_s0 = self.ratios.multiply([self.ratios.number(-1), s0])
         turn, add = self.ratios.multiply, self.ratios.add
@@ -416,7 +428,7 @@ class FormulaRing:
         )
 
     def _known_angle(self, atom: Expr, coefficient: Fraction) -> Iterator[tuple[Ratio, Ratio]]:
-        """Yield (cosine, sine) of angles whose sum is a multiple of an inverse trigonometric function."""
+        """Yield (cosine, sine) of angles with the sum ``coefficient * atom``, for an inverse function ``atom``."""
         for halvings, times in halved(coefficient):
             c, s = map(self.ratio, cosine_sine(atom, halvings))
             if times < 0:
@@ -430,14 +442,14 @@ class FormulaRing:
         return cosine, sine
 
     def _in_generator(self, place: int, coefficients: Sequence[int]) -> PolyElement:
-        """Return the polynomial in one generator with the given integer coefficients, lowest power first."""
+        """Return the polynomial in one variable with given integer coefficients, lowest power first."""
         gen = self.ring.gens[place]
         return sum((gen**power * number for power, number in enumerate(coefficients) if number), self.ring.zero)
 
     # -- back to SymPy ----------------------------------------------------------------------------------------------
 
     def expression(self, value: Ratio) -> Expr:
-        """Return the fraction in lowest terms as a SymPy expression; exactly 0 if its numerator reduces to zero."""
+        """Return a fraction in lowest terms as a SymPy expression; exactly 0 if its numerator reduces to zero."""
         constant, above, below = self.lowest_terms(value)
         return constant * above / below
 
@@ -447,7 +459,10 @@ class FormulaRing:
         return constant, above.as_expr(*self.generators), below.as_expr(*self.generators)
 
     def lowest_polynomials(self, value: Ratio) -> tuple[Rational, PolyElement, PolyElement]:
-        """Return (c, P, Q) as :meth:`lowest_terms` does, with P and Q as polynomials of the ring."""
+        """Return (c, P, Q) with value = c*P/Q, where P and Q are polynomials of the ring.
+
+        c is a rational number >= 0; see :meth:`lowest_terms`.
+        """
         numerator = self.reduce(value.numerator)
         if not numerator:
             return Integer(0), self.ring.zero, self.ring.one
@@ -470,7 +485,7 @@ def _taken_apart(base: Expr, index: int, hypotheses: Sequence[Expr]) -> Radicand
 
 
 def _named(dependence: Dependence | None) -> list[Root]:
-    """Return the roots by which a root is expressed; an empty list if it is independent."""
+    """Return the roots that express a dependent root; an empty list if the root is independent of the others."""
     if dependence is None:
         return []
     return [*dependence.roots, *(factor for factor, _ in dependence.divisors if isinstance(factor, Root))]

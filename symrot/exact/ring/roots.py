@@ -1,4 +1,4 @@
-"""Roots: each fractional power as a rational factor times generators ``g`` with a relation ``g^n = P``.
+"""Roots: each fractional power as a rational factor times variables ``g`` of the ring with a relation ``g^n = P``.
 
 ``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``, and rational numbers are written by square roots of primes, so
 that the generator of a square root is never negative. (For other roots, ``(P/Q)^(1/n) = g/Q``.) Squares leave a root as
@@ -43,7 +43,7 @@ def written(node: Expr) -> str:
 
 @dataclass(frozen=True)
 class Root:
-    """A generator ``expression`` with ``expression^index = power_expression``; ``depth`` counts nested roots."""
+    """A root as a variable of the ring: ``expression^index = power_expression``; ``depth`` counts nested roots."""
 
     expression: Expr
     power_expression: Expr
@@ -53,7 +53,7 @@ class Root:
 
 @dataclass(frozen=True)
 class Radicand:
-    """A radicand in factors: ``content * above / below * product(factor^(2 n) of outside)``.
+    """A radicand split into factors: ``content * above / below * product(factor^(2 n) of outside)``.
 
     ``content`` is a rational >= 0; ``above`` and ``below`` are primitive polynomials over the integers in canonical
     form, and ``below`` is 1 under a square root; no factor of ``outside`` is negative. ``loose`` is true if such a
@@ -85,18 +85,18 @@ class Radical:
 
     @property
     def generators(self) -> tuple[Root, ...]:
-        """All roots in the radical, absolute values included."""
+        """All roots that the fractional power contains, absolute values included."""
         return (*self.roots, *(factor for factor, _ in self.outside if isinstance(factor, Root)))
 
     @property
     def parts(self) -> tuple[Expr, ...]:
-        """The expressions that must be read into the ring before this radical."""
+        """The expressions that must be converted to polynomials of the ring before this root can be."""
         insides = [root.power_expression for root in self.generators]
         return (self.rational, self.below, *insides, *(f for f, _ in self.outside if not isinstance(f, Root)))
 
 
 def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
-    """Return the factors of a fractional power, of ``i``, or of the absolute value of a real expression.
+    """Split a fractional power, the imaginary unit ``i`` or an absolute value into factors; return the factors.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ def _is_positive_where_defined(value: Expr) -> bool:
 
 
 def is_root(node: Expr) -> bool:
-    """Return whether a node is a fractional power, ``i``, or the absolute value of a real expression."""
+    """Return whether an expression is a fractional power, ``i``, or the absolute value of a real expression."""
     if isinstance(node, Pow):
         return bool(node.exp.is_Rational and not node.exp.is_Integer)
     return node is I or (isinstance(node, Abs) and _is_real_where_defined(node.args[0]))
@@ -193,7 +193,7 @@ def square_root_of_number(value: Rational) -> tuple[Rational, list[Root]]:
 
 
 def _nesting(expressions: Iterable[Expr]) -> int:
-    """Return the depth to which fractional powers are nested."""
+    """Return how many fractional powers are nested inside each other, at most, in some expressions."""
     deepest = 0
     for node in expressions:
         below = _nesting(node.args)
