@@ -240,9 +240,7 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
     rest = Matrix(pace).subs(dict.fromkeys(names, S.Zero))
     determinant = matrix.det().expand()
     if matrix.free_symbols & set(names) or determinant == 0:
-        raise InputError(
-            "torque: expected jumps along which the motion can slide in exactly one way, got others"
-        )
+        raise InputError("torque: expected jumps along which the motion can slide in exactly one way, got others")
     modes = tuple(zip(names, -(matrix.adjugate() * rest) / determinant, strict=True))
     still = [S.Zero if state in guards else rate for state, rate in zip(equations.states, equations.rates, strict=True)]
     return replace(equations, rates=tuple(still), definitions=(*modes, *equations.definitions), modes=modes,
