@@ -1,6 +1,6 @@
 """Formulas for a body swept through resonance: recurrences of series, and phases without cancellation.
 
-Such a body rotates at a constant rate about one axis, and at a linearly growing rate about an axis across it.
+Such a body rotates at a linearly growing rate about its axis, and at a constant rate about an axis across it.
 """
 
 from sympy import Expr, Matrix, Rational, S, Symbol, sqrt

@@ -47,7 +47,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Definitions:
-    """The names of a claim as SymPy values.
+    """The symbols and definitions of a claim as SymPy values.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The claims of a text with several lines, or with a chain of equals signs."""
+"""The claims of a text with several lines, or with a chain of equals signs such as ``a = b = c``."""
 
 from collections.abc import Mapping, Sequence
 
@@ -16,7 +16,7 @@ MOST_EQUATIONS = 30
 def claims_of_reading(
     reading: Reading, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None
 ) -> list[list[Claim]]:
-    """Return the claims of a text, line by line, and link by link of a chain ``a = b = c``.
+    """Return the claims of a reading (an interpretation of a text): one for each line, and each link of ``a = b = c``.
 
     A line that only gives a name to a formula is a definition for the lines after it.
     """

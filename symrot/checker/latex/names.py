@@ -168,7 +168,7 @@ class NamesPart(SumsPart):
         return self.called(OPERATORS[item.text])
 
     def called(self, name: str) -> Node:
-        """Read the arguments of a function in brackets, or one factor."""
+        """Read the argument of a function: its arguments in brackets, or a single factor without brackets."""
         opening = self.peek()
         if opening.text not in CLOSING:
             return Node("call", name, (self.factor(),))

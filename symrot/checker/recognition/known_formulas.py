@@ -330,7 +330,7 @@ def _quoted(text: str) -> str:
 
 @cache
 def by_fingerprint() -> dict[str, list[Known]]:
-    """Return the formulas of the file by their fingerprint."""
+    """Return the known formulas by their fingerprint, a hash that does not depend on the names of symbols."""
     formulas: dict[str, list[Known]] = {}
     for entry in tomllib.loads(FILE.read_text(encoding="utf-8"))["formula"]:
         formulas.setdefault(entry.pop("key"), []).append(Known(**entry))

@@ -223,7 +223,10 @@ def _strangeness(named: NamedFormula, known: Identification) -> tuple[int, int, 
 
 
 def _rarity(known: Identification) -> tuple[bool, int]:
-    """Return a rank of a known formula: usual conventions, and Euler sequences that books use often, come first."""
+    """Return a sort key of a known formula: formulas that match without a change, such as a transpose, come first.
+
+    Among these, formulas with an Euler sequence that books use often come first.
+    """
     sequences = [word for word in known.name.split() if word in SEQUENCES]
     usual = [USUAL_SEQUENCES.index(name) if name in USUAL_SEQUENCES else len(USUAL_SEQUENCES) for name in sequences]
     return bool(known.how), max(usual, default=0)

@@ -168,7 +168,7 @@ class Cursor(ABC):
         return members
 
     def called(self, function: str, token: Token) -> Node:
-        """Read the arguments of a function in brackets."""
+        """Read the arguments, in brackets, of a call of a function."""
         self.expect("(")
         arguments = self.members(")")
         if function in DEFINED and function not in self.vocabulary.functions and len(arguments) == 1:
