@@ -85,7 +85,7 @@ COMPARISONS = {"<": operator.lt, "==": operator.eq, ">=": operator.ge}
 
 
 def need(holds, sentence):
-    """Refuse a certificate with a sentence unless a condition holds."""
+    """Raise ValueError with a sentence unless a condition holds; the certificate is then refused."""
     if not holds:
         raise ValueError(sentence)
 
@@ -101,7 +101,7 @@ def quoted(value):
 
 
 class Number(NamedTuple):
-    """A node for a number in a formula, with its exact value."""
+    """A node of an expression tree: a number in a formula, with its exact value."""
 
     number: Fraction
 
@@ -110,7 +110,7 @@ class Number(NamedTuple):
 
 
 class Literal(NamedTuple):
-    """A node for a number in a C text, with the value of the double or float that C makes of it."""
+    """A node of an expression tree: a number in a C text, with the double or float that C makes of it."""
 
     number: float
 
@@ -119,7 +119,7 @@ class Literal(NamedTuple):
 
 
 class Variable(NamedTuple):
-    """A node for a variable: its name, or (array, component)."""
+    """A node of an expression tree: a variable, by its name or as a pair (array, component)."""
 
     name: str | tuple[str, int]
 
@@ -128,7 +128,7 @@ class Variable(NamedTuple):
 
 
 class Negative(NamedTuple):
-    """A node for an operand with a minus sign."""
+    """A node of an expression tree: an operand with a minus sign."""
 
     operand: object
 
@@ -137,7 +137,7 @@ class Negative(NamedTuple):
 
 
 class Chain(NamedTuple):
-    """A node for sums and differences, or products and quotients: ``first [(operation, operand), ..]``."""
+    """A node of an expression tree: a sum or a product, as ``first [(operation, operand), ..]``."""
 
     first: object
     rest: list
@@ -150,7 +150,7 @@ class Chain(NamedTuple):
 
 
 class Power(NamedTuple):
-    """A node for an integer power of an operand, or of its square root."""
+    """A node of an expression tree: an integer power of an operand, or of the operand's square root."""
 
     operand: object
     exponent: int
@@ -160,7 +160,7 @@ class Power(NamedTuple):
 
 
 class Call(NamedTuple):
-    """A node for a call of a mathematical function, such as ``sin(x)``."""
+    """A node of an expression tree: a call of a mathematical function, such as ``sin(x)``."""
 
     function: str
     arguments: list
@@ -170,7 +170,7 @@ class Call(NamedTuple):
 
 
 class Choice(NamedTuple):
-    """A node for ``a < b ? x : y``, where the comparison may also be ``>=`` or ``==``."""
+    """A node of an expression tree: ``a < b ? x : y``, where the comparison may also be ``>=`` or ``==``."""
 
     comparison: str
     a: object
@@ -186,7 +186,7 @@ class Choice(NamedTuple):
 
 
 class Definition(NamedTuple):
-    """A function that a certificate or a C text defines: its local variables, then its value."""
+    """A function that a certificate or a C text defines: its local variables, then the expression of its value."""
 
     parameters: list
     local: list  # of (name, expression)
@@ -201,7 +201,7 @@ class Definition(NamedTuple):
 
 
 class OwnCall(NamedTuple):
-    """A node for a call of a function that the certificate or the C text itself defines."""
+    """A node of an expression tree: a call of a function that the certificate or the C text itself defines."""
 
     definition: Definition
     arguments: list
@@ -217,13 +217,13 @@ OPERATIONS = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": oper
 
 
 class Arithmetic:
-    """The base class of arithmetics: numbers of one kind, with random values of functions, at one random point."""
+    """The base class of arithmetics: one kind of numbers, and random values of functions, at one random point."""
 
     def __init__(self):
         self.drawn = {}  # (function, *arguments) or (comparison, a, b) -> random number
 
     def random(self, *key):
-        """Return a random number that is always the same for the same key."""
+        """Return a random number; equal arguments give the same number."""
         if key not in self.drawn:
             self.drawn[key] = self.draw()
         return self.drawn[key]
@@ -235,14 +235,17 @@ class Arithmetic:
         return OPERATIONS[operation](x, y)
 
     def choose(self, comparison, a, b, x, y):
-        """Return the value of a choice; the branch that is not chosen is not computed."""
+        """Return the value of ``x`` if the comparison of ``a`` with ``b`` holds, else of ``y``.
+
+        The other branch is not computed.
+        """
         return x() if COMPARISONS[comparison](a, b) else y()
 
 
 class AnyFunctions(Arithmetic):
     """An arithmetic of exact fractions, in which functions and choices have random values.
 
-    A function is a random number for each argument; a choice is a random mean of its two ways for each comparison.
+    A function has a random value for each argument; ``a < b ? x : y`` is a random mean of x and y for each a and b.
     Expressions that agree here agree, with overwhelming probability, for all functions of these names.
     """
 
@@ -269,7 +272,7 @@ class AnyFunctions(Arithmetic):
         return x**exponent
 
     def short(self, x, times=1):
-        """Return a number; raise ValueError if the number, or its power, has too many digits for a fast check."""
+        """Return a number unchanged; raise ValueError if its power ``times`` has too many digits for a fast check."""
         digits = max(x.numerator.bit_length(), x.denominator.bit_length()) * times
         need(digits <= LONGEST_NUMBER, f"expected numbers of at most {LONGEST_NUMBER} binary digits, got longer ones")
         return x
@@ -313,7 +316,7 @@ EXACT_FUNCTIONS |= {"copysign": Decimal.copy_sign}
 
 
 class Decimals(Arithmetic):
-    """An arithmetic of 190-digit numbers, in which functions that no law knows (tan, exp, ..) have random values."""
+    """An arithmetic of 190-digit numbers; functions that occur in no law (tan, exp, ..) have random values."""
 
     def __init__(self):
         super().__init__()
@@ -335,7 +338,7 @@ class Decimals(Arithmetic):
 
 
 class Machine(Arithmetic):
-    """The arithmetic of C: each operation and function is rounded to the nearest double or float."""
+    """The arithmetic of C: each operation and each function value is rounded to the nearest double or float."""
 
     def __init__(self, nearest):
         super().__init__()
@@ -369,18 +372,18 @@ class Names(dict):
         return value
 
     def define(self, name, value):
-        need(name not in self, f"{name} is no new name: expected a name that nothing above it uses")
+        need(name not in self, f"{name} is already in use: expected a name that nothing above it uses")
         self[name] = value
 
 
 def at_a_point(compute):
-    """Return the value of ``compute`` at a random point, which is drawn again while the value is undefined there."""
+    """Return the value of ``compute`` at a random point; if the value is undefined there, draw another point."""
     for _ in range(200):
         try:
             return compute()
         except ArithmeticError:
             continue
-    raise ValueError("expected formulas that are defined somewhere, got none of 200 random points where they are")
+    raise ValueError("expected formulas that are defined somewhere, but they are undefined at 200 random points")
 
 
 # --- tokens and expressions as text -----------------------------------------------------------------------------------
@@ -405,7 +408,7 @@ class Token(NamedTuple):
 
 
 def tokens(text, place):
-    """Return the words of a text, each as long as possible, as a C compiler splits it."""
+    """Return the words (tokens) of a text, each as long as possible, as a C compiler splits it."""
     words, start, line = [], 0, 1
     while start < len(text):
         match = TOKEN.match(text, start)
@@ -418,7 +421,7 @@ def tokens(text, place):
 
 
 class Reader:
-    """A recursive-descent reader of expressions; subclasses define numbers, names and functions."""
+    """A recursive-descent parser of expressions; subclasses define numbers, names and functions."""
 
     def __init__(self, text, place):
         self.place = place
@@ -434,7 +437,7 @@ class Reader:
         return f"{self.place}, line {self.token.line}"
 
     def refuse(self, expectation):
-        """Raise ValueError with the line, the expected text and the next word."""
+        """Raise ValueError with the line number, the expected text and the next word."""
         raise ValueError(f"{self.here()}: expected {expectation}, got {quoted(self.token.text)}")
 
     def need(self, holds, sentence):
@@ -461,7 +464,10 @@ class Reader:
                 self.refuse(f"`{word.text}` of `{phrase}`")
 
     def take_name(self, what):
-        """Return the next word, a name; refuse names with _ in front and names of macros, as compilers reserve them."""
+        """Return the next word, which must be a name.
+
+        Refuse names with leading _ and names of macros, as compilers reserve them.
+        """
         if self.token.kind != "name" or self.token.text.startswith(("_", "SYMROT_")):
             self.refuse(what)
         return self.advance()
@@ -506,7 +512,7 @@ class Reader:
         return operand
 
     def call(self, name):
-        """Read the arguments of a function call, after the opening parenthesis."""
+        """Read the arguments of a function call, from behind the opening parenthesis; return the node of the call."""
         arguments = [self.sum()]
         while self.accept(","):
             arguments.append(self.sum())
@@ -522,13 +528,16 @@ class Reader:
         return Choice(self.choices[name], *arguments) if name in self.choices else Call(self.base(name), arguments)
 
     def check_weight(self):
-        self.need(self.weight <= LONGEST_TEXT, f"expected at most {LONGEST_TEXT} words with those of functions")
+        self.need(
+            self.weight <= LONGEST_TEXT,
+            f"expected at most {LONGEST_TEXT} words, including those of called functions, got more",
+        )
 
 
 class FormulaReader(Reader):
-    """A reader of formulas in a certificate: free symbols, powers, and functions that the certificate defines.
+    """A parser of the formulas in a certificate: symbols, powers, and functions that the certificate defines.
 
-    If ``symbols`` is passed, all other names are refused; in a constant, functions are refused too.
+    If ``symbols`` is passed, any other name is refused; in a constant, functions are refused too.
     """
 
     def __init__(self, text, place, own, symbols=None, is_constant=False):
@@ -552,11 +561,14 @@ class FormulaReader(Reader):
         return name
 
     def power(self, operand):
-        """Read an exponent of one or two digits, or half of it; negative and half exponents need parentheses."""
+        """Read the exponent of a power: one or two digits, or half of such a number.
+
+        Negative and half exponents need parentheses.
+        """
         if not self.accept("**"):
             return operand
         inner, sign = self.accept("("), -1 if self.accept("-") else 1
-        self.need(re.fullmatch(r"\d\d?", self.token.text), "expected an exponent of at most two digits")
+        self.need(re.fullmatch(r"\d\d?", self.token.text), "expected an exponent of one or two digits, got another")
         exponent = sign * int(self.advance())
         if inner and self.accept("/"):
             self.take("2")
@@ -568,7 +580,7 @@ class FormulaReader(Reader):
         return Power(operand, exponent)
 
     def whole(self):
-        """Return the expression of the whole text; refuse the text if anything follows the expression."""
+        """Parse the whole text as one expression and return it; refuse a text with anything after the expression."""
         expression = self.expression()
         self.need(self.token.kind == "end", f"expected the end of the formula, got {quoted(self.token.text)}")
         self.check_weight()
@@ -576,7 +588,7 @@ class FormulaReader(Reader):
 
 
 def constant(text, place):
-    """Return the exact value of a text without variables and functions; pi has 100 digits."""
+    """Return the exact value of a text without variables and functions, such as ``"pi/3"``; pi has 100 digits."""
     return FormulaReader(text, place, {}, ("pi",), is_constant=True).whole().value(AnyFunctions(), {"pi": PI})
 
 
@@ -598,7 +610,10 @@ COUNTERS = {"double": "uint64_t", "float": "uint32_t"}
 
 
 class Parameter(NamedTuple):
-    """A parameter of a C function. Its form is "value" (one number), "array" (of one sample) or "samples" (of all)."""
+    """A parameter of a C function.
+
+    Its form is "value" (one number), "array" (one sample) or "samples" (all samples).
+    """
 
     name: str
     form: str
@@ -635,17 +650,17 @@ def without_comments(text, file):
     while (opened := text.find("/*", start)) >= 0:
         closed = text.find("*/", opened + 2)
         comment = text[opened + 2 : closed]
-        need(closed >= 0 and "/*" not in comment, f"{file}: expected comments that end once, without one inside")
+        need(closed >= 0 and "/*" not in comment, f"{file}: expected comments that end, without another comment inside")
         pieces += [text[start:opened], " ", "\n" * comment.count("\n")]
         start = closed + 2
     return "".join([*pieces, text[start:]])
 
 
 def split_includes(text, name, files):
-    """Return the headers that a C text includes, and the text with its #include lines emptied.
+    """Return the headers that a C text includes, and the text with its #include lines replaced by empty lines.
 
-    Lines of the preprocessor are #include lines of the three known headers, in front of all code. Any other # is no
-    word of the grammar, so that macros cannot change what is read here.
+    Lines of the preprocessor are #include lines of the three known headers, before all code. Any other # is refused as
+    a word outside the grammar, so that macros cannot change the meaning of the text.
     """
     known = {'#include "symrot_math.h"'} if "symrot_math.h" in files else set()
     known |= {"#include <math.h>", f'#include "{name}.h"'}
@@ -666,7 +681,7 @@ def split_includes(text, name, files):
 
 
 class CReader(Reader):
-    """A reader of the functions of a C file, by the grammar at the head of this file."""
+    """A parser of the functions of a C file, by the grammar at the beginning of this file."""
 
     def __init__(self, text, name, files, sizes):
         included, text = split_includes(without_comments(text, f"{name}.c"), name, files)
@@ -691,7 +706,7 @@ class CReader(Reader):
         return Literal(NEAREST[self.real](float(text.removesuffix("f"))).value)
 
     def variable(self, name):
-        """Read a local variable, a parameter that is one number, or a component of an input."""
+        """Read the name of a variable: a local variable, a parameter that is one number, or a component of an input."""
         if self.token.text == "[":
             return Variable(self.component(name, is_input=True))
         if name not in self.names:
@@ -700,7 +715,10 @@ class CReader(Reader):
         return Variable(name)
 
     def component(self, name, is_input):
-        """Read an index: ``[2]`` of an array, or ``[2*n + k]`` of samples; ``[k]`` and ``[n + k]`` mean 0 and 1."""
+        """Read an array index and return the component: ``[2]`` of one sample, ``[2*n + k]`` of many.
+
+        ``[k]`` is 0, ``[n + k]`` is 1.
+        """
         parameter = self.parameters.get(name)
         self.need(
             parameter and parameter.form != "value" and parameter.is_input == is_input,
@@ -742,14 +760,14 @@ class CReader(Reader):
     # functions
 
     def new_name(self, what):
-        """Return the next word, a name that is not yet used for a variable, function or loop, or by C itself."""
+        """Return the next word, a name that no variable, function or loop has yet and that C does not use."""
         name = self.take_name(what)
         known = [self.names, self.parameters, self.kernels, RESERVED, *self.inline.values()]
         for end in REALS.values():
             known.append({f + end for f in (*C_FUNCTIONS, *VECTOR_FUNCTIONS, *VECTOR_CHOICES)})
         self.need(
             not any(name in each for each in known),
-            f"{name} is no new name: expected {what} that means nothing yet",
+            f"{name} is already in use: expected {what} that has no meaning yet",
         )
         return name
 
@@ -787,7 +805,7 @@ class CReader(Reader):
         self.inline[self.real][name] = Definition(parameters, local, result, self.weight)
 
     def kernel(self):
-        """Read a function that writes arrays, for one sample or, if its first parameter is n, for n samples."""
+        """Read a function that writes arrays, for one sample or (if its first parameter is n) for n samples."""
         start = self.position
         self.take("void")
         name = self.new_name("the name of a function")
@@ -857,7 +875,10 @@ class CReader(Reader):
         return words == [token.text for token in self.tokens[self.position : self.position + len(words)]]
 
     def body(self, asks_far=False):
-        """Read statements up to a closing brace; the variables that they declare are forgotten there."""
+        """Read statements up to a closing brace.
+
+        The names of variables that they declare are forgotten after the brace.
+        """
         outer, self.names, self.assigned = self.names, set(self.names), set()
         statements, far = [], []
         while not self.accept("}"):
@@ -881,7 +902,7 @@ class CReader(Reader):
         return name, expression
 
     def assignment(self):
-        """Read ``a[2] = E;``: each component of an output is assigned once, and is never read."""
+        """Read ``a[2] = E;``: each component of an output is assigned once and never read."""
         place = self.component(self.take_name("`const`, an output or `}`"), is_input=False)
         self.need(place not in self.assigned, f"expected an output to be written once, got {place[0]} again")
         self.assigned.add(place)
@@ -903,7 +924,10 @@ class CReader(Reader):
 
 
 def run(body, numbers, inputs):
-    """Return the outputs of a body at given inputs, and the angles that the body tests for their range."""
+    """Run a C function's body at given inputs; return its outputs, and the angles that it tests for their range.
+
+    Return its outputs, and the angles that it tests for their range.
+    """
     names, outputs = dict(inputs), {}
     for target, expression in body.statements:
         value = expression.value(numbers, names)
@@ -928,7 +952,7 @@ ROUNDING_SHAPE = {
 
 
 def check_shape(value, shape, place):
-    """Raise ValueError if a value does not have the types that a schema says; parts not in the schema are ignored."""
+    """Raise ValueError if a value lacks the types of a schema; parts that the schema does not mention are ignored."""
     if isinstance(shape, type):
         need(isinstance(value, shape), f"{place}: expected a text, as the schema says, got {quoted(value)}")
     elif isinstance(shape, tuple):
@@ -948,9 +972,9 @@ def check_shape(value, shape, place):
 
 
 def content(path):
-    """Return the bytes of a file; refuse a file that is not regular, or is larger than any file of a kernel."""
+    """Return the bytes of a file; refuse a file that is not regular, or is larger than any file of a kernel can be."""
     small = path.is_file() and path.stat().st_size <= LARGEST_FILE
-    need(small, f"{path.name} is no file of at most {LARGEST_FILE} bytes: expected one of the kernel")
+    need(small, f"{path.name} is not a regular file of at most {LARGEST_FILE} bytes: expected a file of the kernel")
     return path.read_bytes()
 
 
@@ -963,14 +987,17 @@ def text_of(path):
 
 
 def without_repetition(pairs):
-    """Return a JSON object; refuse one with a name twice, since readers differ in which value they take."""
+    """Return a JSON object from its (name, value) pairs.
+
+    Refuse a repeated name, since JSON readers differ in its value.
+    """
     items = dict(pairs)
     need(len(items) == len(pairs), "expected each name once in an object of the certificate, got one twice")
     return items
 
 
 def certified(path):
-    """Return a certificate, after checking its seal and the hashes of the files that it names.
+    """Read a certificate and return it, after checking its seal (hash) and the hashes of the files that it names.
 
     Hashes show only that no file was changed after it was certified; other checks show that the files are right. Files
     in other folders (NumPy texts) may be missing, but those in the folder of the certificate may not.
@@ -988,33 +1015,43 @@ def certified(path):
     text = json.dumps(sealed, sort_keys=True, separators=(",", ":"))
     seal = sha256(text.encode()).hexdigest() == data["seal"]
     known = data["schema"] == "symrot.certificate/1"
-    need(seal and known, "the schema is another, or the text that was sealed: expected symrot.certificate/1 as sealed")
+    need(
+        seal and known,
+        "the text was changed after it was sealed, or has another schema: expected "
+        "symrot.certificate/1 with a valid seal",
+    )
     name, files = data["kernel"], data["files"]
     right = re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII) and path.name == f"{name}.cert.json"
     need(
         right and {f"{name}.c", f"{name}.h"} <= {*files},
-        f"it is that of another file: expected the kernel of {path.name}, with its C file and header",
+        f"the certificate belongs to another file: expected the kernel of {path.name}, with its C file and header",
     )
     for file, digest in files.items():
-        need(re.fullmatch(r"(\.\./){0,2}(\w+/)*\w+\.\w+", file, re.ASCII), f"{quoted(file)} is no file of a kernel")
+        need(
+            re.fullmatch(r"(\.\./){0,2}(\w+/)*\w+\.\w+", file, re.ASCII),
+            f"{quoted(file)} is not the path of a kernel's file: expected a path such as NAME.c",
+        )
         if "/" not in file or (path.parent / file).exists():
             right = sha256(content(path.parent / file)).hexdigest() == digest
-            need(right, f"{file} is not what was certified")
+            need(right, f"{file} was changed after it was certified")
     return sealed
 
 
 def is_name(text):
-    """Tell whether a text is a valid name for a symbol of a formula, one without another meaning."""
+    """Tell whether a text can be the name of a symbol in a formula: a name that has no other meaning."""
     reserved = text in FORMULA_FUNCTIONS or text in FORMULA_CHOICES or text == "pi"
     return bool(re.fullmatch(r"[A-Za-z]\w*", text, re.ASCII)) and not reserved
 
 
 def defined_functions(definitions):
-    """Return the functions of x, y, z, w that a certificate defines; each may only call functions above it."""
+    """Return the functions that a certificate defines, in the arguments x, y, z, w.
+
+    Each may only call functions above it.
+    """
     functions = {}
     for name, text in definitions:
         new = is_name(name) and name not in functions
-        need(new, f"{quoted(name)} is no new function: expected a name that means nothing yet")
+        need(new, f"{quoted(name)} is already in use: expected a name without a meaning for a function")
         parameters = [letter for letter in "xyzw" if re.search(rf"\b{letter}\b", text)]
         need(parameters and parameters == [*"xyzw"][: len(parameters)], f"{name}: expected a function of x, or of x, y")
         reader = FormulaReader(text, f"function {name}", functions, ("pi", *parameters))
@@ -1024,7 +1061,7 @@ def defined_functions(definitions):
 
 
 class Specification:
-    """The formulas of a certificate, read with a given set of functions."""
+    """The formulas of a certificate, parsed with a given set of functions."""
 
     def __init__(self, data, functions):
         spec = data["spec"]
@@ -1036,10 +1073,10 @@ class Specification:
             all(is_name(symbol) and symbol not in functions for symbol in symbols)
             and len({*symbols}) == len(symbols)
             and len({*places}) == len(places),
-            "an input is no name, or two are one: expected a name of its own for each input, and a place",
+            "an input has no valid name, or two inputs have the same: expected a name and an index text for each",
         )
         slots = {symbol for place, symbol, _ in data["inputs"] + spec["formulas"] if place.startswith("p[")}
-        need(slots == {*spec["parameters"]}, "p is another: expected the inputs p[0], p[1], .. to be the parameters")
+        need(slots == {*spec["parameters"]}, "the parameters differ from the inputs p[0], p[1], ..: expected the same")
         self.inputs = []  # of (place, expression): a symbol, or a parameter by its formula
         for place, symbol in self.symbols.items():
             text = spec["parameters"].get(symbol, symbol)
@@ -1056,7 +1093,10 @@ class Specification:
         return FormulaReader(text, place, self.functions).whole()
 
     def set_values(self, names):
-        """Compute parts of formulas and outputs and store them by name; return the values of inputs by place."""
+        """Compute intermediate quantities and outputs and store them by name.
+
+        Return the inputs by index text such as ``q[2]``.
+        """
         inputs = {place: expression.value(names.numbers, names) for place, expression in self.inputs}
         for symbol, expression in self.named:
             names.define(symbol, expression.value(names.numbers, names))
@@ -1089,9 +1129,9 @@ def draw_hypothesis(members, names):
 def check_law(law, specification, points):
     """Raise ValueError if an expression of a law, which must be zero, is not zero to 60 digits at random points.
 
-    At each point, what is given holds and outputs are their formulas. An expression is small there if it is so compared
-    with its size at another point, where all symbols are random; but at most 1e-40 in any case. An analytic expression
-    that is not zero is that small at a random point with negligible probability.
+    At each point the hypotheses of the law hold and the outputs have the values of their formulas. An expression counts
+    as zero if it is small compared with its size at another point, where all symbols are random, and at most 1e-40 in
+    any case. An analytic expression that is not zero is that small at a random point with negligible probability.
     """
     place = f"the law {quoted(law['law'])}"
     need(law["vanishing"], f"{place} does not follow: expected an expression that vanishes, got none")
@@ -1122,7 +1162,7 @@ LEAST = {"double": Fraction(1, 2**55), "float": Fraction(1, 2**26)}  # a quarter
 
 
 def check_series(series, functions, real):
-    """Return a function that uses a polynomial where x*x is below a limit; refuse the polynomial if its error is large.
+    """Return a function that uses a polynomial where x*x is below a limit; refuse a polynomial with a large error.
 
     The error of the polynomial, relative to the function, is computed at 64 random points of the interval. It must be
     at most as large as the certificate says, and at most a quarter of a unit in the last place.
@@ -1153,7 +1193,7 @@ def check_series(series, functions, real):
 
 
 def constants_of(readback, real):
-    """Return the exact number for each rounded constant in C, after checking that the constant is nearest to it.
+    """Return the exact number for each rounded constant of the C text, after checking that the constant is nearest.
 
     Halves, quarters and other multiples of 2^-20 stand for themselves alone.
     """
@@ -1165,7 +1205,7 @@ def constants_of(readback, real):
     for written, exact in pairs:
         number = NEAREST[real](float(written)).value
         right = NEAREST[real](float(exact)).value == number and exact * 2**20 % 1
-        need(right, f"a constant is another number: expected the {real} nearest to {float(exact)!r}, got {number!r}")
+        need(right, f"a constant is wrong: expected the {real} nearest to {float(exact)!r}, got {number!r}")
         constants[number] = exact
     return constants
 
@@ -1174,14 +1214,14 @@ def constants_of(readback, real):
 
 
 def component_of(place):
-    """Return (array, component) of a place such as ``q[2]``; a single number is component 0 of its name."""
+    """Return (array, component) of an index text such as ``q[2]``; a single number is component 0 of its name."""
     match = re.fullmatch(r"([A-Za-z]\w*)(?:\[(0|[1-9]\d{0,2})\])?", place, re.ASCII)
     need(match, f"{quoted(place)}: expected an argument of a function such as W or q[2]")
     return match[1], int(match[2] or 0)
 
 
 def array_sizes(data, is_input):
-    """Return the number of components of each input or output, in order; refuse places with gaps in their numbers."""
+    """Return the number of components of each input or output array; refuse gaps in the component numbers."""
     sizes = {}
     for place, *_ in data["inputs"] if is_input else data["spec"]["formulas"]:
         name, component = component_of(place)
@@ -1192,10 +1232,10 @@ def array_sizes(data, is_input):
 
 
 def expected_parameters(data, in_batch):
-    """Return the parameters that the C function must have, by the inputs and outputs of the certificate.
+    """Return the parameters that a C function must have, according to the inputs and outputs of the certificate.
 
-    A number comes by value and an array by its components; in a batch, both come as arrays of all samples, but for the
-    parameters of a scene, which all samples share. Inputs are const.
+    A number is passed by value and an array by its components; in a batch, both are passed as arrays of all samples,
+    except the parameters of a scene, which all samples share. Inputs are const.
     """
     by_value = {place for place, *_ in data["inputs"] if "[" not in place}
     parameters = []
@@ -1210,13 +1250,13 @@ def expected_parameters(data, in_batch):
 
 
 def by_component(values):
-    """Return values by (array, component), or by name for a single number, from values by place."""
+    """Convert a mapping with keys such as ``q[2]``: each key becomes (array, component), or a number's name."""
     named = {component_of(place): value for place, value in values.items()}
     return named | {place: value for place, value in values.items() if "[" not in place}
 
 
 class ExactPoint(NamedTuple):
-    """A random point of exact fractions: inputs and outputs by component, and the arithmetic that computed them."""
+    """A random point of exact fractions: inputs and outputs by component, and the arithmetic of the outputs."""
 
     numbers: AnyFunctions
     inputs: dict
@@ -1229,7 +1269,7 @@ def exact_point(specification):
     inputs = specification.set_values(names)
     need(
         len({names["pi"], *inputs.values()}) == len(inputs) + 1,
-        "an input is no name, or two are one: expected inputs of different values",
+        "two inputs have the same name, or one is pi: expected a different name for each",
     )
     outputs = {component_of(place): names[symbol] for place, symbol in specification.outputs}
     return ExactPoint(names.numbers, by_component(inputs), outputs)
@@ -1238,12 +1278,12 @@ def exact_point(specification):
 def check_formulas(name, kernel, data, point):
     """Raise ValueError if the outputs of a C function differ from the formulas at a random point of exact fractions.
 
-    Functions and choices have random values there, so that equality at the point means equality as expressions. Each
-    loop of a batch computes all outputs; the two loops of spans compute a part each.
+    Functions and conditionals have random values there, so that equality at the point means equality as expressions.
+    Each loop of a batch function computes all outputs; only in the form with two loops (SPANS), each computes a part.
     """
     need(
         kernel.parameters == expected_parameters(data, kernel.shape != "one sample"),
-        f"arguments or loops of {name} are others: expected the inputs and outputs of the certificate, in their order",
+        f"arguments or loops of {name} differ: expected the inputs and outputs of the certificate, in their order",
     )
     numbers, expected = point.numbers, point.outputs
     computed = {}
@@ -1252,18 +1292,28 @@ def check_formulas(name, kernel, data, point):
         outputs, far = run(body, numbers, point.inputs)
         need(
             numbers.near_angles <= far,
-            f"functions of {name} take angles beyond their range: expected symrot_far of each in a first loop",
+            f"{name} does not test all angles for their range: expected symrot_far of each angle in a first loop",
         )
         for place, value in outputs.items():
             right = place in expected and value == expected[place]
-            need(right, f"{name} is not its formulas: expected {place[0]}[{place[1]}] to be that of the certificate")
+            need(
+                right,
+                f"{name} does not compute its formulas: expected {place[0]}[{place[1]}] to have the "
+                "value of the certificate's formula",
+            )
         if kernel.shape == "spans":
-            need(not computed.keys() & outputs.keys(), f"{name} is not its formulas: expected each output in one loop")
+            need(
+                not computed.keys() & outputs.keys(),
+                f"{name} does not compute its formulas: expected each output in one loop",
+            )
             computed |= outputs
         else:
             computed = outputs
-            need(computed.keys() == expected.keys(), f"{name} is not its formulas: expected all outputs in each loop")
-    need(computed.keys() == expected.keys(), f"{name} is not its formulas: expected all outputs")
+            need(
+                computed.keys() == expected.keys(),
+                f"{name} does not compute its formulas: expected all outputs in each loop",
+            )
+    need(computed.keys() == expected.keys(), f"{name} does not compute its formulas: expected all outputs")
 
 
 # --- rounding errors --------------------------------------------------------------------------------------------------
@@ -1286,7 +1336,10 @@ def hexadecimal(text, place):
 
 
 def point_of_box(data, specification, real):
-    """Return a random point of the box of rounding errors; None without bounds, or if the box has excluded points."""
+    """Return a random point of the box of the rounding bounds.
+
+    None if there are no bounds, or the box has excluded points.
+    """
     if "rounding" not in data or data["spec"]["parameters"]:
         return None
     check_shape(data["rounding"], ROUNDING_SHAPE, "rounding")
@@ -1330,12 +1383,13 @@ def check_rounding(name, kernel, point):
             right = math.isfinite(value) and abs(Decimal(value) - point.exact[place]) <= bound
             need(
                 right,
-                f"{name} is rounded by more than its bounds: expected at most {bound:.3} in {place[0]}[{place[1]}]",
+                f"{name} has a larger rounding error than its bound: expected at most {bound:.3} in "
+                f"{place[0]}[{place[1]}]",
             )
 
 
 def check_precision(name, data, specification, kernels):
-    """Check the double or float functions, for one sample and for many, against the formulas and error bounds.
+    """Check the double or the float functions, for one sample and for many, against the formulas and the error bounds.
 
     Rounded constants are replaced by the exact numbers that they stand for, and series by the functions they
     approximate.
@@ -1425,8 +1479,8 @@ def check_header(name, text, kernels):
 def check_banner(data, text):
     """Raise ValueError if a C file's first comment lacks the name, title or command in the certificate.
 
-    So a renamed kernel is noticed if any file still has the old name. Letters and digits are compared, as
-    banners break lines, leave out what would end a comment, and spell other alphabets as <U+00E9>.
+    So a renamed kernel is noticed if any file still has the old name. Only letters and digits are compared: banners
+    break lines, omit characters that would end a comment, and write other alphabets as <U+00E9>.
     """
 
     def bare(words):
@@ -1444,18 +1498,18 @@ def check_banner(data, text):
 
 
 def has_choices(data):
-    """Tell whether formulas or laws choose between two branches, so that one random point tests only one."""
+    """Tell whether formulas or laws contain conditionals, so that one random point tests only one branch."""
     return bool(re.search(r"select_|Abs|copysign|\?", json.dumps([data["spec"], data["laws"]])))
 
 
 def check_files(path):
-    """Run all checks on a certificate and its files; return one line about them."""
+    """Run all checks on a certificate and its files; return one line that lists the checks."""
     data = certified(path)
     check_shape(data, SHAPE, "certificate")
     name, files, readback = data["kernel"], data["files"], data["readback"]
     need(
         files.get("symrot_math.h", MATH_HEADER_SHA256) == MATH_HEADER_SHA256,
-        "symrot_math.h is another: expected that of symrot",
+        "symrot_math.h was changed: expected the text that symrot emits",
     )
     need(data["laws"], "there are no laws: expected at least one")
     text, header = text_of(path.with_name(f"{name}.c")), text_of(path.with_name(f"{name}.h"))
@@ -1465,7 +1519,7 @@ def check_files(path):
     expected = {function + end for function in readback for end in ("", "_batch")}
     need(
         readback and kernels.keys() == expected,
-        f"functions are others: expected {', '.join(sorted(expected))} in {name}.c",
+        f"the functions differ: expected {', '.join(sorted(expected))} in {name}.c",
     )
     check_header(name, header, kernels)
     specification = Specification(data, defined_functions(data["spec"]["functions"]))
@@ -1478,15 +1532,18 @@ def check_files(path):
 
 
 def check(path):
-    """Return what a certificate shows, in a line; raise ValueError or OSError with one sentence if it does not hold."""
+    """Check a certificate; return a line about what it proves.
+
+    Raise ValueError or OSError with one sentence if a check fails.
+    """
     try:
         return check_files(path)
     except (ValueError, OSError):
         raise
     except RecursionError:
-        raise ValueError("expected texts of usual depth, got parentheses or calls nested too deeply") from None
+        raise ValueError("expected fewer nested parentheses and calls, got too many") from None
     except (ArithmeticError, MemoryError) as reason:
-        raise ValueError(f"expected numbers of usual size, got others ({reason!r})") from None
+        raise ValueError(f"expected numbers within the range of a double, got others ({reason!r})") from None
 
 
 def main(paths):

@@ -1221,10 +1221,7 @@ def component_of(place):
 
 
 def array_sizes(data, is_input):
-    """Return the number of components of each input or output array; refuse gaps in the component numbers.
-
-    Refuse gaps in the component numbers.
-    """
+    """Return the number of components of each input or output array; refuse gaps in the component numbers."""
     sizes = {}
     for place, *_ in data["inputs"] if is_input else data["spec"]["formulas"]:
         name, component = component_of(place)
