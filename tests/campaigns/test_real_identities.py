@@ -47,7 +47,7 @@ def test_claims_are_repeatable():
     assert list(real_claims(30, 4)) == list(real_claims(30, 4)) != list(real_claims(30, 5))
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize(("left", "right"), REAL_RULES)
 def test_every_rule_holds_wherever_both_sides_have_a_value(left, right):
     source, sides = (
@@ -64,7 +64,7 @@ def test_every_rule_holds_wherever_both_sides_have_a_value(left, right):
     assert defined >= 10
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize(("left", "right"), TRAPS)
 def test_every_trap_fails_somewhere_or_has_no_values(left, right):
     source, sides = (

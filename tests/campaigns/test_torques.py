@@ -224,7 +224,7 @@ def test_the_rounding_of_a_narrow_pulse_is_small_beside_the_tolerance(truth):
 # --- the campaign itself ----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("family", torques.FAMILIES)
 def test_each_family_makes_the_same_case_again_with_a_truth(family):
     one, two = (torques.case_of(family, 3, 11) for _ in range(2))

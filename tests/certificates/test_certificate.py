@@ -67,7 +67,7 @@ def refused(files, said, *options):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("name", SLICE)
 def test_a_certificate_holds_and_is_rechecked_without_symrot(kernels, name):
     files = kernels[name]

@@ -163,7 +163,7 @@ def refused(kernels):
         files.restore()
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("what", HOSTILE)
 def test_a_text_that_c_reads_differently_is_refused(kernels, refused, what):
     name, old, new = HOSTILE[what]
@@ -220,7 +220,7 @@ FORGED = {  # what it is: kernel, part of its readback or law, what takes its pl
 }
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("what", FORGED)
 def test_a_certificate_of_other_constants_or_series_is_refused(kernels, refused, what):
     name, part, changed = FORGED[what]

@@ -67,6 +67,7 @@ def test_what_is_not_identical_gives_other_bits(compiler, tmp_path):
     assert same_bits(source, good, other) == is_identical
 
 
+@pytest.mark.thinned(3)
 @needs_objdump
 @pytest.mark.parametrize(
     "flags",
@@ -174,6 +175,7 @@ STRANGE = (
 )  # fmt: skip
 
 
+@pytest.mark.thinned(3)
 @needs_objdump
 @pytest.mark.parametrize(("code", "verdict", "reason"), STRANGE, ids=range(len(STRANGE)))
 def test_machine_code_by_hand(tmp_path, code, verdict, reason):

@@ -35,6 +35,7 @@ def replayed(operations, values):
     return operations.evaluate(values, FUNCTIONS, float)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("path", KERNELS, ids=lambda path: path.stem)
 def test_one_sample_and_batch_are_the_same_operations(path):
     text = path.read_text(encoding="utf-8")

@@ -23,6 +23,7 @@ def text_of(name):
     return (GENERATED / f"{name}.c").read_text(encoding="utf-8")
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     ("name", "part", "suffix"),
     [("quaternion_dcm", 0.9, ""), ("quaternion_of_dcm", 0.75, ""), ("quaternion_of_dcm", 0.66, "f"),

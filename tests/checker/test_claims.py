@@ -110,6 +110,7 @@ FAULTS = (
 )
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("old", "new", "words"), FAULTS, ids=[new[:40] or old[:40] for old, new, _ in FAULTS])
 def test_a_fault_in_a_file_is_named_with_its_claim(tmp_path, old, new, words):
     assert old in GOOD

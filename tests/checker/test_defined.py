@@ -65,6 +65,7 @@ def test_a_side_that_is_real_nowhere_is_refused(claim):
     assert verdict_of(claim) == "refused"
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("claim", EMPTY_TOGETHER)
 def test_sides_without_a_common_point_are_not_equal(claim):
     assert verdict_of(claim) in ("refused", "undecided")

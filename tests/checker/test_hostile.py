@@ -74,7 +74,7 @@ TEXTS = {
 }
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize(("text", "words"), TEXTS.values(), ids=TEXTS)
 def test_a_hostile_text_is_refused_in_one_sentence(text, words):
     with pytest.raises(InputError, match=words) as refusal:

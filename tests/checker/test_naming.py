@@ -52,6 +52,7 @@ RIGHT = (
 )  # fmt: skip
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("claim", "name"), RIGHT)
 def test_a_right_formula_is_recognised_in_its_usual_reading_first(claim, name, capsys):
     verdict = symrot.check(claim)
@@ -80,6 +81,7 @@ WRONG = (
 )  # fmt: skip
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("claim", "code", "name"), WRONG)
 def test_a_formula_with_one_fault_is_doubtful_and_repaired(claim, code, name, capsys):
     verdict = symrot.check(claim)

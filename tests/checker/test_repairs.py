@@ -64,6 +64,7 @@ def same_text(first, second):
     return sides[0] == sides[1]
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("code", PRINTED)
 def test_a_printed_formula_gets_its_code_and_its_right_form(code):
     printed, right = PRINTED[code]

@@ -218,6 +218,7 @@ def assert_units_fit(name):
         assert dimensions_of_formulas(step.left, step.right, own).status != "inconsistent", (name, number)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", QUICK)
 def test_the_units_of_derivations_fit(name):
     assert_units_fit(name)

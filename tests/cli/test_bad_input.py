@@ -27,6 +27,7 @@ def test_the_scenes_that_the_faults_are_put_into_are_good(tmp_path):
         assert load_scene(path).name == "good"
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("content", "words"), [entry[1:] for entry in BAD], ids=[entry[0] for entry in BAD])
 def test_a_bad_scene_gets_one_sentence(tmp_path, content, words):
     path = tmp_path / "bad.toml"
@@ -77,7 +78,7 @@ def places(node, place=()):
         yield from places(value, (*place, key))
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize("path", sorted(SHIPPED.glob("*.toml")), ids=lambda path: path.stem)
 def test_a_strange_value_anywhere_is_read_or_refused_in_one_sentence(path):
     """Every value of every shipped scene is replaced by things that it should never be: no other error gets out."""

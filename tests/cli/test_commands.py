@@ -115,6 +115,7 @@ def _bad():
     return [pytest.param(item, id=item[0]) for item in bad_scenes()]
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("item", _bad())
 def test_bad_scenes_are_one_sentence_and_leave_outputs_alone(capsys, tmp_path, item):
     _, content, _ = item

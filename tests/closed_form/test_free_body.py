@@ -46,6 +46,7 @@ def in_bar(*arguments, **options):
     return max(errors(*arguments, **options)) <= BAR
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     "moments, omega", [((1, 2, 3), ("3/10", 1, "1/2")), ((3, 1, 2), ("-3/10", 1, "3/2")), ((1, 1, 2), (1, "1/2", 2)),
                        ((3, 4, 6), (2, "-3/2", 1)), ((1, 2, 3), ("1/1000", 1, "1/1000"))]
@@ -75,6 +76,7 @@ def test_s1_chirality():
     assert max(errors((1, 2, 3), (0.3, 1.0, 0.5), [7.0])) < 5e-16
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("moments", list(permutations((1.0, 2.0, 3.0))))
 def test_s2_axis_permutations(moments):
     """All orders of axes, all signs, both outer axes."""
@@ -182,6 +184,7 @@ def test_s13_near_spherical():
     assert in_bar(moments, (0.3, 1.0, 0.5), [1e6 + 0.3], in_periods=True)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     "moments", [(1e-6, 1, 1 + 1e-7), (1, 2, 3), (0.3, 0.4, 0.7), (1e-12, 1, 1), (1e-9, 1, 1 + 1e-9)]
 )

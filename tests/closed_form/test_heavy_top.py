@@ -86,11 +86,13 @@ S18 = {
 }
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("omega", S18.values(), ids=S18)
 def test_s18_cusps_loops_waves(omega):
     assert in_bar(omega, tilted(F(1, 2)))
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("omega", S18.values(), ids=S18)
 def test_the_reference_agrees_with_taylor_series(omega):
     q0 = tilted(F(1, 2))
@@ -148,6 +150,7 @@ def test_s20_through_the_vertical(omega, q0):
     assert in_bar(omega, q0)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("w3", [F(9, 2), F(401, 100), F(4), F(39, 10), F(3)])
 @pytest.mark.parametrize("tilt", [F(1, 10**3), F(1, 10**5), F(1, 10**7)])
 def test_s21_sleeping_top(w3, tilt):

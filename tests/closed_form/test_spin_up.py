@@ -81,6 +81,7 @@ def test_every_regime_against_kummers_function(kappa, torque):
             assert np.abs(q - exact).max() <= BAR
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("moments, axis, torque, omega", [
     ((1, 1, 2), 2, 0.5, (0.3, 1, -0.4)), ((2, 1, 1), 0, -1.5, (3, 0, 1)), ((1, 3, 1), 1, 1e-3, (0.3, 1, 0.2)),
     ((2, 2, 2), 2, 3, (0.3, 1, 0.5)), ((1, 1, 2), 2, 0, (0.3, 1, -0.4)),

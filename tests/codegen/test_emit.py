@@ -117,6 +117,7 @@ def test_no_shipped_kernel_divides():
     assert all(counts(name)["div"] == 0 for name in SCENES)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", ["free", "tensor", "gradient"])
 def test_constants_are_bound_exactly_and_rounded_once(name):
     plan = make_plan(
@@ -221,6 +222,7 @@ def pointer(values):
 
 
 @pytest.mark.thinned(3)
+@pytest.mark.thinned(6)
 @needs_cc
 @pytest.mark.parametrize("language", ["c", "c++"])
 @pytest.mark.parametrize("name", SCENES)
@@ -274,7 +276,7 @@ NAMES = ("\\", "*\\ int x;", "a??", "??/", "http:", "caf\u00e9", "\u65e5\u672c",
          "int", "x" * 200, "#", "%s", "quaternion_dcm", "class", '"""')  # fmt: skip
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(4)
 @needs_cc
 @pytest.mark.parametrize("name", NAMES, ids=ascii)
 def test_a_scene_of_any_name_is_emitted_and_certified(name, tmp_path, monkeypatch):

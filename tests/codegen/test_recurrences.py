@@ -106,7 +106,7 @@ def in_digits(form, point):
     return sympy.lambdify(list(point), form, "mpmath", cse=True)(*point.values())
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("order", [3, *(pytest.param(order, marks=pytest.mark.campaign) for order in (4, 5))])
 @pytest.mark.parametrize("name", FUNCTION_SYSTEMS)
 def test_functions_are_differentiated(name, order):
@@ -127,6 +127,7 @@ def as_mpf(value):
     return mpmath.mpf(value.numerator) / value.denominator
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", [*SYSTEMS, *FUNCTION_SYSTEMS])
 def test_series_solve_the_equations_to_order_20(name):
     """mpmath's Taylor coefficients of the rates along the series are those of its derivative."""

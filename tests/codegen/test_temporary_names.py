@@ -64,6 +64,7 @@ def test_numbers_are_named_by_their_formula():
     assert named("3*A", numbers={"A": ("number", Fraction(1, 2))}) == ["y1_term_1"]  # a number has no name
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", kernel_names())
 def test_every_temporary_of_the_library_has_a_name_of_its_own(name):
     program = kernel_program(name)

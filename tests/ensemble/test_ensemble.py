@@ -255,7 +255,7 @@ def test_a_start_that_is_not_zero():
 # ------------------------------------------------------------------------------------------------ accuracy
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("name", bench.MOTIONS)
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-8, 1e-12])
 def test_errors_are_those_promised(name, tolerance):
@@ -287,6 +287,7 @@ def states(n, seed=3):
     return {"omega": random.standard_normal((n, 3)), "quaternion": random.standard_normal((n, 4))}
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     ("content", "parameters"),
     [
@@ -305,6 +306,7 @@ def test_lanes_agree_with_the_closed_forms(content, parameters):
     assert abs(exact.quaternion - stepped.quaternion).max() < 1e-11
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     ("torque", "parameters"),
     [

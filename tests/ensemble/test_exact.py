@@ -99,7 +99,7 @@ def outcome(run):
         return str(error)
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("name", FAMILIES)
 def test_each_trajectory_has_the_bits_of_its_motion_alone(name):
     """General starts, zeros, tiny numbers, any norm; times on both sides of the start and at it."""
@@ -112,7 +112,7 @@ def test_each_trajectory_has_the_bits_of_its_motion_alone(name):
     assert_bits(found, [given] * 41, omega, quaternion, times)
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("name", FAMILIES)
 def test_hostile_starts_have_the_bits_of_their_motions_alone(name):
     """Rest, resonance, the last rate, the smallest and large numbers, zeros with a sign; far from the start too.
@@ -200,7 +200,7 @@ VARIED = {
 }  # fmt: skip
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("case", VARIED)
 def test_varied_constants_give_the_bits_of_their_own_scenes(case):
     given, parameters = VARIED[case]

@@ -188,6 +188,7 @@ def test_a_table_may_lie_in_the_folder_of_the_scene_or_below(file, folders, monk
     assert symrot.load_scene("scene.toml").table.times == (0.0, 5.0, 10.0)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("file", ["moments.csv", "secret"])
 @pytest.mark.parametrize("way", ["up", "absolute", "link", "linked folder", "up through a link"])
 def test_a_table_elsewhere_needs_leave(way, file, folders, capsys):

@@ -211,7 +211,7 @@ def test_parameters_of_any_name_stand_in_guards():
         assert motion([2.0]).omega[0, 2] == pytest.approx(1 / 3, abs=1e-10), name
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thinned(8)
 @needs_compiler
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize(
@@ -228,7 +228,7 @@ def test_guards_that_stay_at_zero_have_the_value_at_zero(method, torque, expecte
     assert motion.omega[0, 2] == pytest.approx(0.1 + expected / 3, abs=1e-9)
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thinned(6)
 @needs_compiler
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
 @pytest.mark.parametrize(
@@ -301,7 +301,7 @@ def test_a_guard_without_a_value_ends_in_a_sentence():
         symrot.propagator(scene("mod(t, 0)"))([1.0])
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thinned(8)
 @needs_compiler
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize(
@@ -336,7 +336,7 @@ FRICTIONS = {  # torque -> omega_3 from 1 rad/s, for a moment of inertia of 1
 }
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thinned(8)
 @needs_compiler
 @pytest.mark.parametrize("method", [*METHODS, "scipy:Radau", "scipy:BDF", "scipy:LSODA"])
 @pytest.mark.parametrize("torque", FRICTIONS)

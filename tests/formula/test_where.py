@@ -48,7 +48,7 @@ MOTIONS = {  # torque -> omega_3 from rest, for a moment of inertia of 1
 }
 
 
-@pytest.mark.thinned(8)
+@pytest.mark.thinned(16)
 @needs_compiler
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("torque", MOTIONS)

@@ -9,7 +9,7 @@ from symrot.inertia.integration import _circular, domain, integrate
 from symrot.inertia.shapes import SHAPES, Coordinate
 
 
-@pytest.mark.thinned(5)
+@pytest.mark.thinned(10)
 @pytest.mark.parametrize("powers", [(a, b) for a in range(6) for b in range(6)])
 @pytest.mark.parametrize("quarters", [(0, 1), (0, 2), (0, 4), (1, 3), (-1, 1), (2, 3)])
 def test_integrals_of_cosines_and_sines(powers, quarters):

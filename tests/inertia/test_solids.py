@@ -162,6 +162,7 @@ def test_the_uniform_solid_is_what_cartesian_cubature_finds(name):
     close(mass_properties([Part(name, dimensions_of(name), density=3)]), summed(points, 3 * weights))
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", EXTENDED)
 def test_a_polynomial_density_is_what_cartesian_cubature_finds(name):
     """The stdlib path and the symbolic path, for a density with every kind of term."""

@@ -29,6 +29,7 @@ def compiled(*arguments):
     return subprocess.run(list(map(str, arguments)), check=True, capture_output=True, text=True)
 
 
+@pytest.mark.thinned(2)
 @needs_cc
 @pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize("language", [["-x", "c", "-std=c99"], ["-x", "c++", "-std=c++17"]], ids=["c99", "c++17"])
@@ -58,6 +59,7 @@ def test_compilers_vectorise_batches(name, tmp_path):
         assert len(places) >= 2, (compiler, found.stderr)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.skipif("clang" not in COMPILERS, reason="needs clang, which warns of loops that it was told to vectorise")
 @pytest.mark.parametrize(
     "flags", [["-O1"], ["-O2"], ["-O1", "-fno-math-errno"], ["-Os", "-fno-math-errno"]], ids=" ".join

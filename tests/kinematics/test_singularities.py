@@ -29,7 +29,7 @@ def on_circle(where, k):
     return where.contains(pi * k / 12) == S.true
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thinned(8)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_singular_set(sequence):
     """sin theta = 0 for proper sequences, cos theta = 0 for Tait-Bryan: the textbook answer, found."""

@@ -83,7 +83,7 @@ def same_bits(one, other):
     assert one.energy.tobytes() == other.energy.tobytes()
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thinned(8)
 @pytest.mark.parametrize("method", ["auto", "taylor", "dop853"])
 @pytest.mark.parametrize("name", SCENES)
 def test_another_start_gives_the_bits_of_another_scene(name, method):

@@ -20,7 +20,7 @@ def scene(torque, stop=2.0):
     return symrot.Scene.from_dict(content)
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thinned(6)
 @needs_compiler
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("stop", [1.00000004, 1.2])

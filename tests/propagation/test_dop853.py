@@ -42,7 +42,7 @@ def small(text, states, parameters=1, scale=1.0):
 # ------------------------------------------------------------------------------------------------ accuracy
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thinned(8)
 @pytest.mark.parametrize("name", MOTIONS)
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
 def test_the_error_of_the_trajectory_stays_near_the_tolerance(name, tolerance):
@@ -250,6 +250,7 @@ def test_a_switching_time_costs_no_order(stop):
 # ------------------------------------------------------------------------------------------------ limits
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     "text, start, stop, reason",
     [

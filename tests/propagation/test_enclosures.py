@@ -118,6 +118,7 @@ def test_an_unbounded_factor_is_not_taken_for_zero():
     assert product(product(bump, bump), pulse).radius == math.inf == product(pulse, product(bump, bump)).radius
 
 
+@pytest.mark.thinned(2)
 @needs_compiler
 @pytest.mark.parametrize("method", ["taylor", "dop853", "scipy:RK45", "scipy:DOP853", "scipy:LSODA"])
 def test_a_pulse_that_meets_a_bump_of_the_angle_is_seen(method):
@@ -326,6 +327,7 @@ def test_held_steppers_are_clean_c99_and_valid_cpp(command):
         assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.thinned(2)
 @needs_compiler
 @pytest.mark.parametrize("torque", ["exp(-t)/5", "exp(-(t-5)**2)", "tanh(t-5)/5", "sqrt(1+t**2)/50", "sin(t**2/4)/5"])
 def test_smooth_torques_of_time_cost_no_more_steps(torque):

@@ -40,6 +40,7 @@ GRAVITY = {"kind": "gravity", "weight": 1, "center_of_mass": ["1/10", "1/5", "9/
 SPRING = {"kind": "spring", "stiffness": 2, "attitude": {"quaternion": [1, 0, 0, 0]}}
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     "sequence, torque", [("ZXZ", (GRAVITY,)), ("ZYX", (SPRING,)), ("xyz", ()), ("yxy", (GRAVITY,))]
 )
@@ -69,7 +70,7 @@ def test_one_of_two_partners_is_always_regular():
         assert (least[1][least[0] < SWITCH] >= math.sqrt(1 - SWITCH**2) - 1e-12).all()
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thinned(8)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_torques_odd_in_q_see_one_sign_of_it_in_every_sequence(sequence):
     """A change of sequence keeps the sign of q, which such a torque sees; so does a start at -q."""

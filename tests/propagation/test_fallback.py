@@ -94,6 +94,7 @@ def pole(t, y, p):
     return [0.1 * math.tan(t)]
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("method", list(fallback.METHODS))
 def test_a_pole_ends_in_a_sentence_and_keeps_the_samples_before_it(method):
     times = np.linspace(0.0, 4.0, 41)

@@ -49,7 +49,7 @@ IMPULSES = {  # torque of t, c and w -> its integral from 0
 }
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thinned(8)
 @pytest.mark.parametrize("method", STEPPED)
 @pytest.mark.parametrize(
     ("torque", "start", "c", "w", "stop", "tolerance"),
@@ -123,7 +123,7 @@ def test_a_large_torque_that_is_zero_leaves_no_rounding(method, large, number):
 SCIPY = ("scipy:DOP853", "scipy:RK45", "scipy:Radau", "scipy:BDF", "scipy:LSODA")
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize(
     ("method", "follow", "switch"),
     [
@@ -160,7 +160,7 @@ def test_a_periodic_pulse_is_seen_every_time(method):
     assert np.abs(omega - true / 3).max() < ALLOWED * 1e-12 * true.max() / 3 + 4 * 2**-52 * k
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
 @pytest.mark.parametrize("omega", [(0.01, 0.02, 0.03), (0.1, 0, 0.2)], ids=str)
 @pytest.mark.parametrize(
@@ -246,7 +246,7 @@ ROOTS_OF_SQUARES = [  # torque, and its integral over [0, 10] s
 ]  # fmt: skip
 
 
-@pytest.mark.thinned(6)
+@pytest.mark.thinned(12)
 @pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 @pytest.mark.parametrize(("torque", "impulse"), ROOTS_OF_SQUARES)
@@ -288,7 +288,7 @@ SIZES_OF_SWITCHES = {  # torque, and its integral over [0, 6] s
 }  # fmt: skip
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("method", ["auto", "scipy:DOP853"])
 @pytest.mark.parametrize("torque", SIZES_OF_SWITCHES)
 def test_functions_of_what_jumps(torque, method):

@@ -101,7 +101,7 @@ def test_the_reference_file_is_what_its_program_prints():
     assert [taylor.decimal(x) for line in dcm for x in line] == row["dcm"]
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thinned(6)
 @pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("name", SCENES)
 def test_every_simplification_leaves_the_motion_alone(name):
@@ -125,6 +125,7 @@ def propagator_of(plan, structure, tolerance):
     return made
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", SCENES)
 def test_invariants_of_every_shipped_scene_are_kept(name):
     trajectory = propagate(name)
@@ -344,6 +345,7 @@ CHOICES = {
 }  # fmt: skip
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("name", CHOICES)
 def test_auto_steps_no_motion_that_it_can_solve(name):
@@ -407,6 +409,7 @@ AXIAL = {
 }
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", AXIAL)
 def test_rotation_about_one_axis_has_a_closed_form(name):
     omega, torques = AXIAL[name]
@@ -425,7 +428,7 @@ def test_a_motion_without_closed_form_is_not_called_exact(name):
         propagate(name, method="exact")
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize("name", SCENES)
 def test_taylor_and_dormand_prince_agree(name):
     series, stepped = propagate(name, method="taylor", tolerance=1e-11), propagate(name, method="dop853")

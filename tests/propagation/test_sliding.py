@@ -39,7 +39,7 @@ FOLLOWING = [  # torque about the second axis, and its values on the sides omega
 ]  # fmt: skip
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thinned(8)
 @pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
 @pytest.mark.parametrize(("torque", "above", "below"), FOLLOWING)
 def test_formulas_of_the_switch_have_the_mean_of_both_sides(torque, above, below, method):
@@ -55,6 +55,7 @@ def test_a_switch_that_brakes_by_its_square_slides():
     assert abs(symrot.propagator(made, "auto", 1e-10)([0, 5]).omega[-1][1] - 1.0) < 20 * 1e-10
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("torque", [
     "floor(omega_1)", "sign(omega_1**3)", "step(min(2 - t, 2*omega_1))", "sin(floor(step(omega_1)))",
     "sign(omega_1*(2 + q1))", "clip(t - sign(omega_1), -1/4, 1/4)",
@@ -74,6 +75,7 @@ def test_friction_written_in_two_torques_ends_in_a_sentence():
     assert stopped.value.trajectory.t.tolist() == [0, 0.25]
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     "other", ["sign(omega_2)", "where(sin(t*t) < sin(t*t/2), 1, 0)", "sign(omega_1 - 2)", "step(t - 2)"]
 )
@@ -88,6 +90,7 @@ RESTING = [  # torque about the second axis, and its value where omega_1 = 0
 ]  # fmt: skip
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("method", ["auto", "scipy:DOP853"])
 @pytest.mark.parametrize(("torque", "value"), RESTING)
 def test_a_body_at_rest_has_the_values_at_zero(torque, value, method):
@@ -149,7 +152,7 @@ AWAY = [  # torque, angular velocity at the start, and when motions beside the s
 ]
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
 @pytest.mark.parametrize(("torque", "frame", "omega", "end"), AWAY)
 def test_a_motion_does_not_slide_where_others_lead_away(torque, frame, omega, end, method):

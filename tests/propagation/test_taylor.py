@@ -108,6 +108,7 @@ def compare(rates, flags=(), order=20):
     assert (unit == found * 0.5 ** np.arange(order + 1)[:, None]).all() or flags  # a power of two costs no bit
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("order", [4, 6, 10, 16, 22])
 def test_any_even_order(order):
@@ -117,6 +118,7 @@ def test_any_even_order(order):
     assert abs(states[0] - (math.cos(3), math.sin(3))).max() < 1e-6
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     "name", ["heavy_top_loops", "gravity_gradient_satellite", "damped_disk", "gyrostat", "t_handle"]
 )
@@ -179,6 +181,7 @@ def test_orders_for_tolerances_keep_the_promise():
             assert error(states, reference(name)) < 10 * tolerance
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", bench.MOTIONS)
 def test_long_motions_keep_the_promise(name):
     """184 revolutions of a free body, 200 s of heavy tops; the last bits are lost to rounding alone."""
@@ -482,7 +485,7 @@ def test_the_benchmark_runs_and_ranks():
     assert bench.best_of(runs, 1e-30, ["taylor"]) is None
 
 
-@pytest.mark.thinned(5)
+@pytest.mark.thinned(10)
 @pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("power", range(1, 7))

@@ -64,6 +64,7 @@ def test_an_identity_is_true(claim):
     assert symrot.check(claim).verdict == "true"
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("claim", "name"), NAMED)
 def test_a_formula_of_a_quantity_is_recognised(claim, name):
     verdict = symrot.check(claim)
