@@ -30,7 +30,10 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
         raise InputError(f"{claim.id or 'claim'}: expected formulas that are nested less deeply") from None
     if other is None:
         return verdict
-    note = f"this is another reading of the claim; the first, {verdict.text}, is {verdict.verdict}"
+    if claim.implied:
+        note = f"R_x(a), R_y(a), R_z(a) rotate the axes here; if they rotate vectors, it is {verdict.verdict}"
+    else:
+        note = f"this is another reading of the claim; the first, {verdict.text}, is {verdict.verdict}"
     return replace(other, notes=(*other.notes, note), seconds=verdict.seconds + other.seconds)
 
 
@@ -44,7 +47,7 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
     try:
         with processor_seconds(MOST_SECONDS):
             decision, verdict = _on_name(claim, repair, named_formula) or _decide(claim)
-            other_verdict = None if verdict else _of_another_reading(claim)
+            other_verdict = None if verdict or decision is None else _of_another_reading(claim)
             is_false = decision is not None and decision.verdict == "false"
             if other_verdict is None and is_false and verdict.dimension.status != "inconsistent":
                 decision, verdict = _on_name(claim, repair, related_formula) or (decision, verdict)

@@ -12,7 +12,7 @@ from typing import Any
 
 from sympy import Expr, Symbol
 
-from symrot.checker.claim.functions import BUILT_IN
+from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.interpreter import CONSTANTS, Interpreter, time
 from symrot.checker.claim.quantities import (
     OTHER_MEANINGS,
@@ -23,7 +23,7 @@ from symrot.checker.claim.quantities import (
 )
 from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation
 from symrot.checker.claim.scope import Divisor, is_matrix
-from symrot.checker.claim.tree import Node, text, walk
+from symrot.checker.claim.tree import Node, negated, text, walk
 from symrot.checker.decide.decision import Equation
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.typed.cursor import TIME
@@ -284,6 +284,7 @@ def claim_of_relation(
         str(node.value) for tree in trees for _, node in walk(tree) if node.kind == "call" and node.args == (TIME,)
     }
     letters = letters_of_quantities(trees)
+    of_axes = _with_rotated_axes(relation)
     used = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind in ("name", "call")}
     return Claim(
         relation=relation,
@@ -291,6 +292,7 @@ def claim_of_relation(
         functions=tuple(letter for letter in OTHER_MEANINGS if letter in rates),
         define=tuple(define),
         hypotheses=hypotheses,
+        alternatives=() if of_axes == relation else (of_axes,),
         implied=True,
         sources=sources,
         units=check_units(dict(units or {}), used, "claim"),
@@ -301,6 +303,19 @@ def claim_of_relation(
 def _with_natural_base(relation: Relation) -> Relation:
     sign, left, right = relation
     return sign, with_natural_base(left), with_natural_base(right)
+
+
+def _with_rotated_axes(relation: Relation) -> Relation:
+    """Return a relation in which ``R_x(a)`` is R_x(-a): in some books it rotates the axes, not the vectors."""
+
+    def turned(node: Node) -> Node:
+        args = tuple(map(turned, node.args))
+        if node.kind == "call" and node.value in ROTATIONS and "_" in node.value:
+            args = (negated(args[0]),)
+        return replace(node, args=args)
+
+    sign, left, right = relation
+    return sign, turned(left), turned(right)
 
 
 # -- TOML -------------------------------------------------------------------------------------------------------------

@@ -29,9 +29,12 @@ from symrot.exact.size import pieces
 from symrot.kinematics.quaternion import quaternion_product, quaternion_to_dcm
 from symrot.kinematics.rotations import elementary_rotation, skew, vee
 
-__all__ = ["BUILT_IN", "inverted"]
+__all__ = ["BUILT_IN", "ROTATIONS", "inverted"]
 
 LARGEST_MATRIX = 12
+
+ROTATIONS = {f"R{bar}{axis}": axis.upper() for bar in ("", "_") for axis in "xyz"}
+"""Function -> the axis of its rotation. R_x with an underscore is a symbol, unless an angle in brackets follows."""
 
 
 def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] | None = None) -> Any:
@@ -305,9 +308,7 @@ BUILT_IN: Mapping[str, tuple[int, int, Callable[[Scope, Node], Any]]] = {
     "adjugate": (1, 1, _adjugate),
     "det": (1, 1, _det),
     "trace": (1, 1, _trace),
-    "Rx": (1, 1, _rotation("X")),
-    "Ry": (1, 1, _rotation("Y")),
-    "Rz": (1, 1, _rotation("Z")),
+    **{name: (1, 1, _rotation(axis)) for name, axis in ROTATIONS.items()},
     "skew": (1, 3, _skew),
     "vee": (1, 1, _vee),
     "cross": (2, 2, _cross),

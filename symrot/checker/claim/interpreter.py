@@ -8,7 +8,7 @@ from typing import Any
 import sympy
 from sympy import Expr, Function, ImmutableMatrix, Integer, Rational, Symbol
 
-from symrot.checker.claim.functions import BUILT_IN, inverted
+from symrot.checker.claim.functions import BUILT_IN, ROTATIONS, inverted
 from symrot.checker.claim.scope import Scope, described, is_matrix
 from symrot.checker.claim.tree import Node
 from symrot.checker.decide.unordered import is_unordered
@@ -74,7 +74,7 @@ def _name(interpreter: Interpreter, node: Node) -> Any:
         return CONSTANTS[name]
     if name in interpreter.functions:
         raise interpreter.fail(node, f"{name}(t), since {name} is a function of t,")
-    if name in BUILT_IN:
+    if name in BUILT_IN and not (name in ROTATIONS and "_" in name):
         raise interpreter.fail(node, f"brackets after the function {name}")
     if not interpreter.implied:
         raise interpreter.fail(node, f"a name that is declared ({_nearest(name, interpreter)}) instead of {name!r}")

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from string import whitespace
 from typing import ClassVar
 
+from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.reader import LONGEST_TEXT, MOST_PIECES
 from symrot.checker.claim.tree import Node
 from symrot.errors import InputError, complaint
@@ -17,8 +18,8 @@ __all__ = ["CLOSING", "MATRIX_CALLS", "TIME", "UPRIGHT", "Cursor", "Names", "is_
 CLOSING = {"(": ")", "[": "]", "\\{": "\\}"}
 TIME = Node("name", "t")
 UPRIGHT = ("\\mathrm", "\\mathit", "\\mathsf", "\\textrm")
-MATRIX_CALLS = ("Matrix", "cross", "skew", "vee", "Rx", "Ry", "Rz", "inverse", "transpose", "eye", "diag", "qmul",
-                "dcm_of", "hstack", "adjugate")  # fmt: skip
+MATRIX_CALLS = ("Matrix", "cross", "skew", "vee", "inverse", "transpose", "eye", "diag", "qmul",
+                "dcm_of", "hstack", "adjugate", *ROTATIONS)  # fmt: skip
 MARKS = frozenset("-+*/=()[]{}&|,−·×⋅")
 WRAPPERS = (
     ("", ""), ("$$", "$$"), ("$", "$"), (r"\[", r"\]"), (r"\(", r"\)"),

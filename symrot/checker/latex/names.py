@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 
-from symrot.checker.claim.functions import BUILT_IN
+from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.tree import Node
 from symrot.checker.latex.cursor import CLOSING, TIME, UPRIGHT, is_letter
 from symrot.checker.latex.sums import SumsPart
@@ -36,6 +36,8 @@ class NamesPart(SumsPart):
             else:
                 subscript = self.subscript(mark)
         known = self.resolved(name, subscript)
+        if known in ROTATIONS and known not in self.names and self.at("("):
+            return self.called(known)
         if primes and (known in self.names.functions or self.called_with_time()):
             self.take_time_call(known)
             return self.derivative(Node("name", known), primes, item)

@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Collection, Mapping
 from typing import ClassVar
 
+from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.reader import Relation, read_relation
 from symrot.checker.claim.tree import Node, text, walk
 from symrot.checker.latex.reader import Names, read_latex
@@ -161,6 +162,8 @@ class _Writer:
             return f"\\begin{{bmatrix}} {lines} \\end{{bmatrix}}"
         if [a.value for a in node.args] == ["t"] and name not in COMMANDS:
             return f"{self.name(Node('name', name))}(t)"
+        if name in ROTATIONS:
+            return self.name(Node("name", name)) + self.argument(node)
         command = COMMANDS.get(name, f"\\operatorname{{{name}}}")
         return command + self.argument(node)
 

@@ -4,11 +4,13 @@ An edit changes one part of a formula; the more likely its fault is, the smaller
 all edits of a tree; :mod:`symrot.checker.repair.diagnose` combines edits, and finds out which results are true.
 """
 
+import itertools
 import re
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
 
 __all__ = ["COST", "FAULT_DESCRIPTIONS", "OPPOSITE", "Edit", "neighbours", "normalise_factors", "single_edits"]
@@ -73,7 +75,6 @@ FEW = 3
 """The number of occurrences of an angle up to which all of them are as easily wrong together as one alone."""
 
 OPPOSITE = {"sin": "cos", "cos": "sin", "tan": "cot", "cot": "tan", "sec": "csc", "csc": "sec"}
-ROTATIONS = ("Rx", "Ry", "Rz")
 FAMILIES = (("A", "B", "C"), ("phi", "theta", "psi"), ("x", "y", "z"), ("alpha", "beta", "gamma"), ("a", "b", "c"))
 _STEM = re.compile(r"([A-Za-z]+?)_?([0-9]+|[xyz]{1,2}|[sb])")
 PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)", re.ASCII)
@@ -262,18 +263,20 @@ def _of_sequence(factors: list[Node]) -> Iterator[Change]:
     yield "wrong_sequence_type", product(factors[::-1]), COST["sequence_reversed"]
     angles = [factor.args for factor in factors]
     for place, factor in enumerate(factors):
-        for axis in ROTATIONS:
+        for axis in _spelled_like(factor.value):
             if axis != factor.value:
                 made = [*factors[:place], Node("call", axis, factor.args), *factors[place + 1 :]]
                 yield "wrong_sequence_type", product(made), 0.0
     if len(factors) == 3:
-        for first in ROTATIONS:
-            for second in ROTATIONS:
-                for third in ROTATIONS:
-                    if first != second != third:
-                        axes = (first, second, third)
-                        made = [Node("call", axis, args) for axis, args in zip(axes, angles, strict=True)]
-                        yield "wrong_sequence_type", product(made), COST["three_axes_changed"]
+        for axes in itertools.product(_spelled_like(factors[0].value), repeat=3):
+            if axes[0] != axes[1] != axes[2]:
+                made = [Node("call", axis, args) for axis, args in zip(axes, angles, strict=True)]
+                yield "wrong_sequence_type", product(made), COST["three_axes_changed"]
+
+
+def _spelled_like(rotation: str) -> tuple[str, ...]:
+    """Return the rotations about the three axes, spelled ``Rx`` or ``R_x`` as one of them is."""
+    return tuple(rotation[:-1] + axis for axis in "xyz")
 
 
 def _of_call(node: Node, functions: Collection[str]) -> Iterator[Change]:
@@ -285,7 +288,7 @@ def _of_call(node: Node, functions: Collection[str]) -> Iterator[Change]:
         yield "double_half_angle", replace(node, args=(product([number(2), argument]),)), 0.0
     elif name in ROTATIONS:
         yield "active_passive_transpose", replace(node, args=(negated(arguments[0]),)), 0.0
-        for axis in ROTATIONS:
+        for axis in _spelled_like(name):
             if axis != name:
                 yield "wrong_sequence_type", replace(node, value=axis), 0.0
     elif name == "qmul":

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.repair.dual import (
     Dual,
@@ -303,7 +304,8 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "tanh": lambda x: _hyperbolic(x)[0] * inverse(_hyperbolic(x)[1]),
     "tan": lambda x: sine(x) * inverse(cosine(x)), "cot": lambda x: cosine(x) * inverse(sine(x)),
     "sec": lambda x: inverse(cosine(x)), "csc": lambda x: inverse(sine(x)),
-    "Rx": rotation(0), "Ry": rotation(1), "Rz": rotation(2), "hstack": _hstack, "qmul": _product_of_quaternions,
+    **{name: rotation("XYZ".index(axis)) for name, axis in ROTATIONS.items()},
+    "hstack": _hstack, "qmul": _product_of_quaternions,
     "vee": lambda rows: column([needed(rows, (3, 3))[2][1], rows[0][2], rows[1][0]]),
     "dot": lambda a, b: dot([row[0] for row in needed(a, (None, 1))], [row[0] for row in needed(b, (None, 1))]),
     "det": lambda rows: determinant(needed(rows)), "inverse": lambda rows: inverted(needed(rows)),

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations_with_replacement, islice
 
+from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
 from symrot.checker.latex.cursor import TIME
 from symrot.checker.repair.edits import COST, OPPOSITE, Edit, neighbours, normalise_factors
@@ -215,7 +216,7 @@ def _pieces(tree: Node, path: Path = (), term: bool = False) -> Iterator[tuple[P
         yield path, tree, term
     for place, child in enumerate(tree.args):
         hidden = tree.kind in ("power", "index") and place
-        inside = tree.kind == "call" and tree.value in (*OPPOSITE, "diff", "integrate", "Rx", "Ry", "Rz", "eye")
+        inside = tree.kind == "call" and tree.value in (*OPPOSITE, "diff", "integrate", *ROTATIONS, "eye")
         if not hidden and not inside and child != TIME:
             yield from _pieces(child, (*path, place), tree.kind == "sum")
 

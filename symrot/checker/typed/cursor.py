@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from symrot.checker.claim.functions import BUILT_IN
+from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.tree import Node
 from symrot.checker.typed.defined_functions import DEFINED
 from symrot.checker.typed.tokens import Token
@@ -57,7 +57,7 @@ class Vocabulary:
 
     def function(self, name: str) -> str | None:
         """Return the name if it is a built-in or declared function; None for any other name."""
-        if name in self.symbols:
+        if name in self.symbols or (name in ROTATIONS and name in self.alone):
             return None
         if name in BUILT_IN or name in self.functions or name in DEFINED:
             return name

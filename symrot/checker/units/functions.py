@@ -5,6 +5,7 @@ from fractions import Fraction
 from functools import reduce
 from typing import Any
 
+from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.tree import Node
 from symrot.checker.units.inference import ZERO, Rows, UnitInference, Unreadable, Value, number_of, piece_text, shape_of
 from symrot.checker.units.units import NOTHING, Dimension, raised, times
@@ -158,7 +159,7 @@ def _inverse_of(inference: UnitInference, node: Node) -> Value:
 CALLS: dict[str, Callable[[UnitInference, Node], Any]] = {
     **dict.fromkeys(("sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "acot", "exp", "log", "sinh",
                      "cosh", "tanh", "asinh", "acosh", "atanh", "sinc", "factorial"), _of_number),
-    "atan2": _alike, "Rx": _rotation(0), "Ry": _rotation(1), "Rz": _rotation(2),
+    "atan2": _alike, **{name: _rotation("XYZ".index(axis)) for name, axis in ROTATIONS.items()},
     "sqrt": lambda inference, node: inference.power(inference.scalar(node.args[0]), Fraction(1, 2)),
     "abs": lambda inference, node: inference.scalar(node.args[0]),
     "sign": lambda inference, node: NOTHING,

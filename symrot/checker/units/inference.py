@@ -6,6 +6,7 @@ from fractions import Fraction
 from functools import reduce
 from typing import Any
 
+from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.tree import Node, text, walk
 from symrot.checker.units.units import (
     NOTHING,
@@ -23,7 +24,7 @@ __all__ = ["ZERO", "Rows", "UnitInference", "Unreadable", "Value", "angles_of", 
 LONGEST_EXCERPT = 60
 LARGEST_DETERMINANT = 4
 
-ANGLE_FUNCTIONS = ("sin", "cos", "tan", "cot", "sec", "csc", "Rx", "Ry", "Rz")
+ANGLE_FUNCTIONS = ("sin", "cos", "tan", "cot", "sec", "csc", *ROTATIONS)
 
 Value = Any
 """A dimension, None for zero (which may have any unit), or the rows of a matrix of these."""

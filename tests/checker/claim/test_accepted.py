@@ -13,6 +13,8 @@ IDENTITIES = (
     "cos 4x = 8 cos^4 x - 8 cos^2 x + 1", "x(y+1) = xy + x", "1/2 m (v + u)^2 = ½ m v² + m u v + ½ m u²",
     "(a + b)² = a² + 2 a b + b² = a (a + 2b) + b²", "x = r cos θ\ny = r sin θ\nx² + y² = r²",
     "R = [cos a, -sin a; sin a, cos a]\nR^T R = [1, 0; 0, 1]", "d/dt (x y) = ẋ y + x ẏ", "1500*2π/60 = 50π",
+    "R_z(α) R_z(β) = R_z(α + β)", "R_x(α)ᵀ = R_x(−α)", "tr R_z(φ) = 1 + 2 cos φ", "R_x(π) R_y(π) = R_z(π)",
+    r"R_z(\alpha) R_z(\beta) = R_z(\alpha + \beta)", r"\operatorname{tr}\left(R_x(\Phi)\right) = 4\cos^2\tfrac{\Phi}{2} - 1",
     "v = [a, b, c]\nw = [p, q, r]\nv.dot(w) = a p + b q + c r", "Matrix([[a, b], [c, d]]).det() == a*d - b*c",
 )  # fmt: skip
 
@@ -103,3 +105,14 @@ def test_a_wrong_formula_is_found_and_repaired_in_the_same_notation(claim, outco
     if repair is not None:
         assert repair in [near.text for near in verdict.repairs]
         assert symrot.check(repair).verdict in ("true", "recognised")
+
+
+def test_a_rotation_of_axes_is_read_where_one_of_vectors_does_not_fit():
+    """Some books rotate the axes by the angle a, which is the transposed matrix; the verdict says which one it means."""
+    of_vectors = symrot.check("R_z(a) = [[cos a, -sin a, 0], [sin a, cos a, 0], [0, 0, 1]]")
+    of_axes = symrot.check("R_z(a) = [[cos a, sin a, 0], [-sin a, cos a, 0], [0, 0, 1]]")
+    assert of_vectors.verdict == of_axes.verdict == "true"
+    assert any("rotate the axes" in note for note in of_axes.notes)
+    assert not any("rotate the axes" in note for note in of_vectors.notes)
+    assert symrot.check("R_z(a) = [[cos a, sin a, 0], [sin a, cos a, 0], [0, 0, 1]]").verdict == "false"
+    assert symrot.check("R_x + R_y = F").verdict == "definition"  # forces
