@@ -8,18 +8,15 @@ from typing import Any
 
 from symrot.checker.claim.claims import (
     Refusal,
-    claim_of_text,
+    functions_of_time,
     is_latex,
     read_entries,
 )
-from symrot.checker.claim.reader import Relation
 from symrot.checker.claim.size import MOST_NESTED, nesting
-from symrot.checker.claim.tree import walk
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, check_readings, unfinished, verdict_of_decision
 from symrot.checker.decide.decision import Equation, decide_equation
-from symrot.checker.text import verdict_on_text
+from symrot.checker.text import verdict_on_reading, verdict_on_text
 from symrot.checker.time_limit import TimeUp, processor_seconds
-from symrot.checker.typed.cursor import TIME
 from symrot.checker.units.check import dimensions_of_formulas
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
@@ -131,36 +128,14 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
 
 
 def _on_latex(source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool) -> Verdict:
-    """Return the verdict on a claim in LaTeX, with its reading and its repairs in LaTeX."""
-    from symrot.checker.latex.reader import latex_sides
-    from symrot.checker.latex.writing import latex_of, latex_of_text
+    """Return the verdict on a text in LaTeX, with its reading and its repairs in LaTeX."""
+    from symrot.checker.latex.reader import Names, latex_reading
+    from symrot.checker.latex.writing import LatexNotation
 
-    if source.count("=") > 1 and len(sides := latex_sides(source)) > 2:
-        verdict = verdict_on_text(" = ".join(sides), assume, units, repair)
-        repairs = tuple(replace(near, text=latex_of_text(near.text)) for near in verdict.repairs)
-        return replace(verdict, text=source.strip(), reading="", repairs=repairs)
-    claim = claim_of_text(source, assume, units or {})
-    assert claim.relation is not None
-    verdict = check_claim(claim, repair)
-    functions = claim.definitions.functions
-    repairs = tuple(replace(near, text=latex_of_text(near.text, functions)) for near in verdict.repairs)
-    echo = latex_of(claim.relation, functions) or claim.text
-    reading = echo if "".join(echo.split()) != "".join(source.split()) else ""
-    notes = (*claim.notes, *_constants(claim.relation), *verdict.notes)
-    return replace(verdict, text=source.strip(), reading=reading, repairs=repairs, notes=notes)
-
-
-def _constants(relation: Relation) -> tuple[str, ...]:
-    """Return a note on the symbols that are constants in derivatives with respect to time."""
-    nodes = [node for side in relation[1:] for _, node in walk(side)]
-    rates = [node.args[0] for node in nodes if node.kind == "call" and node.value == "diff" and node.args[-1] == TIME]
-    parts = (part for rate in rates if rate.kind != "call" for _, part in walk(rate))
-    inner = {argument for node in nodes if node.kind == "call" for argument in node.args if argument == TIME}
-    names = sorted({str(part.value) for part in parts if part.kind == "name" and part not in inner} - {"pi"})
-    if not names:
-        return ()
-    are = "is read as a constant" if len(names) == 1 else "are read as constants"
-    return (f"{', '.join(names)} {are}, having no rate in the text",)
+    functions = functions_of_time(assume)
+    reading = latex_reading(source, Names(functions=functions))
+    notation = LatexNotation(functions, reading.vectors)
+    return verdict_on_reading(reading, notation, source, assume, units, repair)
 
 
 def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:

@@ -20,7 +20,7 @@ from symrot.checker.typed.cursor import TIME
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
 
-__all__ = ["verdict_on_text"]
+__all__ = ["verdict_on_reading", "verdict_on_text"]
 
 WORST_FIRST = ("false", "doubtful", "undecided", "conditional", "definition", "recognised", "true")
 """The order in which the verdicts on the parts of a text decide the verdict on the whole."""
@@ -56,7 +56,7 @@ def verdict_on_text(
         if late:
             break
         try:
-            verdict = _verdict(reading, source, assume, units, repair and not verdicts)
+            verdict = verdict_on_reading(reading, notation_of(reading), source, assume, units, repair and not verdicts)
         except InputError as reason:
             refusal = refusal or reason
             continue
@@ -92,12 +92,15 @@ def _text_of(reading: Reading, notation: Notation) -> str:
     )  # fmt: skip
 
 
-def _verdict(
-    reading: Reading, source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool
-) -> Verdict:
-    """Return the verdict on one reading of a text: on its only equation, or on all of its links and lines."""
+def verdict_on_reading(
+    reading: Reading, notation: Notation, source: str, assume: Sequence[str] = (),
+    units: Mapping[str, str] | None = None, repair: bool = True,
+) -> Verdict:  # fmt: skip
+    """Return the verdict on one reading of a text: on its only equation, or on all of its links and lines.
+
+    ``notation`` is the notation of the text, in which formulas are written.
+    """
     lines = claims_of_reading(reading, source, assume, units)
-    notation = notation_of(reading)
     parts = [(claim, _on_claim(claim, notation, repair)) for line in lines for claim in line]
     several = len(parts) > 1
     verdict = _on_parts(lines, [part for _, part in parts], notation) if several else parts[0][1]

@@ -212,7 +212,9 @@ class ShapeMismatch(InputError):
 
 
 def matched_sides(left: Any, right: Any) -> tuple[list[Expr], list[Expr], Shape]:
-    """Return the entries of both sides of an equation and their common shape; 0 becomes a zero matrix of any shape.
+    """Return the entries of both sides of an equation and their common shape.
+
+    0 becomes a zero matrix of any shape, and a 1 x 1 matrix is equal to its entry.
 
     Raises
     ------
@@ -226,6 +228,8 @@ def matched_sides(left: Any, right: Any) -> tuple[list[Expr], list[Expr], Shape]
         rights, other = [Integer(0)] * len(lefts), shape
     if shape is None and lefts == [0]:
         lefts, shape = [Integer(0)] * len(rights), other
+    if {shape, other} == {None, (1, 1)}:
+        return lefts, rights, None
     if shape != other:
         raise ShapeMismatch(shape, other)
     return lefts, rights, shape

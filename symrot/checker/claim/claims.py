@@ -4,7 +4,7 @@ A claim keeps its syntax trees because the search for its fault edits them. A fi
 are true.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -23,7 +23,9 @@ from symrot.checker.claim.quantities import (
 )
 from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation
 from symrot.checker.claim.scope import Divisor, is_matrix
+from symrot.checker.claim.shapes import Shape, added_names, shape_of, with_unit_matrices
 from symrot.checker.claim.tree import Node, negated, text, walk
+from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor
 from symrot.checker.decide.decision import Equation
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.typed.cursor import TIME
@@ -38,6 +40,7 @@ __all__ = [
     "check_units",
     "claim_of_relation",
     "claim_of_text",
+    "functions_of_time",
     "is_latex",
     "read_claims",
     "read_entries",
@@ -237,19 +240,22 @@ def claim_of_text(source: str, assume: Sequence[str] = (), units: Mapping[str, s
     Names become real symbols, or functions of time if they are written ``f(t)``; so do the names in the hypotheses. A
     text that can be read in two ways is refused; :func:`symrot.checker.claim.lines.claims_of_reading` accepts it.
     """
-    hypotheses = tuple(_hypothesis(text, "given") for text in assume)
+    vectors: tuple[Vector, ...] = ()
     if isinstance(source, str) and is_latex(source):
-        source = read_latex(source, names=Names(functions=_functions_of_time(hypotheses))).text
-    return claim_of_relation(read_relation(source), source, assume, units)
+        equation = read_latex(source, names=Names(functions=functions_of_time(assume)))
+        source, vectors = equation.text, equation.vectors
+    return claim_of_relation(read_relation(source), source, assume, units, vectors=vectors)
 
 
 def claim_of_relation(
     relation: Relation, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None,
     define: Sequence[tuple[str, Node]] = (), notes: Sequence[str] = (), context: Sequence[Node] = (),
+    vectors: Sequence[Vector] = (),
 ) -> Claim:  # fmt: skip
     """Return the claim of an equation that was read from a text.
 
-    ``define`` are the definitions on earlier lines of the text, and ``context`` are its other formulas.
+    ``define`` are the definitions on earlier lines of the text, ``context`` are its other formulas, and ``vectors`` are
+    names with three components.
 
     Raises
     ------
@@ -259,7 +265,10 @@ def claim_of_relation(
     if relation[0] != "==":
         raise InputError(f"expected a claim with '==', got '{relation[0]}' in {source[:60]!r}")
     hypotheses = tuple(_hypothesis(text, "given") for text in assume)
-    notes = list(notes)
+    relation, vectors, with_units = _with_vectors(relation, list(vectors), define)
+    hypotheses += tuple(vector.length_is_one for vector in vectors if vector.unit and not vector.is_axis)
+    define = [*((vector.name, vector.components) for vector in vectors), *define]
+    notes = [*notes, *_on_vectors(vectors), *(["I is read as the unit matrix"] if with_units else [])]
     everything = [*relation[1:], *context, *(side for hypothesis in hypotheses for side in hypothesis[1:])]
     letter = imaginary_letter(everything)
     if has_natural_base(everything) and not any(name == "e" for name, _ in define):
@@ -298,6 +307,47 @@ def claim_of_relation(
         units=check_units(dict(units or {}), used, "claim"),
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
+
+
+def _with_vectors(
+    relation: Relation, vectors: list[Vector], define: Sequence[tuple[str, Node]]
+) -> tuple[Relation, list[Vector], bool]:
+    """Return a relation with its unit matrices, its vectors, and whether it has unit matrices.
+
+    A name that is added to vectors is a vector too; a name of an inertia, added to matrices, is a tensor.
+    """
+    named = {name for name, _ in define} | {vector.name for vector in vectors}
+    vectors = [*vectors, *map(Vector, dict.fromkeys(n for n in gyroscopic_tensors(relation[1:]) if n not in named))]
+    shapes: dict[str, Shape] = {}
+    for name, tree in (*((vector.name, vector.components) for vector in vectors), *define):
+        shapes[name] = shape_of(tree, shapes)
+    with_units = with_unit_matrices(relation, shapes)
+    while new := {
+        name: shape
+        for name, shape in added_names(with_units, shapes).items()
+        if shape == (3, 1) or (shape == (3, 3) and is_tensor(name))
+    }:
+        vectors = [*vectors, *map(Vector, new)]
+        shapes |= new
+    return with_units, vectors, with_units != relation
+
+
+def _on_vectors(vectors: Sequence[Vector]) -> Iterator[str]:
+    """Yield notes on the names that are read as vectors and tensors."""
+    columns = [vector for vector in vectors if not is_tensor(vector.name) and not vector.is_axis]
+    if columns:
+        *others, last = sorted(vector.name for vector in columns)
+        are = f"{', '.join(others)} and {last} are vectors" if others else f"{last} is a vector"
+        first = min(columns, key=lambda vector: vector.name)
+        parts = ", ".join(f"{first.name}_{axis}" for axis in first.axes)
+        yield f"{are} with the components {parts}{' and so on' if others else ''}"
+    for vector in vectors:
+        if is_tensor(vector.name):
+            yield f"{vector.name} is a symmetric tensor with the entries {vector.name}_xx, {vector.name}_xy and so on"
+        if vector.is_axis:
+            yield f"{vector.name} with a hat is the {vector.name} axis"
+        elif vector.unit:
+            yield f"{vector.name} has the length 1, as its hat says"
 
 
 def _with_natural_base(relation: Relation) -> Relation:
@@ -461,11 +511,11 @@ def is_latex(source: str) -> bool:
     return any(mark in source for mark in "\\${")
 
 
-def _functions_of_time(relations: Sequence[Relation]) -> set[str]:
-    """Return the names f that occur as ``f(t)`` in the relations."""
+def functions_of_time(assume: Sequence[str]) -> set[str]:
+    """Return the names f that occur as ``f(t)`` in hypotheses."""
     return {
         node.value
-        for relation in relations
+        for relation in (_hypothesis(text, "given") for text in assume)
         for side in relation[1:]
         for _, node in walk(side)
         if node.kind == "call" and node.value not in BUILT_IN and [part.value for part in node.args] == ["t"]

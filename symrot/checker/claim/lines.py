@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from symrot.checker.claim.claims import Claim, check_units, claim_of_relation
 from symrot.checker.claim.reader import Reading
 from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.vectors import used_vectors
 from symrot.errors import InputError
 
 __all__ = ["claims_of_reading"]
@@ -37,7 +38,8 @@ def claims_of_reading(
         for link in links:
             in_link = {str(n.value) for side in link[1:] for _, n in walk(side)}
             own = {name: unit for name, unit in (units or {}).items() if name in in_link}
-            claims.append(claim_of_relation(link, source, assume, own, known, reading.notes, context))
+            vectors = [vector for vector in used_vectors(link[1:], reading.vectors) if vector.name not in dict(define)]
+            claims.append(claim_of_relation(link, source, assume, own, known, reading.notes, context, vectors))
         lines.append(claims)
         first = chain.sides[0]
         reserved = ("pi", "t", *(name for name, _ in define))

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk
+from symrot.checker.claim.vectors import is_components
 
 __all__ = ["NamedFormula", "named_formula", "related_formula"]
 
@@ -42,10 +43,11 @@ def named_formula(claim: Claim) -> NamedFormula | None:
     assert claim.relation is not None
     _, left, right = claim.relation
     others = [side for relation in claim.hypotheses for side in relation[1:]] + [tree for _, tree in claim.define]
-    known = _known(claim)
+    known, defined = _known(claim), dict(claim.define)
     for side, formula in ((left, right), (right, left)):
         inner = side.args[0] if _is_rate(side) else side
-        if _is_name(inner) and inner.value not in known and not _is_name(formula):
+        is_wrong_shape = inner.value in defined and formula.kind == "number" and formula.value
+        if _is_name(inner) and inner.value not in known and not _is_name(formula) and not is_wrong_shape:
             elsewhere = [node for tree in (formula, *others) for _, node in walk(tree)]
             if side not in elsewhere and not (inner is side and inner.value in [n.value for n in elsewhere]):
                 return NamedFormula(str(inner.value), side, formula, _is_rate(side))
@@ -58,12 +60,18 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     left, right = _without_common_factors(*claim.relation[1:])
     known = _known(claim)
     letters = [_quantities(side) for side in (left, right)]
+    if _is_condition_on_vectors(left, right, unit=bool(claim.hypotheses)):
+        return NamedFormula(text(left), left, right, solve=None)
     if claim.hypotheses or any(name in known for quantities in letters for name, _ in quantities):
         return None
     if all(_is_name(side) or _is_rate(side) for side in (left, right)):
         return None
     apart = all(letters) and not letters[0] & letters[1]
     if is_matrix(claim.equation.left) or is_matrix(claim.equation.right):
+        if (solved := _solved_for_vector(claim, left, right)) is not None:
+            return solved
+        if _equation_of_motion(left, right) is not None:
+            return NamedFormula(text(left), left, right, solve=None)
         of_names = any(_is_list_of_names(side) for side in (left, right))
         return NamedFormula(text(left), left, right, solve=None) if apart and of_names else None
     if apart:
@@ -77,6 +85,19 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     return NamedFormula(text(left), left, right, solve=None) if _is_constraint(left, right, letters) else None
 
 
+def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | None:
+    """Return the vector that is a single term of an equation and occurs nowhere else, and the formula for it."""
+    terms = [*_terms(left), *map(negated, _terms(right))]
+    generic = {name for name, tree in claim.define if is_components(name, tree)}
+    everywhere = [node.value for term in terms for _, node in walk(term) if node.kind == "name"]
+    for term in terms:
+        bare = term.args[0] if term.kind == "neg" else term
+        if bare.kind == "name" and bare.value in generic and everywhere.count(bare.value) == 1:
+            rest = sum_of([other for other in terms if other is not term])
+            return NamedFormula(str(bare.value), bare, rest if term.kind == "neg" else negated(rest))
+    return None
+
+
 def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, bool]]]) -> bool:
     """Return whether a sum with several letters outside of functions is a number: q0^2 + q1^2 + q2^2 + q3^2 = 1."""
     polynomial, constant = (left, right) if letters[0] else (right, left)
@@ -85,6 +106,19 @@ def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, boo
     powers = [node for _, node in walk(polynomial) if node.kind == "power"]
     outside = {name for factor in _factors(polynomial) if _is_name(factor) for name, _ in _quantities(factor)}
     return len(outside) > 1 and all(power.args[1].kind == "number" for power in powers)
+
+
+def _is_condition_on_vectors(left: Node, right: Node, unit: bool) -> bool:
+    """Return whether a single product of vectors, or a length, is a number: ``a . b = 0`` says that they are normal.
+
+    The length of a unit vector (``unit``) is not open.
+    """
+    for side, other in ((left, right), (right, left)):
+        product_of = side.args[0] if side.kind == "call" and side.value == "sqrt" else side
+        if other.kind == "number" and product_of.kind == "call" and product_of.value in ("dot", "cross"):
+            first, second = product_of.args
+            return not (unit and first == second)
+    return False
 
 
 def _is_list_of_names(tree: Node) -> bool:
@@ -101,8 +135,11 @@ def _factors(tree: Node) -> list[Node]:
 
 
 def _known(claim: Claim) -> set[str]:
-    """Return the names that need no formula: pi, the time t, and the names that the claim defines."""
-    return {"pi", "t", *(name for name, _ in claim.define)}
+    """Return the names that need no formula: pi, the time t, and the names that the claim defines.
+
+    A vector that only has components of its own name is not among them.
+    """
+    return {"pi", "t", *(name for name, tree in claim.define if not is_components(name, tree))}
 
 
 def _is_name(tree: Node) -> bool:

@@ -4,17 +4,31 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from fractions import Fraction
+from typing import Protocol
 
 from symrot.checker.claim.reader import Reading, Relation, read_relation
 from symrot.checker.claim.tree import Node, text
 from symrot.errors import InputError
 
-__all__ = ["Notation", "notation_of"]
+__all__ = ["Notation", "TypedNotation", "notation_of"]
+
+
+class Notation(Protocol):
+    """A way to write formulas: the one that a user chose."""
+
+    def formula(self, node: Node) -> str:
+        """Return the text of a formula."""
+
+    def relation(self, relation: Relation) -> str:
+        """Return the text of an equation or inequality."""
+
+    def rewritten(self, source: str) -> str:
+        """Return the text of an equation that is given as SymPy's text; words after it stay unchanged."""
 
 
 @dataclass(frozen=True)
-class Notation:
-    """The way in which a text is typed.
+class TypedNotation:
+    """The way in which a text is typed: SymPy's text, or plain text.
 
     Attributes
     ----------
@@ -91,9 +105,9 @@ def decimal(value: Fraction) -> str:
     return written if Fraction(written) == value else f"({value})"
 
 
-def notation_of(reading: Reading) -> Notation:
+def notation_of(reading: Reading) -> TypedNotation:
     """Return the notation in which the text of a reading (one interpretation of a typed text) is written."""
-    return Notation(reading.plain, dict(reading.spelling), reading.timed)
+    return TypedNotation(reading.plain, dict(reading.spelling), reading.timed)
 
 
 END = Node("name", "")

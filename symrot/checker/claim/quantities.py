@@ -14,6 +14,11 @@ __all__ = [
 OTHER_MEANINGS = {"I": "the imaginary unit", "E": "the number e = 2.718.."}
 """Letters that name a quantity in books on mechanics, and a number in SymPy -> the number in words."""
 
+OF_NUMBERS = frozenset(BUILT_IN) - {
+    "sqrt", "abs", "diff", "integrate", "Matrix", "diag", "hstack", "cross", "dot", "skew", "trace", "det", "transpose",
+}  # fmt: skip
+"""Functions of which a moment of inertia or an energy is no argument."""
+
 USUAL_QUANTITIES = frozenset("mMgGhlLrRvFkTVUKJHNpqsabdcw")
 
 
@@ -35,8 +40,8 @@ def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
     letters = []
     for letter in OTHER_MEANINGS:
         used = [node for node in nodes if (node.kind, node.value) == ("name", letter)]
-        inside = [node for call in nodes if call.kind == "call" and call.value in BUILT_IN and call.value not in
-                  ("sqrt", "abs", "diff", "integrate", "Matrix", "diag") for _, node in walk(call)]  # fmt: skip
+        calls = [node for node in nodes if node.kind == "call" and node.value in OF_NUMBERS]
+        inside = [node for call in calls for _, node in walk(call)]
         waves = [node for node in nodes if _is_exponential(node, letter)]
         waves += [node for node in nodes if node.kind == "product" and _is_imaginary(node, letter)]
         if used and not waves and not any((node.kind, node.value) == ("name", letter) for node in inside):

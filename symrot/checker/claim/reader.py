@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import Any
 
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.tree import Node
+from symrot.checker.claim.tree import Node, number
 from symrot.checker.typed.cursor import DEEPEST_NESTING, TIME, Doubt, Vocabulary, is_cross_letter
 from symrot.checker.typed.grammar import Parser
 from symrot.checker.typed.tokens import GREEK_WORDS, SIGNS, Token, tokens_of, without_dots
@@ -86,8 +86,10 @@ class Reading:
         Sentences about how the text is read.
     spelling : dict
         Name here -> name as it is typed, where they differ.
-    timed, vectors : frozenset of str
-        Names that are functions of time, and names that are vectors, because of the way in which they are used.
+    timed : frozenset of str
+        Names that are functions of time.
+    vectors : mapping of str to bool
+        Names that are vectors because of the way in which they are used; True for one with a hat.
     flipped : tuple of str
         The places that are read in the other way than usual.
     """
@@ -98,7 +100,7 @@ class Reading:
     notes: tuple[str, ...] = ()
     spelling: Mapping[str, str] = field(default_factory=dict, compare=False)
     timed: frozenset[str] = frozenset()
-    vectors: frozenset[str] = frozenset()
+    vectors: Mapping[str, bool] = field(default_factory=dict, compare=False)
     flipped: tuple[str, ...] = ()
 
     @property
@@ -139,7 +141,8 @@ class _Text:
         one_side : bool
             Whether the text is a formula without a relation.
         """
-        alone = {*_alone(self.tokens), *self.declared.symbols}
+        marked = frozenset(_marked(self.tokens))
+        alone = {*_alone(self.tokens, marked), *self.declared.symbols}
         tokens, notes, doubts = list(self.tokens), list[str](), list[Doubt]()
         if not whole:
             words, notes, doubts = self.words(alone, flips)
@@ -148,12 +151,12 @@ class _Text:
             pairs = pairwise(self.tokens)
             units = [after.text for before, after in pairs if before.kind == "number" and after.text in UNITS]
             notes += [f"{unit} is read as a name, not as a unit" for unit in units]
-            alone |= set(_alone(tokens))
+            alone |= set(_alone(tokens, marked))
         vocabulary = Vocabulary(
             frozenset(self.declared.symbols),
             frozenset(self.declared.functions),
             frozenset(alone),
-            frozenset(_crossed(tokens, flips)),
+            frozenset([*_crossed(tokens, marked, flips), *marked]),
         )
         lines, plain = [], not self.source.isascii() or not whole
         timed, differentiated = set[str](), set[str]()
@@ -183,12 +186,7 @@ class _Text:
             Chain(tuple(signs), tuple(_finished(side, timed, vocabulary.vectors) for side in sides))
             for signs, sides in lines
         )
-        if vocabulary.vectors and plain:
-            names = sorted(vocabulary.vectors)
-            notes.append(
-                f"{_listed(names)} {'is a vector' if len(names) == 1 else 'are vectors'} with the components "
-                f"{names[0]}_x, {names[0]}_y, {names[0]}_z{'' if len(names) == 1 else ' and so on'}"
-            )
+        hats = {name.text for name, mark in pairwise(tokens) if mark.kind == "hat"}
         typed = {t.text: without_dots(self.source[t.start : t.end]) for t in tokens if t.kind == "name"}
         spelling = {name: word for name, word in typed.items() if word != name}
         flipped = tuple(dict.fromkeys(doubt.excerpt for doubt in doubts if doubt.key in flips))
@@ -199,7 +197,7 @@ class _Text:
             tuple(dict.fromkeys(notes)),
             spelling,
             frozenset(timed),
-            vocabulary.vectors,
+            {name: name in hats for name in sorted(vocabulary.vectors)},
             flipped,
         )
 
@@ -318,29 +316,48 @@ class _Text:
         return [*line, Token("end", "", line[-1].end, line[-1].end)]
 
 
-def _alone(tokens: Sequence[Token]) -> Iterator[str]:
+def _alone(tokens: Sequence[Token], vectors: Collection[str]) -> Iterator[str]:
     """Yield the names that are not followed by a bracket; a letter x used as the sign of a cross product is no name."""
     for before, token, after in zip((None, *tokens), tokens, tokens[1:], strict=False):
-        if token.kind == "name" and after.text != "(" and not _is_cross(before, token, after):
+        if token.kind == "name" and after.text != "(" and not _is_cross(before, token, after, vectors):
             yield token.text
 
 
-def _is_cross(before: Token | None, token: Token, after: Token) -> bool:
+def _is_cross(before: Token | None, token: Token, after: Token, vectors: Collection[str]) -> bool:
     """Return whether a letter x is the sign of a cross product: it has blanks and names of vectors on both sides."""
     if token.text != "x" or not token.spaced or not after.spaced or before is None:
         return False
-    return is_cross_letter(before, after)
+    return is_cross_letter(before, after, vectors)
 
 
-def _crossed(tokens: Sequence[Token], flips: Collection[tuple[str, int]]) -> Iterator[str]:
+def _crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collection[tuple[str, int]]) -> Iterator[str]:
     """Yield the names on either side of the sign of a cross product."""
-    alone = set(_alone(tokens))
+    alone = set(_alone(tokens, vectors))
     for before, sign, after in zip(tokens, tokens[1:], tokens[2:], strict=False):
         if (sign.kind == "mark" and sign.text == "×") or (
-            "x" not in alone and _is_cross(before, sign, after) and ("cross", sign.start) not in flips
+            "x" not in alone and _is_cross(before, sign, after, vectors) and ("cross", sign.start) not in flips
         ):
             numbers = "number" in (before.kind, after.kind)
             yield from (token.text for token in (before, after) if token.kind == "name" and not numbers)
+
+
+def _marked(tokens: Sequence[Token]) -> Iterator[str]:
+    """Yield the names that other signs show to be vectors: a hat, a tilde, ``[n]×``, ``[n×]``, and ``a . b``."""
+    for place, name in enumerate(tokens[:-1]):
+        before, after, last = tokens[max(place - 1, 0)], tokens[place + 1], tokens[min(place + 2, len(tokens) - 1)]
+        bracketed = before.text == "["
+        if name.kind == "name" and (
+            after.kind in ("hat", "tilde")
+            or (bracketed and after.text == "]" and last.text in ("x", "×") and last.tight)
+            or (bracketed and after.text in ("x", "×") and last.text == "]")
+            or (_is_dot(after) and last.spaced and last.kind == "name")
+            or (_is_dot(before) and name.spaced)
+        ):
+            yield name.text
+
+
+def _is_dot(token: Token) -> bool:
+    return token.kind == "mark" and token.text == "." and token.spaced
 
 
 def _in_words(pieces: Sequence[str]) -> str:
@@ -354,14 +371,19 @@ def _listed(words: Sequence[str]) -> str:
 
 
 def _finished(node: Node, timed: Collection[str], vectors: Collection[str], parent: str = "") -> Node:
-    """Return a tree with functions of time written ``f(t)``, and with vectors and tables of numbers as matrices."""
+    """Return a tree with functions of time written ``f(t)``, and with tables of numbers as matrices.
+
+    Vectors are names without ``(t)``, and their squares are scalar products.
+    """
+    if node.kind in ("name", "call") and node.value in vectors:
+        return Node("name", node.value, (), node.span)
     if node.kind == "name" and node.value in timed:
         return Node("call", node.value, (TIME,), node.span)
-    if node.kind == "name" and node.value in vectors:
-        parts = tuple(Node("name", f"{node.value}_{axis}", (), node.span) for axis in "xyz")
-        return Node("call", "Matrix", (Node("list", ("[", "]"), parts, node.span),), node.span)
     if node.kind == "call" and node.value in timed:
         return node
+    if node.kind == "power" and node.args[0].value in vectors and node.args[1] == number(2):
+        own = _finished(node.args[0], timed, vectors)
+        return Node("call", "dot", (own, own), node.span)
     if node.kind == "list" and parent not in ("call", "list", "transpose", "index"):
         if len(node.args) == 1:
             return _finished(node.args[0], timed, vectors, parent)
@@ -513,6 +535,11 @@ def read_relation(source: str, where: str = "", declared: Declared | None = None
     if len(strict.lines) > 1 or len(strict.lines[0].signs) > 1:
         second = strict.lines[1].sides[0] if len(strict.lines) > 1 else strict.lines[0].sides[2]
         raise complaint(source, where, second.span[0], "one '==', not a chain of them,")
+    if hats := [name for name, has_hat in strict.vectors.items() if has_hat]:
+        hat = source.index("\N{COMBINING CIRCUMFLEX ACCENT}") if "\N{COMBINING CIRCUMFLEX ACCENT}" in source else 0
+        raise complaint(
+            source, where, hat, f"a vector without a hat here, and {hats[0]} . {hats[0]} = 1 for its length,"
+        )
     return strict.relation
 
 

@@ -41,11 +41,20 @@ class CalculusPart(NamesPart):
         if self.at("t") and not self.is_spaced() and self.peek(1).text not in ("^", "_"):
             factors.append(self.factor())
         follower = self.peek()
+        if follower.text == "[" and self.holds_skew_matrix():
+            return product(factors)
         ambiguous = is_letter(follower) or follower.text in ("\\frac", "\\sqrt", "(", "[", "\\pi", "/")
         free = self.is_spaced() or (self.integrals and self.differential())
         if follower.text == "/" or (ambiguous and not free):
             raise self.fail(f"brackets around the argument of {function.text}", follower)
         return product(factors)
+
+    def holds_skew_matrix(self) -> bool:
+        r"""Return whether the bracket at the cursor is a skew matrix, ``[a\times]`` or ``[a]_\times``."""
+        end = next((n for n, item in enumerate(self.items[self.index :]) if item.text == "]"), 0)
+        mark = self.peek(end + 1)
+        crossed = isinstance(mark, tree.Script) and tree.alone(mark.inside).text in ("\\times", "×")
+        return end > 0 and (crossed or self.peek(end - 1).text in ("\\times", "×"))
 
     def is_spaced(self) -> bool:
         r"""Return whether a LaTeX command for a space, such as ``\,``, is directly before the cursor."""

@@ -102,8 +102,12 @@ class Cursor(cursor.Cursor):
             raise InputError(f"{place}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
         self.source, self.where, self.names = source, where, names
         self.timed = set(names.functions)
+        self.vectors: dict[str, bool] = {}  # name of a vector -> whether it has a hat
+        self.crossed: set[str] = set()  # names without a mark that are vectors by their use
         pieces = tokens(source, *_unwrapped(source))
-        for piece in pieces:
+        for piece, after in zip(pieces, [*pieces[1:], pieces[-1]], strict=True):
+            if piece.text == "." and after.kind in ("line", "close", "space"):
+                continue  # the end of a line
             if piece.text not in MARKS and (piece.kind == "mark" or piece.text == "."):
                 raise complaint(source, where, source.index(piece.text, piece.start), "LaTeX of mathematics")
         if len(pieces) > MOST_PIECES:

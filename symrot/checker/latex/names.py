@@ -1,9 +1,11 @@
 """Names in LaTeX: subscripts, primes, arguments of time, marks of vectors, words in upright letters."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.tree import Node
+from symrot.checker.claim.vectors import MARK, is_tensor
 from symrot.checker.latex.cursor import CLOSING, TIME, UPRIGHT, is_letter
 from symrot.checker.latex.sums import SumsPart
 from symrot.latex import tree
@@ -44,7 +46,7 @@ class NamesPart(SumsPart):
         if primes:
             known = self.resolved(known + "_prime" * primes, "", (known + "p" * primes,))
         self.take_time_call(known)
-        return Node("name", known)
+        return self.vector(known) if known in self.crossed else Node("name", known)
 
     def refuse_call(self) -> None:
         """Raise InputError for ``f(x)`` and ``f(0)``, which may be a product or the value of a function."""
@@ -116,13 +118,36 @@ class NamesPart(SumsPart):
         if inside.kind == "number" and mark.text in BOLD:
             raise self.fail("eye(n) among the definitions for a unit matrix", inside)
         node = self.under(mark, self.symbol)
-        if node.value not in self.names.matrices:
-            raise self.fail(f"a vector or matrix that is defined under the name {node.value!r}", mark)
+        name = str(node.value)
+        if name not in self.names.matrices:
+            if not self.names.implied or name in self.names:
+                raise self.fail(f"a vector or matrix that is defined under the name {name!r}", mark)
+            node = self.vector(name)
+        if mark.text == "\\hat" and (bare := str(node.value).removesuffix(MARK)) in self.vectors:
+            self.vectors[bare] = True
         self.refuse_call()
         return node
 
+    def vector(self, name: str) -> Node:
+        """Return the name of a vector or tensor that no definition gives components."""
+        name = name.removesuffix(MARK)
+        self.vectors.setdefault(name, False)
+        marked = name + MARK
+        if marked not in self.names.matrices:
+            columns = self.names.columns if is_tensor(name) else (*self.names.columns, marked)
+            self.names = replace(self.names, matrices=(*self.names.matrices, marked), columns=columns)
+        return Node("name", marked)
+
     def overlined(self, mark: tree.Accent | tree.Font) -> Node:
-        """Read a name whose mark is part of the name: ``\bar I`` is another symbol than ``I``."""
+        """Read a name whose mark is part of the name: ``\bar I`` is another symbol than ``I``.
+
+        A tilde over a vector means its skew matrix, and a bar over a vector is part of its name.
+        """
+        if tree.alone(mark.inside).text in VECTOR_MARKS and mark.text != "\\mathcal":
+            inner = self.under(mark, self.expression)
+            if "tilde" in mark.text:
+                return Node("call", "skew", (inner,))
+            return self.vector(str(inner.value).removesuffix(MARK) + NAME_MARKS[mark.text])
         node = self.under(mark, lambda: self.symbol(NAME_MARKS[mark.text]))
         self.take_time_call(str(node.value))
         return node

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.reader import DEEPEST_NESTING
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of
+from symrot.checker.claim.vectors import MARK
 from symrot.checker.latex.cursor import CLOSING, UPRIGHT, Cursor, is_d, is_letter
 from symrot.latex import tree
 
@@ -56,19 +57,51 @@ class SumsPart(Cursor):
             negative = self.next().text == "-"
         left = self.run()
         crossed = False
-        while self.at("\\cdot", "\\times", "*"):
+        while self.at("\\cdot", "\\times", "*") and not self.is_cross_matrix():
             operator = self.next()
             right = self.run()
             kinds = self.names.is_matrix(left), self.names.is_matrix(right)
+            if operator.text == "\\times" and any(kinds) and not all(kinds):
+                self.note_vector(right if kinds[0] else left)
             if operator.text == "*" or not any(kinds) or (operator.text == "\\cdot" and not all(kinds)):
                 left = product([left, right])
             elif not all(kinds):
                 raise self.fail("two vectors or two scalars around \\times", operator)
-            elif crossed:
+            elif crossed and not (operator.text == "\\cdot" and self.is_row(left)):
                 raise self.fail("brackets that say which product of vectors comes first", operator)
+            elif operator.text == "\\cdot":
+                left, crossed = self.scalar_product(left, right), True
             else:
-                left, crossed = Node("call", "cross" if operator.text == "\\times" else "dot", (left, right)), True
+                left, crossed = Node("call", "cross", (left, right)), True
         return negated(left) if negative else left
+
+    def is_cross_matrix(self) -> bool:
+        """Return whether a cross is directly before a closing bracket: ``[a \\times]`` is a skew matrix."""
+        return self.at("\\times") and self.peek(1).text == "]"
+
+    def note_vector(self, node: Node) -> None:
+        """Note that a name without a mark, or its rate, is that of a vector; the text is then read again."""
+        name = node.args[0].value if node.kind == "call" and node.value == "diff" else node.value
+        is_name = node.kind in ("name", "call") and name not in BUILT_IN and not str(name).endswith(MARK)
+        if is_name and self.names.implied and str(name) not in self.names:
+            self.crossed.add(str(name))
+
+    def scalar_product(self, left: Node, right: Node) -> Node:
+        """Return the product with a dot of two vectors, of a vector and a tensor, or of two tensors."""
+        if self.is_row(left):
+            return Node("call", "dot", (Node("transpose", None, (left,)), right))
+        if not (self.is_tensor(left) or self.is_tensor(right)):
+            return Node("call", "dot", (left, right))
+        return product([left if self.is_tensor(left) else Node("transpose", None, (left,)), right])
+
+    def is_tensor(self, node: Node) -> bool:
+        """Return whether a tree is the name of a tensor that has no definition."""
+        return node.kind == "name" and str(node.value).endswith(MARK) and not self.names.is_column(node)
+
+    def is_row(self, node: Node) -> bool:
+        """Return whether a tree is a vector times a tensor, ``a.T*I``."""
+        factors = node.args if node.kind == "product" else ()
+        return len(factors) > 1 and self.is_tensor(factors[-1]) and any(f.kind == "transpose" for f in factors)
 
     def run(self) -> Node:
         """Read the factors of a product without product signs, with slashes, as in ``a/b`` or ``1/2 m``."""
@@ -127,6 +160,7 @@ class SumsPart(Cursor):
         if mark.text in ("T", "\\top", "\\intercal"):
             return Node("transpose", None, (node,))
         if mark.text in ("\\times", "×"):
+            self.note_vector(node)
             return Node("call", "skew", (node,))
         texts = [item.text for item in getattr(inside, "items", ())]
         if texts[:3:2] == ["(", ")"] or (isinstance(mark, tree.Delimited) and len(mark.inside.items) == 1):
@@ -169,13 +203,17 @@ class SumsPart(Cursor):
             return self.inside(opening, self.expression)
         bars, self.open_bars = self.open_bars, ()
         inner = self.expression()
+        crossed = opening.text == "[" and self.take("\\times")
         self.expect(CLOSING[opening.text])
         self.open_bars = bars
         mark = self.peek()
-        if opening.text == "[" and isinstance(mark, tree.Script) and tree.alone(mark.inside).text in ("\\times", "×"):
+        if not crossed:
+            is_cross = isinstance(mark, tree.Script) and tree.alone(mark.inside).text in ("\\times", "×")
+            if opening.text != "[" or not is_cross:
+                return inner
             self.next()
-            return Node("call", "skew", (inner,))
-        return inner
+        self.note_vector(inner)
+        return Node("call", "skew", (inner,))
 
     def bars(self, bar: tree.Node) -> Node:
         inner = self.barred(self.expression, bar.text)

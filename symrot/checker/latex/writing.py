@@ -2,16 +2,17 @@
 
 import re
 from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.reader import Relation, read_relation
-from symrot.checker.claim.tree import Node, text, walk
+from symrot.checker.claim.tree import Node, number, text, walk
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.errors import InputError
 from symrot.latex.tokens import GREEK
 
-__all__ = ["latex_of", "latex_of_text"]
+__all__ = ["LatexNotation", "latex_of", "latex_of_text"]
 
 COMMANDS = {
     **{name: f"\\{name}" for name in ("sin", "cos", "tan", "cot", "sec", "csc", "exp", "sinh", "cosh", "tanh", "det")},
@@ -20,10 +21,44 @@ COMMANDS = {
 """Built-in function -> its command."""
 
 DOTS = {1: "\\dot", 2: "\\ddot", 3: "\\dddot"}
+VECTOR_SIGNS = {"cross": "\\times", "dot": "\\cdot"}
+"""Product of two vectors -> its sign."""
+
+NO_VECTORS: Mapping[str, bool] = {}
+
 SUM, PRODUCT, SIGN, ATOM = 10, 20, 30, 50
 
 
-def latex_of(relation: Relation, functions: Collection[str] = ()) -> str | None:
+@dataclass(frozen=True)
+class LatexNotation:
+    """LaTeX as a notation for the formulas of a text, with the names of its functions of time and of its vectors.
+
+    The value of a vector is True if it has a hat.
+
+    A formula without LaTeX that the reader would read as the same formula is written as SymPy's text.
+    """
+
+    functions: Collection[str] = ()
+    vectors: Mapping[str, bool] = field(default_factory=dict)
+
+    def formula(self, node: Node) -> str:
+        """Return the LaTeX of a formula."""
+        written = latex_of(("==", node, number(0)), self.functions, self.vectors)
+        return text(node) if written is None else written.removesuffix(" = 0")
+
+    def relation(self, relation: Relation) -> str:
+        """Return the LaTeX of an equation."""
+        sign, left, right = relation
+        return latex_of(relation, self.functions, self.vectors) or f"{text(left)} {sign} {text(right)}"
+
+    def rewritten(self, source: str) -> str:
+        """Return the LaTeX of an equation that is given as SymPy's text."""
+        return latex_of_text(source, self.functions, self.vectors)
+
+
+def latex_of(
+    relation: Relation, functions: Collection[str] = (), vectors: Mapping[str, bool] = NO_VECTORS
+) -> str | None:
     """Return the LaTeX of an equation, or None if the reader would not read the same equation from it.
 
     Parameters
@@ -31,6 +66,8 @@ def latex_of(relation: Relation, functions: Collection[str] = ()) -> str | None:
     relation : Relation
     functions : collection of str
         The functions of time that are declared.
+    vectors : mapping of str to bool
+        The names of vectors, which are written in bold; those with the value True get a hat.
 
     Examples
     --------
@@ -41,21 +78,21 @@ def latex_of(relation: Relation, functions: Collection[str] = ()) -> str | None:
         return None
     timed = {str(n.args[0].value) for side in relation[1:] for _, n in walk(side) if _is_rate(n)} | {*functions}
     try:
-        written = " = ".join(_Writer(timed).formula(side) for side in relation[1:])
+        written = " = ".join(_Writer(timed, vectors).formula(side) for side in relation[1:])
         same = read_latex(written, names=Names(functions=functions)).text
     except (InputError, KeyError):
         return None
     return written if same == " == ".join(map(text, relation[1:])) else None
 
 
-def latex_of_text(source: str, functions: Collection[str] = ()) -> str:
+def latex_of_text(source: str, functions: Collection[str] = (), vectors: Mapping[str, bool] = NO_VECTORS) -> str:
     """Return the LaTeX of an equation in SymPy's text, or the text itself if it has no LaTeX.
 
     Words after the equation (``with ..``) stay unchanged.
     """
     claim, joint, rest = source.partition(" with ")
     try:
-        written = latex_of(read_relation(claim), functions)
+        written = latex_of(read_relation(claim), functions, vectors)
     except InputError:
         written = None
     return source if written is None else written + joint + rest
@@ -69,14 +106,20 @@ def _is_rate(node: Node) -> bool:
     return is_function and all((v.kind, v.value) == ("name", "t") for v in variables)
 
 
+def _by_time_alone(node: Node) -> bool:
+    """Return whether a derivative is one with respect to time, of an order that dots can show."""
+    return len(node.args) - 1 in DOTS and all((v.kind, v.value) == ("name", "t") for v in node.args[1:])
+
+
 class _Writer:
     """Writer of LaTeX: it turns trees into text, in which functions of time have no ``(t)``."""
 
-    def __init__(self, timed: Collection[str]) -> None:
-        self.timed = timed
+    def __init__(self, timed: Collection[str], vectors: Mapping[str, bool]) -> None:
+        self.timed, self.vectors = timed, vectors
 
     def formula(self, node: Node, binding: int = 0) -> str:
         own = {"sum": SUM, "neg": SUM, "product": PRODUCT, "inv": PRODUCT}.get(node.kind, ATOM)
+        own = PRODUCT if node.kind == "call" and node.value in VECTOR_SIGNS else own
         written = self.writers[node.kind](self, node)
         return f"({written})" if own < binding else written
 
@@ -89,6 +132,10 @@ class _Writer:
             return "\\pi"
         base, _, subscript = str(node.value).partition("_")
         words = [f"\\{word}" if word in GREEK else word for word in (base, subscript)]
+        if node.value in self.vectors:
+            words[0] = f"\\{'boldsymbol' if base in GREEK else 'mathbf'}{{{words[0]}}}"
+            words[0] = f"\\hat{{{words[0]}}}" if self.vectors[str(node.value)] else words[0]
+            base = base[:1]
         if len(base) > 1 and base not in GREEK:
             words[0] = f"\\mathrm{{{base}}}"
         if not subscript:
@@ -136,7 +183,8 @@ class _Writer:
         positive = exponent.kind == "number" and exponent.value.denominator == 1
         if base.kind == "call" and base.value in COMMANDS and positive and base.value != "det":
             return f"{COMMANDS[base.value]}{raised}{self.argument(base)}"
-        plain = base.kind in ("name", "number") or (base.kind == "call" and base.value in self.timed)
+        own_bracket = (*self.timed, "skew")
+        plain = base.kind in ("name", "number") or (base.kind == "call" and base.value in own_bracket)
         return (self.formula(base) if plain else f"({self.formula(base)})") + raised
 
     def argument(self, call: Node) -> str:
@@ -144,6 +192,11 @@ class _Writer:
 
     def call(self, node: Node) -> str:
         name = str(node.value)
+        if name in VECTOR_SIGNS:
+            return f" {VECTOR_SIGNS[name]} ".join(self.formula(argument, ATOM) for argument in node.args)
+        if name == "diff" and node.args[0].value in self.vectors and _by_time_alone(node):
+            base, subscript, rest = self.name(node.args[0]).partition("_")
+            return f"{DOTS[len(node.args) - 1]}{{{base}}}{subscript}{rest}"
         if _is_rate(node):
             inner = Node("name", node.args[0].value)
             base, subscript, rest = self.name(inner).partition("_")
@@ -154,6 +207,8 @@ class _Writer:
             return f"\\frac{{d}}{{dt}}({self.formula(node.args[0])})"
         if name == "sqrt":
             return f"\\sqrt{{{self.formula(node.args[0])}}}"
+        if name == "skew":
+            return f"[{self.formula(node.args[0])}]_\\times"
         if name == "abs":
             return f"|{self.formula(node.args[0])}|"
         if name == "Matrix":

@@ -108,18 +108,23 @@ def _value(formula: Any) -> Any:
     if not isinstance(formula, str):
         raise InputError(f"expected a formula as text or a SymPy value to identify, got {type(formula).__name__}")
     latex = "\\" in formula or "$" in formula
-    if "=" in formula and (named := named_formula(claim_of_text(formula))) is not None:
-        return _in_new_names(named.formula, formula)
+    if "=" in formula and (named := named_formula(claim := claim_of_text(formula))) is not None:
+        return _in_new_names(named.formula, formula, claim.define)
     if not latex and "=" in formula:
         raise complaint(formula, "", formula.index("="), "one formula without '=' to identify")
-    text = read_latex_formula(formula) if latex else formula
-    return _in_new_names(read_expression(text), text)
+    text, vectors = read_latex_formula(formula) if latex else (formula, ())
+    return _in_new_names(read_expression(text), text, [(vector.name, vector.components) for vector in vectors])
 
 
-def _in_new_names(tree: Node, source: str) -> Any:
-    """Return the SymPy value of a tree; each name in it becomes a symbol or a function of time, as its use tells."""
+def _in_new_names(tree: Node, source: str, define: Sequence[tuple[str, Node]] = ()) -> Any:
+    """Return the SymPy value of a tree; each name in it becomes a symbol or a function of time, as its use tells.
+
+    ``define`` are the names with a definition, such as vectors with their components.
+    """
     tree = with_natural_base(tree) if has_natural_base([tree]) else tree
-    quantities = {letter: Symbol(letter, real=True) for letter in letters_of_quantities([tree])}
+    quantities: dict[str, Any] = {letter: Symbol(letter, real=True) for letter in letters_of_quantities([tree])}
+    for name, definition in define:
+        quantities[name] = Interpreter(implied=True, values=quantities).read(definition, source)
     return Interpreter(implied=True, values=quantities).read(tree, source)
 
 

@@ -20,6 +20,9 @@ CYCLIC = ((1, 2, 3), (2, 3, 1), (3, 1, 2))
 
 COMPONENTS = {"first": "1", "second": "2", "third": "3", "scalar": "0"}
 
+RATE = re.compile(r"diff\((.+?)(?:, t)+\)|(.+)\(t\)|d{1,2}(phi|theta|psi|omega_[1-3]|q[0-3])")
+"""A rate, or a value in time, as text; its group is the name of the quantity."""
+
 MIDDLE, OUTER = ("theta",), ("phi", "psi", "varphi")
 """Names of the second of three Euler angles, and of the first or third."""
 
@@ -46,7 +49,7 @@ def component(known: str, quantity: str) -> list[tuple[str, str]]:
 
 def _angle(name: str) -> str:
     """Return the name of the quantity of which a name is a rate or a value in time; any other name as it is."""
-    while (inner := re.fullmatch(r"diff\((.+?)(?:, t)+\)|(.+)\(t\)|d{1,2}(phi|theta|psi)", name)) is not None:
+    while (inner := RATE.fullmatch(name)) is not None:
         name = next(part for part in inner.groups() if part)
     return name
 

@@ -219,14 +219,14 @@ class Cursor(ABC):
         token, after, before = self.token(), self.token(1), self.tokens[self.index - 1]
         if token.kind != "name" or token.text != "x" or not token.spaced or not after.spaced:
             return False
-        if "x" in self.vocabulary.alone or not is_cross_letter(before, after):
+        if "x" in self.vocabulary.alone or not is_cross_letter(before, after, self.vocabulary.vectors):
             return False
         return not self.other_reading("cross", token.start, before.start, after.end)
 
 
-def is_cross_letter(before: Token, after: Token) -> bool:
+def is_cross_letter(before: Token, after: Token, vectors: Collection[str] = ()) -> bool:
     """Return whether a letter x may be the sign of a cross product, judged by the tokens before and after it."""
     pieces = [(token.kind == "name", re.split("[_0-9]", token.text)[0], token.text) for token in (before, after)]
-    usual = [name and word in USUAL_VECTORS for name, word, _ in pieces]
+    usual = [name and (word in USUAL_VECTORS or own in vectors) for name, word, own in pieces]
     brackets = [text in ("(", ")", "[", "]") for _, _, text in pieces]
     return any(usual) and all(u or b for u, b in zip(usual, brackets, strict=True))

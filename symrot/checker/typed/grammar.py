@@ -68,9 +68,11 @@ class Parser(PiecesPart):
         factors = [self.factor()]
         while True:
             mark = self.peek()
+            if self.token().text in ("×", "x") and self.token(1).text == "]":
+                return product(factors, self.span(start)) if len(factors) > 1 else factors[0]  # [n×]
             if mark == "×" or self.is_cross_letter():
                 self.crossed(factors)
-            elif mark == "·" and self.is_vector(factors[-1]):
+            elif (mark == "·" or self.is_spaced_dot()) and self.is_vector(factors[-1]):
                 self.dotted(factors)
             elif mark in TIMES:
                 at = self.start()
@@ -144,6 +146,10 @@ class Parser(PiecesPart):
             factors[-1] = Node("call", "dot", (factors[-1], right), self.span(factors[-1].span[0]))
         else:
             factors.append(right)
+
+    def is_spaced_dot(self) -> bool:
+        """Return whether a full stop with blanks around it is the sign of a scalar product: ``a . b``."""
+        return self.peek() == "." and self.token().spaced and self.token(1).spaced
 
     def power(self) -> Node:
         start = self.start()

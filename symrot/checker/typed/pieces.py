@@ -41,6 +41,8 @@ class PiecesPart(OpenFunctionsPart):
             if self.index - first > 5 * DEEPEST_NESTING:
                 raise self.fail("fewer methods and indices after each other")
             if token.text == "." and token.kind == "mark":
+                if self.is_vector(node) and token.spaced and self.token(1).spaced:
+                    return node  # the dot of a scalar product
                 self.next()
                 node = self.method(node, start)
             elif token.text == "[" and token.tight and node.kind != "number" and self.is_index():
@@ -48,6 +50,14 @@ class PiecesPart(OpenFunctionsPart):
                 node = Node("index", None, (node, *self.members("]")), self.span(start))
             elif token.kind in ("prime", "dots"):
                 node = self.rate(node, self.next(), start)
+            elif token.kind == "hat":
+                self.plain = True
+                self.next()
+            elif token.kind == "tilde" or self.is_skew_cross(node):
+                self.plain = True
+                self.next()
+                inner = node.args[0] if node.kind == "list" else node
+                node = Node("call", "skew", (inner,), self.span(start))
             elif token.text == "°":
                 if self.tokens[self.index - 1].text == "°":
                     raise self.fail("a single degree sign")
@@ -57,6 +67,13 @@ class PiecesPart(OpenFunctionsPart):
                 node = product(degrees, self.span(start))
             else:
                 return node
+
+    def is_skew_cross(self, node: Node) -> bool:
+        """Return whether a cross directly after square brackets, ``[n]x`` or ``[n]×``, makes a skew matrix."""
+        token, after = self.token(), self.token(1)
+        if node.kind != "list" or len(node.args) != 1 or token.text not in ("x", "×") or token.spaced:
+            return False
+        return self.tokens[self.index - 1].text == "]" and (after.spaced or after.kind in ("end", "mark", "power"))
 
     def is_index(self) -> bool:
         """Return whether square brackets hold an index, as in ``M[0, 1]``; in ``m[a^2 + b^2]`` they hold a factor."""
@@ -200,6 +217,11 @@ class PiecesPart(OpenFunctionsPart):
     def square_bracket(self, token: Token) -> Node:
         bars, self.bars = self.bars, 0
         rows = [self.row()]
+        if len(rows[0]) == 1 and self.token().text in ("x", "×") and self.token(1).text == "]":  # [n×], a skew matrix
+            self.plain = True
+            self.index += 2
+            self.bars = bars
+            return Node("call", "skew", tuple(rows[0]), self.span(token.start))
         while self.take(";"):
             self.plain = True
             rows.append(self.row())

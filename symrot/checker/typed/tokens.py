@@ -26,7 +26,7 @@ class Token(NamedTuple):
     ----------
     kind : str
         ``number``, ``name``, ``mark``, ``power`` (raised digits), ``fraction`` (such as ½), ``dots`` (over the name
-        before), ``prime`` or ``end``.
+        before), ``hat``, ``tilde``, ``prime`` or ``end``.
     text : str
         The text in ASCII: ``omega_1`` for ω₁.
     start, end : int
@@ -56,6 +56,10 @@ LETTERS: Mapping[str, str] = {
 GREEK_WORDS = frozenset(LETTERS.values())
 _GREEK = "".join(LETTERS)
 _DOTS = {"\u0307": 1, "\u0308": 2, "\u20db": 3}
+_SIGNS_OVER = {"\u0302": "hat", "\u0303": "tilde", "\u0304": "bar", "\u0305": "bar"}
+"""Mark over a letter: a hat of a unit vector, a tilde of a skew matrix, a bar that makes another name."""
+
+_OVER = {*_DOTS, *_SIGNS_OVER}
 _RAISED = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻ᵀ", "0123456789+-T", strict=True))
 _LOWERED = dict(zip("₀₁₂₃₄₅₆₇₈₉ₓₐₑₒₕₖₗₘₙₚₛₜᵢⱼᵣᵤᵥᵧ", "0123456789xaeohklmnpstijruvy", strict=True))
 _ALIKE = {
@@ -74,7 +78,7 @@ _HINTS = {
     "∑": "write the terms of a sum with +", "Σ": "write the terms of a sum with +", "∏": "write the factors with *",
     "Π": "write the factors of a product with *",
     "{": "write ( ) or [ ] for brackets", "}": "write ( ) or [ ] for brackets", "∞": "a claim is about finite numbers",
-    "\u0302": "write n instead of a letter with a hat", "\u20d7": "write cross([ax, ay, az], [bx, by, bz]) for vectors",
+    "\u20d7": "write cross([ax, ay, az], [bx, by, bz]) for vectors",
     "%": "write /100", "∇": "write diff(f, x)", "±": "write two claims, with + and with -", "∓": "write two claims",
     "&": "write two claims, each on a line", "≈": "write = with the digits that you know",
     "→": "write =", "⇒": "write two claims, each on a line",
@@ -140,8 +144,8 @@ def _alike(character: str) -> str:
     if "\U0001d400" <= character <= "\U0001d7ff" or character in "ℎ":  # slanted and bold letters of a typeset text
         character = unicodedata.normalize("NFKC", character)
     parts = unicodedata.normalize("NFD", character)
-    if len(parts) > 1 and parts[0].isascii() and all(part in _DOTS for part in parts[1:]):
-        return parts  # a letter with dots over it
+    if len(parts) > 1 and (parts[0].isascii() or parts[0] in LETTERS) and all(part in _OVER for part in parts[1:]):
+        return parts  # a letter with dots or another mark over it
     return _ALIKE.get(character, character)
 
 
@@ -176,7 +180,7 @@ def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, i
     if word == "d" and text[stop : stop + 1] and text[stop] in LETTERS:  # a differential, or the rate of an angle
         yield from _letter(text, stop, f"d{LETTERS[text[stop]]}")
         return
-    if text[stop : stop + 1] and text[stop] in _DOTS and word[-1].isalpha():
+    if text[stop : stop + 1] and text[stop] in _OVER and word[-1].isalpha():
         if len(word) > 1:
             yield "name", word[:-1], stop - 1
         yield from _letter(text, stop - 1, word[-1])
@@ -193,8 +197,11 @@ def _letter(text: str, at: int, word: str) -> Iterator[tuple[str, str, int]]:
     """Yield a single letter with its subscript, then the dots over it."""
     stop = at + 1
     dots = 0
-    while text[stop : stop + 1] and text[stop] in _DOTS:
-        dots, stop = dots + _DOTS[text[stop]], stop + 1
+    over = ""
+    while text[stop : stop + 1] and text[stop] in _OVER:
+        dots, over = dots + _DOTS.get(text[stop], 0), _SIGNS_OVER.get(text[stop], over)
+        stop += 1
+    word += "_bar" if over == "bar" else ""
     if subscript := _SUBSCRIPT.match(text, stop):
         letters = (_LOWERED.get(c, LETTERS.get(c, c)) for c in subscript[0].removeprefix("_"))
         word, stop = f"{word}_{''.join(letters)}", subscript.end()
@@ -203,5 +210,7 @@ def _letter(text: str, at: int, word: str) -> Iterator[tuple[str, str, int]]:
     elif word == "Delta" and text[stop : stop + 1].isascii() and text[stop : stop + 1].isalpha():
         word, stop = f"{word}_{text[stop]}", stop + 1
     yield "name", word, stop
+    if over in ("hat", "tilde"):
+        yield over, over, stop
     if dots:
         yield "dots", str(dots), stop

@@ -1,0 +1,112 @@
+"""The shapes of the formulas of a claim, from its trees alone, and the unit matrices that a text writes as I or 1.
+
+``R R^T = I`` means the unit matrix by I, and so does ``cos(a) I + (1 - cos(a)) n n^T``; in ``L = I omega`` it is a
+moment of inertia. The shapes tell which: a scalar cannot be added to a matrix or be equal to one.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from symrot.checker.claim.functions import ROTATIONS
+from symrot.checker.claim.tree import Node, number, walk
+
+__all__ = ["Shape", "added_names", "shape_of", "with_unit_matrices"]
+
+Shape = tuple[int, int] | None
+"""Rows and columns of a matrix; None for a scalar."""
+
+UNIT_MATRICES = ("I", "I_3", "I_33", "I_3x3", "E_3", "1_3")
+"""Names of the unit matrix, where a scalar makes no sense."""
+
+FIXED: Mapping[str, Shape] = {
+    "cross": (3, 1),
+    "vee": (3, 1),
+    "skew": (3, 3),
+    "dcm_of": (3, 3),
+    "qmul": (4, 1),
+    **dict.fromkeys(ROTATIONS, (3, 3)),
+}
+"""Function -> the shape of its value."""
+
+
+def shape_of(node: Node, shapes: Mapping[str, Shape]) -> Shape:
+    """Return the shape of a formula, whose names have ``shapes`` (a scalar if absent)."""
+    if node.kind == "name":
+        return shapes.get(str(node.value))
+    inner = [shape_of(child, shapes) for child in node.args]
+    matrices = [shape for shape in inner if shape is not None]
+    if node.kind == "product":
+        return (matrices[0][0], matrices[-1][1]) if matrices else None
+    if node.kind in ("sum", "neg", "power"):
+        return matrices[0] if matrices else None
+    if node.kind == "transpose":
+        return (matrices[0][1], matrices[0][0]) if matrices else None
+    return _shape_of_call(node, inner) if node.kind == "call" else None
+
+
+def _shape_of_call(node: Node, inner: list[Shape]) -> Shape:
+    name = str(node.value)
+    if name == "Matrix" and node.args[0].kind == "list":
+        rows = node.args[0].args
+        return len(rows), len(rows[0].args) if rows and rows[0].kind == "list" else 1
+    if name in ("eye", "diag"):
+        count = len(node.args) if name == "diag" else node.args[0].value
+        return (int(count), int(count)) if name == "diag" or node.args[0].kind == "number" else None
+    if name in ("diff", "inverse", "adjugate"):
+        return inner[0]
+    if name == "transpose":
+        return inner[0] and (inner[0][1], inner[0][0])
+    return FIXED.get(name)
+
+
+def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> tuple[str, Node, Node]:
+    """Return a relation with unit matrices where a scalar I or 1 is added to a square matrix or equal to one."""
+    sign, *sides = relation
+    left, right = (_with_unit_matrices(side, shapes) for side in sides)
+    for side, other in ((left, right), (right, left)):
+        shape = shape_of(side, shapes)
+        if _is_square(shape) and shape_of(other, shapes) is None and (made := _as_matrix(other, shape)) is not None:
+            return (sign, side, made) if side is left else (sign, made, side)
+    return sign, left, right
+
+
+def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
+    """Return the names, scalars so far, that are terms of a sum of vectors or matrices, with the shape of the sum."""
+    added: dict[str, Shape] = {}
+    for side in relation[1:]:
+        for _, node in walk(side):
+            own = shape_of(node, shapes) if node.kind == "sum" else None
+            for term in node.args if own is not None else ():
+                bare = term.args[0] if term.kind == "neg" else term
+                factors = [f for f in (bare.args if bare.kind == "product" else (bare,)) if f.kind != "number"]
+                if len(factors) == 1 and factors[0].kind == "name" and shape_of(factors[0], shapes) is None:
+                    added[str(factors[0].value)] = own
+    return added
+
+
+def _is_square(shape: Shape) -> bool:
+    return shape is not None and shape[0] == shape[1] > 1
+
+
+def _with_unit_matrices(node: Node, shapes: Mapping[str, Shape]) -> Node:
+    args = [_with_unit_matrices(child, shapes) for child in node.args]
+    own = shape_of(node, shapes)
+    if node.kind == "sum" and _is_square(own):
+        args = [term if shape_of(term, shapes) is not None else _as_matrix(term, own) or term for term in args]
+    return replace(node, args=tuple(args))
+
+
+def _as_matrix(node: Node, shape: Shape) -> Node | None:
+    """Return a scalar formula with a unit matrix in place of I or 1; None if it has neither as a factor."""
+    assert shape is not None
+    unit = Node("call", "eye", (number(shape[0]),), node.span)
+    if node == number(1) or (node.kind == "name" and node.value in UNIT_MATRICES):
+        return unit
+    if node.kind == "neg":
+        inner = _as_matrix(node.args[0], shape)
+        return inner and replace(node, args=(inner,))
+    if node.kind == "product":
+        for place, factor in enumerate(node.args):
+            if factor.kind == "name" and factor.value in UNIT_MATRICES:
+                return replace(node, args=(*node.args[:place], unit, *node.args[place + 1 :]))
+    return None

@@ -1,0 +1,167 @@
+"""The vectors and tensors of a claim: their components, named for them, and their lengths.
+
+A name in bold, with an arrow or with a hat is a vector, ``a`` with the components a_x, a_y and a_z; the same letter in
+plain type is its length. While LaTeX is read, ``MARK`` after a name says that the name is marked.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from symrot.checker.claim.tree import Node, number, product, walk
+
+__all__ = [
+    "MARK",
+    "Vector",
+    "gyroscopic_tensors",
+    "is_components",
+    "is_tensor",
+    "used_vectors",
+    "without_marks",
+]
+
+MARK = "\N{RIGHTWARDS ARROW}"
+TIME = Node("name", "t")
+TENSOR = re.compile(r"[IJ](_[A-Za-z]\w*)?", re.ASCII)
+"""The names of inertia tensors."""
+
+
+@dataclass(frozen=True)
+class Vector:
+    """A name that is a vector or, as I and J are, a symmetric tensor.
+
+    ``timed``: its components depend on time. ``unit``: a hat over the name says that its length is one. ``axes``: the
+    last letters of the names of its components.
+    """
+
+    name: str
+    timed: bool = False
+    unit: bool = False
+    axes: str = "xyz"
+
+    @property
+    def components(self) -> Node:
+        """The tree of its components, ``Matrix([a_x, a_y, a_z])``, or of the numbers of a coordinate axis."""
+        if self.is_axis:
+            return _matrix([number(int(self.name == axis)) for axis in "xyz"])
+        if is_tensor(self.name):
+            rows = [[f"{self.name}_{''.join(sorted(i + j))}" for j in self.axes] for i in self.axes]
+            return _matrix([_list([self._entry(name) for name in row]) for row in rows])
+        return _matrix([self._entry(f"{self.name}_{axis}") for axis in self.axes])
+
+    @property
+    def is_axis(self) -> bool:
+        """Whether it is a coordinate axis: x, y or z with a hat."""
+        return self.unit and self.name in ("x", "y", "z")
+
+    def _entry(self, name: str) -> Node:
+        return Node("call", name, (TIME,)) if self.timed else Node("name", name)
+
+    @property
+    def length_is_one(self) -> tuple[str, Node, Node]:
+        """The hypothesis that the length of a unit vector is one."""
+        own = Node("name", self.name)
+        return "==", Node("call", "dot", (own, own)), number(1)
+
+
+def _matrix(members: Sequence[Node]) -> Node:
+    return Node("call", "Matrix", (_list(members),))
+
+
+def _list(members: Sequence[Node]) -> Node:
+    return Node("list", ("[", "]"), tuple(members))
+
+
+def is_tensor(name: str) -> bool:
+    """Return whether a name in bold is that of an inertia tensor, not of a vector."""
+    return TENSOR.fullmatch(name) is not None
+
+
+def is_components(name: str, tree: Node) -> bool:
+    """Return whether the definition of a name only says that it is a vector with components named for it."""
+    return any(tree == Vector(name, timed, axes=axes).components for timed in (False, True) for axes in ("xyz", "123"))
+
+
+def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[list[Node], dict[str, bool]]:
+    """Return the sides of a claim without marks, and the names that had them; True for one with a hat.
+
+    The name of a vector without a mark is its length.
+
+    Parameters
+    ----------
+    sides : sequence of Node
+    names : mapping of str to bool
+        The marked names; True for one with a hat.
+    """
+    plain = {node.value for side in sides for _, node in walk(side) if node.kind == "name"}
+    spelled = {name: f"{name}_tensor" if is_tensor(name) and name in plain else name for name in names}
+    vectors = [Node("name", name) for name in names if not is_tensor(name)]
+    sides = [_without_marks(side, spelled, vectors) for side in sides]
+    return sides, {spelled[name]: unit for name, unit in names.items()}
+
+
+def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vector, ...]:
+    """Return the vectors that occur in a claim and need components.
+
+    A vector that is a side of the claim by itself, and occurs nowhere else, needs none. The components of R are
+    numbered, since R_x is a rotation.
+
+    ``names`` are the names of vectors and tensors; the value is True for one with a hat.
+    """
+    trees = [node for side in sides for _, node in walk(side)]
+    used = {str(node.value) for node in trees if node.kind == "name"}
+    rates = [node for node in trees if node.kind == "call" and node.value == "diff" and node.args[-1] == TIME]
+    moving = {node.value for rate in rates for _, node in walk(rate.args[0])}
+    axes = {name for name in names if Vector(name, unit=names[name]).is_axis}
+    needed = (used & {*names}) - (_lone_names(sides) - axes)
+    numbered = {name for name in names for n in "123" if f"{name}_{n}" in used}
+    return tuple(
+        Vector(name, name in moving, names[name], "123" if name in numbered or name == "R" else "xyz")
+        for name in names
+        if name in needed
+    )
+
+
+def _without_marks(node: Node, spelled: Mapping[str, str], vectors: Sequence[Node]) -> Node:
+    if node.kind == "name" and str(node.value).endswith(MARK):
+        return replace(node, value=spelled[str(node.value).removesuffix(MARK)])
+    if node.kind == "power" and node.args[0] in vectors and node.args[1] == number(2):
+        return Node("call", "dot", (node.args[0], node.args[0]), node.span)
+    if node in vectors:
+        return Node("call", "sqrt", (Node("call", "dot", (node, node)),), node.span)
+    made = replace(node, args=tuple(_without_marks(child, spelled, vectors) for child in node.args))
+    return _with_scalar_products(made, vectors) if made.kind == "product" else made
+
+
+def gyroscopic_tensors(sides: Sequence[Node]) -> Iterator[str]:
+    """Yield the names of inertia tensors in ``cross(w, J*w)`` and ``skew(w)*J*w``, which a scalar J would make zero."""
+    for side in sides:
+        for _, node in walk(side):
+            factors: Sequence[Node] = ()
+            if node.kind == "call" and node.value == "cross" and node.args[1].kind == "product":
+                factors = (node.args[0], *node.args[1].args)
+            elif node.kind == "product":
+                factors = [f.args[0] if f.kind == "call" and f.value == "skew" else f for f in node.args]
+            for before, name, after in zip(factors, factors[1:], factors[2:], strict=False):
+                if name.kind == "name" and before == after and is_tensor(str(name.value)):
+                    yield str(name.value)
+
+
+def _lone_names(sides: Sequence[Node]) -> set[str]:
+    """Return the names that are a side of a claim by themselves and occur nowhere else in it."""
+    everywhere = [node.value for side in sides for _, node in walk(side) if node.kind == "name"]
+    is_number = any(side.kind == "number" and side.value for side in sides)
+    alone = [side for side in sides if side.kind == "name" and not is_number]
+    return {str(side.value) for side in alone if everywhere.count(side.value) == 1}
+
+
+def _with_scalar_products(node: Node, vectors: Sequence[Node]) -> Node:
+    """Return a product in which a.T*b, of two vectors, is the scalar product of a and b."""
+    factors: list[Node] = []
+    for factor in node.args:
+        last = factors[-1] if factors else None
+        if last is not None and factor in vectors and last.kind == "transpose" and last.args[0] in vectors:
+            factors[-1] = Node("call", "dot", (last.args[0], factor))
+        else:
+            factors.append(factor)
+    return product(factors, node.span)
