@@ -63,9 +63,12 @@ def verdict_on_text(
         verdicts.append((reading, verdict))
     if refusal is not None and not verdicts:
         raise refusal
+    first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict == "recognised"), 0)
+    if verdicts[0][1].verdict == "definition":
+        verdicts.insert(0, verdicts.pop(first))  # a known formula is likelier than an unknown one
     (usual, verdict), *others = verdicts
     notes = list(verdict.notes)
-    if usual is not readings[0]:
+    if refusal is not None and readings[0] not in [reading for reading, _ in verdicts]:
         notes.append(f"the usual reading has no meaning: {refusal}")
     for reading, other in others:
         if other.verdict != verdict.verdict:
@@ -78,7 +81,7 @@ def verdict_on_text(
 
 def _on_reading(usual: Reading, reading: Reading, verdict: Verdict) -> str:
     """Return the sentence that reports the verdict on a reading of the text other than the usual one."""
-    places = reading.flipped
+    places = reading.flipped or usual.flipped
     changed = _text_of(reading, replace(notation_of(reading), plain=usual.plain or reading.plain))
     excerpts = " and ".join(repr(place) for place in dict.fromkeys(places[:3]))
     return f"{excerpts} can be read in two ways: read as {changed}, it is {OUTCOMES[verdict.verdict]}"

@@ -206,7 +206,7 @@ def test_names_that_are_equal_have_the_same_formula():
     assert symrot.check("Ixx = Iyy = m(3r² + h²)/6").verdict == "doubtful"
 
 
-@pytest.mark.parametrize("claim", ["β₀² + β₁² + β₂² + β₃² = 1", "λ_1 Ω² cos θ − λ_3 ω Ω + M g R = 0"])
+@pytest.mark.parametrize("claim", ["β₀² + β₁² + β₂² + β₃² = 1", "λ_1 Ω² cos θ − λ_3 ω Ω + M g^2 R = 0"])
 def test_a_constraint_of_quantities_is_not_called_false(claim):
     assert symrot.check(claim).verdict == "definition"
 

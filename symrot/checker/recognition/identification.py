@@ -23,7 +23,8 @@ from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.latex.reader import read_latex_formula
 from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, Values, fingerprint, values_at
-from symrot.checker.recognition.known_formulas import Known, by_fingerprint
+from symrot.checker.recognition.known_formulas import Known, by_fingerprint, relation_key
+from symrot.checker.recognition.relations import OTHERS
 from symrot.checker.recognition.renaming import component, is_consistent
 from symrot.checker.units.units import conventional_unit
 from symrot.checker.verdict import Identification
@@ -35,7 +36,7 @@ from symrot.exact.ring.ratio import TooLarge
 
 __all__ = ["Identification", "identified", "identify", "named_parts", "unit_of"]
 
-UNIT_OF_NAME = {symbol.name: unit for symbol, unit in symbols.UNIT.items()}
+UNIT_OF_NAME = {symbol.name: unit for symbol, unit in (symbols.UNIT | OTHERS).items()}
 
 MOST = 8
 """The most names that are returned by default."""
@@ -52,9 +53,12 @@ LAST_FIRST = (3, 0, 1, 2)
 
 
 LETTERS = {
-    "kg m^2": r"[ABCIJ]\w*", "kg": r"[mM]\w*", "N": r"[WPFG]\w*", "m": r"[a-hlrsLRD]\w*|ell", "kg m^2/s": r"[LHGhp]\w*",
-    "N m": r"(M|N|T|Q|tau|Gamma)(_\w+)?", "rad/s": r"(omega|w|Omega|n|nu|p|q|r|s|lambda)(_?\w+)?|d(phi|theta|psi)",
-    "rad/s^2": r"alpha\w*|d(omega|w)\w*|dd\w+", "m/s": r"[vuV]\w*", "m/s^2": r"g\w*",
+    "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*", "m": r"[a-hlrsLRD]\w*|ell",
+    "kg m^2/s": r"[LHGhpM]\w*",
+    "N m": r"(M|N|T|Q|tau|Gamma)(_\w+)?",
+    "rad/s": r"(omega|w|Omega|n|nu|p|q|r|s|lambda)(_?\w+)?|d(phi|theta|psi|alpha|beta|gamma)(_?[1-3])?",
+    "rad/s^2": r"alpha\w*|d(omega|w)\w*|dd\w+", "m/s": r"[vuV]\w*", "m/s^2": r"[ga]\w*",
+    "s": r"[tTP]\w*|tau", "J": r"[ETKVUW]\w*", "N m/rad": r"(k|c|kappa)(_\w+)?", "m, of gyration": r"[kri]\w*",
 }  # fmt: skip
 """Unit of a symbol -> the letters that books use for it; a product of few symbols is recognised in these letters."""
 
@@ -153,12 +157,13 @@ def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
 
 
 def identified(
-    value: Any, steps: bool = True, named: bool = False, quantity: str | None = None
+    value: Any, steps: bool = True, named: bool = False, quantity: str | None = None, is_relation: bool = False
 ) -> Iterator[Identification]:
     """Yield the known formulas to which a SymPy value is equal, those with the most similar names first.
 
     Steps of derivations are included only if ``steps``, products of few symbols only if the value is ``named``. In a
-    formula for a ``quantity``, given by its name, the axes and angles in the names of symbols keep their places.
+    formula for a ``quantity``, given by its name, the axes and angles in the names of symbols keep their places. If
+    ``is_relation``, the value is the difference of the sides of an equation, and the known relations are searched.
     """
     entries, shape = flatten(value)
     try:
@@ -169,7 +174,7 @@ def identified(
         matches = [
             match
             for view in views
-            for known in by_fingerprint().get(own.key(view.shape, view.order), ())
+            for known in by_fingerprint().get(relation_key(own.key(view.shape, view.order), is_relation), ())
             if (steps or not known.is_step)
             and (named or not known.only_named)
             and (match := _matched(known, own, entries, view, quantity)) is not None
@@ -230,10 +235,12 @@ def _matched(
     theirs, print_of = _known_value(known.text)
     ordered = [entries[n] for n in view.order]
     for pairing in islice(_pairings(print_of, own, view.order), MOST_TRIES):
-        few = quantity is not None and len(pairing) <= FEW_SYMBOLS
+        few = known.is_relation or (quantity is not None and len(pairing) <= FEW_SYMBOLS)
         if (known.only_named or few) and not all(_is_usual(*pair) for pair in pairing.items()):
             continue
         pairs = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
+        if known.is_relation and not _keeps_names(pairs):
+            continue
         if quantity is not None and not is_consistent([*pairs, *component(known.name, quantity)]):
             continue
         factor = _factor(theirs, ordered, pairing, own.idle, SCALES if known.scaled else FACTORS)
@@ -247,17 +254,29 @@ def _matched(
             continue
         names = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
         renaming = {mine: other for mine, other in names if not _alike(mine, other)}
-        changes = [part for part in (view.how, _factor_text(factor)) if part]
+        changes = [part for part in (view.how, "" if known.is_relation else _factor_text(factor)) if part]
         return Identification(known.name, " and ".join(changes), dict(sorted(renaming.items())), known.source)
     return None
 
 
+def _keeps_names(pairs: Sequence[tuple[str, str]]) -> bool:
+    """Return whether each name that a known formula and a claim have in common stands for the same quantity in both."""
+    names = [(_plain_name(mine), _plain_name(other)) for mine, other in pairs]
+    new = {other for _, other in names}
+    return all(mine == other or mine not in new for mine, other in names)
+
+
 def _is_usual(mine: Expr, own: Expr) -> bool:
     """Return whether books use the letter of a symbol for a quantity with the unit of a symbol of a known formula."""
-    name, rate = as_text(own), re.fullmatch(r"diff\((\w+)(\(t\))?, t\)", as_text(own))
-    name = f"d{rate[1]}" if rate else name.removesuffix("(t)")
+    name = _plain_name(as_text(own))
     pattern = LETTERS.get(UNIT_OF_NAME.get(as_text(mine), ""))
     return pattern is None or re.fullmatch(pattern, name) is not None
+
+
+def _plain_name(name: str) -> str:
+    """Return the name of a symbol, a function of time or its rate: x for x(t), dx and ddx for its derivatives."""
+    rate = re.fullmatch(r"diff\((\w+)(\(t\))?((, t)+)\)", name)
+    return "d" * rate[3].count("t") + rate[1] if rate else name.removesuffix("(t)")
 
 
 def _alike(mine: str, other: str) -> bool:
@@ -309,8 +328,7 @@ def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, 
 
 def unit_of(name: str) -> str | None:
     """Return the conventional unit of a symbol, or None if books use the symbol for different quantities."""
-    rate = re.fullmatch(r"diff\((\w+)(\(t\))?, t\)", name)
-    name = f"d{rate[1]}" if rate else name.removesuffix("(t)")
+    name = _plain_name(name)
     if re.fullmatch(r"[ABC]", name):
         return "kg m^2"
     return "1" if re.fullmatch(r"[qp][0-3]", name) else conventional_unit(name)

@@ -15,6 +15,7 @@ from sympy import Expr, ImmutableMatrix, Matrix, Mul, Symbol, diag
 from symrot import catalogue, symbols
 from symrot.checker.recognition.fingerprint import NotInField, fingerprint
 from symrot.checker.recognition.mechanics import one_axis, tops
+from symrot.checker.recognition.relations import primitive, relations, solved
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.equations import euler_equations
 from symrot.dynamics.structure import FieldPattern, FieldTorque, Pattern
@@ -27,7 +28,7 @@ from symrot.inertia.solids import solid
 from symrot.kinematics import attitude, euler, quaternion, rotation_vector
 from symrot.kinematics.rotations import elementary_rotation, skew
 
-__all__ = ["FILE", "Known", "Named", "by_fingerprint", "derived", "page", "stated"]
+__all__ = ["FILE", "Known", "Named", "by_fingerprint", "derived", "page", "relation_key", "stated"]
 
 FILE = Path(__file__).with_name("known_formulas.toml")
 LONGEST = 6000
@@ -42,7 +43,8 @@ class Known:
     """A formula that symrot derives, with its name, its source and its text.
 
     ``scaled``: a multiple of the formula has the same name. ``only_named``: it is a product of few symbols, such as
-    ``C*omega_3``, which is recognised only in a claim that names the quantity.
+    ``C*omega_3``, which is recognised only in a claim that names the quantity. ``is_relation``: the formula is the
+    difference of the sides of an equation.
     """
 
     name: str
@@ -50,6 +52,7 @@ class Known:
     text: str
     scaled: bool = False
     only_named: bool = False
+    is_relation: bool = False
 
     @property
     def is_step(self) -> bool:
@@ -245,6 +248,7 @@ def stated() -> Iterator[Named]:
         _torques,
         one_axis,
         tops,
+        _solved,
     ):
         for name, source, value in group():
             yield name, source, value
@@ -258,6 +262,8 @@ def stated() -> Iterator[Named]:
 
 COMPONENTS = {(3, 1): ("first", "second", "third"), (4, 1): ("scalar", "first", "second", "third")}
 """Shape of a column -> the names of its components; a quaternion begins with the scalar."""
+LEAST_OF_RELATION = 3
+"""The fewest symbols of a relation."""
 LEAST_OF_COMPONENT = 3
 """The fewest symbols of a component that is looked up by itself: one with fewer symbols could be too many formulas."""
 
@@ -273,9 +279,23 @@ def derived() -> Iterator[Named]:
                 yield f"{derivation.title}: {claim}", f"derivations/{name}.md, step {number}", side
 
 
-def _selected(formulas: Iterator[Named], least: int, longest: int) -> Iterator[tuple[str, Known]]:
+def _solved() -> Iterator[Named]:
+    """Yield the relations of mechanics, solved for the quantities that books solve them for."""
+    for relation in relations():
+        yield from solved(relation)
+
+
+def _related() -> Iterator[Named]:
+    """Yield the relations of mechanics as differences that are zero."""
+    for relation in relations():
+        yield f"relation for {relation.title}", relation.source, primitive(relation.difference)
+
+
+def _selected(
+    formulas: Iterator[Named], least: int, longest: int, is_relation: bool = False
+) -> Iterator[tuple[str, Known]]:
     """Yield (fingerprint, formula) for each formula of at least ``least`` symbols and at most ``longest`` letters."""
-    seen, few = set(), {name for name, *_ in (*tops(), *one_axis())}
+    seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved())}
     for name, source, value in formulas:
         entries, shape = flatten(value)
         if sum(entry.count_ops() for entry in entries) > longest // 3:
@@ -289,8 +309,14 @@ def _selected(formulas: Iterator[Named], least: int, longest: int) -> Iterator[t
             continue
         seen.add((name, text))
         scaled = "quaternion rate" in name
-        known = Known(name, source, text, scaled, name in few and _is_monomial(entries[0]))
-        yield own.key(shape, range(len(entries))), known
+        only_named = name in few and _is_monomial(entries[0])
+        known = Known(name, source, text, scaled or is_relation, only_named, is_relation)
+        yield relation_key(own.key(shape, range(len(entries))), is_relation), known
+
+
+def relation_key(key: str, is_relation: bool) -> str:
+    """Return the key of a relation, or the fingerprint itself of any other formula."""
+    return f"={key}" if is_relation else key
 
 
 def _is_monomial(entry: Expr) -> bool:
@@ -312,15 +338,15 @@ def page(*groups: Iterator[Named]) -> str:
         "# Printed by `python -m symrot.checker.recognition.known_formulas`; do not edit.",
     ]
     texts: set[str] = set()
-    bounds = ((1, LONGEST), (3, LONGEST_DERIVED))
-    for (least, longest), formulas in zip(bounds, groups or (stated(), derived()), strict=False):
-        for key, known in _selected(formulas, least, longest):
+    bounds = ((1, LONGEST, False), (3, LONGEST_DERIVED, False), (LEAST_OF_RELATION, LONGEST, True))
+    for (least, longest, relation), formulas in zip(bounds, groups or (stated(), derived(), _related()), strict=False):
+        for key, known in _selected(formulas, least, longest, relation):
             if least > 1 and known.text in texts:
                 continue
             texts.add(known.text)
             lines += ["", "[[formula]]", f'key = "{key}"']
             lines += [f"{field} = {_quoted(getattr(known, field))}" for field in ("name", "source", "text")]
-            lines += ["scaled = true"] * known.scaled + ["only_named = true"] * known.only_named
+            lines += [f"{flag} = true" for flag in ("scaled", "only_named", "is_relation") if getattr(known, flag)]
     return "\n".join(lines) + "\n"
 
 

@@ -17,8 +17,9 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.claim.tree import Node, text, walk
+from symrot.checker.claim.tree import Node, negated, sum_of, text, walk
 from symrot.checker.recognition.identification import identified, unit_of
+from symrot.checker.recognition.relations import primitive
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, Edit, single_edits
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
@@ -35,21 +36,25 @@ LEAST_SYMBOLS = 2
 LEAST_SYMBOLS_EDITED = 3
 """The fewest symbols of a scalar formula that is looked up as it is written, and of one that is edited."""
 
+LEAST_SYMBOLS_RELATED = 5
+"""The fewest symbols of a relation for a quantity whose name says what it is; with fewer, it may be another formula."""
+
 MOST_READINGS = 4
 """The most formulas that one verdict names."""
 
 QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"[IJ]_?(p|t|s|a|c|g|cm|0|n|[xyzO1-3A-D]|([xyz1-3])\2)?",
      ("moment of inertia", "inertia tensor", "parallel-axis")),
-    (r"(omega|w|Omega)(_?[a-zA-Z0-3]+)?|n|lambda", ("angular velocity", "angle rates", "precession", "spin", "rate at",
-                                                   "frequency")),
-    (r"[pqr]", ("angular velocity", "angle rates")),
+    (r"(omega|w|Omega)_?(p|pr|prec)", ("precession",)),
+    (r"(omega|w|Omega)(_?[a-zA-Z0-3]+)?|n|lambda", ("angular velocity", "precession", "spin", "rate at", "frequency")),
+    (r"[pqr]", ("angular velocity", "angle rates", "distance of")),
     (r"d(phi|theta|psi|alpha|beta|gamma)", ("angle rates", "precession", "spin")),
     (r"d(omega|w)(_?[xyz1-3])?|d[pqr]", ("Euler's equations", "angular acceleration")),
     (r"alpha(_?[xyz1-3])?|d(dphi|dtheta|dpsi)", ("angular acceleration",)),
+    (r"a(_?[a-zA-Z0-9]+)?", ("acceleration", "frequency")), (r"v(_?[a-zA-Z0-9]+)?", ("speed", "velocity of", "product", "vector")),
     (r"T(_?rot)?|K|K_?E|E(_?(k|kin|rot))?|KE", ("kinetic energy", "torque", "rotation matrix", "period", "energy of")),
     (r"(V|U)_?eff", ("effective potential",)),
-    (r"V|U|E_?p|PE", ("potential",)),
+    (r"V|U|E_?p|PE", ("potential", "work")),
     (r"[HLh](_?([xyzOGCPAB0-3]|cm))?", ("angular momentum", "Lagrangian", "torque")),
     (r"p_?(phi|theta|psi|varphi)|P_?(phi|theta|psi)", ("momentum of",)),
     (r"(M|N|tau|Gamma|Q)(_?[a-zA-Z1-3]+)?", ("torque",)),
@@ -94,7 +99,8 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     readings = _readings(claim, named, named.formula, LEAST_SYMBOLS) or _with_other_products(claim, named)
     if readings:
         return Verdict("recognised", recognised_as=readings)
-    edited = _nearest(claim, named) if repair and _words(named) is not None else None
+    is_open = _words(named) is not None or named.solve is None
+    edited = _nearest(claim, named) if repair and is_open else None
     if edited is not None:
         return edited
     if named.solve is None:
@@ -159,10 +165,31 @@ def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int)
 
     The likeliest formula comes first.
     """
-    if named.solve is None:
-        return ()
+    solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
+    return solved or _readings_of_relation(claim, named, tree)
+
+
+def _readings_of_relation(claim: Claim, named: NamedFormula, tree: Node) -> tuple[Identification, ...]:
+    """Return the known relations to which the equation of the quantity's side of a claim with a formula is equal."""
+    difference = sum_of([named.side, negated(tree)])
     try:
-        value = claim.interpreter().read(named.solve(tree))
+        value = claim.interpreter().read(difference)
+    except InputError:
+        return ()
+    if is_matrix(value):
+        return ()
+    value = primitive(value)
+    if _words(named) is not None and len(value.atoms(Function, Symbol) - {time}) < LEAST_SYMBOLS_RELATED:
+        return ()
+    return tuple(islice(identified(value, steps=False, named=True, quantity="", is_relation=True), MOST_READINGS))
+
+
+def _readings_of_formula(
+    claim: Claim, named: NamedFormula, formula: Node, least_symbols: int
+) -> tuple[Identification, ...]:
+    """Return the known formulas for the quantity to which a formula for it is equal, the likeliest first."""
+    try:
+        value = claim.interpreter().read(formula)
     except InputError:
         return ()
     if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < least_symbols:

@@ -1,0 +1,321 @@
+"""Relations between quantities that books solve for one quantity or another, each derived from the laws of motion.
+
+A relation says that a difference is zero. It is recognised as it is, and solved for each quantity that it gives as one
+formula: the condition of steady precession gives the spin, the torque and the moments of inertia.
+"""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from sympy import (
+    Expr,
+    Matrix,
+    Poly,
+    PolynomialError,
+    Rational,
+    Symbol,
+    cancel,
+    cos,
+    diag,
+    expand,
+    factor_terms,
+    fraction,
+    pi,
+    sin,
+    solve,
+    tan,
+    together,
+)
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import OMEGA, TENSOR
+from symrot.dynamics.equations import angular_acceleration
+from symrot.inertia.solids import solid
+from symrot.kinematics.euler import rate_jacobian
+
+__all__ = ["OTHERS", "Relation", "primitive", "relations", "solved"]
+
+PHI, THETA, PSI = symbols.angles
+DPHI, DTHETA, DPSI = symbols.angle_rates
+DDTHETA = symbols.ddtheta
+A, B, C, ARM, MASS, G = symbols.A, symbols.B, symbols.C, symbols.c_3, symbols.m, symbols.g
+HALF = Rational(1, 2)
+SPIN = symbols.omega_3
+HEAVY, FREE, ROLLING, PLANE, WHEEL, PENDULUM, EULER = (
+    f"derivations/{name}.md"
+    for name in ("heavy_top", "symmetric_top", "rolling", "planar_motion", "gyroscopic_wheel", "pendulum",
+                 "euler_equations")
+)  # fmt: skip
+
+
+def _new(name: str, unit: str) -> Symbol:
+    """Return a symbol that :mod:`symrot.symbols` does not have, with its unit."""
+    symbol = Symbol(name, real=True)
+    OTHERS[symbol] = unit
+    return symbol
+
+
+OTHERS: dict[Symbol, str] = {}
+"""The symbols of relations that are not in :mod:`symrot.symbols`, with their units."""
+
+ENERGY, STIFFNESS, SPEED = _new("E_k", "J"), _new("k_t", "N m/rad"), _new("v", "m/s")
+BEFORE, AFTER = _new("omega_i", "rad/s"), _new("omega_f", "rad/s")
+START, END, TIME = _new("theta_i", "rad"), _new("theta_f", "rad"), _new("t", "s")
+ALPHA, FALL, SLOPE = _new("alpha_a", "rad/s^2"), _new("a_l", "m/s^2"), _new("beta", "rad")
+TORQUE, PERIOD, LENGTH = _new("M", "N m"), _new("T_p", "s"), _new("q_d", "m")
+GYRATION = _new("k_O", "m, of gyration")
+TILT = _new("gamma", "rad")
+WORK = _new("W_k", "J")
+
+
+class Relation(NamedTuple):
+    """A difference of two formulas that is zero, with a name and the derivation that it comes from.
+
+    ``words`` says what the relation gives for each symbol for which it is solved.
+    """
+
+    title: str
+    source: str
+    difference: Expr
+    words: dict[Symbol, str]
+
+
+def solved(relation: Relation) -> Iterator[tuple[str, str, Any]]:
+    """Yield the formula for each quantity with words, of which the relation is a polynomial of degree 1 or c*x^2 + d.
+
+    The name of a formula for a square ends with ", squared".
+    """
+    numerator = fraction(together(relation.difference))[0]
+    for symbol, words in relation.words.items():
+        coefficients = Poly(numerator, symbol).all_coeffs()
+        if len(coefficients) == 2:
+            slope, rest = coefficients
+            name = f"{words} {relation.title}"
+        elif len(coefficients) == 3 and coefficients[1] == 0:
+            slope, _, rest = coefficients
+            name = f"{words} {relation.title}, squared"
+        else:
+            continue
+        yield name, relation.source, factor_terms(cancel(-rest / slope))
+
+
+def primitive(difference: Expr) -> Expr:
+    """Return the numerator of a difference without factors that are powers of symbols or functions, and without sign.
+
+    Equations that differ by such a factor on both sides, or by a denominator, have the same primitive difference.
+    """
+    numerator = fraction(cancel(together(difference)) if difference.count_ops() < LONGEST else together(difference))[0]
+    try:
+        return Poly(numerator).terms_gcd()[1].primitive()[1].as_expr()
+    except PolynomialError:
+        return numerator
+
+
+LONGEST = 120
+"""The most operations of a difference whose common factors are divided out."""
+
+
+def relations() -> Iterator[Relation]:
+    """Yield all relations in a fixed order."""
+    for group in (_one_axis, _rolling, _steady, _heavy, _free, _planar, _aircraft):
+        yield from group()
+
+
+def _one_axis() -> Iterator[Relation]:
+    """Yield the relations of rotation about a fixed axis: work, constant acceleration, springs, percussion."""
+    energy = C * SPIN**2 / 2
+    gain = energy.subs(SPIN, AFTER) - energy.subs(SPIN, BEFORE)
+    yield Relation("work and kinetic energy of rotation", PLANE, WORK - gain, {WORK: "work by"})
+    yield Relation("impulse and angular momentum about one axis", PLANE, C * BEFORE + TORQUE * TIME - C * AFTER,
+                   {AFTER: "angular velocity by"})  # fmt: skip
+    work = TORQUE * (END - START)
+    yield Relation("work of a constant torque", PLANE, WORK - work, {WORK: "work by the"})
+    later = BEFORE + ALPHA * TIME
+    turned = START + later.integrate((TIME, 0, TIME))
+    (time,) = solve(later - AFTER, TIME)
+    squared = expand(2 * ALPHA * (turned.subs(TIME, time) - END))
+    motion = "constant angular acceleration"
+    yield Relation(motion, PLANE, AFTER - later, {AFTER: "angular velocity at"})
+    yield Relation(motion, PLANE, END - turned, {END: "angle at"})
+    yield Relation(motion, PLANE, squared, {AFTER: "angular velocity at"})
+    twist = (STIFFNESS * THETA).integrate((THETA, 0, THETA))
+    yield Relation("a torsional spring", PENDULUM, ENERGY - twist, {ENERGY: "potential energy of"})
+    yield Relation("a torsional pendulum", PENDULUM, STIFFNESS * PERIOD**2 - (2 * pi) ** 2 * A, {PERIOD: "period of"})
+    # the pivot has no reaction to a blow at the distance q_d if the blow moves the centre of mass as the pivot needs
+    blow = Symbol("blow", real=True)
+    (rate,) = solve(blow * LENGTH - C * SPIN, SPIN)
+    (struck,) = solve(blow - MASS * symbols.r * rate, C)
+    yield Relation("the centre of percussion", PLANE, struck - C, {LENGTH: "distance of"})
+    yield Relation("the centre of percussion", PLANE, struck - MASS * GYRATION**2, {LENGTH: "distance of"})
+    bar = solid("rod").inertia_about((0, 0, symbols.L / 2))[0, 0]
+    percussion = struck.subs(symbols.r, symbols.L / 2) - bar
+    yield Relation("the centre of percussion of a rod about its end", PLANE, percussion, {LENGTH: "distance of"})
+
+
+ROLLERS = ("cylinder", "disk", "ring", "sphere", "spherical_shell")
+"""Solids that roll; their moment about the axis of rolling is a multiple of m R^2."""
+
+
+def _rolling() -> Iterator[Relation]:
+    """Yield the relations of bodies that roll without slipping, and of masses on a pulley."""
+    radius, height = symbols.R, symbols.h
+    shares: list[tuple[str, Expr]] = [("a body", A)]
+    for name in ROLLERS:
+        body = solid(name)
+        moment = body.inertia_about(tuple(body.center_of_mass))[2, 2]
+        shares.append((f"a {name.replace('_', ' ')}", cancel(moment)))
+    seen: set[Expr] = set()
+    for title, moment in shares:
+        if moment in seen:
+            continue
+        seen.add(moment)
+        energy = MASS * SPEED**2 / 2 + moment * (SPEED / radius) ** 2 / 2
+        rolls = f"{title} that rolls"
+        yield Relation(rolls, ROLLING, ENERGY - energy, {ENERGY: "kinetic energy of"})
+        by_spin = expand(energy.subs(SPEED, radius * SPIN))
+        yield Relation(rolls, ROLLING, ENERGY - by_spin, {ENERGY: "kinetic energy of"})
+        yield Relation(f"{rolls} from a height", ROLLING, energy - MASS * G * height, {SPEED: "speed of"})
+        # along the slope: d(energy)/dt = weight along the slope times speed
+        power = energy.diff(SPEED) * FALL - MASS * G * sin(SLOPE) * SPEED
+        yield Relation(f"{rolls} down a slope", ROLLING, cancel(power / SPEED), {FALL: "acceleration of"})
+    first, second, _ = symbols.particle_masses
+    energy = (first + second) * SPEED**2 / 2 + A * (SPEED / radius) ** 2 / 2
+    power = energy.diff(SPEED) * FALL - (first - second) * G * SPEED
+    yield Relation("two masses on a pulley", PLANE, cancel(power / SPEED), {FALL: "acceleration of"})
+
+
+def _top() -> tuple[Matrix, Expr]:
+    """Return the angular velocity of a top without its spin angle, and the kinetic energy of a symmetric top."""
+    omega = (rate_jacobian("ZXZ") * Matrix(symbols.angle_rates)).subs(PSI, 0)
+    return omega, HALF * omega.dot(diag(A, A, C) * omega)
+
+
+def _steady() -> Iterator[Relation]:
+    """Yield the condition of steady precession, for a weight and for a torque, in the spin and in its rate."""
+    _, kinetic = _top()
+    along = kinetic.diff(THETA).subs(DTHETA, 0)  # A*theta'' at rest in theta, by Lagrange's equation
+    for name, load in (("W", symbols.W), ("m g", MASS * G)):
+        potential = load * ARM * cos(THETA)
+        whole = cancel((along - potential.diff(THETA)) / sin(THETA))
+        by_spin = cancel((_by_spin(along) - potential.diff(THETA)) / sin(THETA))
+        title = "steady precession of a heavy top"
+        for difference in (whole, by_spin):
+            yield Relation(title, HEAVY, expand(difference), {SPIN: "angular velocity at", DPSI: "rate of spin at"})
+        fast = expand(by_spin).coeff(DPHI, 1) * DPHI + expand(by_spin).coeff(DPHI, 0)
+        yield Relation("slow precession of a fast top", HEAVY, fast, {})
+        least = expand(by_spin.subs(DPHI, symbols.n))
+        linear, square, constant = (expand(least).coeff(symbols.n, k) for k in (1, 2, 0))
+        bound = cancel(linear**2 - 4 * square * constant)
+        title = "the least spin for steady precession of a heavy top"
+        yield Relation(title, HEAVY, bound, {SPIN: "angular velocity of"})
+        yield Relation("the least spin of a sleeping top", HEAVY, bound.subs(THETA, 0), {SPIN: "angular velocity of"})
+        if name == "W":
+            yield Relation("steady precession under a torque", WHEEL, along + TORQUE, {TORQUE: "torque of"})
+            yield Relation("steady precession under a torque", WHEEL, _by_spin(along) + TORQUE, {TORQUE: "torque of"})
+        gravity = -potential.diff(THETA)
+        yield Relation("gravity on a top", HEAVY, TORQUE - gravity, {TORQUE: "torque of"})
+    level = C * SPIN * DPHI
+    assert cancel(_by_spin(along).subs(THETA, pi / 2) + level) == 0
+    yield Relation("steady precession with a level axle", WHEEL, TORQUE - level, {TORQUE: "torque of"})
+    yield Relation("fast nutation of a top", HEAVY, A * symbols.n - C * SPIN, {symbols.n: "frequency of"})
+
+
+def _by_spin(formula: Expr) -> Expr:
+    """Return a formula with the spin omega_3 in place of the rate of the spin angle."""
+    return expand(formula.subs(DPSI, SPIN - DPHI * cos(THETA)))
+
+
+def _heavy() -> Iterator[Relation]:
+    """Yield the energy of a heavy top by its spin, its equation of nutation, and the vertical component of momentum."""
+    omega, kinetic = _top()
+    turned = kinetic.subs(DPSI, SPIN - DPHI * cos(THETA))
+    yield Relation("a symmetric top", HEAVY, ENERGY - expand(turned), {ENERGY: "kinetic energy of"})
+    for load in (symbols.W, MASS * G):
+        potential = load * ARM * cos(THETA)
+        yield Relation("a heavy top", HEAVY, ENERGY - expand(turned) - potential, {ENERGY: "energy of"})
+        nutation = A * DDTHETA - kinetic.diff(THETA) + potential.diff(THETA)
+        yield Relation("nutation of a heavy top", HEAVY, expand(nutation), {DDTHETA: "angular acceleration at"})
+        by_spin = A * DDTHETA - _by_spin(kinetic.diff(THETA)) + potential.diff(THETA)
+        yield Relation("nutation of a heavy top", HEAVY, by_spin, {DDTHETA: "angular acceleration at"})
+    momentum = diag(A, A, C) * omega
+    vertical = expand(momentum[2] * cos(THETA) + momentum[1] * sin(THETA))
+    assert expand(vertical - kinetic.diff(DPHI)) == 0
+    H = symbols.H
+    names = {H: "angular momentum of"}
+    yield Relation("a symmetric top along the vertical", HEAVY, H - vertical, names)
+    yield Relation("a symmetric top along its axis", HEAVY, H - momentum[2], names)
+    omega = rate_jacobian("ZXZ") * Matrix(symbols.angle_rates)
+    general = HALF * omega.dot(diag(A, B, C) * omega)
+    yield Relation("an asymmetric body in the angles of ZXZ", HEAVY, ENERGY - general, {ENERGY: "kinetic energy of"})
+    length = symbols.n
+    first, second, third = omega
+    across = DPHI**2 * sin(THETA) ** 2 + DTHETA**2
+    assert expand(first**2 + second**2 - across).subs(sin(PSI) ** 2, 1 - cos(PSI) ** 2).expand() == 0
+    title, page = "the angular velocity in the angles of ZXZ", "derivations/euler_body_rates.md"
+    square = expand(across + third**2).subs(sin(THETA) ** 2, 1 - cos(THETA) ** 2)
+    yield Relation(title, page, length**2 - expand(square), {length: "length of"})
+    title = "the angular velocity across the axis in the angles of ZXZ"
+    yield Relation(title, page, symbols.omega_1**2 + symbols.omega_2**2 - across, {})
+
+
+def _free() -> Iterator[Relation]:
+    """Yield the relations of a free body: energy and momentum, its stability, and the angles of a symmetric one."""
+    momentum = diag(A, B, C) * OMEGA
+    H, E = symbols.H, symbols.E
+    square, energy = momentum.dot(momentum), OMEGA.dot(momentum) / 2
+    yield Relation("a free body", EULER, H**2 - square, {H: "angular momentum of"})
+    parts = symbols.momentum_b
+    velocities = [part / moment for part, moment in zip(parts, (A, B, C), strict=True)]
+    by_momenta = energy.subs(dict(zip(OMEGA, velocities, strict=True)))
+    yield Relation("a body by its angular momentum", EULER, ENERGY - by_momenta, {ENERGY: "kinetic energy of"})
+    first, second, third = OMEGA
+    for eliminated, rest in ((third, first), (first, third)):
+        (value,) = {solution**2 for solution in solve(2 * energy - 2 * E, eliminated)}
+        difference = cancel((square - H**2).subs(eliminated**2, value))
+        yield Relation("a free body of given energy and angular momentum", EULER, difference,
+                       {rest: "angular velocity of"})  # fmt: skip
+    # rotation near the third axis: the rate of omega_1' with omega_3 constant and omega_1, omega_2 small
+    alpha = angular_acceleration(diag(A, B, C), OMEGA, Matrix([0, 0, 0]))
+    again = alpha[0].subs(second, alpha[1])
+    growth = cancel(again / first)
+    second_rate = Symbol("ddomega_1", real=True)
+    rate = symbols.Omega
+    title = "small oscillations about a principal axis"
+    yield Relation(title, EULER, second_rate - growth * first, {second_rate: "angular acceleration at"})
+    yield Relation(title, EULER, rate**2 + growth, {rate: "frequency of"})
+    # a free symmetric body: the momentum H is vertical, theta is the angle between it and the axis
+    omega, _ = _top()
+    own = diag(A, A, C) * omega
+    precession = own[1].subs(DTHETA, 0) - H * sin(THETA)
+    along = C * SPIN - H * cos(THETA)
+    body = "a free symmetric body"
+    yield Relation(body, FREE, along, {SPIN: "angular velocity along the axis of"})
+    (by_momentum,) = solve(precession, DPHI)
+    spin = along.subs(SPIN, DPSI + by_momentum * cos(THETA))
+    yield Relation(body, FREE, fraction(together(spin))[0], {DPSI: "rate of spin of"})
+    ratio = cancel((omega[1] / omega[2]) / (own[1] / own[2]))  # of the tangents of the angles of omega and momentum
+    yield Relation("the angles of momentum and angular velocity to the axis of a free symmetric body", FREE,
+                   tan(TILT) - ratio * tan(THETA), {})  # fmt: skip
+    turning = symbols.Omega
+    slow = alpha.subs(B, A)
+    yield Relation("the angular velocity of a free symmetric body", FREE, symbols.domega_1 + turning * second, {})
+    yield Relation("the angular velocity of a free symmetric body", FREE, symbols.domega_2 - turning * first, {})
+    assert cancel(slow[0] / second + slow[1] / first) == 0  # the same rate in both
+
+
+def _planar() -> Iterator[Relation]:
+    """Yield the torques that hold the axis of a body which rotates about z, with products of inertia."""
+    about, rate = Matrix([0, 0, symbols.omega_z]), Matrix([0, 0, symbols.domega_3])
+    needed = TENSOR * rate + about.cross(TENSOR * about)
+    for torque, value in zip(symbols.torque_b, needed, strict=True):
+        yield Relation("rotation about the z axis", EULER, torque - value, {torque: "torque of"})
+
+
+def _aircraft() -> Iterator[Relation]:
+    """Yield Euler's equations of a body whose x-z plane is a plane of symmetry."""
+    tensor = TENSOR.subs({symbols.I_xy: 0, symbols.I_yz: 0})
+    rates = Matrix(symbols.omega_rates)
+    needed = tensor * rates + OMEGA.cross(tensor * OMEGA)
+    for torque, value in zip(symbols.torque_b, needed, strict=True):
+        title = "a body with a plane of symmetry, by Euler's equations"
+        yield Relation(title, EULER, torque - expand(value), {torque: "torque of"})
