@@ -72,8 +72,10 @@ def related_formula(claim: Claim) -> NamedFormula | None:
             return solved
         if _equation_of_motion(left, right) is not None:
             return NamedFormula(text(left), left, right, solve=None)
-        of_names = any(_is_list_of_names(side) for side in (left, right))
-        return NamedFormula(text(left), left, right, solve=None) if apart and of_names else None
+        for side, formula in ((left, right), (right, left)):
+            if apart and _is_list_of_names(side):
+                return NamedFormula(text(side), side, formula)
+        return None
     if apart:
         for side, formula in ((left, right), (right, left)):
             if (solution := _solution(side)) is not None:

@@ -178,7 +178,22 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
         except NotInField:
             continue
         return Fingerprint(tuple(atoms), tuple(rows), tuple(atom for atom in written if atom not in atoms))
-    raise NotInField
+    rows = [_sum_over_pairs(entries, atom, atoms, written) for atom in atoms]
+    return Fingerprint(tuple(atoms), tuple(rows), tuple(atom for atom in written if atom not in atoms))
+
+
+def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], written: Sequence[Expr]) -> Values:
+    """Return the signature of an atom in a formula without a value at equal values of the others, as x/(A - B).
+
+    It is the sum of the values with a second atom raised too, over all second atoms for which there is a value.
+    """
+    raised, others = DRAWS[0]
+    second, _ = DRAWS[1]
+    points = (dict.fromkeys(written, others) | {atom: raised, other: second} for other in atoms if other != atom)
+    defined = [values for point in points if (values := _defined(entries, point)) is not None]
+    if not defined:
+        raise NotInField
+    return tuple(sum(column) % PRIME for column in zip(*defined, strict=True))
 
 
 def _active(entries: Sequence[Expr], atoms: Sequence[Expr]) -> list[Expr]:

@@ -59,6 +59,7 @@ LETTERS = {
     "rad/s": r"(omega|w|Omega|n|nu|p|q|r|s|lambda)(_?\w+)?|d(phi|theta|psi|alpha|beta|gamma)(_?[1-3])?",
     "rad/s^2": r"alpha\w*|d(omega|w)\w*|dd\w+", "m/s": r"[vuV]\w*", "m/s^2": r"[ga]\w*",
     "s": r"[tTP]\w*|tau", "J": r"[ETKVUW]\w*", "N m/rad": r"(k|c|kappa)(_\w+)?", "m, of gyration": r"[kri]\w*",
+    "1": r"([nkeulqpsgcabdr]|beta|eps|epsilon|varepsilon|eta|xi|rho|sigma|gamma|lambda|mu|[RACQ]_?[0-9])\w*",
 }  # fmt: skip
 """Unit of a symbol -> the letters that books use for it; a product of few symbols is recognised in these letters."""
 
@@ -241,7 +242,9 @@ def _matched(
         pairs = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
         if known.is_relation and not _keeps_names(pairs):
             continue
-        if quantity is not None and not is_consistent([*pairs, *component(known.name, quantity)]):
+        ordered_by_factor = "quaternion product" in known.name  # in a1*a2 - b1*b2 the numbers are those of the factors
+        placed = [*pairs, *component(known.name, quantity or "")]
+        if quantity is not None and not ordered_by_factor and not is_consistent(placed, known.is_placed):
             continue
         factor = _factor(theirs, ordered, pairing, own.idle, SCALES if known.scaled else FACTORS)
         if factor is None:

@@ -13,7 +13,9 @@ from typing import Any
 from sympy import Expr, ImmutableMatrix, Matrix, Mul, Symbol, diag
 
 from symrot import catalogue, symbols
+from symrot.checker.recognition.bodies import bodies
 from symrot.checker.recognition.fingerprint import NotInField, fingerprint
+from symrot.checker.recognition.kinematics import rotations, vectors
 from symrot.checker.recognition.mechanics import one_axis, tops
 from symrot.checker.recognition.relations import primitive, relations, solved
 from symrot.conventions import SEQUENCES
@@ -53,6 +55,11 @@ class Known:
     scaled: bool = False
     only_named: bool = False
     is_relation: bool = False
+
+    @property
+    def is_placed(self) -> bool:
+        """Whether the formula is of one axis or entry, so that no axes can be exchanged in it."""
+        return self.name.startswith(("yaw", "pitch", "roll", "entry"))
 
     @property
     def is_step(self) -> bool:
@@ -249,6 +256,9 @@ def stated() -> Iterator[Named]:
         one_axis,
         tops,
         _solved,
+        vectors,
+        rotations,
+        bodies,
     ):
         for name, source, value in group():
             yield name, source, value
@@ -295,7 +305,7 @@ def _selected(
     formulas: Iterator[Named], least: int, longest: int, is_relation: bool = False
 ) -> Iterator[tuple[str, Known]]:
     """Yield (fingerprint, formula) for each formula of at least ``least`` symbols and at most ``longest`` letters."""
-    seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved())}
+    seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved(), *rotations(), *bodies())}
     for name, source, value in formulas:
         entries, shape = flatten(value)
         if sum(entry.count_ops() for entry in entries) > longest // 3:

@@ -10,8 +10,9 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice, pairwise
+from typing import Any
 
-from sympy import Function, Mul, Rational, Symbol
+from sympy import Function, Matrix, Mul, Rational, Symbol, acos, asin, atan2
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.interpreter import time
@@ -51,8 +52,10 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"d(phi|theta|psi|alpha|beta|gamma)", ("angle rates", "precession", "spin")),
     (r"d(omega|w)(_?[xyz1-3])?|d[pqr]", ("Euler's equations", "angular acceleration")),
     (r"alpha(_?[xyz1-3])?|d(dphi|dtheta|dpsi)", ("angular acceleration",)),
-    (r"a(_?[a-zA-Z0-9]+)?", ("acceleration", "frequency")), (r"v(_?[a-zA-Z0-9]+)?", ("speed", "velocity of", "product", "vector")),
+    (r"a(_?[a-zA-Z0-9]+)?", ("acceleration", "frequency")),
+    (r"v(_?[a-zA-Z0-9]+)?", ("speed", "velocity of", "product", "vector")),
     (r"T(_?rot)?|K|K_?E|E(_?(k|kin|rot))?|KE", ("kinetic energy", "torque", "rotation matrix", "period", "energy of")),
+    (r"d(T|E|K|KE|W)", ("power",)), (r"sigma(_?[1-3i])?", ("modified Rodrigues",)),
     (r"(V|U)_?eff", ("effective potential",)),
     (r"V|U|E_?p|PE", ("potential", "work")),
     (r"[HLh](_?([xyzOGCPAB0-3]|cm))?", ("angular momentum", "Lagrangian", "torque")),
@@ -194,18 +197,35 @@ def _readings_of_formula(
         return ()
     if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < least_symbols:
         return ()
-    root = not is_matrix(value) and any(power.exp == Rational(1, 2) for power in Mul.make_args(value) if power.is_Pow)
-    looked_up = identified(
-        value**2 if root else value, steps=False, named=_words(named) is not None, quantity=_plain(named)
-    )
+    searched, ending = _without_function(value)
+    looked_up = identified(searched, steps=False, named=_words(named) is not None, quantity=_plain(named))
     fitting = [
-        replace(known, name=known.name.removesuffix(SQUARED))
+        replace(known, name=known.name.removesuffix(ending))
         for known in looked_up
-        if known.name.endswith(SQUARED) == root and _fits(named, known, is_matrix(value))
+        if _ending(known.name) == ending and _fits(named, known, is_matrix(value))
     ]
     fitting.sort(key=lambda known: (*_strangeness(named, known), _rarity(known)))
     likeliest = [known for known in fitting if _strangeness(named, known)[:2] == _strangeness(named, fitting[0])[:2]]
     return tuple(likeliest[:MOST_READINGS])
+
+
+def _without_function(value: Any) -> tuple[Any, str]:
+    """Return the formula under a root, acos, asin or atan2, and the ending of the names of such known formulas."""
+    if is_matrix(value):
+        return value, ""
+    if any(power.exp == Rational(1, 2) for power in Mul.make_args(value) if power.is_Pow):
+        return value**2, SQUARED
+    factor, function = value.as_coeff_Mul()
+    if not isinstance(function, acos | asin | atan2):
+        return value, ""
+    inside = Matrix(function.args) if isinstance(function, atan2) else function.args[0]
+    return inside, f", {f'{factor} ' * (factor != 1)}{function.func}"
+
+
+def _ending(name: str) -> str:
+    """Return the ending of the name of a known formula that says of which function of the quantity it is."""
+    ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
+    return ending[0] if ending else ""
 
 
 # -- how well a known formula fits the names --------------------------------------------------------------------------
@@ -229,7 +249,8 @@ def _words(named: NamedFormula) -> tuple[str, ...] | None:
 
 def _plain(named: NamedFormula) -> str:
     """Return the name of a quantity; the name of its time derivative has a ``d`` in front."""
-    return f"d{named.name}" if named.is_rate else named.name
+    name, dots = re.subn("_?dot$", "", re.sub("(_prime)+$", "", named.name))
+    return f"d{name}" if named.is_rate or dots else name
 
 
 def _strangeness(named: NamedFormula, known: Identification) -> tuple[int, int, int]:

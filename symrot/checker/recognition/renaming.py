@@ -23,12 +23,18 @@ COMPONENTS = {"first": "1", "second": "2", "third": "3", "scalar": "0"}
 RATE = re.compile(r"diff\((.+?)(?:, t)+\)|(.+)\(t\)|d{1,2}(phi|theta|psi|omega_[1-3]|q[0-3])")
 """A rate, or a value in time, as text; its group is the name of the quantity."""
 
+ENTRY = re.compile(r"[RrACc]_?([1-3])([1-3])")
+"""An entry of a rotation matrix; its groups are the row and the column."""
+
 MIDDLE, OUTER = ("theta",), ("phi", "psi", "varphi")
 """Names of the second of three Euler angles, and of the first or third."""
 
 
-def is_consistent(renaming: Sequence[tuple[str, str]]) -> bool:
-    """Return whether a renaming, pairs of a known and a new name, keeps axes together and angles with their rates."""
+def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> bool:
+    """Return whether a renaming, pairs of a known and a new name, keeps axes together and angles with their rates.
+
+    If ``fixed``, each axis keeps its number; otherwise the axes may be exchanged in a cycle.
+    """
     pairs = [(_angle(known), _angle(new)) for known, new in renaming]
     if len({*pairs}) != len({known for known, _ in pairs}) or len({*pairs}) != len({new for _, new in pairs}):
         return False
@@ -36,7 +42,9 @@ def is_consistent(renaming: Sequence[tuple[str, str]]) -> bool:
     if len(angles) > 1 and any((known in MIDDLE) != (new in MIDDLE) for known, new in angles):
         return False
     axes = [(_axes(known), _axes(new)) for known, new in pairs]
-    return any(_keeps(axes, order) for order in CYCLIC)
+    entries = [(ENTRY.fullmatch(known), ENTRY.fullmatch(new)) for known, new in pairs]
+    places = [(known.groups(), new.groups()) for known, new in entries if known and new]
+    return any(_keeps(axes, order) and _keeps_entries(places, order) for order in CYCLIC[: 1 if fixed else None])
 
 
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
@@ -60,6 +68,12 @@ def _axes(name: str) -> frozenset[int]:
         return frozenset({LETTERS[name]})
     index = re.fullmatch(r"[A-Za-z]+?_?([0-3]|[xyz]|11|22|33|12|13|23|21|31|32|[xyz]{2})", name)
     return frozenset(AXIS[letter] for letter in index[1]) if index else frozenset()
+
+
+def _keeps_entries(places: Sequence[tuple[tuple[str, ...], tuple[str, ...]]], order: Sequence[int]) -> bool:
+    """Return whether the entries of a rotation matrix keep their places, or all have those of the transpose."""
+    moved = [(tuple(str(order[int(place) - 1]) for place in known), new) for known, new in places]
+    return all(old == new for old, new in moved) or all(old[::-1] == new for old, new in moved)
 
 
 def _keeps(axes: Sequence[tuple[frozenset[int], frozenset[int]]], order: Sequence[int]) -> bool:

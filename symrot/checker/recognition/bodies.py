@@ -1,0 +1,75 @@
+"""Moments of inertia in forms that books name: with a density, radii of gyration, tilted rods, pairs of masses."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from sympy import Matrix, Symbol, cancel, cos, expand, factor, sin
+
+from symrot import symbols
+from symrot.inertia import tensor
+from symrot.inertia.shapes import SHAPES
+from symrot.inertia.solids import solid
+
+__all__ = ["bodies"]
+
+SOLIDS, AXES = "derivations/standard_solids.md", "derivations/parallel_axis.md"
+
+Named = tuple[str, str, Any]
+"""Name, source and value of a formula."""
+
+
+def bodies() -> Iterator[Named]:
+    """Yield moments of inertia with a density, radii of gyration, and the theorems on axes."""
+    for name, shape in SHAPES.items():
+        if shape.kind == "points":
+            continue
+        body, title = solid(name), name.replace("_", " ")
+        moments = body.inertia_about(tuple(body.center_of_mass))
+        for place, axis in enumerate("xyz"):
+            moment = moments[place, place]
+            yield f"radius of gyration of a {title}, {axis} axis, squared", SOLIDS, cancel(moment / symbols.m)
+            if shape.kind == "solid":
+                mass = symbols.rho * body.measure
+                dense = factor(moment.subs(symbols.m, mass))
+                yield f"moment of inertia of a {title} of given density, {axis} axis", SOLIDS, dense
+    yield from _rods_and_masses()
+    yield from _theorems()
+
+
+def _rods_and_masses() -> Iterator[Named]:
+    """Yield the moments of a tilted rod and of two masses about their centre of mass."""
+    rod = solid("rod")
+    normal = Matrix([0, sin(symbols.theta), cos(symbols.theta)])
+    for place, point in (("its centre", tuple(rod.center_of_mass)), ("an end", (0, 0, symbols.L / 2))):
+        moment = normal.dot(Matrix(rod.inertia_about(point)) * normal)
+        yield f"moment of inertia of a rod at an angle to the axis through {place}", SOLIDS, factor(moment)
+    first, second, _ = symbols.particle_masses
+    apart = symbols.L
+    centre = second * apart / (first + second)
+    pair = sum(
+        (tensor.inertia_of_point(mass, (x - centre, 0, 0))[2][2] for mass, x in ((first, 0), (second, apart))),
+        start=0,
+    )
+    yield "moment of inertia of two masses about their centre of mass", SOLIDS, factor(cancel(pair))
+
+
+def _theorems() -> Iterator[Named]:
+    """Yield the parallel-axis theorem by components and for radii of gyration, and the theorem of flat bodies."""
+    offset = symbols.offset
+    added = Matrix(tensor.inertia_of_point(symbols.m, offset))
+    (xx, yy, zz), (xy, xz, yz) = symbols.moments, symbols.products
+    full = Matrix([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    for place, axis in enumerate("xyz"):
+        moment = (full + added)[place, place]
+        yield f"moment of inertia about a parallel axis (parallel-axis theorem), {axis} axis", AXES, moment
+    for (i, j), names in (((0, 1), "xy"), ((0, 2), "xz"), ((1, 2), "yz")):
+        name = f"product of inertia about parallel axes (parallel-axis theorem), {names}"
+        yield name, AXES, (full + added)[i, j]
+        yield f"{name}, without the minus sign", AXES, full[i, j] - added[i, j]
+    central = Symbol("k_G", real=True)
+    distance = symbols.r
+    inertia = symbols.m * central**2 + Matrix(tensor.inertia_of_point(symbols.m, (distance, 0, 0)))[2, 2]
+    yield "radius of gyration about a parallel axis, squared", AXES, expand(cancel(inertia / symbols.m))
+    flat = Matrix(tensor.inertia_of_point(symbols.m, (symbols.x, symbols.y, 0)))
+    assert expand(flat[2, 2] - flat[0, 0] - flat[1, 1]) == 0  # holds for each point, so for the body
+    yield "moment of inertia of a flat body about the axis normal to it", AXES, xx + yy

@@ -1,0 +1,149 @@
+"""Formulas of kinematics that books name: rotated vectors, points of a body, angles from matrices and quaternions.
+
+Each is derived from the rotation matrix, the quaternion or the rates of a chart. Angles are known by their sine, cosine
+or tangent: the name of such a formula ends with the inverse function, as in ``", 2 acos"``.
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+from sympy import Matrix, Symbol, cancel, cos, expand, eye, sin, solve, sqrt, trace
+
+from symrot import symbols
+from symrot.conventions import SEQUENCES
+from symrot.kinematics import attitude, euler, quaternion, rotation_vector
+
+__all__ = ["rotations", "vectors"]
+
+AXIS, ANGLE, SECOND_ANGLE = Matrix(symbols.axis), symbols.alpha, Symbol("beta", real=True)
+POSITION, OMEGA, ALPHA = Matrix(symbols.position), Matrix(symbols.omega_b), Matrix(symbols.omega_rates)
+Q = symbols.quaternion
+ENTRIES = Matrix(3, 3, symbols.rotation_entries)
+BELOW = ((2, 1), (0, 2), (1, 0))
+"""The entries of a skew matrix that are the components of its vector."""
+WORDS = ("first", "second", "third")
+UNIT, PARAMETERS, RELATIVE, COMPOSITION, RODRIGUES, MOMENTUM, ENERGY, POWER = (
+    f"derivations/{name}.md"
+    for name in ("axis_and_angle", "euler_parameters", "relative_motion", "composition", "rodrigues",
+                 "angular_momentum", "kinetic_energy", "work_and_power")
+)  # fmt: skip
+
+Named = tuple[str, str, Any]
+"""Name, source and value of a formula."""
+
+
+def vectors() -> Iterator[Named]:
+    """Yield rotated vectors, the motion of points of a body or in a rotating frame, and products with momenta."""
+    for name, matrix in _rotation_matrices():
+        yield f"rotated vector, by {name}", UNIT, matrix * POSITION
+        yield f"vector in rotated axes, by {name}", UNIT, matrix.T * POSITION
+    origin, relative = Matrix(symbols.velocity), Matrix(symbols.relative_velocity)
+    turning = OMEGA.cross(POSITION)
+    yield "velocity of a point of a body", RELATIVE, origin + turning
+    yield "velocity of a point in a rotating frame", RELATIVE, relative + turning
+    on_body = ALPHA.cross(POSITION) + OMEGA.cross(turning)
+    # d/dt of the velocity: its rate in the rotating frame, and omega times it
+    in_frame = Matrix(symbols.relative_acceleration) + ALPHA.cross(POSITION) + OMEGA.cross(relative)
+    in_frame += OMEGA.cross(relative + turning)
+    for place, added in (("a fixed origin", Matrix([0, 0, 0])), ("a moving origin", Matrix(symbols.acceleration))):
+        yield f"acceleration of a point of a body with {place}", RELATIVE, added + on_body
+        yield f"acceleration of a point in a rotating frame with {place}", RELATIVE, added + in_frame
+    momentum = Matrix(symbols.momentum_b)
+    about_point = POSITION.cross(symbols.m * origin) + momentum
+    yield "angular momentum about a point away from the centre of mass", MOMENTUM, about_point
+    yield "kinetic energy of rotation from the angular momentum", ENERGY, OMEGA.dot(momentum) / 2
+    yield "power of a torque", POWER, OMEGA.dot(Matrix(symbols.torque_b))
+
+
+def _rotation_matrices() -> Iterator[tuple[str, Matrix]]:
+    """Yield the rotation matrix by axis and angle in two forms that a unit axis makes equal, and by a quaternion."""
+    powers = Matrix(rotation_vector.dcm_of_axis_angle())
+    yield "axis and angle (Rodrigues' formula)", powers
+    yield "axis and angle (Rodrigues' formula) with a unit axis", _with_unit_axis(powers)
+    yield "a unit quaternion", Matrix(quaternion.quaternion_to_dcm(Q))
+
+
+def _with_unit_axis(powers: Matrix) -> Matrix:
+    """Return a matrix with the square of the skew matrix of a unit axis as n n^T - 1."""
+    excess = (1 - cos(ANGLE)) * (AXIS.dot(AXIS) - 1)
+    return (powers + excess * eye(3)).applyfunc(expand)
+
+
+def rotations() -> Iterator[Named]:
+    """Yield entries of matrices, angles, quaternions and other parameters from each other."""
+    powers = Matrix(rotation_vector.dcm_of_axis_angle())
+    yield "rotation matrix of a unit axis and an angle (Rodrigues' formula)", UNIT, _with_unit_axis(powers)
+    yield from _entries()
+    yield from _angles()
+    yield from _euler_angles()
+    yield from _rodrigues()
+
+
+def _entries() -> Iterator[Named]:
+    """Yield the entries of the matrix of a unit quaternion, and the quaternion from the entries of a matrix."""
+    matrix, homogeneous = quaternion.quaternion_to_dcm(Q), quaternion.quaternion_to_dcm(Q, "homogeneous")
+    relation = quaternion.unit_relation(Q)
+    for i in range(3):
+        for j in range(3):
+            name = f"entry {i + 1}{j + 1} of the rotation matrix of a unit quaternion"
+            forms = [matrix[i, j], homogeneous[i, j]]
+            forms += [homogeneous[i, j] + relation, homogeneous[i, j] - relation] if i == j else []
+            for form in dict.fromkeys(map(expand, forms)):
+                yield name, PARAMETERS, form
+    rest = cancel((trace(homogeneous) + quaternion.norm_squared(Q)) / Q[0] ** 2)  # 4: the trace is 4 q0^2 - |q|^2
+    yield "scalar component of the quaternion of a rotation matrix, squared", PARAMETERS, (trace(ENTRIES) + 1) / rest
+    for number, (i, j) in enumerate(BELOW, start=1):
+        ratio = cancel((matrix[i, j] - matrix[j, i]) / Q[number])  # 4 q0
+        for frame, sign in (("rotation matrix", 1), ("transposed rotation matrix", -1)):
+            value = sign * (ENTRIES[i, j] - ENTRIES[j, i]) / ratio
+            yield f"{WORDS[number - 1]} component of the quaternion of a {frame}", PARAMETERS, value
+
+
+def _angles() -> Iterator[Named]:
+    """Yield the axis and angle of a matrix, and the angle of a quaternion, of Euler angles, of two rotations."""
+    powers = Matrix(rotation_vector.dcm_of_axis_angle())
+    total = expand(trace(powers)).subs(symbols.n3**2, 1 - symbols.n1**2 - symbols.n2**2)
+    (cosine,) = solve(expand(total) - trace(ENTRIES), cos(ANGLE))
+    yield "angle of a rotation matrix, acos", UNIT, cosine
+    skew_part = (powers - powers.T) / 2
+    sines = [cancel(skew_part[place] / component) for place, component in zip(BELOW, AXIS, strict=True)]
+    axis = Matrix([(ENTRIES[i, j] - ENTRIES[j, i]) / (2 * sine) for (i, j), sine in zip(BELOW, sines, strict=True)])
+    yield "axis of a rotation matrix", UNIT, axis
+    half = symbols.phi / 2  # the angle is twice that of the scalar part
+    assert rotation_vector.quaternion_of_axis_angle(symbols.axis, symbols.phi)[0] == cos(half)
+    yield "angle of rotation of a unit quaternion, 2 acos", PARAMETERS, Q[0]
+    length = sqrt(Q[1] ** 2 + Q[2] ** 2 + Q[3] ** 2)
+    yield "angle of rotation of a unit quaternion, 2 atan2", PARAMETERS, Matrix([length, Q[0]])
+    for name in SEQUENCES:
+        scalar = euler.quaternion_of_euler(name)[0]
+        yield f"angle of the rotation of {name}, 2 acos", PARAMETERS, scalar
+    first = rotation_vector.quaternion_of_axis_angle()
+    second = rotation_vector.quaternion_of_axis_angle(symbols.normal, SECOND_ANGLE)
+    both = quaternion.quaternion_product(first, second)
+    yield "angle of two rotations one after the other, 2 acos", COMPOSITION, both[0]
+
+
+def _euler_angles() -> Iterator[Named]:
+    """Yield yaw, pitch and roll, the angles of ZYX, from a unit quaternion and from the entries of a matrix."""
+    yaw, pitch, roll = symbols.angles
+    matrix = euler.dcm("ZYX")
+    for name, angle, over, under in (("yaw", yaw, (1, 0), (0, 0)), ("roll", roll, (2, 1), (2, 2))):
+        assert expand(matrix[over] * cos(angle) - matrix[under] * sin(angle)) == 0
+        for title, entries in (("unit quaternion", quaternion.quaternion_to_dcm(Q)), ("rotation matrix", ENTRIES)):
+            yield f"{name} angle of a {title}, atan2", PARAMETERS, Matrix([entries[over], entries[under]])
+    assert matrix[2, 0] == -sin(pitch)
+    yield "pitch angle of a unit quaternion, asin", PARAMETERS, -quaternion.quaternion_to_dcm(Q)[2, 0]
+
+
+def _rodrigues() -> Iterator[Named]:
+    """Yield the Rodrigues parameters from axis and angle and from a quaternion, and their rates from omega."""
+    of_axis = rotation_vector.quaternion_of_axis_angle()
+    for name, title in (("rodrigues", "Rodrigues parameters"), ("mrp", "modified Rodrigues parameters")):
+        for q, origin in ((of_axis, "axis and angle"), (Q, "a quaternion")):
+            scalar, *vector = q
+            below = scalar if name == "rodrigues" else 1 + scalar
+            yield f"{title} of {origin}", RODRIGUES, Matrix([component / below for component in vector])
+        chart = attitude.chart(name)
+        for frame in ("body", "space"):
+            rates = chart.rate_matrix(frame).inverse * OMEGA
+            yield f"rates of the {title} from omega in the {frame} frame", RODRIGUES, rates.applyfunc(cancel)
