@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from hashlib import sha256
 
 import sympy
-from sympy import Expr, Rational, S
+from sympy import Expr, Rational, S, cancel
 
 from symrot.checker.claim.atoms import atoms_of
 
@@ -178,6 +178,9 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
         except NotInField:
             continue
         return Fingerprint(tuple(atoms), tuple(rows), tuple(atom for atom in written if atom not in atoms))
+    cancelled = [cancel(entry) for entry in entries]
+    if cancelled != list(entries):
+        return fingerprint(cancelled)
     rows = [_sum_over_pairs(entries, atom, atoms, written) for atom in atoms]
     return Fingerprint(tuple(atoms), tuple(rows), tuple(atom for atom in written if atom not in atoms))
 

@@ -240,7 +240,7 @@ def _matched(
         if (known.only_named or few) and not all(_is_usual(*pair) for pair in pairing.items()):
             continue
         pairs = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
-        if known.is_relation and not _keeps_names(pairs):
+        if few and not _keeps_names(pairs):
             continue
         ordered_by_factor = "quaternion product" in known.name  # in a1*a2 - b1*b2 the numbers are those of the factors
         placed = [*pairs, *component(known.name, quantity or "")]

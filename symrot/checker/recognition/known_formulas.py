@@ -3,6 +3,7 @@
 ``python -m symrot.checker.recognition.known_formulas`` prints the file again; none of its formulas is typed by hand.
 """
 
+import re
 import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -30,7 +31,7 @@ from symrot.inertia.solids import solid
 from symrot.kinematics import attitude, euler, quaternion, rotation_vector
 from symrot.kinematics.rotations import elementary_rotation, skew
 
-__all__ = ["FILE", "Known", "Named", "by_fingerprint", "derived", "page", "relation_key", "stated"]
+__all__ = ["FILE", "Known", "Named", "by_fingerprint", "derived", "ending_of", "page", "relation_key", "stated"]
 
 FILE = Path(__file__).with_name("known_formulas.toml")
 LONGEST = 6000
@@ -315,13 +316,20 @@ def _selected(
             own = fingerprint(entries)
         except NotInField:
             continue
-        if _is_general(entries) or len(own.atoms) < least or len(text) > longest or (name, text) in seen:
+        is_general = _is_general(entries) and not ending_of(name)
+        if is_general or len(own.atoms) < least or len(text) > longest or (name, text) in seen:
             continue
         seen.add((name, text))
         scaled = "quaternion rate" in name
         only_named = name in few and _is_monomial(entries[0])
         known = Known(name, source, text, scaled or is_relation, only_named, is_relation)
         yield relation_key(own.key(shape, range(len(entries))), is_relation), known
+
+
+def ending_of(name: str) -> str:
+    """Return the ending of the name of a known formula that says of which function of the quantity it is, or ''."""
+    ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
+    return ending[0] if ending else ""
 
 
 def relation_key(key: str, is_relation: bool) -> str:

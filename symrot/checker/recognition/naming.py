@@ -20,6 +20,7 @@ from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, negated, sum_of, text, walk
 from symrot.checker.recognition.identification import identified, unit_of
+from symrot.checker.recognition.known_formulas import ending_of
 from symrot.checker.recognition.relations import primitive
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, Edit, single_edits
 from symrot.checker.repair.filter import NumericFilter
@@ -38,7 +39,10 @@ LEAST_SYMBOLS_EDITED = 3
 """The fewest symbols of a scalar formula that is looked up as it is written, and of one that is edited."""
 
 LEAST_SYMBOLS_RELATED = 5
-"""The fewest symbols of a relation for a quantity whose name says what it is; with fewer, it may be another formula."""
+"""The fewest symbols of a relation that is edited, or is for a quantity whose name says what it is.
+
+With fewer symbols, it may be another formula.
+"""
 
 MOST_READINGS = 4
 """The most formulas that one verdict names."""
@@ -47,10 +51,13 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"[IJ]_?(p|t|s|a|c|g|cm|0|n|[xyzO1-3A-D]|([xyz1-3])\2)?",
      ("moment of inertia", "inertia tensor", "parallel-axis")),
     (r"(omega|w|Omega)_?(p|pr|prec)", ("precession",)),
+    (r"w", ("angular velocity", "precession", "spin", "rate at", "frequency", "quaternion")),
     (r"(omega|w|Omega)(_?[a-zA-Z0-3]+)?|n|lambda", ("angular velocity", "precession", "spin", "rate at", "frequency")),
-    (r"[pqr]", ("angular velocity", "angle rates", "distance of")),
+    (r"[pqr]", ("angular velocity", "angle rates", "distance of", "vector", "Rodrigues", "quaternion")),
     (r"d(phi|theta|psi|alpha|beta|gamma)", ("angle rates", "precession", "spin")),
-    (r"d(omega|w)(_?[xyz1-3])?|d[pqr]", ("Euler's equations", "angular acceleration")),
+    (r"d(omega|w)(_?[xyz1-3])?|d[pr]", ("Euler's equations", "angular acceleration")),
+    (r"dq", ("Euler's equations", "angular acceleration", "Rodrigues", "quaternion")),
+    (r"theta|phi|psi|Phi|vartheta|varphi", ("angle of", "angle at")),
     (r"alpha(_?[xyz1-3])?|d(dphi|dtheta|dpsi)", ("angular acceleration",)),
     (r"a(_?[a-zA-Z0-9]+)?", ("acceleration", "frequency")),
     (r"v(_?[a-zA-Z0-9]+)?", ("speed", "velocity of", "product", "vector")),
@@ -169,10 +176,13 @@ def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int)
     The likeliest formula comes first.
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
-    return solved or _readings_of_relation(claim, named, tree)
+    is_open = _words(named) is None and least_symbols == LEAST_SYMBOLS
+    return solved or _readings_of_relation(claim, named, tree, LEAST_SYMBOLS if is_open else LEAST_SYMBOLS_RELATED)
 
 
-def _readings_of_relation(claim: Claim, named: NamedFormula, tree: Node) -> tuple[Identification, ...]:
+def _readings_of_relation(
+    claim: Claim, named: NamedFormula, tree: Node, least_symbols: int
+) -> tuple[Identification, ...]:
     """Return the known relations to which the equation of the quantity's side of a claim with a formula is equal."""
     difference = sum_of([named.side, negated(tree)])
     try:
@@ -182,7 +192,7 @@ def _readings_of_relation(claim: Claim, named: NamedFormula, tree: Node) -> tupl
     if is_matrix(value):
         return ()
     value = primitive(value)
-    if _words(named) is not None and len(value.atoms(Function, Symbol) - {time}) < LEAST_SYMBOLS_RELATED:
+    if len(value.atoms(Function, Symbol) - {time}) < least_symbols:
         return ()
     return tuple(islice(identified(value, steps=False, named=True, quantity="", is_relation=True), MOST_READINGS))
 
@@ -195,14 +205,15 @@ def _readings_of_formula(
         value = claim.interpreter().read(formula)
     except InputError:
         return ()
-    if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < least_symbols:
+    least = 1 if _words(named) is not None and least_symbols == LEAST_SYMBOLS else least_symbols
+    if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < least:
         return ()
     searched, ending = _without_function(value)
     looked_up = identified(searched, steps=False, named=_words(named) is not None, quantity=_plain(named))
     fitting = [
         replace(known, name=known.name.removesuffix(ending))
         for known in looked_up
-        if _ending(known.name) == ending and _fits(named, known, is_matrix(value))
+        if ending_of(known.name) == ending and _fits(named, known, is_matrix(value))
     ]
     fitting.sort(key=lambda known: (*_strangeness(named, known), _rarity(known)))
     likeliest = [known for known in fitting if _strangeness(named, known)[:2] == _strangeness(named, fitting[0])[:2]]
@@ -220,12 +231,6 @@ def _without_function(value: Any) -> tuple[Any, str]:
         return value, ""
     inside = Matrix(function.args) if isinstance(function, atan2) else function.args[0]
     return inside, f", {f'{factor} ' * (factor != 1)}{function.func}"
-
-
-def _ending(name: str) -> str:
-    """Return the ending of the name of a known formula that says of which function of the quantity it is."""
-    ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
-    return ending[0] if ending else ""
 
 
 # -- how well a known formula fits the names --------------------------------------------------------------------------

@@ -124,6 +124,9 @@ def relations() -> Iterator[Relation]:
 def _one_axis() -> Iterator[Relation]:
     """Yield the relations of rotation about a fixed axis: work, constant acceleration, springs, percussion."""
     energy = C * SPIN**2 / 2
+    (moment,) = solve(energy.diff(SPIN) - symbols.H, C)
+    by_momentum = ENERGY - energy.subs(C, moment)
+    yield Relation("rotation about one axis by its angular momentum", PLANE, by_momentum, {ENERGY: "kinetic energy of"})
     gain = energy.subs(SPIN, AFTER) - energy.subs(SPIN, BEFORE)
     yield Relation("work and kinetic energy of rotation", PLANE, WORK - gain, {WORK: "work by"})
     yield Relation("impulse and angular momentum about one axis", PLANE, C * BEFORE + TORQUE * TIME - C * AFTER,
@@ -298,8 +301,10 @@ def _free() -> Iterator[Relation]:
                    tan(TILT) - ratio * tan(THETA), {})  # fmt: skip
     turning = symbols.Omega
     slow = alpha.subs(B, A)
-    yield Relation("the angular velocity of a free symmetric body", FREE, symbols.domega_1 + turning * second, {})
-    yield Relation("the angular velocity of a free symmetric body", FREE, symbols.domega_2 - turning * first, {})
+    title = "a free symmetric body whose angular velocity precesses"
+    for word, rate, change in (("first", symbols.domega_1, -second), ("second", symbols.domega_2, first)):
+        words = f"{word} component of the angular acceleration of"
+        yield Relation(title, FREE, rate - turning * change, {rate: words})
     assert cancel(slow[0] / second + slow[1] / first) == 0  # the same rate in both
 
 

@@ -35,7 +35,7 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
 
     If ``fixed``, each axis keeps its number; otherwise the axes may be exchanged in a cycle.
     """
-    pairs = [(_angle(known), _angle(new)) for known, new in renaming]
+    pairs = [(_angle(known), _angle(new)) if _angle(new) != new else (known, new) for known, new in renaming]
     if len({*pairs}) != len({known for known, _ in pairs}) or len({*pairs}) != len({new for _, new in pairs}):
         return False
     angles = [pair for pair in pairs if {*pair} <= {*MIDDLE, *OUTER}]
