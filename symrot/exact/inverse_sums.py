@@ -14,7 +14,7 @@ from fractions import Fraction
 from typing import Any
 
 from mpmath import iv
-from sympy import Expr, Integer, Rational, acos, asin, atan, cos, exp, log, pi, sin, tan
+from sympy import Expr, Integer, Rational, acos, asin, atan, atan2, cos, exp, log, pi, sin, tan
 from sympy.polys.rings import PolyElement
 
 from symrot.errors import InputError
@@ -92,20 +92,23 @@ def _lifts_of(ring: FormulaRing, factor: PolyElement, used: set[int]) -> Iterato
 
 @dataclass(frozen=True)
 class PrincipalValueProof:
-    """A proof that an expression is zero where the formulas ``least`` and ``most`` are nonnegative, by ``rings``."""
+    """A proof, by ``rings``, that an expression is zero under conditions.
 
-    least: Expr
-    most: Expr
+    The formulas ``nonnegative`` must be nonnegative, and the formulas ``positive`` positive.
+    """
+
+    nonnegative: tuple[Expr, ...]
+    positive: tuple[Expr, ...]
     rings: tuple[FormulaRing, ...]
 
 
 def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
-    """Return where ``asin(S) - w`` is zero, if ``S = sin w`` is proven; likewise for acos and atan.
+    """Return where ``asin(S) - w`` is zero, if ``S = sin w`` is proven; likewise for acos, atan and atan2.
 
     The difference is zero exactly where w is a principal value: in [-pi/2, pi/2] for asin and atan, in [0, pi] for
-    acos.
+    acos. ``atan2(r sin w, r cos w) - w`` is zero for w in (-pi, pi] and positive r.
     """
-    names = {number: leaf for leaf, number in ring.symbols.items() if type(leaf) in _PRINCIPAL}
+    names = {number: leaf for leaf, number in ring.symbols.items() if type(leaf) in (*_PRINCIPAL, atan2)}
     if not names or len(numerator) > MOST_TERMS:
         return None
     for factor, _ in numerator.factor_list()[1]:
@@ -118,12 +121,34 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
             continue
         leaf, number = names[place], slope.as_expr(*ring.generators)
         angle = (leaf - factor.as_expr(*ring.generators) / number).expand()
+        if isinstance(leaf, atan2):
+            return _principal_direction(ring, leaf, angle)
         function, least, most = _PRINCIPAL[type(leaf)]
         with suppress(InputError):  # an angle that cannot be read proves nothing
             other = FormulaRing([function(angle), leaf.args[0]], ring.hypotheses, ring.domain)
             further = proof(other, other.difference(function(angle), leaf.args[0]).numerator)
             if further is not None:
-                return PrincipalValueProof(angle - least, most - angle, (other, *further))
+                return PrincipalValueProof((angle - least, most - angle), (), (other, *further))
+    return None
+
+
+def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
+    """Return where ``atan2(y, x)`` is an angle w, if ``y cos w = x sin w`` is proven: r = x cos w + y sin w is positive.
+
+    Then y = r sin w and x = r cos w.
+    """
+    y, x = leaf.args
+    left, right = y * cos(angle), x * sin(angle)
+    with suppress(InputError):  # an angle that cannot be read proves nothing
+        radius = (x * cos(angle) + y * sin(angle)).expand()
+        other = FormulaRing([left, right, radius], ring.hypotheses, ring.domain)
+        further = proof(other, other.difference(left, right).numerator)
+        ratio = other.difference(radius, Integer(0))
+        if further is not None:
+            if not ratio.factors:
+                radius = other.reduce(ratio.numerator).as_expr(*other.generators) / ratio.constant
+            if not radius.is_nonpositive:
+                return PrincipalValueProof((pi - angle,), (angle + pi, radius), (other, *further))
     return None
 
 

@@ -347,3 +347,17 @@ def test_a_deep_formula_of_sympy_is_refused(deep):
 
 def test_a_long_sum_is_read():
     assert verdict_of(" + ".join(["x"] * 2000) + " == 2000*x") == "true"
+
+
+@pytest.mark.parametrize(("claim", "verdict", "condition"), [
+    ("atan2(sin(a), cos(a)) == a", "conditional", "pi - a >= 0 and a + pi > 0"),
+    ("atan2(cos(t)*sin(p), cos(t)*cos(p)) == p", "conditional", "pi - p >= 0 and p + pi > 0 and cos(t) > 0"),
+    ("atan2(b*sin(a), b*cos(a)) == a", "conditional", "pi - a >= 0 and a + pi > 0 and b > 0"),
+    ("atan2(sin(a), -cos(a)) == pi - a", "conditional", "a >= 0 and -a + 2*pi > 0"),
+    ("atan2(sin(a), cos(a)) == a + 1", "false", None), ("atan2(sin(a), cos(a)) == -a", "false", None),
+    ("atan2(-sin(a), -cos(a)) == a", "false", None), ("atan2(cos(a), sin(a)) == a", "false", None),
+])  # fmt: skip
+def test_atan2_of_the_components_of_a_direction_is_its_angle_on_one_branch(claim, verdict, condition):
+    decided = symrot.check(claim)
+    assert (decided.verdict, *decided.requires) == (verdict, *([condition] if condition else []))
+    assert decided.counterexample

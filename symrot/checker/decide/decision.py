@@ -434,9 +434,11 @@ def _branches(
                 return branches, (lift.ring,)
         within = principal(ring, numerators[0])
         if within is not None:
-            ends = [end for end in (within.least, within.most) if not surely_nonnegative(end)]
-            text = " and ".join(f"{as_text(end)} >= 0" for end in ends)
-            return [Requirement("principal_value", text, signs=tuple(ends))] if ends else [], within.rings
+            ends = [(end, ">= 0") for end in within.nonnegative if not surely_nonnegative(end)]
+            ends += [(end, "> 0") for end in within.positive if not end.is_positive]
+            text = " and ".join(f"{as_text(end)} {sign}" for end, sign in ends)
+            signs = tuple(end for end, _ in ends)
+            return [Requirement("principal_value", text, signs=signs)] if ends else [], within.rings
     return branches, ()
 
 
