@@ -149,6 +149,24 @@ def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> Principa
                 radius = other.reduce(ratio.numerator).as_expr(*other.generators) / ratio.constant
             if not radius.is_nonpositive:
                 return PrincipalValueProof((pi - angle,), (angle + pi, radius), (other, *further))
+    return _principal_direction_of_root(ring, leaf, angle)
+
+
+def _principal_direction_of_root(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
+    """Return where ``atan2(sqrt(P), x)`` is an angle w, if ``P = r^2 sin(w)^2`` is proven for r = x/cos(w).
+
+    It is w for w in [0, pi] and positive r.
+    """
+    y, x = leaf.args
+    radius = (x / cos(angle)).cancel()
+    if not (y.is_Pow and y.exp == Rational(1, 2)) or radius.has(cos(angle)) or radius.is_nonpositive:
+        return None
+    square = radius**2 * sin(angle) ** 2
+    with suppress(InputError):  # an angle that cannot be read proves nothing
+        other = FormulaRing([y.base, square], ring.hypotheses, ring.domain)
+        further = proof(other, other.difference(y.base, square).numerator)
+        if further is not None:
+            return PrincipalValueProof((angle, pi - angle), (radius,), (other, *further))
     return None
 
 

@@ -354,6 +354,8 @@ def test_a_long_sum_is_read():
     ("atan2(cos(t)*sin(p), cos(t)*cos(p)) == p", "conditional", "pi - p >= 0 and p + pi > 0 and cos(t) > 0"),
     ("atan2(b*sin(a), b*cos(a)) == a", "conditional", "pi - a >= 0 and a + pi > 0 and b > 0"),
     ("atan2(sin(a), -cos(a)) == pi - a", "conditional", "a >= 0 and -a + 2*pi > 0"),
+    ("atan2(sqrt(1 - cos(a)**2), cos(a)) == a", "conditional", "a >= 0 and pi - a >= 0"),
+    ("atan2(sqrt(1 - b**2*cos(a)**2), b*cos(a)) == a", "false", None),
     ("atan2(sin(a), cos(a)) == a + 1", "false", None), ("atan2(sin(a), cos(a)) == -a", "false", None),
     ("atan2(-sin(a), -cos(a)) == a", "false", None), ("atan2(cos(a), sin(a)) == a", "false", None),
 ])  # fmt: skip

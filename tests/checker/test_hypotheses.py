@@ -185,3 +185,17 @@ def test_a_square_over_a_root_is_known_not_to_be_negative():
     assert symrot.check(claim).verdict == "true"
     wrong = symrot.check("cos(a)*x == sqrt((1 - 2*sin(a/2)**2)**2)*x", repair=False)
     assert wrong.verdict == "conditional" and wrong.counterexample
+
+
+@pytest.mark.parametrize(("claim", "given", "verdict"), [
+    ("R₃₁ = −sin θ", "R = R_z(φ) R_y(θ) R_x(ψ)", "true"), ("R₃₁ = sin θ", "R = R_z(φ) R_y(θ) R_x(ψ)", "false"),
+    ("r_21/r_11 = tan(φ)", "R = R_z(φ) R_y(θ) R_x(ψ)", "true"), ("r_12/r_11 = tan(φ)", "R = R_z(φ) R_y(θ) R_x(ψ)", "false"),
+    ("θ = −asin(R₃₁)", "R = R_z(ψ) R_y(θ) R_x(φ)", "conditional"),
+    ("theta = atan2(sqrt(r13^2 + r23^2), r33)", "R = Rz(phi) Ry(theta) Rz(psi)", "conditional"),
+    (r"\psi = \operatorname{atan2}(R_{21}, R_{11})", r"R = R_z(\psi)R_y(\theta)R_x(\phi)", "conditional"),
+    (r"\psi = \operatorname{atan2}(R_{12}, R_{11})", r"R = R_z(\psi)R_y(\theta)R_x(\phi)", "false"),
+    (r"R\mathbf{a}\times R\mathbf{b} = R(\mathbf{a}\times\mathbf{b})", r"R = R_z(\phi)R_x(\theta)R_z(\psi)", "true"),
+    (r"R\mathbf{a}\times R\mathbf{b} = R(\mathbf{b}\times\mathbf{a})", r"R = R_z(\phi)R_x(\theta)R_z(\psi)", "false"),
+])  # fmt: skip
+def test_a_hypothesis_may_define_a_matrix_and_so_its_entries(claim, given, verdict):
+    assert symrot.check(claim, assume=[given]).verdict == verdict

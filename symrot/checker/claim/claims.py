@@ -4,6 +4,7 @@ A claim keeps its syntax trees because the search for its fault edits them. A fi
 are true.
 """
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -24,7 +25,7 @@ from symrot.checker.claim.quantities import (
 from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation
 from symrot.checker.claim.scope import Divisor, is_matrix
 from symrot.checker.claim.shapes import Shape, added_names, shape_of, with_unit_matrices
-from symrot.checker.claim.tree import Node, negated, text, walk
+from symrot.checker.claim.tree import Node, negated, number, text, walk
 from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor
 from symrot.checker.decide.decision import Equation
 from symrot.checker.latex.reader import Names, read_latex
@@ -228,7 +229,10 @@ def _assumed(hypotheses: Sequence[Relation], sign: str) -> set[str]:
 
 
 def _hypothesis(source: str, where: str, declared: Declared | None = None) -> Relation:
-    relation = read_relation(source, where, declared)
+    if declared is None and isinstance(source, str) and is_latex(source):
+        relation = read_latex(source, where).relation
+    else:
+        relation = read_relation(source, where, declared)
     if relation[0] in ("==", "!=") or _assumed([relation], ">") or _assumed([relation], ">="):
         return relation
     raise InputError(f"{where}: expected a hypothesis like a == b, a != b, or x > 0 for a symbol x, got {source!r}")
@@ -264,6 +268,9 @@ def claim_of_relation(
     """
     if relation[0] != "==":
         raise InputError(f"expected a claim with '==', got '{relation[0]}' in {source[:60]!r}")
+    matrices = [given for given in map(_matrix_given, assume) if given is not None]
+    assume = [text for text in assume if _matrix_given(text) is None]
+    define = [*_with_entries(matrices, relation), *define]
     hypotheses = tuple(_hypothesis(text, "given") for text in assume)
     relation, vectors, with_units = _with_vectors(relation, list(vectors), define)
     hypotheses += tuple(vector.length_is_one for vector in vectors if vector.unit and not vector.is_axis)
@@ -307,6 +314,24 @@ def claim_of_relation(
         units=check_units(dict(units or {}), used, "claim"),
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
+
+
+def _matrix_given(source: str) -> tuple[str, Node] | None:
+    """Return the name and the formula of a hypothesis that defines a matrix, as ``R == R_z(psi)*R_y(theta)`` does."""
+    sign, left, right = _hypothesis(source, "given")
+    is_definition = sign == "==" and left.kind == "name" and (shape_of(right, {}) or (0, 0))[1] > 1
+    return (str(left.value), right) if is_definition else None
+
+
+def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> Iterator[tuple[str, Node]]:
+    """Yield the matrices that hypotheses define, and their entries that a claim names: R_31, R31 and r_31 of R."""
+    names = dict.fromkeys(str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name")
+    for matrix, tree in matrices:
+        yield matrix, tree
+        for name in names:
+            if entry := re.fullmatch(rf"(?:{matrix}|{matrix.lower()})_?([1-3])_?([1-3])", name):
+                places = [number(int(digit) - 1) for digit in entry.groups()]
+                yield name, Node("index", None, (Node("name", matrix), *places))
 
 
 def _with_vectors(
