@@ -50,7 +50,8 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
             other_verdict = None if verdict or decision is None else _of_another_reading(claim)
             is_false = decision is not None and decision.verdict == "false"
             if other_verdict is None and is_false and verdict.dimension.status != "inconsistent":
-                decision, verdict = _on_name(claim, repair, related_formula) or (decision, verdict)
+                named = _on_name(claim, repair, related_formula) or _on_relation(claim)
+                decision, verdict = named or (decision, verdict)
             if other_verdict is None and repair and decision is not None:
                 verdict = _diagnosed(claim, decision, verdict)
     except TimeUp:
@@ -102,6 +103,17 @@ def _on_name(
     with _place_of(claim):
         verdict = verdict_on_name(claim, named, repair)
     return None, _completed(claim, replace(verdict, text=claim.text), start)
+
+
+def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
+    """Return the verdict on a claim that is a known relation, such as an impulse equation; None for other claims."""
+    if claim.relation is None or claim.hypotheses:
+        return None
+    from symrot.checker.recognition.naming import verdict_on_relation
+
+    start = perf_counter()
+    verdict = verdict_on_relation(claim)
+    return None if verdict is None else (None, _completed(claim, replace(verdict, text=claim.text), start))
 
 
 def _decide(claim: Claim) -> tuple[Decision, Verdict]:

@@ -133,9 +133,9 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
 
 
 def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return where ``atan2(y, x)`` is an angle w, if ``y cos w = x sin w`` is proven: r = x cos w + y sin w is positive.
+    """Return where ``atan2(y, x)`` is an angle w, if ``y cos w = x sin w`` is proven.
 
-    Then y = r sin w and x = r cos w.
+    It is w where r = x cos w + y sin w is positive, since then y = r sin w and x = r cos w.
     """
     y, x = leaf.args
     left, right = y * cos(angle), x * sin(angle)

@@ -225,3 +225,35 @@ def test_chains_in_latex_are_decided_link_by_link():
     )
     assert symrot.check(r"I_{xx} = I_{yy} = \frac{1}{2} m r^2").verdict == "recognised"
     assert symrot.check(r"I_{xx} = I_{yy} = \frac{1}{12} m (2 r^2 + h^2)").verdict == "doubtful"  # no body has both
+
+
+@pytest.mark.parametrize(("claim", "name"), [
+    ("I_G ω₁ + ΣM Δt = I_G ω₂", "relation for impulse and angular momentum about one axis"),
+    ("λ_1 Ω² cos θ − λ_3 ω_3 Ω + M g R = 0", "relation for steady precession of a heavy top"),
+    ("tan γ = (C/A) tan θ", "relation for the angles of momentum and angular velocity to the axis of a free symmetric body"),
+    (r"\Omega_1^2 = \frac{(2EI_3-M^2)-I_2(I_3-I_2)\Omega_2^2}{I_1(I_3-I_1)}", "angular velocity of a free body of given energy"),
+    (r"\omega_3^2 = \frac{4MglI_1}{I_3^2}", "angular velocity of the least spin of a sleeping top"),
+    ("a = (m₁ − m₂) g/(m₁ + m₂ + I/R²)", "acceleration of two masses on a pulley"),
+    ("θ = θ₀ + ω₀t + ½αt²", "angle at constant angular acceleration"), ("T = 2π √(I/k)", "period of a torsional pendulum"),
+    ("a = a_rel + 2 omega x v_rel + omega x (omega x r) + alpha x r", "acceleration of a point in a rotating frame"),
+    ("v_rot = v cos θ + (k × v) sin θ + k (k·v)(1 − cos θ)", "rotated vector, by axis and angle (Rodrigues' formula)"),
+    ("ψ = atan2(2(q₀q₃ + q₁q₂), 1 − 2(q₂² + q₃²))", "yaw angle of a unit quaternion"),
+    ("theta = acos((r11 + r22 + r33 - 1)/2)", "angle of a rotation matrix"), ("theta = 2 arccos(q_0)", "angle of rotation of a unit"),
+    (r"I = \frac{2m}{5}\left(\frac{r_2^5-r_1^5}{r_2^3-r_1^3}\right)", "moment of inertia of a hollow sphere"),
+    ("k = √(2/5) r", "radius of gyration of a sphere"), ("I_x = Ī_x′ + m(ȳ² + z̄²)", "moment of inertia about a parallel axis"),
+])  # fmt: skip
+def test_relations_and_formulas_that_books_name_are_recognised(claim, name):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "recognised"
+    assert any(reading.name.startswith(name) for reading in verdict.recognised_as)
+
+
+@pytest.mark.parametrize("claim", [
+    "I_G ω₁ − ΣM Δt = I_G ω₂", "λ_1 Ω² cos θ + λ_3 ω_3 Ω + M g R = 0", r"\omega_3^2 = \frac{2MglI_1}{I_3^2}",
+    "a = (m₁ + m₂) g/(m₁ + m₂ + I/R²)", "θ = θ₀ + ω₀t + αt²", "T = 2π √(k/I)", "φ̇ = I₃ω₃/I₁",
+    "a = a_rel + omega x v_rel + omega x (omega x r) + alpha x r", "v_rot = v cos θ − (k × v) sin θ + (k·v)(1 − cos θ) v",
+    "ψ = atan2(2(q₀q₃ + q₁q₂), 1 − 2(q₁² + q₃²))", "theta = acos((r11 + r22 + r33 + 1)/2)", "theta = arccos(q_0)",
+    "K = (r₃₂ − r₂₃, r₃₁ − r₁₃, r₂₁ − r₁₂)/(2 sin θ)", "I_x = Ī_x′ + m(x̄² + z̄²)", "k = √(2/3) r^2", "ω̇₁ − Ω ω₂ = 0",
+])  # fmt: skip
+def test_wrong_relations_and_formulas_are_not_recognised(claim):
+    assert symrot.check(claim).verdict != "recognised"

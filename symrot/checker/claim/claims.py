@@ -25,7 +25,8 @@ from symrot.checker.claim.quantities import (
 from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation
 from symrot.checker.claim.scope import Divisor, is_matrix
 from symrot.checker.claim.shapes import Shape, added_names, shape_of, with_unit_matrices
-from symrot.checker.claim.tree import Node, negated, number, text, walk
+from symrot.checker.claim.tree import Node, negated, text, walk
+from symrot.checker.claim.tree import number as number_node
 from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor
 from symrot.checker.decide.decision import Equation
 from symrot.checker.latex.reader import Names, read_latex
@@ -268,7 +269,7 @@ def claim_of_relation(
     """
     if relation[0] != "==":
         raise InputError(f"expected a claim with '==', got '{relation[0]}' in {source[:60]!r}")
-    matrices = [given for given in map(_matrix_given, assume) if given is not None]
+    matrices = [matrix for matrix in map(_matrix_given, assume) if matrix is not None]
     assume = [text for text in assume if _matrix_given(text) is None]
     define = [*_with_entries(matrices, relation), *define]
     hypotheses = tuple(_hypothesis(text, "given") for text in assume)
@@ -330,7 +331,7 @@ def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> I
         yield matrix, tree
         for name in names:
             if entry := re.fullmatch(rf"(?:{matrix}|{matrix.lower()})_?([1-3])_?([1-3])", name):
-                places = [number(int(digit) - 1) for digit in entry.groups()]
+                places = [number_node(int(digit) - 1) for digit in entry.groups()]
                 yield name, Node("index", None, (Node("name", matrix), *places))
 
 

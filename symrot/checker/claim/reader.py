@@ -6,6 +6,7 @@ lines. Any other text is refused with its position; nothing is dropped. SymPy's 
 have several, and the usual one comes first.
 """
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
@@ -121,7 +122,7 @@ class _Text:
             raise InputError(f"{prefix}expected a formula, got empty text")
         if len(source) > LONGEST_TEXT:
             raise InputError(f"{prefix}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
-        self.tokens = list(tokens_of(source, where))
+        self.tokens, self.totals = _without_totals(list(tokens_of(source, where)))
         if len(self.tokens) > MOST_PIECES:
             raise InputError(f"{prefix}expected a formula of at most {MOST_PIECES} pieces, got {len(self.tokens)}")
 
@@ -172,6 +173,8 @@ class _Text:
             notes += [note for note in parser.notes if note not in notes]
             timed |= parser.timed
             differentiated |= parser.differentiated
+        notes += [note for note in self.totals if note not in notes]
+        plain |= bool(self.totals)
         constants = differentiated - timed
         if constants and len(constants) < len(differentiated):
             doubt = Doubt(("constants", 0), f"d/dt with {_listed(sorted(constants))}")
@@ -282,7 +285,7 @@ class _Text:
         for token in tokens:
             at_top = depth == 0
             depth += (token.text in ("(", "[")) - (token.text in (")", "]"))
-            separates = token.text == ";" and at_top
+            separates = at_top and (token.text == ";" or self.is_comma_between(line, token, tokens))
             if line and at_top and (separates or (token.breaks and self.is_new_line(line, token, tokens))):
                 yield self.ended(line)
                 line = []
@@ -293,6 +296,15 @@ class _Text:
             line.append(token)
         if line:
             yield self.ended(line)
+
+    @staticmethod
+    def is_comma_between(line: Sequence[Token], token: Token, tokens: Sequence[Token]) -> bool:
+        """Return whether a token is a comma between two equations on one line."""
+        if token.text != "," or not any(piece.text in SIGNS for piece in line):
+            return False
+        after = tokens[list(tokens).index(token) + 1 :]
+        end = next((n for n, piece in enumerate(after) if piece.text == "," or piece.kind == "end"), len(after))
+        return any(piece.text in SIGNS for piece in after[:end])
 
     def is_new_line(self, line: Sequence[Token], token: Token, tokens: Sequence[Token]) -> bool:
         """Return whether a token after the end of a line starts another claim."""
@@ -339,6 +351,18 @@ def _crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collectio
         ):
             numbers = "number" in (before.kind, after.kind)
             yield from (token.text for token in (before, after) if token.kind == "name" and not numbers)
+
+
+def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:
+    """Return tokens without the sum signs of totals such as ``ΣM_x`` and ``sum F``, and a note on each such total."""
+    others, notes = [], []
+    for token, after in zip(tokens, [*tokens[1:], tokens[-1]], strict=True):
+        is_sum = token.kind == "sum" or (token.kind, token.text) == ("name", "sum")
+        if is_sum and after.kind == "name" and re.fullmatch(r"(M|F|N|T|tau|Gamma)(_\w+)?", after.text):
+            notes.append(f"the sum of {after.text} is read as one quantity, the total")
+        else:
+            others.append(token)
+    return others, notes
 
 
 def _marked(tokens: Sequence[Token]) -> Iterator[str]:

@@ -45,6 +45,8 @@ class CalculusPart(NamesPart):
             return product(factors)
         ambiguous = is_letter(follower) or follower.text in ("\\frac", "\\sqrt", "(", "[", "\\pi", "/")
         free = self.is_spaced() or (self.integrals and self.differential())
+        if follower.text == "/" and self.peek(1).text in FUNCTIONS:
+            return product(factors)  # \sin\phi/\cos\theta
         if follower.text == "/" or (ambiguous and not free):
             raise self.fail(f"brackets around the argument of {function.text}", follower)
         return product(factors)

@@ -103,6 +103,7 @@ class Cursor(cursor.Cursor):
         self.source, self.where, self.names = source, where, names
         self.timed = set(names.functions)
         self.vectors: dict[str, bool] = {}  # name of a vector -> whether it has a hat
+        self.notes: list[str] = []
         self.crossed: set[str] = set()  # names without a mark that are vectors by their use
         pieces = tokens(source, *_unwrapped(source))
         for piece, after in zip(pieces, [*pieces[1:], pieces[-1]], strict=True):

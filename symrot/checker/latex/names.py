@@ -14,6 +14,9 @@ __all__ = ["NAME_MARKS", "OPERATORS", "VECTOR_MARKS", "NamesPart", "appended"]
 
 OPERATORS = {"\\det": "det", "\\tr": "trace", "\\diag": "diag"}
 SPELLED = {"tr": "trace", "trace": "trace", "Tr": "trace"} | {name: name for name in BUILT_IN}
+TOTALS = ("M", "F", "N", "T", "tau", "Gamma")
+"""Letters of torques and forces, of which a sum without limits is the total."""
+
 BOLD = ("\\mathbf", "\\bm", "\\boldsymbol")
 VECTOR_MARKS = ("\\vec", *BOLD, "\\hat", "\\overrightarrow", "\\underline")
 NAME_MARKS = {"\\bar": "_bar", "\\tilde": "_tilde", "\\overline": "_bar", "\\widetilde": "_tilde", "\\mathcal": "_cal"}
@@ -38,6 +41,8 @@ class NamesPart(SumsPart):
             else:
                 subscript = self.subscript(mark)
         known = self.resolved(name, subscript)
+        if known.partition("_prime")[0] in ROTATIONS and self.at("(") and known not in self.names:
+            known = known.partition("_prime")[0]  # R_{y'} rotates about an axis that the rotations before it have moved
         if known in ROTATIONS and known not in self.names and self.at("("):
             return self.called(known)
         if primes and (known in self.names.functions or self.called_with_time()):
@@ -72,8 +77,11 @@ class NamesPart(SumsPart):
                 yield from self.pieces(item.items)
             elif isinstance(item, tree.Font) and item.text in (*UPRIGHT, "\\text"):
                 yield from self.pieces((item.inside,))
-            elif item.text == ",":
+            elif item.text in (",", "/"):
                 yield "_"
+            elif isinstance(item, tree.Scripts) and {script.text for script in item.scripts} == {"'"}:
+                yield from self.pieces((item.base,))
+                yield "_prime" * len(item.scripts[0].inside.text)
             elif (item.kind == "number" or is_letter(item)) and "." not in item.text:
                 yield item.text.removeprefix("\\")
             elif item.text != "\\rm" and item.kind != "space":
@@ -127,6 +135,14 @@ class NamesPart(SumsPart):
             self.vectors[bare] = True
         self.refuse_call()
         return node
+
+    def total(self, sign: tree.Node) -> Node:
+        r"""Read ``\sum M_x``, the total of all torques or forces, as the name M_x."""
+        follower = self.peek()
+        if follower.text.removeprefix("\\") not in TOTALS:
+            raise self.fail("the terms of a sum with +", sign)
+        self.notes.append(f"\\sum {follower.text} is read as one quantity, the total")
+        return self.factor()
 
     def vector(self, name: str) -> Node:
         """Return the name of a vector or tensor that no definition gives components."""

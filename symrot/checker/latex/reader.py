@@ -13,7 +13,7 @@ from symrot.checker.claim.reader import Chain, Reading, Relation, read_expressio
 from symrot.checker.claim.tree import Node, text, walk
 from symrot.checker.claim.vectors import Vector, used_vectors, without_marks
 from symrot.checker.latex.calculus import DOTS, CalculusPart
-from symrot.checker.latex.cursor import TIME, UPRIGHT, Names
+from symrot.checker.latex.cursor import TIME, UPRIGHT, Names, is_letter
 from symrot.checker.latex.names import NAME_MARKS, OPERATORS, VECTOR_MARKS
 from symrot.checker.latex.sums import FUNCTIONS
 from symrot.errors import InputError
@@ -84,7 +84,7 @@ def latex_reading(source: str, names: Names | None = None) -> Reading:
     return Reading(
         tuple(Chain(("==",) * (len(chain) - 1), chain) for chain in chains),
         plain=True,
-        notes=_on_constants(sides, vectors),
+        notes=(*dict.fromkeys(reader.notes), *_on_constants(sides, vectors)),
         timed=frozenset(reader.timed),
         vectors=vectors,
     )
@@ -160,6 +160,7 @@ class _Interpreter(CalculusPart):
         **dict.fromkeys(FUNCTIONS, CalculusPart.trigonometric),
         **dict.fromkeys(OPERATORS, CalculusPart.operator),
         **dict.fromkeys((*UPRIGHT, "\\operatorname"), CalculusPart.spelled),
+        "\\sum": CalculusPart.total,
         "\\frac": CalculusPart.fraction,
         "\\sqrt": CalculusPart.root,
         "\\int": CalculusPart.integral,
@@ -199,7 +200,7 @@ class _Interpreter(CalculusPart):
         """Read chains ``a = b = c`` up to the end; ``sides`` are the sides of the first on the line before."""
         chains = []
         while True:
-            sides = [self.expression()] if sides is None else sides
+            sides = [self.head() or self.expression()] if sides is None else sides
             if not self.at("="):
                 raise self.fail("an operator or '='" if self.peek().kind != "end" else "'=' and a right side")
             while self.at("="):
@@ -210,6 +211,28 @@ class _Interpreter(CalculusPart):
             chains.append(sides)
             if self.peek().kind == "end":
                 return chains
-            if not (between and self.take(between)):
+            if not (between and (self.take(between) or self.at("\\\\"))):
                 raise self.fail("an operator or the end")
+            while self.take("\\\\"):
+                pass
             sides = None
+
+    def head(self) -> Node | None:
+        r"""Read the head of a matrix, such as ``R(\phi) =`` before its entries, as the name R; or return None."""
+        place = 2 if isinstance(self.peek(1), tree.Script) else 1
+        texts = [item.text for item in self.items[self.index + place :]]
+        end = texts.index(")") if ")" in texts else 0
+        rest = self.items[self.index + place + end + 1 :]
+        is_matrix = any(item.kind == "table" or item.text == "\\times" for item in rest)
+        if texts[:1] != ["("] or not is_letter(self.peek()) or texts[end + 1 : end + 2] != ["="] or not is_matrix:
+            return None
+        inside = self.items[self.index + place + 1 : self.index + place + end]
+        if texts[1 : end + 1] == ["t", ")"] or not all(is_letter(i) or i.text in (",", *VECTOR_MARKS) for i in inside):
+            return None
+        item = self.next()
+        subscript = self.script("_")
+        self.index += end + 1
+        name = item.text.removeprefix("\\")
+        name = self.resolved(name, self.subscript(subscript)) if subscript else name
+        self.notes.append(f"{name}(..) is read as the name {name}")
+        return Node("name", name)

@@ -199,6 +199,11 @@ class SumsPart(Cursor):
         return read(self, item)
 
     def bracket(self, opening: tree.Node) -> Node:
+        if isinstance(opening, tree.Row) and not opening.items and (frame := self.script("^") or self.script("_")):
+            letter = tree.alone(frame.inside)
+            letter = tree.alone(letter.inside) if isinstance(letter, tree.Font) else letter
+            self.notes.append(f"the mark {letter.text} before a name is read as its frame, and left out")
+            return self.base(self.next())
         if opening.kind == "row":
             return self.inside(opening, self.expression)
         bars, self.open_bars = self.open_bars, ()

@@ -28,7 +28,7 @@ from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 
-__all__ = ["verdict_on_name"]
+__all__ = ["verdict_on_name", "verdict_on_relation"]
 
 MOST_EDITS = 400
 MOST_NODES = 400
@@ -123,6 +123,15 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     return Verdict("definition", reason=reason)
 
 
+def verdict_on_relation(claim: Claim) -> Verdict | None:
+    """Return "recognised" for a claim that is a known relation between quantities, otherwise None."""
+    assert claim.relation is not None
+    _, left, right = claim.relation
+    whole = NamedFormula(text(left), left, right, solve=None)
+    readings = _readings_of_relation(claim, whole, right, LEAST_SYMBOLS_RELATED)
+    return Verdict("recognised", recognised_as=readings) if readings else None
+
+
 def _with_other_products(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
     """Return the known formulas that match after a change of sign of the products of inertia.
 
@@ -189,11 +198,9 @@ def _readings_of_relation(
         value = claim.interpreter().read(difference)
     except InputError:
         return ()
-    if is_matrix(value):
+    if is_matrix(value) or len(value.atoms(Function, Symbol) - {time}) < least_symbols:
         return ()
     value = primitive(value)
-    if len(value.atoms(Function, Symbol) - {time}) < least_symbols:
-        return ()
     return tuple(islice(identified(value, steps=False, named=True, quantity="", is_relation=True), MOST_READINGS))
 
 

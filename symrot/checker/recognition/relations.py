@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from sympy import (
     Expr,
+    GeneratorsNeeded,
     Matrix,
     Poly,
     PolynomialError,
@@ -107,7 +108,7 @@ def primitive(difference: Expr) -> Expr:
     numerator = fraction(cancel(together(difference)) if difference.count_ops() < LONGEST else together(difference))[0]
     try:
         return Poly(numerator).terms_gcd()[1].primitive()[1].as_expr()
-    except PolynomialError:
+    except (PolynomialError, GeneratorsNeeded):
         return numerator
 
 

@@ -5,15 +5,15 @@ reader means that: omega_2 and omega_3 keep their axes.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 __all__ = ["component", "is_consistent"]
 
 AXIS = {letter: axis for axis, letters in ((0, "0sw"), (1, "1x"), (2, "2y"), (3, "3z")) for letter in letters}
 """Last letter of a name -> its axis; 0 is the scalar part of a quaternion."""
 
-LETTERS = {"A": 1, "B": 2, "C": 3, "p": 1, "q": 2, "r": 3}
-"""Single letter -> its axis: principal moments, and the angular velocity of an aircraft."""
+LETTERS = {"A": 1, "B": 2, "C": 3, "p": 1, "q": 2, "r": 3, "x": 1, "y": 2, "z": 3}
+"""Single letter -> its axis: principal moments, the angular velocity of an aircraft, and coordinates."""
 
 CYCLIC = ((1, 2, 3), (2, 3, 1), (3, 1, 2))
 """The orders of axes that keep right-handed axes right-handed; Euler's equations change signs under the others."""
@@ -25,6 +25,9 @@ RATE = re.compile(r"diff\((.+?)(?:, t)+\)|(.+)\(t\)|d{1,2}(phi|theta|psi|omega_[
 
 ENTRY = re.compile(r"[RrACc]_?([1-3])([1-3])")
 """An entry of a rotation matrix; its groups are the row and the column."""
+
+EARLIER_AND_LATER = (("omega_i", "omega_f"), ("theta_i", "theta_f"))
+"""Names of the same quantity of known formulas at an earlier and at a later time."""
 
 MIDDLE, OUTER = ("theta",), ("phi", "psi", "varphi")
 """Names of the second of three Euler angles, and of the first or third."""
@@ -38,6 +41,8 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
     pairs = [(_angle(known), _angle(new)) if _angle(new) != new else (known, new) for known, new in renaming]
     if len({*pairs}) != len({known for known, _ in pairs}) or len({*pairs}) != len({new for _, new in pairs}):
         return False
+    if not _keeps_time_order(dict(pairs)):
+        return False
     angles = [pair for pair in pairs if {*pair} <= {*MIDDLE, *OUTER}]
     if len(angles) > 1 and any((known in MIDDLE) != (new in MIDDLE) for known, new in angles):
         return False
@@ -47,8 +52,20 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
     return any(_keeps(axes, order) and _keeps_entries(places, order) for order in CYCLIC[: 1 if fixed else None])
 
 
+def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
+    """Return whether the numbers in the names of an earlier and a later value, as omega_1 and omega_2, increase."""
+    for earlier, later in EARLIER_AND_LATER:
+        numbers = [re.search(r"[0-9]$", renaming.get(name, "")) for name in (earlier, later)]
+        if all(numbers) and [n[0] for n in numbers if n] != sorted(n[0] for n in numbers if n):
+            return False
+    return True
+
+
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
     """Return the component of a known formula with the name of a quantity, as a pair of a renaming; or no pair."""
+    parallel = re.search(r"\(parallel-axis theorem\), ([xyz]) axis", known)
+    if parallel and _axes(quantity):
+        return [(f"component_{parallel[1]}", quantity)]
     word, _, rest = known.partition(" ")
     if word not in COMPONENTS or not rest.startswith("component") or not _axes(quantity):
         return []
@@ -64,9 +81,10 @@ def _angle(name: str) -> str:
 
 def _axes(name: str) -> frozenset[int]:
     """Return the axes in the index of a name: {1, 2} for I_xy, {3} for omega_3 and for C; empty without an index."""
+    name = re.sub("(_bar|_prime)+$", "", name)
     if name in LETTERS:
         return frozenset({LETTERS[name]})
-    index = re.fullmatch(r"[A-Za-z]+?_?([0-3]|[xyz]|11|22|33|12|13|23|21|31|32|[xyz]{2})", name)
+    index = re.fullmatch(r"(?:[A-Za-z]+?_?|\w+_)([0-3]|[xyz]|11|22|33|12|13|23|21|31|32|[xyz]{2})", name)
     return frozenset(AXIS[letter] for letter in index[1]) if index else frozenset()
 
 

@@ -216,6 +216,11 @@ class PiecesPart(OpenFunctionsPart):
 
     def square_bracket(self, token: Token) -> Node:
         bars, self.bars = self.bars, 0
+        if self.holds_skew_vector():
+            inner = self.expression()
+            self.expect("]")
+            self.bars = bars
+            return Node("list", ("[", "]"), (inner,), self.span(token.start))
         rows = [self.row()]
         if len(rows[0]) == 1 and self.token().text in ("x", "×") and self.token(1).text == "]":  # [n×], a skew matrix
             self.plain = True
@@ -233,6 +238,13 @@ class PiecesPart(OpenFunctionsPart):
         if len(rows) == 1:
             return Node("list", ("[", "]"), tuple(rows[0]), span)
         return Node("list", ("[", "]"), tuple(Node("list", ("[", "]"), tuple(row), span) for row in rows), span)
+
+    def holds_skew_vector(self) -> bool:
+        """Return whether the square bracket before the cursor is one of ``[R ω]×``: without commas, before a cross."""
+        inside = [token.text for token in self.tokens[self.index :]]
+        end = inside.index("]") if "]" in inside else 0
+        cross = self.token(end + 1)
+        return end > 0 and not {",", ";", "["} & {*inside[:end]} and cross.text == "×" and cross.tight
 
     def has_blanks(self, entry: Node) -> bool:
         """Return whether an entry of a matrix has two names with only blanks between them, which may be two entries."""

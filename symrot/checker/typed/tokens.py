@@ -90,6 +90,7 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*", re.ASCII)
 _MARK = re.compile(r"\*\*|==|!=|>=|<=|:=|[-+*/(),\[\].=<>^;|√×·°]")
 _SUBSCRIPT = re.compile(rf"_(?:[A-Za-z0-9]+|[{_GREEK}])|[{''.join(_LOWERED)}]+")
 _COMPONENT = re.compile(r"[0-9]+|(?:xx|yy|zz|xy|yz|zx|xz|yx|zy|[xyz])(?![A-Za-z0-9])", re.ASCII)
+_SMALL_FRACTION = re.compile(r"(?<![\w)\]])([⁰¹²³⁴⁵⁶⁷⁸⁹]+)/([₀₁₂₃₄₅₆₇₈₉]+)")
 _DIGITS = re.compile(r"[0-9]+", re.ASCII)
 
 
@@ -154,6 +155,10 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
     character = text[at]
     if number := _NUMBER.match(text, at):
         yield "number", number[0], number.end()
+    elif character in "Σ∑" and re.match(r"[Σ∑]\s*[MFNTτΓ]", text[at:]):
+        yield "sum", character, at + 1
+    elif fraction := _SMALL_FRACTION.match(text, at):
+        yield "fraction", "/".join(_written(part) for part in fraction.groups()), fraction.end()
     elif character in LETTERS:
         yield from _letter(text, at, LETTERS[character])
     elif name := _NAME.match(text, at):
@@ -191,6 +196,11 @@ def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, i
     if lowered is not None:
         word, stop = f"{word}_{''.join(_LOWERED[c] for c in lowered[0])}", lowered.end()
     yield "name", word, stop
+
+
+def _written(digits: str) -> str:
+    """Return raised or lowered digits as plain ones."""
+    return "".join(_RAISED.get(digit, _LOWERED.get(digit, digit)) for digit in digits)
 
 
 def _letter(text: str, at: int, word: str) -> Iterator[tuple[str, str, int]]:
