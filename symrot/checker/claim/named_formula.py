@@ -12,6 +12,9 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk
 from symrot.checker.claim.vectors import is_components
+from symrot.errors import InputError
+from symrot.exact import normal_form
+from symrot.exact.ring.ratio import TooLarge
 
 __all__ = ["NamedFormula", "named_formula", "related_formula"]
 
@@ -66,7 +69,7 @@ def related_formula(claim: Claim) -> NamedFormula | None:
         return None
     if all(_is_name(side) or _is_rate(side) for side in (left, right)):
         return None
-    apart = all(letters) and not letters[0] & letters[1]
+    apart = all(letters) and not letters[0] & letters[1] and _says_something(claim, left, right)
     if is_matrix(claim.equation.left) or is_matrix(claim.equation.right):
         if (solved := _solved_for_vector(claim, left, right)) is not None:
             return solved
@@ -84,7 +87,22 @@ def related_formula(claim: Claim) -> NamedFormula | None:
         return NamedFormula(text(left), left, right, solve=None)
     if (equation := _equation_of_motion(left, right)) is not None:
         return equation
-    return NamedFormula(text(left), left, right, solve=None) if _is_constraint(left, right, letters) else None
+    is_whole = (left, right) == claim.relation[1:]  # not without common factors
+    is_open = is_whole and _is_constraint(left, right, letters)
+    return NamedFormula(text(left), left, right, solve=None) if is_open else None
+
+
+def _says_something(claim: Claim, left: Node, right: Node) -> bool:
+    """Return whether the values of both sides depend on letters, and are not just two letters.
+
+    ``z/z`` and ``sin(a)^2 + cos(a)^2`` depend on no letter.
+    """
+    try:
+        values = [claim.interpreter().read(side) for side in (left, right)]
+        forms = [value if is_matrix(value) else normal_form(value) for value in values]
+    except (InputError, TooLarge):
+        return True
+    return all(form.free_symbols for form in forms) and not all(form.is_Symbol for form in forms)
 
 
 def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | None:
