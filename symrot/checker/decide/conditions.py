@@ -199,5 +199,7 @@ def surely_nonnegative(value: Expr) -> bool:
         return True
     if not isinstance(value, Add) or len(value.args) > MOST_TERMS_OF_SQUARE:
         return False
+    if any(value == 1 - node**2 for node in value.atoms(sympy.sin, sympy.cos)):
+        return True
     factored = sympy.factor(value)
     return not isinstance(factored, Add) and surely_nonnegative(factored)

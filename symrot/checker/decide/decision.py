@@ -5,7 +5,7 @@ use the hypotheses (:mod:`symrot.checker.decide.hypotheses`) and look for a cond
 (:mod:`symrot.checker.decide.conditions`).
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
@@ -24,6 +24,7 @@ from symrot.errors import InputError
 from symrot.exact.angles import cyclotomic
 from symrot.exact.budget import one_decision
 from symrot.exact.counterexample import closed_form_witness, rational_witness
+from symrot.exact.decide import normal_form
 from symrot.exact.decision import (
     Case,
     Decision,
@@ -188,7 +189,8 @@ class _ClaimCase(Case):
         ring, granted = self.ring, self.nonzero_factors
         forms = [*domain.divisors(ring, granted), *(pair for other in rings for pair in domain.divisors(other))]
         free = set(domain.divisors(ring)) - set(domain.divisors(ring, granted))
-        nonzero = {as_text(form): form for form in (_shorter(*pair) for pair in forms if pair not in free)}
+        shorter = [_shorter(*pair) for pair in forms if pair not in free]
+        nonzero = _independent({as_text(form): form for form in shorter})
         bases = [base for base in (*self.equation.radicands, *domain.radicands(ring)) if not surely_nonnegative(base)]
         nonnegative = {as_text(base): base for base in bases}
         relations = {f"{text} != 0": Ne(form, 0, evaluate=False) for text, form in nonzero.items()
@@ -402,6 +404,24 @@ def _multiple(argument: Expr) -> int:
 
 
 # -- conditions and reasons -------------------------------------------------------------------------------------------
+
+
+def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
+    """Return formulas that must be nonzero, by text, without those that never vanish and powers of others.
+
+    ``sin(a)**2 + cos(a)**2`` never vanishes, and ``sin(a)**2*cos(b)**2 + cos(a)**2*cos(b)**2`` only where cos(b) does.
+    """
+    remaining = {}
+    for text, form in nonzero.items():
+        value = normal_form(form) if form.is_Add and _pieces(form) < MOST_PIECES else form
+        base, _ = value.as_base_exp()
+        if not (value.is_number and value != 0) and (base == form or as_text(base) not in nonzero):
+            remaining[text] = form
+    return remaining
+
+
+MOST_PIECES = 60
+"""The most symbols and operations of a condition that is compared with the others."""
 
 
 def _shorter(first: Expr, second: Expr) -> Expr:
