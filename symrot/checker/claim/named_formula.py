@@ -230,10 +230,10 @@ def _after(steps: Sequence[Solve], tree: Node) -> Node:
 
 
 def _without_common_factors(left: Node, right: Node) -> tuple[Node, Node]:
-    """Return both sides without their common factors; numbers are not removed."""
+    """Return both sides without the letters that both have as factors, as m in ``m*v**2/2 == m*g*h``."""
     factors = [list(side.args) if side.kind == "product" else [side] for side in (left, right)]
     for factor in [*factors[0]]:
-        if factor in factors[1] and _quantities(factor):
+        if factor in factors[1] and _is_name(factor) and _quantities(factor):
             factors[0].remove(factor)
             factors[1].remove(factor)
     return product(factors[0]), product(factors[1])
