@@ -121,7 +121,7 @@ def value_of(formula: Node, constants: Mapping[str, Fraction]) -> Fraction:
     """
     value = exact_value(formula, constants)
     if value != value:
-        raise InputError(f"torque: expected constants with real values, but {text(formula)} has none")
+        raise InputError(f"torque: expected constants with real values, but {text(formula)} has no real value")
     return Fraction(value)
 
 

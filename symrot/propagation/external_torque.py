@@ -47,7 +47,7 @@ OVERSHOOT = 100.0  # times the largest sample: a spline with larger values does 
 MOST_STEPS = 30_000_000  # limit of steps under a table, some 20 s; for functions it is stepping.MAX_STEPS
 UNKNOWN = (
     "the torque is a function without a formula: each step is checked inside, but a feature narrower than a step may "
-    "be missed; give max_step, in s, below the width of the narrowest"
+    "be missed; give max_step, in s, below the width of the narrowest feature"
 )
 FORMS = "a function of (t, omega, quaternion), a C function of ctypes, or a table (times, samples)"
 
@@ -162,7 +162,7 @@ class _Table(TorqueSource):
                 f"{t.shape} and {values.shape}"
             )
         if not (np.isfinite(t).all() and np.isfinite(values).all()):
-            raise InputError("torque: expected a table of finite numbers, got some that are not")
+            raise InputError("torque: expected a table of finite numbers, got some that are infinite or not numbers")
         repeated = t[1:][np.diff(t) == 0]
         if (np.diff(t) < 0).any() or not set(repeated.tolist()) <= set(switching) or (np.diff(repeated) == 0).any():
             raise InputError(
