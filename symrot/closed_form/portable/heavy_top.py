@@ -191,7 +191,7 @@ class PortableHeavyTop:
         across: Any,
         spin: Any,
     ) -> None:
-        """Compute the constant factors of the theta series from the initial attitude, or its rates if it is small."""
+        """Compute the constant factors of the theta series from alpha and beta at the start, or from their rates."""
         alpha, beta = start
         initial_rates = [
             mpc(0, spin / 2) * alpha - beta * mp.conj(across) / 2,
