@@ -1,8 +1,8 @@
 """Equations of motion of a plan: Euler's equations and the quaternion rates, for the variables of the plan only.
 
-The equations are derived from the plan's structure (what is zero, equal or constant): ``I domega/dt = tau - omega x (I
-omega + h)`` in body axes about the centre of mass or a fixed point, and ``dq/dt = 1/2 q (0, omega_b)``. Proof:
-``derivations/euler_equations.md``, ``derivations/quaternion_rates.md``.
+The equations are derived from the plan's structure (which constants are zero, equal or free):
+``I domega/dt = tau - omega x (I omega + h)`` in body axes about the centre of mass or a fixed point, and
+``dq/dt = 1/2 q (0, omega_b)``. Proof: ``derivations/euler_equations.md``, ``derivations/quaternion_rates.md``.
 """
 
 from dataclasses import dataclass, replace
@@ -73,7 +73,7 @@ class Equations:
 
 
 def inertia_matrix(inertia: PrincipalInertia | InertiaTensor) -> Matrix:
-    """Return the inertia tensor of a plan in symbols: equal moments share a symbol, entries that vanish are zero."""
+    """Return the inertia tensor of a plan in symbols; equal moments have the same symbol."""
     if isinstance(inertia, PrincipalInertia):
         moments = dict(zip("ABC", symbols.principal, strict=True))
         return diag(*(moments[name] for name in inertia.moments))
@@ -157,9 +157,9 @@ def inverse(tensor: Matrix) -> Matrix:
 
 
 def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr]]:
-    """Return the motion of a plan in symbols, its attitude states, and the relations between the states.
+    """Return the motion of a plan in symbols, its attitude states, and the relations between its states.
 
-    An example of a relation is that the quaternion has unit norm.
+    A relation is an expression that is always zero, such as the squared norm of the quaternion minus 1.
     """
     inertia, axis = inertia_matrix(structure.inertia), structure.planar
     turning = [
@@ -187,7 +187,7 @@ def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr
 
 
 def equations_of_motion(structure: Structure) -> Equations:
-    """Return the equations of motion of a structure, which says what is zero, equal or constant in a scene."""
+    """Return the equations of motion of a structure, which says which constants of a scene are zero, equal or free."""
     motion, attitude, relations = _motion(structure)
     laws = tuple(torque_law(torque, motion) for torque in structure.torques)
     torque = reduce(add, (law.torque for law in laws), zeros(3, 1))
@@ -219,9 +219,9 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
 
     A guard is the formula whose sign selects the branch of the torque, and its mode is the value of that sign. The
     modes get the values that keep the guards at zero: with rates linear in the modes s, ``dg/dt = a + B s = 0`` gives
-    ``s = -B^-1 a`` (V. I. Utkin's equivalent control; for one guard, A. F. Filippov's convex combination). They are
-    definitions that the rates use. Motions near the guards return to them while all eigenvalues of B have negative real
-    parts; A. Hurwitz's determinants of B say when they do.
+    ``s = -B^-1 a`` (V. I. Utkin's equivalent control; for one guard, A. F. Filippov's convex combination). The rates
+    contain these modes as definitions. Motions near the surfaces return to them while all eigenvalues of B have
+    negative real parts; A. Hurwitz's determinants of B decide this.
 
     Raises
     ------

@@ -2,8 +2,8 @@
 
 The rotation far from resonance (:mod:`~symrot.closed_form.spin_up.off_resonance`) and the rotation near resonance
 (:mod:`~symrot.closed_form.spin_up.resonance`) are composed at the boundary between them. This module computes, one by
-one, the samples whose number of revolutions is too large for double-double numbers. Without a C compiler it also computes
-the constants for NumPy. The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
+one, the samples whose number of revolutions is too large for double-double numbers. Without a C compiler it also
+computes the constants for NumPy. The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
 
 import math
