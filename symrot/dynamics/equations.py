@@ -87,13 +87,13 @@ def angular_acceleration(inertia: Matrix, omega_b: Matrix, torque: Matrix, momen
     Parameters
     ----------
     inertia : Matrix, shape (3, 3)
-        kg m^2, about the centre of mass or a fixed point.
+        Tensor I, kg m^2, about the centre of mass or a fixed point.
     omega_b : Matrix, shape (3, 1)
-        rad/s.
+        Angular velocity, body components, rad/s.
     torque : Matrix, shape (3, 1)
-        N m, about the same point, body components.
+        Torque tau about the same point, body components, N m.
     momentum : Matrix, shape (3, 1), optional
-        h of an internal rotor, kg m^2/s.
+        Angular momentum h of an internal rotor, kg m^2/s.
     """
     rotor = zeros(3, 1) if momentum is None else momentum
     gyroscopic = collected_cross(inertia * omega_b, omega_b, omega_b)  # (B - C) omega_2 omega_3, ...
@@ -106,19 +106,19 @@ def euler_equations(inertia: Any = symbols.principal, torque: Any = symbols.torq
     Parameters
     ----------
     inertia : 3 principal moments or 3x3 tensor, of Expr
-        kg m^2, about the centre of mass or a fixed point.
+        Inertia, kg m^2, about the centre of mass or a fixed point.
     torque : 3 Expr, optional
-        N m, about the same point, body components; ``None`` for a free body.
+        Torque, N m, about the same point, body components; ``None`` for a free body.
 
     Returns
     -------
     Matrix, shape (3, 1)
-        rad/s^2, body components, in omega_1, omega_2, omega_3.
+        Angular acceleration, rad/s^2, body components, in omega_1, omega_2, omega_3.
 
     Raises
     ------
     InputError
-        For an inertia that is not 3 moments or a symmetric 3x3 tensor, or a torque of other size.
+        For an inertia that is not 3 moments or a symmetric 3x3 tensor, or a torque without 3 components.
 
     Notes
     -----

@@ -236,7 +236,7 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
 def field_value(name: str, pattern: FieldPattern) -> Any:
     """Return a field of a torque as symbols or exact numbers: a scalar, a vector or a quaternion.
 
-    Components of a vector are numbered from 1, and those of a quaternion from 0.
+    Components of a vector are numbered from 1, components of a quaternion from 0.
     """
     if isinstance(pattern, Pattern):
         return constant(name) if pattern is Pattern.FREE else Integer(pattern.value)

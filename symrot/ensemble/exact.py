@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["ALONE_LOSES_BELOW", "ARRAYS_LOSE_BELOW", "Solved", "choose", "follow_exact", "forms_of"]
 
 Rows = NDArray[np.intp]
-MOST_BITS = 59  # largest number of conditions in a pattern, without those of the three angular velocities
+MOST_BITS = 59  # largest number of conditions in a pattern, without the three of the angular velocity
 
 
 class Kind(NamedTuple):

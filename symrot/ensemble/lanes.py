@@ -165,7 +165,7 @@ def lanes(path: str) -> Lanes:
 
 
 class _Legs(NamedTuple):
-    """All motions split into legs, the parts before and after t0, with times sorted away from t0.
+    """All motions split into legs, the parts before and after t0, with times sorted by distance from t0.
 
     See ``symrot_job`` in lanes.c.
     """
@@ -273,7 +273,7 @@ class LaneIntegration:
 
 
 def follow(*arguments: Any, **options: Any) -> Outcome:
-    """Return the states of n motions at their sample times; the arguments are those of :class:`LaneIntegration`."""
+    """Return the states of n motions at their sample times; the arguments are as for :class:`LaneIntegration`."""
     return LaneIntegration(*arguments, **options).run()
 
 

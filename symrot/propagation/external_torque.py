@@ -267,12 +267,13 @@ class ExternalSetup:
     Attributes
     ----------
     setup : Setup
+        Plan, method and kernel of the scene.
     library : Path
-        Kernel and stepper; the kernel calls the torque.
+        Compiled library of kernel and stepper; the kernel calls the torque.
     source : TorqueSource
         The source of the torque.
     torque_parameters : tuple of float
-        The parameters of the kernel after those of the rates: two addresses, the frame, the inverse of the inertia.
+        Parameters of the kernel that follow the scene's: two addresses, the frame, the inverse of the inertia.
     breaks : tuple of float
         Times at which a step ends, s: switching times, and times at which a derivative of a table's spline jumps.
     longest_step : float

@@ -464,7 +464,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def taylor_parameters(self) -> list[float]:
-        """The parameters of the Taylor library: those of the rates, then those of the conserved quantities."""
+        """The parameters of the Taylor library: first for the rates, then for the conserved quantities."""
         return [*self.rate_parameters, *self.setup.quantity_binding(self.plan)]
 
     @cached_property

@@ -224,7 +224,7 @@ class Trajectory:
 
     @property
     def axis_number(self) -> int:
-        """Index of the body axis that :attr:`axis` follows, from 0: the symmetry axis, or 2 if there is none."""
+        """Index of the body axis that :attr:`axis` follows, from 0: the symmetry axis, or 2 if no body axis is one."""
         principal = self.scene.body.principal
         return 2 if principal.symmetry_axis is None or not principal.given_axes else int(principal.symmetry_axis)
 

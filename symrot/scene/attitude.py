@@ -101,7 +101,7 @@ def _of_sequence(name: str, angles: tuple[Angle, ...]) -> Attitude:
 
 
 def _of_dcm(rows: Matrix, value: object, where: str) -> Attitude:
-    """Return the attitude that a matrix in a scene describes, computed from its quaternion.
+    """Return the attitude that a matrix in a scene describes, as a quaternion and its exact matrix.
 
     The quaternion is computed from its largest component (Shepperd's method).
     """

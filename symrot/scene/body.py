@@ -270,7 +270,7 @@ def _placed(properties: MassProperties, values: Mapping[str, Any], where: str, s
             point,
         )
     if about == "fixed_point" and point is None:
-        fail(f"{where}.fixed_point", "three numbers [x, y, z] in m, in the axes of the body: it turns "
+        fail(f"{where}.fixed_point", "three numbers [x, y, z] in m, in the axes of the body: it rotates "
                  "about a fixed point, the key is missing")  # fmt: skip
     inertia, center = properties.inertia, _ZERO
     if about == "fixed_point":

@@ -200,7 +200,7 @@ def _allowed_file(file: str, folder: Path, table_folders: str | Path | Sequence[
         fail(where, f"the name of a CSV file, got {getattr(reason, 'strerror', None) or reason}")
     if not inside:
         fail(where, "a file in the folder of the scene or below it", file, "`--table-folder DIR`, in Python "
-                 "load_scene(.., table_folders=[DIR]), allows those of a folder elsewhere")  # fmt: skip
+                 "load_scene(.., table_folders=[DIR]), allows files in another folder")  # fmt: skip
     return path
 
 

@@ -21,7 +21,7 @@ NEGLIGIBLE = mpf(10) ** -150  # size, relative to the largest component of omega
 class PortableFreeBody:
     """The motion of a free body, computed with mpmath and NumPy.
 
-    Its arguments are those of the C function ``symrot_free_body_prepare``: lists hi, lo, hi, lo, ..
+    Its arguments are as for the C function ``symrot_free_body_prepare``: lists hi, lo, hi, lo, ..
     """
 
     def __init__(

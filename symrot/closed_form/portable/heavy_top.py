@@ -24,7 +24,7 @@ NOTHING = mpf(10) ** -31  # size, relative to alpha or beta, that counts as zero
 class PortableHeavyTop:
     """The motion of a symmetric heavy top, computed with mpmath and NumPy.
 
-    Its arguments are those of the C function ``symrot_heavy_top_prepare``: lists hi, lo, hi, lo, ..
+    Its arguments are as for the C function ``symrot_heavy_top_prepare``: lists hi, lo, hi, lo, ..
     """
 
     def __init__(

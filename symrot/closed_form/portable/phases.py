@@ -1,6 +1,6 @@
 """Phases that grow linearly with time, in revolutions, and functions of them at arrays of times, without a C compiler.
 
-The formulas are those of :file:`circular.h` and :file:`stages.h`.
+The formulas are the same as in :file:`circular.h` and :file:`stages.h`.
 """
 
 from typing import Any, NamedTuple

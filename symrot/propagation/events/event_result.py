@@ -50,7 +50,7 @@ class EventResult(NamedTuple):
     t_events, y_events : lists of arrays, shapes (k,) and (k, N)
         Per event, in rising order of time: its times, and the states at these times.
     kinds : list of lists of str
-        Per event: ``"rising"``, ``"falling"`` or ``"touching"``, seen along the motion away from its start.
+        Per event: ``"rising"``, ``"falling"`` or ``"touching"``, for a motion that runs away from its start.
     ended : bool
         Whether a terminal event ended the motion, on either side of the start.
     warnings : tuple of str

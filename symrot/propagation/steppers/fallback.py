@@ -67,7 +67,7 @@ EFFORT_CUT_OFF = 4  # share of the evaluations for a motion that cannot be follo
 BEFORE_POLE = 0.5  # part of the way of a coarse pass that stops early: beyond it states may grow without bound
 PILOT_STEPS = 10  # coarse steps: a shorter motion may use the whole share of the tolerance in every step
 MAX_EVALUATIONS = 1_000_000  # default limit: half a minute
-PATIENCE = 50_000  # evaluations after each of which the pace is judged
+PATIENCE = 50_000  # evaluations between two checks of the pace
 MAX_IDLE = 100  # consecutive steps too short for the clock of the scene, as after a restart of LSODA
 MAX_BROKEN = 1000  # derivatives that are not finite, before the motion stops
 _NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, FIT_ORDER + 1) / FIT_ORDER)  # Chebyshev points of a step
@@ -165,7 +165,7 @@ def record(
     tolerance: float,
     options: Options = Options(),
 ) -> "FallbackRecording":
-    """Return the motion over ``span`` as a function of time; the arguments are those of :func:`integrate`.
+    """Return the motion over ``span`` as a function of time; the arguments are as for :func:`integrate`.
 
     If the motion stops early or is interrupted, the attribute ``recording`` of the exception holds the motion until
     then, if there is any.
@@ -186,7 +186,7 @@ def record(
 
 
 class FallbackRecording(Recording):
-    """A motion followed by SciPy as a function of time; see :class:`symrot.propagation.steppers.stepping.Recording`."""
+    """A motion by SciPy as a function of time; see :class:`symrot.propagation.steppers.stepping.Recording`."""
 
     def __init__(self, motion: "_Integration", pieces: list[Piece], low: float, high: float) -> None:
         self._pieces = pieces
@@ -251,7 +251,7 @@ class _Integration:
         self.steps = self.evaluations = self.broken = 0
         self.pieces: list[Piece] = []  # pieces of the pass that is running
         self.final = False  # whether this is the final pass, not the coarse one
-        self.mark = (0, self.t0)  # work and time when the pace was judged last
+        self.mark = (0, self.t0)  # work and time at the last check of the pace
         self.whole, self.before = options.whole, self.deviations.spent if self.deviations else 0
         with np.errstate(all="ignore"):  # the sentence says it
             first = self._derivative(self.t0, self.y0)
@@ -267,7 +267,7 @@ class _Integration:
         return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
 
     def follow(self, times: Floats) -> Floats:
-        """Return the states at times on one side of t0, sorted away from t0."""
+        """Return the states at times on one side of t0, which are sorted by their distance from t0."""
         states = np.empty((len(times), len(self.y0)))
         _evaluate(self.solutions(float(times[-1])), times, states)
         states[times == self.t0] = self.y0

@@ -42,6 +42,7 @@ class Samples(NamedTuple):
     numbers : array, shape (k,)
         Indices of the samples among all requested samples.
     states : array, shape (k, N)
+        States of the samples.
     cost : (int, int, int)
         Accepted steps, rejected steps and evaluations until then.
     """

@@ -183,9 +183,9 @@ def _inside(edge: float, other: float) -> float:
 
 
 def split_at(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
-    """Yield the indices of the times from t0 on, then those of the times before t0; each group is sorted away from t0.
+    """Yield the indices of the times from t0 on, then the indices of the times before t0.
 
-    An empty group is left out.
+    Each group is sorted by distance from t0; an empty group is left out.
     """
     order = np.argsort(times, kind="stable")
     first_after = int(np.searchsorted(times[order], t0))
@@ -502,7 +502,7 @@ class Integration:
 
     @cached_property
     def _ready(self) -> Run:
-        """A run at the start of the motion, which each new run copies."""
+        """State of the motion in C at its start, which each new run copies."""
         run = self.stepper.new_run(t=self.t0, max_step=self.max_step, **self.fields)
         run.y[:] = self.y0
         return run
@@ -521,7 +521,7 @@ class Integration:
         return SteppedRecording(self, span, backward, forward)
 
     def follow(self, times: Floats, states: Floats) -> None:
-        """Write the states at times on one side of t0, sorted away from t0, into an array."""
+        """Write the states at times on one side of t0, sorted by their distance from t0, into an array."""
         count, done, first, out = len(times), 0, address(times), address(states)
         row = 8 * self.stepper.states
         for run in self.runs(float(times[-1])):

@@ -146,7 +146,7 @@ class Regime:
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
-        """Return the parameters of the stepper and those of the guards, which are the formulas that end the regime.
+        """Return the parameters of the stepper, and the parameters of the guards: the formulas that end the regime.
 
         They are for a clock that shows 0 at the instant ``zero``.
         """
