@@ -87,7 +87,7 @@ def lines(study: Mapping[str, Any]) -> list[str]:
                      "attitude in rad, angular velocity relative to its size"),
             ("reference", "; ".join([reference["name"], *(others or ["not compared with a second reference"])])),
             ("machine", f"{machine['processor']}; {', '.join(versions)}"),
-            ("times", "processor time of a call from Python, median over the repetitions; fastest run at least as accurate"),
+            ("times", "processor time of a call from Python, median of all repetitions; fastest run at least as good"),
         ]
     )  # fmt: skip
     skipped = fields([(f"{item['method']}:", one_line(item["why"])) for item in study["skipped"]])
