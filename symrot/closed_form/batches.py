@@ -1,4 +1,4 @@
-"""Constants of many motions in closed form, computed as arrays, bit by bit equal to those of single motions.
+"""Constants of many motions in closed form, computed as arrays; every bit is the same as for single motions.
 
 Sums in which all digits may cancel are computed in integers, one motion after the other. Double-double arithmetic (sums
 of two doubles) computes the rest for all motions at once.
@@ -48,14 +48,14 @@ def attitudes(quaternions: Floats) -> Floats:
     """Return unit quaternions as sums of two doubles, shape (n, 8): hi and lo of each component.
 
     The numbers equal those of :func:`symrot.closed_form.arithmetic.pairs.attitude`. If double-double arithmetic leaves
-    the last bit in doubt, as for about one quaternion in a thousand, exact numbers decide it.
+    the last bit in doubt, as for about one quaternion in a thousand, exact arithmetic decides it.
     """
     high, low = _units(quaternions)
     return _on_grid(high, low, 0.0, lambda i: attitude(_unit(quaternions[i])))
 
 
 def turned(frame: Frame, quaternions: Floats) -> Floats:
-    """Return attitudes between the axes of a heavy top, shape (n, 8): hi and lo of each component.
+    """Return attitudes converted to the axes in which a heavy top is solved, shape (n, 8): hi and lo of each component.
 
     The numbers equal those of :meth:`symrot.closed_form.heavy_top.motion.Frame.start` for each single attitude.
     """
@@ -97,7 +97,7 @@ def _sign(i: int, j: int) -> float:
 
 
 def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
-    """Return the products of one constant unit quaternion with many others, shape (n, 4), to 2^-102.
+    """Return the products of one constant unit quaternion with many others, shape (n, 4), with an error of 2^-102.
 
     If ``before`` is true, the constant quaternion is the left factor.
     """
@@ -154,7 +154,7 @@ def _together(values: Sequence[Column], n: int) -> Floats:
 
 
 def usual(omega: Floats) -> NDArray[np.bool_]:
-    """Return, for each angular velocity (n, 3), whether its size lies in the range where arrays give exact results."""
+    """Return, for each angular velocity (n, 3), whether arrays of its size give the same bits as single motions."""
     largest = abs(omega).max(axis=1)
     is_usual: NDArray[np.bool_] = (largest <= LARGEST) & ((largest >= SMALLEST) | (largest == 0))
     return is_usual
@@ -168,7 +168,7 @@ def _noticed(omega: Floats) -> Floats:
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
     """Return the motions of one free body from many initial angular velocities and attitudes.
 
-    The angular velocities must be :func:`usual`; the attitudes have shape (8,) or (n, 8), hi and lo of each component.
+    The angular velocities must pass :func:`usual`. The attitudes are pairs hi, lo, of shape (8,) or (n, 8).
     """
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
@@ -184,9 +184,9 @@ def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
 
 
 def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floats) -> Batch:
-    """Return the motions of free bodies in principal axes from their three moments, kg m^2.
+    """Return the motions of free bodies in principal axes, given their three moments, kg m^2.
 
-    The other arguments are those of :func:`free_bodies`.
+    The other arguments are as for :func:`free_bodies`.
     """
     omega, n = _noticed(omega), len(omega)
     exact, pairs = np.empty((n, 8)), _columns(moments, n)
@@ -211,8 +211,8 @@ def free_bodies_of_tensors(
 ) -> tuple[Batch | None, NDArray[np.bool_]]:
     """Return motions of free bodies in axes that are not principal, and a mask of the motions computed exactly.
 
-    ``entries`` are the tensor's xx, yy, zz, xy, xz and yz, kg m^2; the other arguments are those of
-    :func:`free_bodies`. The motions outside the mask must be computed one by one.
+    ``entries`` are the tensor's xx, yy, zz, xy, xz and yz, kg m^2; the other arguments are as for :func:`free_bodies`.
+    The motions outside the mask must be computed one by one.
     """
     settled = np.ones(len(omega), np.bool_)
     principal = bodies.principal_bodies(entries, omega)
@@ -223,7 +223,7 @@ def free_bodies_of_tensors(
 
 
 def _integers(values: list[float]) -> list[int]:
-    """Return integers proportional to some doubles: each double times the same power of two."""
+    """Return some doubles as integers: each double is multiplied by the same power of two."""
     (a, over_a), (b, over_b), (c, over_c) = (value.as_integer_ratio() for value in values)
     if over_a == over_b == over_c:
         return [a, b, c]
@@ -237,7 +237,7 @@ def tops(
     """Return the motions of symmetric heavy tops from many initial states.
 
     ``across`` and ``own`` are the moments across and about the symmetry axis; ``pull`` is weight times height as hi,
-    lo, of shape (2,) or (n, 2); ``start`` holds attitudes between the axes of ``frame``, see :func:`turned`.
+    lo, of shape (2,) or (n, 2); ``start`` holds attitudes in the axes of ``frame``, see :func:`turned`.
     """
     rates = _pairs(np.ascontiguousarray(omega[:, frame.named]))
     axes = None if frame.axes is None else np.array(frame.axes)
@@ -268,10 +268,9 @@ def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floa
 
 
 def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
-    """Return the motions of bodies driven about one axis.
+    """Return the motions of bodies driven about one axis, from many initial states.
 
-    ``constants`` describe one body for all initial states, or one body for each state. They are elementary functions
-    and are computed in integers.
+    ``constants`` describe one body for all initial states, or one body for each state. They were computed in integers.
     """
     bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis

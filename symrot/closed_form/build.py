@@ -3,8 +3,8 @@
 A closed form consists of two C files, compiled in parallel. ``name.c`` computes the constants of a motion, once per
 motion; it is compiled at -Og, which takes a third of the time of -O2 and costs 1 us per motion. ``name_at.c`` holds the
 loops over samples. A form with elementary constants has no ``name.c``; ``bodies_at.c`` loops over bodies. Double-double
-arithmetic needs every rounding as written, so contraction to fused operations is off, and each prepared motion first
-tests this in the compiled code.
+arithmetic requires that every operation is rounded separately. Contraction to fused operations is therefore off, and
+each prepared motion first tests the compiled code for it.
 """
 
 import ctypes
@@ -38,7 +38,7 @@ FLAGS = (
 INCLUDE = '\n#include "'
 
 PARTS = {"": (*FLAGS, "-Og"), "_at": (*FLAGS, "-O2")}
-"""Compiler flags of the two C files of a closed form, by the ending of the file's name."""
+"""Compiler flags of the C files of a closed form, by the ending of the file's name."""
 
 _begun: dict[str, list[library.Building]] = {}
 _loaded: dict[str, tuple[Any, ...]] = {}
@@ -67,9 +67,9 @@ def source(name: str) -> str:
 
 
 def begin(name: str) -> list[library.Building]:
-    """Start to compile the libraries of a closed form and return them; a cached library is not compiled again.
+    """Start to compile the libraries of a closed form and return the running compilations.
 
-    There is one library for each name in :data:`PARTS`.
+    There is one library for each name in :data:`PARTS`; a cached library is not compiled again.
 
     Raises
     ------

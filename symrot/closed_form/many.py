@@ -1,7 +1,7 @@
 """Many motions of one closed form in one call of C: constants that differ are arrays, shared constants are passed once.
 
-The same compiled functions compute each motion from the same numbers as for a single motion, so the results are bit by
-bit equal.
+The same compiled functions compute each motion from the same numbers as for a single motion, so that all bits of the
+results are equal.
 """
 
 import ctypes
@@ -38,7 +38,7 @@ class Batch(NamedTuple):
 
 
 class _Motions(ctypes.Structure):
-    """The C struct ``symrot_many_motions`` of many.c."""
+    """The C struct ``symrot_many_motions`` of many.c: the constants, times and samples of many motions."""
 
     _fields_ = (
         ("prepare", ctypes.c_void_p), ("at", ctypes.c_void_p), ("record", ctypes.c_void_p), ("table", ctypes.c_void_p),

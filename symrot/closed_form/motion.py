@@ -47,7 +47,7 @@ class ExactMotion(ABC):
         t : number or sequence of n numbers
             Times from the initial state, s, in any order; negative times are allowed.
         omega, quaternion : bool
-            Whether to compute them; a quantity that is not computed is None.
+            Whether to compute each; the result for the other is None.
 
         Returns
         -------
@@ -146,5 +146,5 @@ _packing = {length: Struct(f"{length}d").pack for length in (2, 4, 6, 8, 26)}
 
 
 def _packed(values: list[float]) -> bytes:
-    """Return doubles as the bytes that C reads, which takes a fifth of the time of an array of ctypes."""
+    """Return doubles as the bytes that C reads, in a fifth of the time that a ctypes array takes."""
     return _packing[len(values)](*values)

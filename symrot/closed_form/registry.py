@@ -23,7 +23,7 @@ class Exact(Protocol):
     ) -> tuple[Floats | None, Floats | None]:
         """Return angular velocity (n, 3), body axes, and attitude (n, 4) at the times.
 
-        A quantity that is switched off is None.
+        A quantity that is not requested is None.
         """
 
 
@@ -145,7 +145,7 @@ def _driven_axis(scene: Scene) -> int | None:
 def _driven_symmetry_axis(scene: Scene) -> int | None:
     """Return the symmetry axis about which a constant torque drives the body, or None if the scene is of another kind.
 
-    If the scene needs the attitude, damping is excluded too.
+    If the attitude is needed, a scene with damping is of another kind too.
     """
     if not _is_driven(scene):
         return None
@@ -178,7 +178,7 @@ def _axial(scene: Scene) -> Starts:
 
 
 def _field_axis(name: str) -> Callable[[Scene], int | None]:
-    """Return a function from scenes to the body axis along which the only torque's vector lies, or to None.
+    """Return a function from a scene to the body axis (0, 1 or 2) parallel to a vector of its only torque, or to None.
 
     ``name`` is the field of the torque that holds the vector.
     """
@@ -240,11 +240,11 @@ FORMS = (
         _driven_symmetry_axis,
     ),
 )
-"""The closed forms, in the order in which a scene is compared with them."""
+"""The closed forms, in the order in which their conditions are tested on a scene."""
 
 
 def exact_form(scene: Scene) -> ClosedForm | None:
     """Return the closed form of a scene's motion, or None if no form of the table applies."""
-    if scene.table is not None:  # the conditions do not know of a torque given by samples
+    if scene.table is not None:  # the conditions do not cover a torque given by samples
         return None
     return next((form for form in FORMS if form.applies(scene)), None)

@@ -1,8 +1,8 @@
 """Equations of motion of a plan: Euler's equations and the quaternion rates, for the variables of the plan only.
 
-The equations are derived from the plan's structure (what is zero, equal or constant): ``I domega/dt = tau - omega x (I
-omega + h)`` in body axes about the centre of mass or a fixed point, and ``dq/dt = 1/2 q (0, omega_b)``. Proof:
-``derivations/euler_equations.md``, ``derivations/quaternion_rates.md``.
+The equations are derived from the plan's structure (which constants are zero, equal or free):
+``I domega/dt = tau - omega x (I omega + h)`` in body axes about the centre of mass or a fixed point, and
+``dq/dt = 1/2 q (0, omega_b)``. Proof: ``derivations/euler_equations.md``, ``derivations/quaternion_rates.md``.
 """
 
 from dataclasses import dataclass, replace
@@ -73,7 +73,7 @@ class Equations:
 
 
 def inertia_matrix(inertia: PrincipalInertia | InertiaTensor) -> Matrix:
-    """Return the inertia tensor of a plan in symbols: equal moments share a symbol, entries that vanish are zero."""
+    """Return the inertia tensor of a plan in symbols; equal moments have the same symbol."""
     if isinstance(inertia, PrincipalInertia):
         moments = dict(zip("ABC", symbols.principal, strict=True))
         return diag(*(moments[name] for name in inertia.moments))
@@ -87,13 +87,13 @@ def angular_acceleration(inertia: Matrix, omega_b: Matrix, torque: Matrix, momen
     Parameters
     ----------
     inertia : Matrix, shape (3, 3)
-        kg m^2, about the centre of mass or a fixed point.
+        Tensor I, kg m^2, about the centre of mass or a fixed point.
     omega_b : Matrix, shape (3, 1)
-        rad/s.
+        Angular velocity, body components, rad/s.
     torque : Matrix, shape (3, 1)
-        N m, about the same point, body components.
+        Torque tau about the same point, body components, N m.
     momentum : Matrix, shape (3, 1), optional
-        h of an internal rotor, kg m^2/s.
+        Angular momentum h of an internal rotor, kg m^2/s.
     """
     rotor = zeros(3, 1) if momentum is None else momentum
     gyroscopic = collected_cross(inertia * omega_b, omega_b, omega_b)  # (B - C) omega_2 omega_3, ...
@@ -106,19 +106,19 @@ def euler_equations(inertia: Any = symbols.principal, torque: Any = symbols.torq
     Parameters
     ----------
     inertia : 3 principal moments or 3x3 tensor, of Expr
-        kg m^2, about the centre of mass or a fixed point.
+        Inertia, kg m^2, about the centre of mass or a fixed point.
     torque : 3 Expr, optional
-        N m, about the same point, body components; ``None`` for a free body.
+        Torque, N m, about the same point, body components; ``None`` for a free body.
 
     Returns
     -------
     Matrix, shape (3, 1)
-        rad/s^2, body components, in omega_1, omega_2, omega_3.
+        Angular acceleration, rad/s^2, body components, in omega_1, omega_2, omega_3.
 
     Raises
     ------
     InputError
-        For an inertia that is not 3 moments or a symmetric 3x3 tensor, or a torque of other size.
+        For an inertia that is not 3 moments or a symmetric 3x3 tensor, or a torque without 3 components.
 
     Notes
     -----
@@ -157,9 +157,9 @@ def inverse(tensor: Matrix) -> Matrix:
 
 
 def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr]]:
-    """Return the motion of a plan in symbols, its attitude states, and the relations between the states.
+    """Return the motion of a plan in symbols, its attitude states, and the relations between its states.
 
-    An example of a relation is that the quaternion has unit norm.
+    A relation is an expression that is always zero, such as the squared norm of the quaternion minus 1.
     """
     inertia, axis = inertia_matrix(structure.inertia), structure.planar
     turning = [
@@ -187,7 +187,7 @@ def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr
 
 
 def equations_of_motion(structure: Structure) -> Equations:
-    """Return the equations of motion of a structure, which says what is zero, equal or constant in a scene."""
+    """Return the equations of motion of a structure, which says which constants of a scene are zero, equal or free."""
     motion, attitude, relations = _motion(structure)
     laws = tuple(torque_law(torque, motion) for torque in structure.torques)
     torque = reduce(add, (law.torque for law in laws), zeros(3, 1))
@@ -219,9 +219,9 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
 
     A guard is the formula whose sign selects the branch of the torque, and its mode is the value of that sign. The
     modes get the values that keep the guards at zero: with rates linear in the modes s, ``dg/dt = a + B s = 0`` gives
-    ``s = -B^-1 a`` (V. I. Utkin's equivalent control; for one guard, A. F. Filippov's convex combination). They are
-    definitions that the rates use. Motions near the guards return to them while all eigenvalues of B have negative real
-    parts; A. Hurwitz's determinants of B say when they do.
+    ``s = -B^-1 a`` (V. I. Utkin's equivalent control; for one guard, A. F. Filippov's convex combination). The rates
+    contain these modes as definitions. Motions near the surfaces return to them while all eigenvalues of B have
+    negative real parts; A. Hurwitz's determinants of B decide this.
 
     Raises
     ------

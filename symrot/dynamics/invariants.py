@@ -1,7 +1,7 @@
-"""Conserved quantities: quantities that symmetries suggest, such as the energy, and the proof of each.
+"""Conserved quantities: candidates that symmetries suggest, such as the energy, and a proof for each.
 
-A candidate F(t, states) is conserved if and only if ``dF/dt = dF/dt|_t + grad F . rates`` has normal form zero; no list
-of known integrals is used. A candidate that is not conserved is reported as lost, with the torques that change it.
+A candidate F(t, states) is conserved if and only if ``dF/dt = partial F/partial t + grad F . rates`` has normal form
+zero; no list of known integrals is used. A candidate that is not conserved is reported with the torques that change it.
 """
 
 from collections.abc import Iterable, Sequence
@@ -26,12 +26,12 @@ TORQUE_PHRASES = {
     "expression": "the torque given by formulas",
     "rotor": "the rotor",
     "spring": "the spring",
-}  # kinds of torque as a sentence calls them, where their name does not do
+}  # kinds of torque in sentences, if the name of the kind does not suit
 
 
 @dataclass(frozen=True)
 class Invariant:
-    """A quantity that may be conserved; ``holds`` says whether it is, and ``reason`` why or why not."""
+    """A candidate for a conserved quantity; ``holds`` says whether it is conserved, and ``reason`` why."""
 
     name: str
     unit: str
@@ -47,7 +47,7 @@ def rate_along(expression: Expr, equations: Equations) -> Expr:
 
 
 def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield quantities that may be conserved, as (name, unit, value, formula to differentiate)."""
+    """Yield candidates for conserved quantities, as (name, unit, value, formula to differentiate)."""
     momentum, energy = equations.momentum_b, equations.kinetic_energy + equations.potential
     yield "energy", "J", energy, energy
     if equations.motion.quaternion is None:
@@ -100,7 +100,7 @@ def _reason(name: str, holds: bool, equations: Equations, kinds: Sequence[str]) 
 
 
 def _listed(kinds: Sequence[str]) -> str:
-    """Return the kinds of the torques as text, without repetition and separated by commas."""
+    """Return kinds of torques as words of a sentence, without repetition and joined by "and"."""
     return " and ".join(TORQUE_PHRASES.get(kind, kind.replace("_", " ")) for kind in dict.fromkeys(kinds))
 
 

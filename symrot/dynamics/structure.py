@@ -1,10 +1,10 @@
-"""The structure of a motion: which constants are zero, equal or free, so which equations it obeys.
+"""The structure of a motion: which constants are zero, equal or free. It determines the equations of motion.
 
 The values of free constants are not part of it. A plan (:mod:`symrot.planning.plan`) finds the structure of a scene,
 and :mod:`symrot.dynamics.equations` derives its equations of motion. Scenes of the same structure share one kernel
-(compiled equations) and differ only in its numbers.
+(compiled equations) and differ only in the values of its parameters.
 
-The parts of a structure are NamedTuples, since to define a dataclass takes six times as long, at every start of symrot.
+The parts of a structure are NamedTuples, since defining a dataclass takes six times as long at every start of symrot.
 The module uses the standard library only.
 """
 
@@ -20,7 +20,7 @@ __all__ = [
 
 
 class Pattern(Enum):
-    """The fact about a constant that the equations use: that it is 0, 1 or -1, or nothing if it is free."""
+    """What the equations assume about a constant: that it is 0, 1 or -1, or that it is free (any value)."""
 
     ZERO = "0"
     ONE = "1"
@@ -31,7 +31,7 @@ class Pattern(Enum):
 
 
 FieldPattern = Pattern | tuple[Pattern, ...]
-"""The pattern of a field of a torque: of a number, or of each component of a vector (3) or a quaternion (4)."""
+"""The pattern of a field of a torque: one for a number, three for a vector, four for a quaternion."""
 
 
 def component_names(name: str, pattern: FieldPattern) -> list[str]:
@@ -54,7 +54,7 @@ class InertiaTensor(NamedTuple):
 
 
 class TorqueSwitch(NamedTuple):
-    """A jump or kink in the formulas of a torque: :class:`symrot.formula.switches.Switch` with its formulas as text."""
+    """A jump or kink in the formulas of a torque: a :class:`symrot.formula.switches.Switch` with formulas as text."""
 
     mode: str
     kind: str
@@ -62,20 +62,20 @@ class TorqueSwitch(NamedTuple):
     where: tuple[tuple[str, int], ...]
     label: str
     at_zero: int
-    choices: str = ""  # the guard before a part of each ``where`` is chosen; empty without ``where``
+    choices: str = ""  # the guard with all parts of each ``where``; empty without ``where``
 
 
 class FieldTorque(NamedTuple):
-    """A torque of a kind that has numbers as fields: every kind but ``expression``, which has formulas.
+    """The structure of a torque whose fields are numbers: every kind but ``expression``, whose fields are formulas.
 
     Attributes
     ----------
     kind : str
         A key of :data:`symrot.dynamics.torque_kinds.TORQUE_KINDS`.
     prefix : str
-        Precedes the names of its constants, so that they differ from those of the other torques.
+        Text before the names of its constants, which makes them different from names in the other torques.
     fields : pairs of name and pattern
-        In the order of the table of torques.
+        Its fields, in the order of the table of torques.
     """
 
     kind: str
@@ -101,19 +101,19 @@ class FormulaTorque(NamedTuple):
     Attributes
     ----------
     prefix : str
-        Precedes the names of its parameters, so that they differ from those of the other torques.
+        Text before the names of its parameters, which makes them different from names in the other torques.
     formulas : tuple of 3 str
-        Its components; smooth, with modes, if it has switches.
+        Its components. Functions that switch, such as sign, are replaced by modes: constants with their present values.
     parameters : tuple of str
-        Names in the formulas, those of the modes included.
+        Names in the formulas, including the modes.
     frame : str
-        ``"body"`` or ``"space"``: the axes of the components.
+        ``"body"`` or ``"space"``: the frame of the components.
     switches : tuple of TorqueSwitch
         Empty if the formulas are smooth, or if switches are not followed.
     choices : tuple of str
-        The formulas before a part of each ``where`` is chosen; empty without ``where``.
+        The formulas with all parts of each ``where``; empty without ``where``.
     held : tuple of str
-        Modes whose guards stay at zero: the motion slides along them.
+        Modes whose guards (arguments of the functions) stay at zero while the motion slides.
     """
 
     prefix: str
@@ -143,26 +143,26 @@ MOVING = (None, None, None)
 
 @dataclass(frozen=True, slots=True)
 class Structure:
-    """What determines the equations of a motion: which of its constants are zero, equal or free.
+    """The facts that determine the equations of a motion: which of its constants are zero, equal or free.
 
     Attributes
     ----------
     inertia : PrincipalInertia or InertiaTensor
-        The pattern of equal moments, or of entries that are not zero.
+        The moments that are equal, or the entries that are not zero.
     torques : tuple of FieldTorque and FormulaTorque
-        In the order of the scene.
+        The torques, in the order of the scene.
     attitude : bool
         Whether the attitude is computed.
     planar : int, optional
-        The body axis, 0 to 2, of a motion about that axis alone.
+        The body axis, 0 to 2, if the body rotates about that axis alone.
     initial_quaternion : tuple of 4 Pattern, optional
-        Of a planar motion with attitude, whose state is an angle since the start.
+        The components at the start of a planar motion with attitude, whose state is the angle since the start.
     constant : tuple of 3
-        For each component of omega_b that is constant its pattern, zero or free; None for one that changes.
+        For each component of omega_b: its pattern (zero or free) if it is constant, None if it changes.
     clock : str, optional
         The name of the time at which the clock of the rates shows 0; None: t = 0 of the scene.
     sequence : str, optional
-        The Euler sequence of the angles that are the state; None: a quaternion.
+        The Euler sequence whose angles are the state; None if a quaternion is.
 
     Examples
     --------

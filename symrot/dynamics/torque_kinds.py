@@ -10,7 +10,7 @@ from typing import NamedTuple
 __all__ = ["EXPRESSION_NAMES", "TABLE_KIND", "TORQUE_KINDS", "Field", "TorqueKind"]
 
 EXPRESSION_NAMES = ("t", "omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3")
-"""The names in an ``expression`` torque besides its parameters: time (s), omega_b (rad/s) and quaternion."""
+"""The names in an ``expression`` torque that are not parameters: time (s), omega_b (rad/s) and quaternion."""
 
 
 class Field(NamedTuple):
@@ -26,9 +26,9 @@ class Field(NamedTuple):
 
 
 class TorqueKind(NamedTuple):
-    """One kind of torque: its name, its fields, and the point of rotation that it needs.
+    """One kind of torque: its name, its fields, and the point about which the body must rotate.
 
-    ``about`` names the point: ``any``, ``fixed_point`` or ``center_of_mass``.
+    ``about`` names that point: ``any``, ``fixed_point`` or ``center_of_mass``.
     """
 
     kind: str
@@ -116,21 +116,21 @@ _TABLE = (
 )  # fmt: skip
 
 TORQUE_KINDS: dict[str, TorqueKind] = {entry.kind: entry for entry in _TABLE}
-"""Every kind of torque that is a formula by name, in reading order."""
+"""The kinds of torque given by formulas, by name, in the order of the documents."""
 
 TABLE_KIND = TorqueKind(
     "table",
     (
-        Field("t", "times", "s", "when the samples were taken, rising; twice the same at a switching time"),
+        Field("t", "times", "s", "times of the samples, increasing; each switching time twice"),
         Field("moment", "moments", "N m", "the samples, three components each"),
         Field("file", "path", "1", "instead of both: a CSV file beside the scene, columns t, M1, M2, M3"),
         Field("interpolation", "cubic_spline", "1", "through the samples between switching times",
               default="cubic_spline"),
         Field("frame", "body|space", "1", "the axes of the components", default="body"),
-        Field("switching_times", "times", "s", "when the torque jumps: the motion is stepped exactly to each",
+        Field("switching_times", "times", "s", "times at which the torque jumps: the motion is stepped exactly to each",
               default=()),
     ),
     "any",
-    "a torque given by samples, which is no formula",
+    "a torque given by samples instead of formulas",
 )  # fmt: skip
 """The only kind not given by formulas; read by :mod:`symrot.scene.samples`; no kernel is derived from it."""

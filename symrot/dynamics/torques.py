@@ -48,7 +48,7 @@ __all__ = [
 ]
 
 
-LEVELLING = (tanh, atan, exp, log)  # functions that doubles cannot distinguish from their limits
+LEVELLING = (tanh, atan, exp, log)  # functions whose doubles become equal to their limits
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class TorqueLaw:
     """The formula of a torque (N m, body components) with its potential, momentum and named quantities."""
 
     torque: Matrix = field(default_factory=lambda: zeros(3, 1))
-    potential: Expr | None = None  # J; None where the torque has none
+    potential: Expr | None = None  # J; None if the torque has no potential
     momentum: Matrix = field(default_factory=lambda: zeros(3, 1))  # kg m^2/s, relative to the body
     definitions: tuple[tuple[Symbol, Expr], ...] = ()  # named quantities that the torque uses
     keeps: str = ""  # why the torque conserves energy
@@ -132,7 +132,7 @@ def _expression(motion: Motion, torque: Matrix, frame: str) -> TorqueLaw:
 def collected_cross(left: Matrix, right: Matrix, variables: Matrix) -> Matrix:
     """Return ``left x right`` with products of the same two variables collected, as in (C - B) r_2 r_3.
 
-    For equal moments of inertia such a component is zero at once.
+    For equal moments of inertia such a component is then zero without simplification.
     """
     return _collected_cross(ImmutableMatrix(left), ImmutableMatrix(right), ImmutableMatrix(variables)).as_mutable()
 
@@ -180,7 +180,7 @@ def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
     """Return a formula with a new name in place of each product of a number and a sum, such as 2*(1 + tanh(u)).
 
     The values of the new names are added to ``known``. SymPy would expand such a product and combine its constant with
-    other constants; a rounding error would remain where the sum is zero.
+    other constants, which leaves a rounding error where the sum is zero.
     """
     if node[0] in ("number", "symbol"):
         return node
@@ -236,7 +236,7 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
 def field_value(name: str, pattern: FieldPattern) -> Any:
     """Return a field of a torque as symbols or exact numbers: a scalar, a vector or a quaternion.
 
-    Components of a vector are numbered from 1, and those of a quaternion from 0.
+    Components of a vector are numbered from 1, components of a quaternion from 0.
     """
     if isinstance(pattern, Pattern):
         return constant(name) if pattern is Pattern.FREE else Integer(pattern.value)
@@ -244,7 +244,7 @@ def field_value(name: str, pattern: FieldPattern) -> Any:
 
 
 def torque_of_potential(law: TorqueLaw) -> Matrix:
-    """Return the torque that the potential of a law implies, in body components: minus its gradient for rotations."""
+    """Return the torque that follows from the potential of a law, in body components: minus its rotational gradient."""
     rates = quaternion_rates("body") * Matrix(symbols.omega_b)
     gradient = Matrix([sympy.S.Zero if law.potential is None else law.potential]).jacobian(symbols.quaternion)
     return -ImmutableMatrix((gradient * rates).jacobian(symbols.omega_b).T)

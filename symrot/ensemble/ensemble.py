@@ -27,7 +27,7 @@ class EnsembleStats(NamedTuple):
     Attributes
     ----------
     steps, evaluations : array, shape (n,)
-        Numbers of steps and evaluations of each motion; one evaluation of a series computes all its coefficients.
+        Numbers of steps and evaluations of each motion; an evaluation of a series computes all its coefficients.
     seconds : float
         Time of the whole ensemble.
 
@@ -53,12 +53,13 @@ class Ensemble:
     omega : array, shape (n, m, 3)
         Angular velocity, body components, rad/s; NaN at times that a motion did not reach.
     status : array, shape (n,)
-        0 for a motion that reached its last time, -1 for one that stopped early (as in SciPy's solve_ivp).
+        0 for a motion that reached its last time, -1 for a motion that stopped early (as in SciPy's solve_ivp).
     messages : n texts
-        The reason why a motion stopped early, with its time; empty for the others.
+        The reason why a motion stopped early, and the time at which it did; empty for the other motions.
     methods : n texts
         The method by which each motion was propagated.
     stats : EnsembleStats
+        Steps, evaluations and time.
 
     Examples
     --------
@@ -78,13 +79,13 @@ class Ensemble:
 
     def __repr__(self) -> str:
         broken = int((self.status != 0).sum())
-        ending = f", {broken} broken off" if broken else ""
+        ending = f", {broken} stopped early" if broken else ""
         kinds = "/".join(dict.fromkeys(self.methods))
         return f"<Ensemble of {self.scene.name}: {len(self)} trajectories, {self.t.shape[-1]} samples, {kinds}{ending}>"
 
     @property
     def quaternion(self) -> Floats:
-        """Attitude, unit, scalar first, body to space, shape (n, m, 4)."""
+        """Attitude as unit quaternions, scalar first, body to space, shape (n, m, 4)."""
         if self._quaternion is None:
             raise InputError(
                 "the attitude was not computed, because neither a torque nor the output of the scene needs it; "
@@ -111,20 +112,20 @@ def propagate_ensemble(
 ) -> Ensemble:
     """Return n motions of a scene that differ in their initial states and in constants of the scene.
 
-    The samples of each motion are the same to the last bit, whatever the other motions, their number, their order and
-    the number of threads are. ``auto`` uses the faster method for each motion. This is a closed form if there is one,
-    with the same bits that :func:`symrot.propagate` returns; otherwise, or where steps were measured to be faster
-    (:func:`symrot.ensemble.exact.choose`), it is Taylor series with one trajectory in each SIMD lane. A motion that
-    does not reach its last time does not affect the others; its ``status`` and message say why.
+    The samples of a motion do not depend on the other motions, their order or the number of threads, to the last bit.
+    ``auto`` uses a closed form for each motion that has one, with the same bits that :func:`symrot.propagate` returns.
+    Otherwise, or where steps were measured to be faster (:func:`symrot.ensemble.exact.choose`), it uses Taylor series
+    with one trajectory in each SIMD lane. A motion that does not reach its last time does not affect the others; its
+    ``status`` is -1 and its message says why.
 
     Parameters
     ----------
     scene : Scene, Propagator, str or Path
         A scene, the name of a shipped scene, the path of a scene file, or a propagator, whose tolerance is then used.
     omega : array, shape (n, 3), optional
-        Initial angular velocities, body components, rad/s; default: the scene's value for all.
+        Initial angular velocities, body components, rad/s; default: the value in the scene for all motions.
     quaternion : array, shape (n, 4), optional
-        Initial attitudes, scalar first; they are normalised.
+        Initial attitudes, scalar first; they are normalised; default: the attitude in the scene for all motions.
     parameters : dict of arrays, optional
         Constants of the scene, in SI units: ``principal`` (n, 3), the moments along given principal axes, or
         ``I_xx`` to ``I_yz`` (n,); fields of a torque by their names in the scene, such as ``weight`` (n,) or
@@ -132,14 +133,13 @@ def propagate_ensemble(
         If two torques have a name in common, the constant of the second torque is called ``torque2_weight``.
     t : array, shape (m,) or (n, m), optional
         Sample times, s, for all motions or for each, in any order, before or after the initial time; default: the
-        scene's own.
+        sample times of the scene.
     method : str
-        ``auto``, or one of :data:`symrot.propagation.method.METHODS` for all.
+        ``auto``, or one of :data:`symrot.propagation.method.METHODS` for all motions.
     tolerance : float, optional
-        Error of each trajectory to aim for; default: the scene's own.
+        Error of each trajectory to aim for; default: the tolerance of the scene.
     workers : int
         Number of threads that step motions.
-        Threads that step.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Ensembles in closed form: a closed form is chosen for each trajectory; one call computes all trajectories of a form.
+"""Ensembles in closed form: each trajectory is given its closed form, and one call computes all with the same form.
 
 Trajectories with unusual numbers (beyond 1e205, or varying products of inertia close to zero) are evaluated one by one,
 each as a single motion. If no constant varies, these motions share the constants of the body and its torques.
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 __all__ = ["ALONE_LOSES_BELOW", "ARRAYS_LOSE_BELOW", "Solved", "choose", "follow_exact", "forms_of"]
 
 Rows = NDArray[np.intp]
-MOST_BITS = 59  # largest number of initial values in a pattern of zeros, without the three of angular velocity
+MOST_BITS = 59  # largest number of conditions in a pattern, without the three of the angular velocity
 
 
 class Kind(NamedTuple):
-    """The closed form of a motion, and the body axis that the form refers to, if it refers to one."""
+    """The closed form of a motion, or None, and the number of the body axis to which it refers, or None."""
 
     form: ClosedForm | None
     axis: int | None
@@ -41,8 +41,8 @@ class Kind(NamedTuple):
 def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
     """Return the closed forms of an ensemble, each with the indices of its trajectories.
 
-    The form depends only on which components are zero and which moments and coefficients are equal. So only one scene
-    is examined for each such pattern.
+    The form depends only on which components are zero and which moments and coefficients are equal. Only one trajectory
+    is therefore examined for each such pattern.
     """
     chosen: dict[Kind, list[Rows]] = {}
     known: dict[Hashable, Kind] = variation.cached("forms", dict)
@@ -59,7 +59,7 @@ def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
 
 
 def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
-    """Return the trajectories in groups with the same zeros and the same equal constants, each with its pattern."""
+    """Return groups of trajectories with the same components zero and the same constants equal, each with its code."""
     columns, n = variation.columns, len(variation)
     code = (variation.omega != 0) @ np.array([1, 2, 4])
     if not columns:
@@ -83,25 +83,23 @@ def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
 
 
 ARRAYS_LOSE_BELOW = {"symmetric body driven about its axis, angular velocity alone": 1e4}
-"""Angle, rad, below which steps are faster than arrays of a form whose constants do not vary; see :func:`choose`."""
+"""Angle of rotation, rad, below which steps are faster than the closed form, if no constant varies; see ``choose``."""
 
 ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
-"""Angle, rad, below which steps are faster than motions in closed form computed one by one; by library."""
+"""Angle of rotation, rad, below which steps are faster than closed forms computed one by one; by library."""
 
 
 class Solved(NamedTuple):
-    """Trajectories of one closed form, computed as a batch of arrays if the form allows it."""
+    """Trajectories of one closed form, with the arrays of their constants; ``batch`` is None if there are none."""
 
     form: ClosedForm
     rows: Rows
     batch: "Batch | None"
-    usual: Any  # the rows for which the arrays are exact
+    usual: Any  # whether the arrays may be used, for each row or for all
 
 
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
-    """Return the trajectories to evaluate in closed form.
-
-    With ``faster``, only trajectories for which the closed form is faster than steps are returned.
+    """Return the trajectories to evaluate in closed form; with ``faster``, only if that is faster than steps.
 
     Measured for 0.01 to 10^4 rad, tolerances of 1e-6 and 1e-12 and 400 trajectories of 101 samples (``python -m
     symrot.bench.starts --ensembles`` prints the same for the scenes' own spans), in microseconds per trajectory:
@@ -115,7 +113,7 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
       spin-up with constants so large or small that arrays cannot be used. Steps take as long at the angles of
       :data:`ALONE_LOSES_BELOW`.
 
-    The angle is that of the trajectory itself, so that its method does not depend on other trajectories.
+    Each trajectory is judged by its own angle of rotation, so that its method does not depend on other trajectories.
     """
     solved: list[Solved] = []
     for kind, rows in forms_of(variation):
@@ -136,9 +134,9 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
 
 
 def _angles(variation: Variation, times: Floats, start: float) -> Floats:
-    """Return rough angles of rotation of all trajectories, rad, shape (n,).
+    """Return a rough angle of rotation for each trajectory, rad, shape (n,).
 
-    They follow from the initial rate of rotation and the constant torques.
+    It is estimated from the initial angular velocity and the constant torques.
     """
     n = len(variation)
     span = np.broadcast_to(abs(times - start).max(axis=-1, initial=0.0), (n,))
@@ -190,7 +188,7 @@ def follow_exact(
 def _put_starts(
     variation: Variation, rows: Rows, at_start: NDArray[np.bool_], omega: Floats, quaternion: Floats | None
 ) -> None:
-    """Write the exact initial states into samples at the initial time, as every method for single motions does."""
+    """Set samples at the initial time to the initial states, as every method for single motions does."""
     if not at_start.any():
         return
     states = variation.initial_states
@@ -208,7 +206,7 @@ def _put_starts(
 
 
 class _Alone:
-    """Motions in closed form computed one by one; constants that do not depend on the initial state are shared."""
+    """Motions in closed form, computed one by one; they share the constants of the body if no constant varies."""
 
     def __init__(self, variation: Variation, form: ClosedForm) -> None:
         self._variation, self._form = variation, form
@@ -226,12 +224,12 @@ class _Alone:
 
 # ------------------------------------------------------------------------------------------------ arrays of each form
 
-_FAR = 1e100  # moments, torques and damping between its inverse and this number have quotients within bounds
+_FAR = 1e100  # quotients of moments, torques and damping between 1/_FAR and _FAR neither over- nor underflow
 Usual = NDArray[np.bool_] | bool
 
 
 class _Part(NamedTuple):
-    """Trajectories of one closed form about one axis, with the constants that all forms use."""
+    """Trajectories of one closed form that refers to the same body axis in all of them."""
 
     variation: Variation
     axis: int | None
@@ -239,7 +237,7 @@ class _Part(NamedTuple):
     omega: Floats  # (n, 3)
 
     def of(self, chosen: NDArray[np.bool_]) -> "_Part":
-        """Return the trajectories of this part whose entry in ``chosen`` is true."""
+        """Return the part with only those trajectories whose entry in ``chosen`` is true."""
         return self._replace(rows=self.rows[chosen], omega=self.omega[chosen])
 
     @property
@@ -263,9 +261,10 @@ class _Part(NamedTuple):
 
 
 def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
-    """Yield the trajectories of one closed form in groups: row indices, a batch, and the rows for which it is exact.
+    """Yield the trajectories of one closed form in groups: row indices, a batch, and whether it is valid for each row.
 
-    The batch is None if the motions of a group must be evaluated one by one.
+    A batch holds the constants of all motions of the group as arrays. It is None if the motions must be evaluated one
+    by one.
     """
     make = BATCHES.get(kind.form.library) if kind.form else None
     if make is None:
@@ -276,7 +275,7 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
     for part in _parts(variation, kind, rows):
         batch, fine = make(part)
         if batch is not None and make is _free and not np.all(fine):
-            # principal axes in fractions take long: such motions count as made one by one
+            # principal axes in fractions take long: these motions are evaluated one by one
             clear = np.asarray(fine)
             yield part.rows[~clear], None, None
             if not clear.any():
@@ -369,7 +368,7 @@ def _gyrostat(part: _Part) -> tuple["Batch | None", Usual]:
 
 
 def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
-    """Return the sum of one component over all torques of a kind; None if it varies and there are several torques."""
+    """Return the sum of one component over all torques of a kind; None if there are several torques and it varies."""
     variation = part.variation
     components = [
         part.constant(f"{variation.prefix(k)}{field}_{axis % 3 + 1}")
@@ -406,7 +405,7 @@ def _driven(part: _Part) -> tuple["Batch | None", Usual]:
         ratios = [[x.as_integer_ratio() for x in column] for column in columns]
         bodies = [Constants(axis, (a, c), *rest) for a, c, *rest in zip(*ratios, strict=True)]
         return batches.driven(bodies, part.omega, part.start), True
-    except InputError:  # of one trajectory: its own motion reports the error
+    except InputError:  # caused by one trajectory, whose single motion reports the error
         return None, False
 
 
@@ -427,4 +426,4 @@ BATCHES: dict[str, Callable[[_Part], tuple["Batch | None", Usual]]] = {
     "axial": _driven,
     "spin_up": _spin_up,
 }
-"""Function for each closed form that computes its trajectories as arrays."""
+"""For each library of closed forms, the function that puts the constants of its trajectories into arrays."""

@@ -1,9 +1,9 @@
-"""Taylor series with one trajectory in each SIMD lane: the C of :file:`lanes.c` driven from Python.
+"""Taylor series with one trajectory in each SIMD lane: Python calls the C of :file:`lanes.c`.
 
-The series, step rule and compensated sums are those of :mod:`symrot.propagation.steppers.taylor`. Four or eight motions
-share an instruction, each with steps of its own size. A lane whose motion has ended takes the next motion. Lanes are
-independent: the samples of a motion are the same to the last bit for any neighbours, lane and number of threads, and a
-motion that stops early does not affect the others.
+Series, step rule and compensated sums are the same as in :mod:`symrot.propagation.steppers.taylor`. A processor
+instruction advances four or eight motions, each with steps of its own size. A lane whose motion has ended takes the
+next motion. Lanes are independent: the samples of a motion do not depend on the other motions, its lane or the number
+of threads, to the last bit, and a motion that stops early does not affect the others.
 """
 
 import ctypes
@@ -58,7 +58,7 @@ ORDERS = (
 
 
 def order_for(tolerance: float) -> int:
-    """Return the fastest order of the series for a tolerance (``python -m symrot.bench.ensemble --orders``)."""
+    """Return the fastest order of the Taylor series for a tolerance (``python -m symrot.bench.ensemble --orders``)."""
     return next(order for least, order in ORDERS if tolerance >= least)
 
 
@@ -70,7 +70,7 @@ def translation_unit(
     Parameters
     ----------
     program, blocks, scales, order
-        As :func:`symrot.propagation.steppers.taylor.translation_unit` takes them.
+        As for :func:`symrot.propagation.steppers.taylor.translation_unit`.
     width : int, optional
         Number of lanes: 1 (plain C), 2, 4 or 8; default: as many as the processor's registers hold.
 
@@ -85,7 +85,7 @@ def translation_unit(
 
 
 def wrap_translation_unit(definitions: str, width: int | None = None) -> str:
-    """Return the C source of a library from the C text of one system; see :func:`translation_unit`."""
+    """Return the C source of a library from the printed series of its rates; see :func:`translation_unit`."""
     head = "" if width is None else "#define SYMROT_PLAIN\n" if width == 1 else f"#define SYMROT_LANES {width}\n"
     paths = ("ensemble/lanes.h", "propagation/steppers/series.h", "ensemble/lanes.c")
     operations, series, steps = map(c_text, paths)
@@ -121,7 +121,7 @@ class Outcome(NamedTuple):
 
 
 class Lanes:
-    """A loaded library of :func:`translation_unit`: the Taylor series and the stepper for many motions in lanes."""
+    """A loaded library with Taylor series and stepper for many motions in SIMD lanes, from :func:`translation_unit`."""
 
     def __init__(self, path: str) -> None:
         self.path = path
@@ -165,7 +165,7 @@ def lanes(path: str) -> Lanes:
 
 
 class _Legs(NamedTuple):
-    """All motions, each split at t0 into legs: the parts before and after t0, with times sorted away from t0.
+    """All motions split into legs, the parts before and after t0, with times sorted by distance from t0.
 
     See ``symrot_job`` in lanes.c.
     """
@@ -193,7 +193,7 @@ def _legs(t0: float, times: Floats, n: int) -> _Legs:
 
 
 class LaneIntegration:
-    """Many motions with given parameters, initial states and sample times: prepared once, run any number of times.
+    """Many motions in SIMD lanes, with given parameters, initial states and times; can be run any number of times.
 
     Parameters
     ----------
@@ -210,9 +210,9 @@ class LaneIntegration:
     max_steps : int
         Largest number of steps of one motion.
     workers : int
-        Number of threads; each steps a part of the motions in its own lanes.
+        Number of threads. Each steps a part of the motions.
     epoch : float
-        Time of the scene, s, at which the clock of ``t0`` and ``times`` shows 0; messages add it to times.
+        Time of the scene, s, from which ``t0`` and ``times`` are counted; messages contain times of the scene.
     """
 
     def __init__(
@@ -231,7 +231,7 @@ class LaneIntegration:
         self._rows = self._places(("motion", "first", "count", "row"), self.legs.rows)
 
     def _places(self, names: Sequence[str], table: NDArray[Any]) -> dict[str, int]:
-        """Return the index of the first column of each named row in a table of legs."""
+        """Return the memory address of each row of a table, by name; a table has one column per leg."""
         place = address(table)
         return {name: place + 8 * self.total * k for k, name in enumerate(names)}
 
@@ -273,7 +273,7 @@ class LaneIntegration:
 
 
 def follow(*arguments: Any, **options: Any) -> Outcome:
-    """Return the states of n motions at their sample times; the arguments are those of :class:`LaneIntegration`."""
+    """Return the states of n motions at their sample times; the arguments are as for :class:`LaneIntegration`."""
     return LaneIntegration(*arguments, **options).run()
 
 

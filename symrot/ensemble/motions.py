@@ -1,4 +1,4 @@
-"""The motions of an ensemble, each computed by the fastest method: closed form, SIMD lanes, or one after the other."""
+"""The motions of an ensemble, each by the fastest method: closed form, in SIMD lanes, or as a single motion."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
@@ -71,13 +71,13 @@ class Problem(NamedTuple):
 
 
 def follow(problem: Problem, method: str) -> Followed:
-    """Return the samples of all motions of a problem, each computed by the given or the fastest method.
+    """Return the samples of all motions of a problem, by the named method or, for ``auto``, the fastest for each.
 
     Parameters
     ----------
     method : str
-        ``auto`` (for each motion the faster of closed form and lanes, see :func:`symrot.ensemble.exact.choose`),
-        ``exact``, ``taylor``, ``dop853`` or ``scipy:NAME``.
+        ``auto`` (closed form or Taylor series in SIMD lanes, see :func:`symrot.ensemble.exact.choose`), ``exact``,
+        ``taylor``, ``dop853`` or ``scipy:NAME``.
     """
     count = len(problem.variation)
     name = method.partition(":")[0]
@@ -165,7 +165,7 @@ def _stepping_method(problem: Problem) -> str:
 
 
 def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
-    """Return the compiled library that steps many motions of a plan in lanes, with a series order for the tolerance."""
+    """Return the compiled library that steps motions of a plan in SIMD lanes; the tolerance determines its order."""
     order = lanes.order_for(tolerance)
     key = f"lanes {order}\n{kernel_key(plan)}"
     system = library.fetch(key)
@@ -197,13 +197,13 @@ class _Stepped:
             raise IntegrationStopped(self.epoch, NOT_FINITE_SENTENCE) from None
 
     def on_clock(self, times: Floats) -> Floats:
-        """Return times of the scene on the steppers' clock, which shows 0 at the epoch."""
+        """Return times of the scene, s, converted to times since the epoch, which the steppers use."""
         return times - self.epoch if self.epoch else times
 
     def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = epoch.compiled) -> Any:
-        """Return, for motion k, a function from an epoch to its rates on a clock starting there, and their parameters.
+        """Return, for motion k, a function from an epoch to rates that count time from it, and their parameters.
 
-        See :func:`symrot.propagation.time_shift.clock`.
+        The result is None if the rates do not depend on the time. See :func:`symrot.propagation.time_shift.clock`.
         """
         if not self.kernel.rates.uses("t"):
             return None
@@ -232,7 +232,7 @@ class _Stepped:
             quaternion[chosen] /= size
 
     def _parameters_of(self, outputs: Sequence[str]) -> Any:
-        """Return the parameters on which the named outputs depend."""
+        """Return the parameters of the kernel, as pairs of name and formula, on which the named outputs depend."""
         program, parameters = self.kernel.quantities, self.kernel.quantity_parameters
         needed = set().union(*(names(node) for name, node in program.outputs if name in outputs))
         for name, node in reversed(program.temporaries):
@@ -240,7 +240,7 @@ class _Stepped:
         return tuple([(name, node) for name, node in parameters if name in needed])
 
     def one_by_one(self, integrate: Callable[[int, Floats], tuple[Floats, Any]]) -> lanes.Outcome:
-        """Return the states of all trajectories; ``integrate``, the stepper for a single motion, computes each."""
+        """Return the states of all trajectories, each computed by ``integrate``, the stepper for a single motion."""
         samples = self.times.shape[-1]
         states = np.full((len(self.chosen), samples, len(self.plan.states)), np.nan)
         steps, evaluations = (np.zeros(len(self.chosen), dtype=np.int64) for _ in range(2))
@@ -269,9 +269,9 @@ def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
 
 
 def _enclosed(stepped: _Stepped) -> lanes.Outcome:
-    """Return the states of motions whose steps need an enclosure or a check, computed one after the other.
+    """Return the states of motions under torques given by formulas, computed one after the other.
 
-    Lanes support neither enclosures nor checks.
+    Their steps need bounds of the rates (an enclosure) or a check, which the stepper in SIMD lanes does not support.
     """
     problem, (plan, kernel) = stepped.problem, stepped.moved
     path = taylor_library(plan, kernel, problem.tolerance, projected=False)
@@ -323,4 +323,4 @@ STEPPERS: dict[str, Callable[[_Stepped, str], lanes.Outcome]] = {
     "scipy": _scipy,
     "constant": _constant,
 }
-"""Function that computes motions without a closed form, by the name of the method."""
+"""For each method, the function that computes the motions without a closed form."""

@@ -25,8 +25,9 @@ class Numbers:
     Parameters
     ----------
     variation : Variation
+        The numbers that vary in the ensemble.
     plan : Plan
-        A plan that covers all trajectories.
+        A plan that is valid for all trajectories.
     chosen : whole numbers
         The indices of the trajectories.
     """
@@ -42,11 +43,11 @@ class Numbers:
         self._columns = {name: varying[name][self._chosen] for name in plan.constants if name in varying}
 
     def constants(self, k: int) -> dict[str, Fraction]:
-        """Return all constants of trajectory k of these trajectories, as exact fractions by name."""
+        """Return all constants of the trajectory at index k of ``chosen``, by name, as exact fractions."""
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
     def bound(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
-        """Return the parameters of a kernel for each trajectory, shape (n, k): exact arithmetic, one rounding each.
+        """Return the parameters of a kernel for each trajectory, shape (n, k), computed exactly and rounded once.
 
         Raises
         ------

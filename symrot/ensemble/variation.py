@@ -1,4 +1,4 @@
-"""Variations: the arrays that describe an ensemble, read and checked, and a plan that is valid for all trajectories."""
+"""Variations: the checked arrays that describe an ensemble, and a plan that is valid for all its trajectories."""
 
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, replace
@@ -25,7 +25,7 @@ __all__ = ["PLACES", "Variation", "read_times", "read_variation"]
 PLACES = {"I_xx": (0, 0), "I_yy": (1, 1), "I_zz": (2, 2), "I_xy": (0, 1), "I_xz": (0, 2), "I_yz": (1, 2)}
 PRINCIPAL = ("I_xx", "I_yy", "I_zz")
 PRODUCTS = ("I_xy", "I_xz", "I_yz")
-CLEARLY = 1e-12  # difference, relative to the largest moment, that doubles resolve
+CLEARLY = 1e-12  # difference, relative to the largest moment, that is certain in doubles
 FIXED = {"direction": "rotate the initial quaternions instead", "attitude": "rotate the initial quaternions instead"}
 SIGNS = {  # test of the sign that a field requires, for each trajectory: shape (n, k) -> (n,)
     "positive": lambda values: (values > 0).all(axis=1),
@@ -37,16 +37,16 @@ GENERAL_START = Initial(  # initial state without special values, so that no rul
     (Fraction(1, 5), Fraction(2, 5), Fraction(4, 5), Fraction(2, 5)),
 )
 BY_ZEROS = {"gravity", "rotor", "constant_body", "damping"}
-"""Kinds of torques whose constants affect the plan only by being zero or not."""
+"""Kinds of torques for which the plan depends only on which of their constants are zero."""
 
-DISTINCT = (Fraction(4), Fraction(5), Fraction(6))  # moments that a body can have, all different
+DISTINCT = (Fraction(4), Fraction(5), Fraction(6))  # different moments that satisfy the triangle inequalities
 
 
-_rooms: dict[int, dict[Hashable, Any]] = {}  # cached values of scenes by their ids, deleted with the scene
+_caches: dict[int, dict[Hashable, Any]] = {}  # cached values of scenes by their ids, deleted with the scene
 
 
 class _Place(NamedTuple):
-    """The place of a constant in a scene: in the inertia tensor, or in a field of a torque."""
+    """Location of a constant in a scene: in the inertia tensor, or in a field of a torque."""
 
     torque: int  # -1: the inertia
     field: str
@@ -70,40 +70,40 @@ class Variation:
         return len(self.omega)
 
     def scene_of(self, i: int) -> Scene:
-        """Return the scene of a trajectory, with the exact values of the numbers in the arrays."""
+        """Return the scene of trajectory i, with its numbers in the arrays converted to exact fractions."""
         return self._with(self.initial(i), {name: Fraction(float(column[i])) for name, column in self.columns.items()})
 
     def initial(self, i: int) -> Initial:
-        """Return the initial state of a trajectory, with the exact values of the numbers in the arrays."""
+        """Return the initial state of trajectory i, with its numbers in the arrays converted to exact fractions."""
         x, y, z = map(Fraction, self.omega[i].tolist())
         if self.quaternion is None:
             return Initial((x, y, z), self.scene.initial.quaternion)
         return Initial((x, y, z), _unit(self.quaternion[i].tolist()))
 
     def cached(self, key: Hashable, make: Callable[[], Any]) -> Any:
-        """Return a value that depends only on the scene.
+        """Return a value that depends only on the scene: the result of ``make``, stored under ``key``.
 
         ``make`` is called once for all ensembles of the same scene.
         """
         place = id(self.scene)
-        room = _rooms.get(place)
-        if room is None:
-            room = _rooms[place] = {}
-            finalize(self.scene, _rooms.pop, place, None)
-        if key not in room:
-            room[key] = make()
-        return room[key]
+        values = _caches.get(place)
+        if values is None:
+            values = _caches[place] = {}
+            finalize(self.scene, _caches.pop, place, None)
+        if key not in values:
+            values[key] = make()
+        return values[key]
 
     @cached_property
     def attitudes(self) -> Floats | None:
-        """The initial unit quaternions as sums of two doubles, shape (n, 8); None if all have the scene's attitude."""
+        """Initial unit quaternions as sums of two doubles, shape (n, 8); None if all start at the scene's attitude."""
         from symrot.closed_form.batches import attitudes
 
         return None if self.quaternion is None else attitudes(self.quaternion)
 
     @cached_property
     def initial_states(self) -> Floats:
-        """Angular velocity and unit quaternion of each trajectory, shape (n, 7), each number the nearest double."""
+        """Initial angular velocity and unit quaternion of each trajectory, rounded to doubles, shape (n, 7)."""
         states = np.empty((len(self), 7))
         states[:, :3] = self.omega
         own = [float(q) for q in self.scene.initial.quaternion]
@@ -117,7 +117,7 @@ class Variation:
         return fixed and not any(self.columns[name].any() for name in self.columns if name in PRODUCTS)
 
     def constant(self, name: str) -> Fraction | Floats:
-        """Return a constant by its name in the plan: one number if it is the same for all, else a column (n,)."""
+        """Return a constant by its name in the plan: one number if it is the same for all, else an array (n,)."""
         if name in self.columns:
             return self.columns[name]
         torque, field, entry = self.places[name]
@@ -132,7 +132,7 @@ class Variation:
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
-        """Return the other constants of the same field that have no column, as doubles."""
+        """Return the constants of the same field that do not vary and are (nearly) doubles, as doubles."""
         place = self.places[name]
         same = [key for key, other in self.places.items() if other[:2] == place[:2] and key not in self.columns]
         values = {self.constant(key) for key in same if not isinstance(self.places[key].entry, str)}
@@ -140,13 +140,13 @@ class Variation:
 
     @property
     def negligible(self) -> Floats:
-        """The products of inertia, kg m^2, below which the given axes count as principal, shape (n,)."""
+        """The bound of products of inertia, kg m^2, below which the body axes count as principal, shape (n,)."""
         bounds: Floats = np.ldexp(abs(self.moments).max(axis=1), -number.NEGLIGIBLE_BITS)
         return bounds
 
     @property
     def moments(self) -> Floats:
-        """The moments I_xx, I_yy and I_zz of each trajectory, kg m^2, shape (n, 3), each the nearest double."""
+        """The moments I_xx, I_yy and I_zz of each trajectory, kg m^2, rounded to doubles, shape (n, 3)."""
         moments = np.empty((len(self), 3))
         for k, name in enumerate(PRINCIPAL):
             value = self.constant(name)
@@ -171,7 +171,7 @@ class Variation:
         return replace(self.scene, initial=start, body=body, torques=tuple(torques))
 
     def plan(self) -> Plan:
-        """Return a plan that is valid for all trajectories: it uses a special value only if every trajectory has it."""
+        """Return a plan that is valid for all trajectories: it uses a zero or an equality only if it holds in each."""
         values = {name: _representative(column) for name, column in self.columns.items()}
         if not PLACES.keys().isdisjoint(values):
             values |= self._representative_inertia()
@@ -190,7 +190,7 @@ class Variation:
         return make_plan(self._with(GENERAL_START, values), switched=switched(self.scene))
 
     def _representative_inertia(self) -> dict[str, Fraction]:
-        """Return an inertia tensor with exactly the equalities and zeros that hold in every trajectory."""
+        """Return the entries of an inertia tensor with only the equalities and zeros that hold in each trajectory."""
         inertia = self.scene.body.inertia
         tensor: dict[str, Fraction] = {}
         for k, name in enumerate(PRINCIPAL):
@@ -223,7 +223,7 @@ def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
 
 
 def _representative(column: Floats) -> Fraction:
-    """Return one value for a whole column: zero if all values are zero, else a value without effect on the plan."""
+    """Return one value that represents a column for the planner: zero if all are zero, else a value that is not."""
     return Fraction(float(column[np.argmax(column != 0)]))
 
 
@@ -233,13 +233,13 @@ def _representative(column: Floats) -> Fraction:
 def read_variation(
     scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None, parameters: Mapping[str, ArrayLike] | None
 ) -> Variation:
-    """Return the variation that the arguments of an ensemble describe; None means the scene's values.
+    """Return the checked variation that the arguments of an ensemble describe; None means the value in the scene.
 
     Raises
     ------
     InputError
-        For arrays of wrong shape, values that are not finite, zero quaternions, names that the scene does not have, or
-        moments that no body can have.
+        For arrays of wrong shape, values that are not finite, zero quaternions, unknown names, or moments that no body
+        can have.
     """
     if parameters is not None and not isinstance(parameters, Mapping):
         raise InputError(f"parameters: expected a dict of arrays by name, got {number.show(parameters)}")
@@ -278,8 +278,8 @@ def read_variation(
 def _check_bodies(variation: Variation) -> None:
     """Raise InputError if a trajectory has moments of inertia that no body has, or that do not determine its motion.
 
-    Doubles suffice if the principal moments clearly satisfy the triangle inequalities; other bodies are checked
-    exactly.
+    A check in doubles suffices for principal moments that clearly satisfy the triangle inequalities. The others are
+    checked exactly.
     """
     moments: Any = variation.moments
     if not variation.in_principal_axes:
@@ -298,7 +298,7 @@ def _check_bodies(variation: Variation) -> None:
 
 
 def read_times(t: ArrayLike | None, scene: Scene, n: int) -> Floats:
-    """Return the sample times, shape (m,) for all trajectories or (n, m)."""
+    """Return the checked sample times, s, shape (m,) for all trajectories or (n, m) for each."""
     if t is None:
         span = scene.span
         return np.linspace(float(span.start), float(span.stop), span.samples)
@@ -326,7 +326,7 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
 
 
 def _places(scene: Scene) -> dict[str, _Place]:
-    """Return the places in a scene of all constants that may vary, by their names in the plan."""
+    """Return where the constants that may vary are in a scene, by their names in the plan."""
     places = {name: _Place(-1, "inertia", None) for name in PLACES}
     for index, torque in enumerate(general_structure(scene).torques):
         if isinstance(torque, FormulaTorque):
@@ -340,7 +340,7 @@ def _places(scene: Scene) -> dict[str, _Place]:
 
 
 def _columns(scene: Scene, places: dict[str, _Place], name: str, values: ArrayLike) -> dict[str, Floats]:
-    """Return the columns of constants that one entry of ``parameters`` describes."""
+    """Return one column of values per constant, by name, from one entry of ``parameters``."""
     if name == "principal":
         if not scene.body.principal.given_axes:
             raise InputError(

@@ -1,9 +1,9 @@
 """The plan of a scene: the smallest set of equations that gives the requested output. Does not use SymPy.
 
 A plan starts from the most general structure (full inertia tensor, every constant free, full attitude) and applies a
-table of rules. Each rule looks at exact numbers, simplifies the structure or leaves it unchanged, and names the
-derivation that justifies the change. The structure (what is zero, equal or constant) decides which kernel, that is
-which compiled equations, is needed: scenes of the same structure share a kernel.
+table of rules. Each rule examines exact numbers, simplifies the structure or leaves it unchanged, and names the
+derivation that justifies the change. The structure says which constants are zero, equal or free. It determines the
+kernel (the compiled equations): scenes of the same structure share a kernel.
 """
 
 from collections.abc import Callable, Hashable
@@ -45,10 +45,10 @@ ATTITUDE_QUANTITIES = frozenset(
 PRODUCTS = {"I_xy": (0, 1), "I_xz": (0, 2), "I_yz": (1, 2)}
 MOMENTS = {"I_xx": (0, 0), "I_yy": (1, 1), "I_zz": (2, 2)}
 NEVER_NEEDS_ATTITUDE = ("constant_body", "damping", "rotor")
-DIRECTED = {"constant_space": "torque", "gravity": "direction"}  # fixed in space: the field that says along what
+DIRECTED = {"constant_space": "torque", "gravity": "direction"}  # torques fixed in space: the field with the vector
 UNIT_FIELDS = ("direction", "attitude")  # fields in which a component equal to one counts as a special value
 START_CONSTANTS = frozenset({f"omega_{i}" for i in (1, 2, 3)} | {f"initial_q{i}" for i in range(4)})
-"""The constants of a structure that are numbers of the initial state; all others are the scene's."""
+"""The constants of a structure that are numbers of the initial state; all others belong to body and torques."""
 RESERVED = frozenset(
     {"t", "theta", "pi", *"ABC", *MOMENTS, *PRODUCTS}
     | {f"{name}_{i}" for name in ("omega", "L", "M", "radius", "initial_q") for i in range(4)}
@@ -65,15 +65,15 @@ class RuleOutcome(NamedTuple):
     Attributes
     ----------
     structure : Structure
-        After the rule.
+        The structure after the rule.
     skipped : bool
-        Whether the rule left something out.
+        Whether the rule removed something from the equations.
     why : str
         The reason.
     derivation : str
-        Name of the derivation that justifies it; empty where the requested output alone decides.
+        Name of the derivation that justifies the decision; empty if the requested output alone decides.
     item : str
-        The subject of the rule in the table of rules; a rule itself leaves it empty.
+        The subject of the rule, from the table of rules; empty in the outcome that the rule itself returns.
 
     Examples
     --------
@@ -91,16 +91,16 @@ class RuleOutcome(NamedTuple):
 
 @dataclass(frozen=True)
 class Plan:
-    """The smallest set of equations that gives the output of a scene, with the numbers that go into them.
+    """The smallest set of equations that gives the output of a scene, with the values of their constants.
 
     Attributes
     ----------
     scene : Scene
         The problem.
     structure : Structure
-        Which equations the motion obeys.
+        The constants that are zero, equal or free, which determine the equations.
     rows : tuple of RuleOutcome
-        What each rule decided, and why.
+        The decision of each rule, with its reason.
 
     Examples
     --------
@@ -115,7 +115,7 @@ class Plan:
 
     @cached_property
     def constants(self) -> dict[str, Fraction]:
-        """The physical constants of the equations by name, exact. The modes of torques with jumps have the value 1."""
+        """The physical constants of the equations by name, exact. Modes (values of sign, abs, ..) have the value 1."""
         return self.scene_constants | self.start_constants
 
     @cached_property
@@ -141,9 +141,9 @@ class Plan:
 
     @property
     def switches(self) -> list[str]:
-        """The functions with jumps or kinks in the torques, as the scene writes them.
+        """The functions with jumps or kinks in the torques, such as ``"sign(omega_3)"``, as the scene writes them.
 
-        It is empty if the plan follows no jumps or kinks.
+        The list is empty if the plan does not follow jumps and kinks.
         """
         return [switch.label for torque in self.structure.formula_torques for switch in torque.switches]
 
@@ -169,7 +169,7 @@ class Plan:
 
     @cached_property
     def _places(self) -> tuple[int, ...]:
-        """The index of each state (variable) among angular velocity, attitude and angle of a planar rotation."""
+        """The index of each state in the list omega_1..3, q0..3, angle of a planar rotation."""
         return tuple([STATES.index(name) for name in self.states])
 
     def from_start(self, initial: Initial) -> "Plan":
@@ -184,7 +184,7 @@ class Plan:
 
     @cached_property
     def _shared(self) -> dict[str, Any]:
-        """The attributes, by name, that a plan shares with plans of the same structure and another initial state."""
+        """The attributes, by name, that do not change if only the initial state of the plan changes."""
         names = ("structure", "rows", "scene_constants", "states", "_places", "_start_places")
         attributes: dict[str, Any] = {name: getattr(self, name) for name in names}
         attributes["_shared"] = attributes
@@ -201,17 +201,18 @@ def make_plan(
     scene : Scene
         The problem.
     initial : Initial, optional
-        Instead of the scene's own.
+        Initial state to use instead of the scene's.
     external_torque : bool
-        Whether a torque that is no formula acts too: then the plan keeps everything that such a torque could change.
+        Whether a torque without a formula acts too: the plan then keeps everything that such a torque could change.
     switched : bool
-        Whether the plan may have modes, which the propagator changes when the motion passes a switch.
+        Whether the plan may have modes: values of functions such as sign, which change when the motion passes a switch.
 
     Raises
     ------
     InputError
-        If a torque has switches (step, sign, min, ..) and ``switched`` is false: no single set of equations holds
-        throughout. If the scene has a table of samples and ``external_torque`` is false: a kernel needs formulas.
+        If a torque has switches (step, sign, min, ..) and ``switched`` is false, because no single set of equations
+        holds throughout. If the scene has a table of samples and ``external_torque`` is false, because a kernel needs
+        formulas.
     """
     if scene.table is not None and not external_torque:
         raise InputError(
@@ -234,15 +235,14 @@ def make_plan(
     return Plan(scene, structure, tuple(rows))
 
 
-# --- which starts have one structure ----------------------------------------------------------------------------------
+# --- initial states of equal structure --------------------------------------------------------------------------------
 
 
 def structure_key(scene: Scene, initial: Initial) -> Hashable:
-    """Return the facts about an initial state on which the plan depends, as a key for comparison.
+    """Return a key that is equal for initial states whose plans differ only in numbers.
 
-    Plans of initial states with the same key differ in numbers alone. The key says which components of omega are zero.
-    If the body may rotate about a single axis, it also says which components of the attitude are zero or one, and along
-    which body axes the torques fixed in space lie.
+    The key says which components of omega are zero. If the body may rotate about a single axis, it also says which
+    components of the attitude are zero or one, and along which body axes the torques fixed in space lie.
     """
     rotates_about = tuple([x.numerator != 0 for x in initial.omega_b])
     if rotates_about.count(True) > 1:
@@ -257,7 +257,7 @@ def structure_key(scene: Scene, initial: Initial) -> Hashable:
 
 
 def switched(scene: Scene) -> bool:
-    """Return whether a torque of a scene has a jump or a kink (as ``sign`` or ``abs``) that the motion may reach."""
+    """Return whether a torque of a scene has a jump or a kink, such as ``sign`` or ``abs``, that may be reached."""
     return any(
         has_switches(expression.parse(formula, switching=True))
         for torque in scene.torques
@@ -297,7 +297,7 @@ def _general_torque(number: int, torque: Torque, known: set[str], switched: bool
 
 
 def _formula_torque(torque: Torque, switched: bool) -> FormulaTorque:
-    """Return the structure of a torque given by formulas; its constants keep the names that the scene gives them."""
+    """Return the structure of a torque given by formulas; its constants keep their names in the scene."""
     formulas, parameters, frame = torque.formulas, tuple(torque.values), torque.frame
     if not (switched and any(has_switches(expression.parse(text, switching=True)) for text in formulas)):
         return FormulaTorque("", formulas, parameters, frame)
@@ -419,7 +419,7 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
-    """Return a list with one sentence that names the axes about which formulas give no torque; empty without any."""
+    """Return a list with one sentence that names the axes about which formulas give no torque, or an empty list."""
     axes = [str(i + 1) for i, formula in enumerate(scene_torque.formulas) if _is_zero(formula)]
     if not axes:
         return []
@@ -490,7 +490,7 @@ def _in_body(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[Fraction
     return tuple(scalar * v + t - 2 * q0 * c for v, t, c in zip(vector_s, twice, turned, strict=True))
 
 
-CLEARLY = 1e-12  # part of a vector: doubles show that a larger component is not zero
+CLEARLY = 1e-12  # part of a vector: a larger component is certainly not zero when computed in doubles
 
 
 def _negligible(value: Fraction, vector: tuple[Fraction, ...]) -> bool:
@@ -509,9 +509,9 @@ def _small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple
 
 
 def _all_large(vector_s: tuple[Fraction, ...], initial: Initial) -> bool:
-    """Return whether double precision already proves that no body component of a vector is zero.
+    """Return whether double precision suffices to prove that no body component of a vector is zero.
 
-    That takes a tenth of the time of exact numbers.
+    The test takes a tenth of the time of exact arithmetic.
     """
     ratios = [x.as_integer_ratio() for x in (*initial.quaternion, *vector_s)]
     q0, q1, q2, q3, x, y, z = [top / bottom for top, bottom in ratios]
@@ -569,11 +569,11 @@ def _constant_spin(scene: Scene, structure: Structure) -> RuleOutcome:
                 why += ", and no spin: the body rotates steadily about an axis across"
                 return RuleOutcome(replace(structure, constant=_constant(scene, 0, 1, 2)), True, why, "symmetric_spin")
             return RuleOutcome(replace(structure, constant=_constant(scene, axis)), True, why, "symmetric_spin")
-    return RuleOutcome(structure, False, "no axis of symmetry without torque about it")
+    return RuleOutcome(structure, False, "no symmetry axis about which no torque acts")
 
 
 def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None, Pattern | None]:
-    """Return a pattern (zero or free) for each component of omega_b that is constant, and None for the others.
+    """Return, for each component of omega_b, its pattern (zero or free) if it is constant, otherwise None.
 
     ``axes`` are the indices of the constant components.
     """
@@ -606,17 +606,17 @@ RULES: tuple[tuple[str, Callable[[Scene, Structure], RuleOutcome]], ...] = (
     ("rotation out of one axis", _one_axis),
     ("rate of spin", _constant_spin),
 )
-"""The rules in their order: (what it is about, rule)."""
+"""The rules in the order of their application: (subject, rule)."""
 
 
 def _whole_motion(scene: Scene, structure: Structure) -> RuleOutcome:
-    why = "a torque that is no formula may depend on it, and on all components of omega"
+    why = "a torque without a formula may depend on it, and on all components of omega"
     return RuleOutcome(structure, False, why)
 
 
 def _terms_under_external_torque(scene: Scene, structure: Structure) -> RuleOutcome:
     if not scene.torques:
-        return RuleOutcome(structure, False, "the torque that is no formula acts alone")
+        return RuleOutcome(structure, False, "the only torque has no formula")
     return _special_constants(scene, structure)
 
 

@@ -1,7 +1,7 @@
 """Kernels of a plan (its equations, ready to be evaluated) as saved data: programs and C text.
 
-:mod:`symrot.codegen.scene_kernels` derives them, the cache stores them as JSON, and the propagator binds them to
-numbers. This module does not use SymPy.
+:mod:`symrot.codegen.scene_kernels` derives them, the cache stores them as JSON, and the propagator gives values to
+their parameters. This module does not use SymPy.
 """
 
 from collections.abc import Mapping
@@ -22,17 +22,18 @@ Parameters = tuple[tuple[str, Node], ...]  # name in the kernel, formula over th
 
 
 class Conserved(NamedTuple):
-    """A quantity that may be conserved: whether it is, and why.
+    """A candidate for a conserved quantity, with the decision whether it is conserved.
 
     Attributes
     ----------
     name, unit : str
+        Its name and SI unit.
     output : str
-        The quantity of the kernel that is its value; empty where it is not conserved.
+        Name of the kernel's output with its value; empty if it is not conserved.
     holds : bool
         Whether it is conserved.
     reason : str
-        Why it is, or why it is not.
+        The reason why it is conserved or not.
     """
 
     name: str
@@ -46,7 +47,7 @@ SavedParameters = list[tuple[str, list[Any]]]  # name, formula as nested lists
 
 
 class KernelRecord(TypedDict):
-    """A :class:`SceneKernel` as data for JSON."""
+    """The data of a :class:`SceneKernel` as stored in the cache, as JSON."""
 
     rates: ProgramRecord
     rate_parameters: SavedParameters
@@ -59,8 +60,7 @@ class KernelRecord(TypedDict):
 class SceneKernel:
     """The equations of a structure, ready to be evaluated: derived once and used for every scene of that structure.
 
-    Programs are made from the saved data when they are first used: a propagation in C never needs the program of the
-    rates.
+    Programs are restored from the saved data on first use: a propagation in C never needs the program of the rates.
 
     Examples
     --------
@@ -101,7 +101,7 @@ class SceneKernel:
 
     @cached_property
     def rate_parameters(self) -> Parameters:
-        """The parameters of the rates: names, and formulas of the constants of the scene."""
+        """The parameters of the rates: their names, and formulas in the constants of the scene."""
         return _loaded(self.record["rate_parameters"])
 
     @cached_property
@@ -111,7 +111,7 @@ class SceneKernel:
 
     @cached_property
     def quantity_parameters(self) -> Parameters:
-        """The parameters of the quantities: names, and formulas of the constants of the scene."""
+        """The parameters of the quantities: their names, and formulas in the constants of the scene."""
         return _loaded(self.record["quantity_parameters"])
 
     @cached_property
@@ -134,9 +134,6 @@ def _loaded(saved: SavedParameters) -> Parameters:
 
 
 def bind(parameters: Parameters, constants: Mapping[str, Fraction]) -> list[float]:
-    """Return the values of a kernel's parameters from the constants of a scene.
-
-    The arithmetic is exact, with one rounding of each value.
-    """
+    """Return the values of a kernel's parameters from the constants of a scene, computed exactly and rounded once."""
     values = {"pi": number.PI, **constants}
     return [float(evaluate(node, values, EXACT_FUNCTIONS)) for _, node in parameters]

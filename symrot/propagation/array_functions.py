@@ -1,4 +1,4 @@
-"""Functions that formulas of scenes may call (such as sin and sign), for NumPy arrays."""
+"""NumPy versions of the functions that the formulas of a scene may call, such as sin and atan2."""
 
 import numpy as np
 

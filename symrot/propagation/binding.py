@@ -38,14 +38,14 @@ class Binding:
     plan : Plan
         Plan of the scene, with any initial state.
     rounded : function
-        From a ratio of integers to the doubles that represent it.
+        Takes numerator and denominator of a value, returns the doubles that represent it.
     known : mapping
-        More constants of the formulas, by name.
+        Values of further names in the formulas, in addition to the constants of the plan.
 
     Raises
     ------
     OverflowError
-        If a parameter is beyond all doubles; a call raises it too.
+        If a parameter exceeds the range of doubles. A call raises it too.
     """
 
     def __init__(
@@ -67,9 +67,7 @@ class Binding:
         ]
 
     def __call__(self, plan: Plan) -> list[float]:
-        """Return the values of the parameters for a plan with another initial state: exact arithmetic, one rounding
-        each.
-        """
+        """Return the parameters for a plan with another initial state, each computed exactly and rounded once."""
         numbers = self._numbers.copy()
         if self._moving:
             constants = plan.start_constants
@@ -79,16 +77,16 @@ class Binding:
 
 
 class _Moving:
-    """A formula that contains numbers of the initial state.
+    """A formula that depends on the initial state.
 
-    If it is a monomial in one of them, it is evaluated with integers, which is faster than with Fractions.
+    A monomial in a single number of the initial state is evaluated with integers, which is faster than with Fractions.
     """
 
     def __init__(self, formula: Node) -> None:
         self._formula, self._monomial = formula, _monomial(formula)
 
     def ratio(self, constants: Mapping[str, Fraction]) -> tuple[int, int]:
-        """Return the value of the formula as a ratio of integers, the second one positive."""
+        """Return the value of the formula as a pair of integers: numerator and positive denominator."""
         if self._monomial is None:
             return value_of(self._formula, constants).as_integer_ratio()
         top, bottom, name, power = self._monomial
@@ -119,11 +117,11 @@ def value_of(formula: Node, constants: Mapping[str, Fraction]) -> Fraction:
     Raises
     ------
     InputError
-        If it has no real value, as the logarithm of a negative number has none.
+        If it has no real value, such as the logarithm of a negative number.
     """
     value = exact_value(formula, constants)
     if value != value:
-        raise InputError(f"torque: expected constants with real values, but {text(formula)} has none")
+        raise InputError(f"torque: expected constants with real values, but {text(formula)} has no real value")
     return Fraction(value)
 
 

@@ -1,7 +1,7 @@
 """Kernels of plans: loaded from the cache, or derived, emitted, compiled and stored there.
 
-The key in the cache is the structure of the plan and the version of symrot's own files; numbers of the scene are not
-part of it. While the compiler works on the rates, the conserved quantities are proven.
+The key in the cache consists of the structure of the plan and the version of symrot's own files. It does not contain
+the numbers of the scene. While the compiler works on the rates, the conserved quantities are proven.
 """
 
 import json
@@ -52,9 +52,7 @@ RATE_SCALE = 0.0  # an error of omega counts relative to omega
 
 @cache
 def _version() -> str:
-    """Return a text that changes whenever the code that derives kernels changes: names, sizes and times of its
-    files.
-    """
+    """Return names, sizes and times of the files that derive kernels: the text changes whenever these files change."""
     states = [(file, (PACKAGE / file).stat()) for file in FILES]
     folders = [str(PACKAGE / folder) for folder in FOLDERS]
     for folder in folders:  # the loop appends to this list
@@ -153,9 +151,9 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected:
 
 
 def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
-    """Return the edges and scales of the blocks of states (omega, attitude) whose errors are judged separately.
+    """Return the edges and scales of the blocks of states (omega, attitude) that have separate error norms.
 
-    An error is judged relative to its block's scale; a scale of 0 means relative to the size of the block itself.
+    Errors are relative to the scale of their block. A scale of 0 means relative to the size of the block itself.
     """
     rates = sum(name.startswith("omega") for name in plan.states)
     count = len(plan.states)
@@ -164,7 +162,7 @@ def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
 
 
 def library_source(plan: Plan, kernel: SceneKernel) -> str:
-    """Return the C text of a library with kernel and stepper for the motion of a plan by DOP853."""
+    """Return the C text of the library that steps the motion of a plan by DOP853: the kernel and the stepper."""
     return _unit(plan, kernel.source, len(kernel.rate_parameters), lambda: kernel.rates)
 
 
@@ -182,8 +180,8 @@ def has_formulas(plan: Plan) -> bool:
 def grows_late(plan: Plan) -> bool:
     """Return whether a torque given by formulas may move a body from rest as a high power of time, 3 or more.
 
-    The first terms of the Taylor series of such a motion vanish, so that they say nothing about its size. The steps of
-    single motions are therefore checked for it.
+    The first Taylor coefficients of such a motion are zero and do not show how large the motion becomes. Its steps are
+    therefore checked in single motions.
     """
     formulas = [text for torque in plan.structure.formula_torques for text in torque.formulas]
     return any(_degree(parse(text)) >= 3 for text in formulas)
@@ -202,10 +200,10 @@ def _degree(node: Node) -> int:
 
 
 def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[str, float]], Deviations] | None":
-    """Return a function from parameters of the rates to bounds that limit the steps of Python's steppers.
+    """Return a function from the parameters of the rates to bounds that limit steps in Python.
 
-    The bounds say how far the formulas of torques can deviate inside a step. The result is None if no formula can have
-    a feature that a step misses.
+    The bounds say how far the torque formulas can deviate inside a step. The result is None if no formula can have a
+    feature that a step misses, or if the rates have no Taylor series.
     """
     if not has_formulas(plan):
         return None
@@ -221,9 +219,9 @@ def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[st
 
 
 def enclosure_text(plan: Plan, rates: Callable[[], Program], edges: Sequence[int]) -> str:
-    """Return the C text of a plan's enclosure, from the cache or newly printed.
+    """Return C code that bounds the rates of a plan on discs of the complex plane, from the cache or newly printed.
 
-    An enclosure bounds the rates on discs of the complex plane, which limits the steps.
+    The bounds limit the steps of DOP853.
     """
     key = f"enclosure {DENSE_ORDER}\n{kernel_key(plan)}"
     text = library.fetch(key)

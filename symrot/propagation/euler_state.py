@@ -1,5 +1,4 @@
-"""Euler angles as state variables, for teaching: the state that textbooks use, where it fails, and how to continue
-there.
+"""Euler angles as state variables, for teaching: their singularity, and a change of sequence that avoids it.
 
 The states are omega_b and the three angles of a sequence, with ``dq/dt = B(q)^-1 omega_b``. B is singular at gimbal
 lock: near it the angles change ever faster and steps shrink; at gimbal lock the motion cannot be followed. With
@@ -54,9 +53,9 @@ NAMES = ("phi", "theta", "psi")
 def partner(sequence: str) -> str:
     """Return the Euler sequence to change to near gimbal lock: the same first two axes, another third axis.
 
-    Each of the two sequences is singular where its entry of one row (extrinsic: column) of the attitude matrix is 1 or
-    -1. The squares of the two entries add up to at most 1: where one sequence is singular the other is perfectly
-    regular, and one of them always has ``|det B| >= sqrt(1/2)``.
+    Each of the two sequences is singular where one entry of the attitude matrix is 1 or -1. The two entries lie in the
+    same row (extrinsic: column), so that their squares add up to at most 1. Where one sequence is singular, the other
+    therefore has ``|det B| = 1``, and one of them always has ``|det B| >= sqrt(1/2)``.
     """
     axes, intrinsic = parse_sequence(sequence)
     other = ({0, 1, 2} - {axes[1], axes[2]}).pop()
@@ -77,8 +76,8 @@ def regularity(sequence: str, angles: ArrayLike) -> Floats:
 def angles_of(quaternion: Floats, sequence: str) -> Floats:
     """Return Euler angles, rad, shape (3,), whose quaternion equals the given one including its sign.
 
-    One more full rotation about the first axis changes that sign. Torques that are odd in q depend on it, so that the
-    sign must survive every change of sequence.
+    A full rotation about the first axis is added if the sign needs it. Torques that are odd in q depend on the sign, so
+    that every change of sequence must preserve it.
     """
     angles: Floats = conversions.quaternion_to_euler(quaternion, sequence)[0]
     if conversions.euler_to_quaternion(angles, sequence) @ quaternion < 0.0:
@@ -106,7 +105,7 @@ class _Block(NamedTuple):
 class EulerMotion(Motion):
     """Motion of a scene whose attitude is stepped as Euler angles instead of a quaternion.
 
-    It uses the clock of the scene: after a change of sequence the motion continues at the same time of the scene.
+    Times are those of the scene, not counted from the start: a change of sequence leaves the time as it is.
     """
 
     def __init__(self, plan: Plan, method: str, tolerance: float, sequence: str, switching: bool) -> None:
@@ -181,9 +180,7 @@ class EulerMotion(Motion):
         )
 
     def _blocks(self, end: float) -> Iterator[_Block]:
-        """Yield the motion from its start to ``end`` in parts of one Euler sequence each, and add their cost to the
-        counts.
-        """
+        """Yield the motion from its start to ``end`` in parts with one Euler sequence each, and count their cost."""
         count, t, sequence = self._moving, self.start, self.sequence
         whole = np.array(self.plan.initial_state)
         while t != end:
@@ -301,9 +298,7 @@ class EulerPropagator(Propagator):
         return EulerMotion(plan, self._method, self.tolerance, self._sequence, self._switching)
 
     def __call__(self, t: ArrayLike | None = None, *, events: Any = None, **state: Any) -> Trajectory:
-        """Return the motion as :class:`symrot.propagation.propagator.Propagator` does; events are refused with an
-        InputError.
-        """
+        """Return the motion as :class:`symrot.propagation.propagator.Propagator` does; raise InputError for events."""
         if events is not None:
             raise InputError("events: expected state='quaternion'; events are not located with Euler angles as state")
         return super().__call__(t, **state)

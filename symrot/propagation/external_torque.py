@@ -1,7 +1,8 @@
 """Torques without a formula: a function in Python or C, or a table of samples, with declared switching times.
 
-Such a torque acts in addition to the torques of the scene. Dormand and Prince's method steps the motion. At every
-switching time it stops exactly and restarts behind it, so that a jump costs no accuracy and no rejected steps.
+Such a torque acts in addition to the torques of the scene. Dormand and Prince's method steps the motion. A step
+ends exactly at every switching time and the method restarts there, so that a jump costs no accuracy and no rejected
+steps.
 """
 
 import ctypes
@@ -41,12 +42,12 @@ CALLBACK = ctypes.CFUNCTYPE(
 )  # fmt: skip
 SAMPLES_PER_STEP = 8.0  # samples of a table in one step: a longer step could pass over features of the samples
 DEFECT = 1e4  # times the error allowed in a step: a larger deviation shows that the step missed a feature inside
-BEND = 2.0**-50  # relative to the torque: rounding of samples bends their spline by as much, sample to sample
+BEND = 2.0**-50  # relative to the torque: rounded samples alone make the third derivative of a spline jump by this
 OVERSHOOT = 100.0  # times the largest sample: a spline with larger values does not represent the torque
 MOST_STEPS = 30_000_000  # limit of steps under a table, some 20 s; for functions it is stepping.MAX_STEPS
 UNKNOWN = (
     "the torque is a function without a formula: each step is checked inside, but a feature narrower than a step may "
-    "be missed; give max_step, in s, below the width of the narrowest"
+    "be missed; give max_step, in s, below the width of the narrowest feature"
 )
 FORMS = "a function of (t, omega, quaternion), a C function of ctypes, or a table (times, samples)"
 
@@ -57,9 +58,9 @@ class TorqueSource(ABC):
     Attributes
     ----------
     samples : bool
-        Whether the torque is known by samples, which limit the length of a step.
+        Whether the torque is known from samples, whose spacing limits the length of a step.
     longest_step, most_steps : float, int
-        Limits of the steps, s, and of their number.
+        Longest step, s, and largest number of steps.
     knots : sequence of float
         Times, s, at which a step ends since a derivative of the torque jumps there.
     user : array or None
@@ -74,13 +75,11 @@ class TorqueSource(ABC):
 
     @abstractmethod
     def pointer_in(self, library: Path) -> Any:
-        """Return the torque as a function in C; for a table it is part of the compiled ``library`` of the motion."""
+        """Return the torque as a C function; that of a table is part of the compiled ``library`` of the motion."""
 
     @abstractmethod
     def check(self, low: float, high: float) -> None:
-        """Prepare for a motion over times from ``low`` to ``high``, s; raise InputError if the torque is not defined
-        there.
-        """
+        """Prepare for a motion from ``low`` to ``high``, s; raise InputError if the torque is not defined there."""
 
     @abstractmethod
     def failure(self) -> BaseException | None:
@@ -89,9 +88,7 @@ class TorqueSource(ABC):
 
 @final
 class _Function(TorqueSource):
-    """A torque that is a function in Python, called from C; it stores an exception of the function, which ends the
-    motion.
-    """
+    """A torque that is a Python function, called from C. An exception that it raises is stored and ends the motion."""
 
     def __init__(self, function: Callable[[float, Floats, Floats], ArrayLike]) -> None:
         self.function = function
@@ -122,7 +119,7 @@ class _Function(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Clear the exception of the previous motion; every time is accepted."""
+        """Clear the stored exception of the previous motion. All times are accepted."""
         self.error = None
 
     def failure(self) -> BaseException | None:
@@ -165,7 +162,7 @@ class _Table(TorqueSource):
                 f"{t.shape} and {values.shape}"
             )
         if not (np.isfinite(t).all() and np.isfinite(values).all()):
-            raise InputError("torque: expected a table of finite numbers, got some that are not")
+            raise InputError("torque: expected a table of finite numbers, got some that are infinite or not numbers")
         repeated = t[1:][np.diff(t) == 0]
         if (np.diff(t) < 0).any() or not set(repeated.tolist()) <= set(switching) or (np.diff(repeated) == 0).any():
             raise InputError(
@@ -192,10 +189,9 @@ class _Table(TorqueSource):
 
 
 def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floats, list[float]]:
-    """Return the splines of a table as one array for the C function ``symrot_table_torque``, and the times where steps
-    end.
+    """Return the splines of a table, as one array for the C function ``symrot_table_torque``, and the ends of steps, s.
 
-    There is a separate spline between each two switching times.
+    A separate spline is fitted between any two consecutive switching times.
     """
     from scipy.interpolate import CubicSpline
 
@@ -219,7 +215,7 @@ def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floa
 
 
 def _check_overshoot(spline: Any, largest: float) -> None:
-    """Raise InputError if samples are so unevenly spaced that the spline through them overshoots all of them."""
+    """Raise InputError if a spline far exceeds the largest sample, as happens for very uneven spacing."""
     starts, gaps = spline.x[:-1], np.diff(spline.x)
     reach = np.max([np.abs(spline(starts + part * gaps)).max(axis=1) for part in (0.25, 0.5, 0.75)], axis=0)
     worst = int(np.argmax(reach))
@@ -233,9 +229,9 @@ def _check_overshoot(spline: Any, largest: float) -> None:
 
 
 def _bends(spline: Any) -> list[float]:
-    """Return the sample times at which the third derivative of a spline jumps.
+    """Return the sample times, s, at which the third derivative of a spline jumps.
 
-    Samples inside a straight line or a constant have no such jump.
+    It does not jump inside a stretch of samples on a straight line.
     """
     gaps, cubic = np.diff(spline.x)[:, None], spline.c[0]
     jumps = np.abs(np.diff(cubic, axis=0)) * np.minimum(gaps[1:], gaps[:-1]) ** 3
@@ -271,16 +267,17 @@ class ExternalSetup:
     Attributes
     ----------
     setup : Setup
+        Plan, method and kernel of the scene.
     library : Path
-        Kernel and stepper; the kernel calls the torque.
+        Compiled library of kernel and stepper; the kernel calls the torque.
     source : TorqueSource
         The source of the torque.
     torque_parameters : tuple of float
-        The parameters of the kernel after those of the rates: two addresses, the frame, the inverse of the inertia.
+        Parameters of the kernel that follow the scene's: two addresses, the frame, the inverse of the inertia.
     breaks : tuple of float
-        Times at which a step ends, s: switching times, and times at which an interpolated table bends.
+        Times at which a step ends, s: switching times, and times at which a derivative of a table's spline jumps.
     longest_step : float
-        s.
+        Longest step, s.
     """
 
     setup: Setup
@@ -331,7 +328,7 @@ def external_setup(
 
 @final
 class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
-    """Motion of a scene under a torque without a formula, which is evaluated at the times of the scene."""
+    """Motion of a scene under a torque that is a function or a table, evaluated at the times of the scene."""
 
     def __init__(self, shared: ExternalSetup, plan: Plan) -> None:
         super().__init__(shared.setup, plan)
@@ -351,9 +348,7 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         )  # fmt: skip
 
     def _guarded(self, low: float, high: float, run: Callable[[], Result]) -> Result:
-        """Return the result of ``run``; raise the exception that the torque's function raised in it, if there is
-        one.
-        """
+        """Return the result of ``run``, or raise the exception with which the torque's function ended it."""
         source = self._shared.source
         source.check(min(low, self.start), max(high, self.start))
         try:

@@ -16,9 +16,7 @@ __all__ = ["invariant_parameters", "invariant_source"]
 
 
 def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
-    """Return the C text of the conserved quantities, for
-    :func:`symrot.propagation.steppers.taylor.translation_unit`.
-    """
+    """Return C code that computes the conserved quantities, onto which the Taylor stepper projects the motion."""
     from symrot.codegen.taylor.invariant_source import invariant_definitions
 
     outputs = [item.output for item in kernel.conserved if item.holds]
@@ -26,9 +24,7 @@ def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
 
 
 def invariant_parameters(kernel: SceneKernel, plan: Plan) -> list[float]:
-    """Return the parameters of the conserved quantities: each as the nearest double and the double nearest to its
-    error.
-    """
+    """Return the parameters of the conserved quantities, each as two doubles: the nearest one and its rounded error."""
     values = {"pi": number.PI, **plan.constants}
     pairs: list[float] = []
     for _, node in kernel.quantity_parameters:

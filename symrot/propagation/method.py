@@ -51,7 +51,7 @@ EXTERNAL_TORQUE = Choice("dop853", "a torque without a formula has no Taylor ser
 
 
 def choose_method(plan: Plan, method: str = "auto") -> Choice:
-    """Return the method for a plan: the first one that fits for ``"auto"``, otherwise the named one.
+    """Return the method for a plan: for ``"auto"`` the first that can follow its motion, otherwise the named method.
 
     Raises
     ------

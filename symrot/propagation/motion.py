@@ -1,8 +1,7 @@
-"""Motions: plans bound to numbers, which give the states at any times by the chosen method.
+"""Motions: a plan with numbers and one initial state, which returns the states at any times by the chosen method.
 
 A :class:`Motion` begins at one initial state of a scene. Its :class:`Setup` holds the parts that all initial states of
-the same structure share: the method, the kernel, the numbers of the scene. There is one final class for each method of
-following a motion.
+the same structure share: the method, the kernel, the numbers of the scene. Each method has its own subclass.
 """
 
 from abc import ABC, abstractmethod
@@ -46,7 +45,7 @@ Floats = NDArray[np.float64]
 
 
 def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
-    """Return the emitted NumPy kernel of the rates of a plan as ``f(t, y, p)``."""
+    """Return the rates of a plan as a function ``f(t, y, p)``: the emitted NumPy kernel."""
     from symrot.codegen.numpy_kernel import load_numpy_kernel
 
     function = load_numpy_kernel(kernel.rates)
@@ -54,7 +53,7 @@ def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
 
 
 def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
-    """Return the plan for a motion in closed form: all components of the state are known and nothing is stepped."""
+    """Return the plan for a motion in closed form, which keeps the full state, since nothing has to be stepped."""
     structure = plan.structure.unreduced()
     rows, before = [], structure.reductions
     for row in plan.rows:
@@ -66,7 +65,7 @@ def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
     return replace(plan, structure=structure, rows=tuple(rows))
 
 
-# ------------------------------------------------------------------------------------------------ what starts share
+# ------------------------------------------------------------------------------------------------ shared setups
 
 
 @final
@@ -77,15 +76,15 @@ class Setup:
     Attributes
     ----------
     plan : Plan
-        The plan of the scene, with any initial state of the same form: each motion has its own.
+        The plan of the scene, with any initial state of the same structure; each motion has its own plan.
     choice : Choice
-        The method, and why.
+        The method, and the reason for it.
     tolerance : float
         Error of the trajectory to aim for.
     start : float
         Initial time, s, on the clock of the motions.
     load_kernel : function
-        Returns the kernel. It is called when the kernel is first needed, which an exact motion may never do.
+        Returns the kernel; called when the kernel is first needed. A motion in closed form may never need it.
     epoch : float
         Time of the scene, s, at which the clock of the motions shows 0.
     allows_time_shift : bool
@@ -115,17 +114,17 @@ class Setup:
 
     @cached_property
     def moves_clock(self) -> bool:
-        """Whether the origin of time in the kernel moves along with the steps, so that phases keep their digits."""
+        """Whether the origin of time in the kernel moves with the steps, so that phases (a*t) keep their digits."""
         return self.allows_time_shift and self.kernel.rates.uses("t")
 
     @cached_property
     def rate_binding(self) -> Binding:
-        """The parameters of the rates as functions of the initial state, each one double."""
+        """The parameters of the rates as functions of the initial state, one double per parameter."""
         return Binding(self.kernel.rate_parameters, self.plan, known={EPOCH: Fraction(self.epoch)})
 
     @cached_property
     def quantity_binding(self) -> Binding:
-        """The parameters of the output quantities as functions of the initial state, each a sum of two doubles."""
+        """The parameters of the output quantities as functions of the initial state, two doubles per parameter."""
         return Binding(self.kernel.quantity_parameters, self.plan, two_doubles)
 
     @cached_property
@@ -135,13 +134,11 @@ class Setup:
 
     @cached_property
     def deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
-        """A function from parameters of the rates to the bounds that limit steps in Python, or None if steps need no
-        limit.
-        """
+        """A function from parameters of the rates to bounds that limit steps in Python; None if no limit is needed."""
         return formula_deviations(self.plan, self.kernel)
 
     def shifted(self) -> tuple[Plan, SceneKernel]:
-        """Return plan and kernel with an epoch as a parameter, so that their clock can be moved."""
+        """Return plan and kernel with time counted from an epoch, a parameter that can be changed between steps."""
         is_shifted = self.plan.structure.clock is not None
         return (self.plan, self.kernel) if is_shifted else time_shift.time_shifted(self.plan, self.kernel)
 
@@ -154,14 +151,14 @@ class Setup:
 
 @final
 class SteppedSetup:
-    """Parts that motions stepped in C share: the setup, and the library of kernel and stepper."""
+    """Parts that all motions of one plan share if they are stepped in C: setup, and library of kernel and stepper."""
 
     def __init__(self, setup: Setup, library: Path) -> None:
         self.setup, self.library = setup, library
 
     @cached_property
     def integration(self) -> Integration:
-        """The integration from the initial state of the setup's plan; its input is already checked."""
+        """The integration from the initial state of the setup's plan, with its input checked."""
         setup, plan = self.setup, self.setup.plan
         parameters, state = setup.rate_binding(plan), plan.initial_state
         if setup.choice.method == "dop853":
@@ -186,7 +183,7 @@ def _stepped_on_own_clock(setup: Setup) -> SteppedSetup:
 
 @final
 class ClosedFormSetup:
-    """Parts that motions in closed form share: the setup, and the class of closed forms."""
+    """Parts that all motions of one plan in closed form share: the setup, and the class of closed forms."""
 
     def __init__(self, setup: Setup, form: ClosedForm) -> None:
         self.setup, self.form = setup, form
@@ -201,9 +198,7 @@ class ClosedFormSetup:
 
 
 class Motion(ABC):
-    """A plan with its kernel, bound to numbers and one initial state. Its clock shows 0 at the scene's time
-    ``epoch``.
-    """
+    """A plan with its kernel, its numbers and one initial state; its clock shows 0 at the scene's time ``epoch``."""
 
     def __init__(self, setup: Setup, plan: Plan) -> None:
         self.setup, self.plan = setup, plan
@@ -230,9 +225,7 @@ class Motion(ABC):
 
     @property
     def kernel(self) -> SceneKernel:
-        """The kernel, which computes rates and quantities; a motion in closed form only needs it for derived
-        quantities.
-        """
+        """The kernel, which computes rates and quantities. A motion in closed form needs it for quantities alone."""
         return self.setup.kernel
 
     @property
@@ -285,8 +278,8 @@ class Motion(ABC):
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats | tuple[Floats, ...], Stats]:
         """Return the states at the times, shape (n, N), and the cost of the motion.
 
-        A motion in closed form returns two arrays, angular velocity and attitude. ``in_order`` says that the times are
-        finite and never fall.
+        A motion in closed form returns separate arrays for angular velocity and attitude. ``in_order`` promises that
+        the times are finite and never decrease.
         """
 
     @abstractmethod
@@ -301,7 +294,7 @@ class Motion(ABC):
     def solution(self, times: Floats, with_attitude: bool) -> Callable[[ArrayLike], Floats]:
         """Return omega, with the quaternion if ``with_attitude``, as a function of time.
 
-        The function covers the start and all the times.
+        The function is defined from the earliest to the latest of the start and the times.
         """
         span = (
             (min(self.start, float(times.min())), max(self.start, float(times.max())))
@@ -327,7 +320,7 @@ class Motion(ABC):
 
 
 class RestartableMotion(Motion):
-    """A motion that can begin from another initial state of the same structure; nothing is looked up or derived again.
+    """A motion that can restart from another initial state of the same structure without any new derivation.
 
     Initial states have the same structure if they have the same :func:`symrot.planning.plan.structure_key`.
     """
@@ -343,11 +336,11 @@ class SteppedInC(ABC):
     @property
     @abstractmethod
     def stepping(self) -> Integration:
-        """The integration of the motion: its input is checked once, then it can be sampled any number of times."""
+        """The integration of the motion, with its input checked; it can be sampled any number of times."""
 
 
 class ShiftableMotion(RestartableMotion):
-    """A stepped motion that can use the clock of the scene or a clock that shows 0 at the start."""
+    """A stepped motion that can count time from the zero of the scene or from its own start."""
 
     @property
     @abstractmethod
@@ -414,7 +407,7 @@ class ClosedFormMotion(RestartableMotion):
 
     @property
     def form(self) -> ClosedForm:
-        """The class of closed forms that this motion belongs to."""
+        """The closed form of the motion, such as that of a free body or a heavy top."""
         return self._shared.form
 
     @cached_property
@@ -471,7 +464,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def taylor_parameters(self) -> list[float]:
-        """The parameters of the Taylor library: those of the rates, then those of the conserved quantities."""
+        """The parameters of the Taylor library: first for the rates, then for the conserved quantities."""
         return [*self.rate_parameters, *self.setup.quantity_binding(self.plan)]
 
     @cached_property
@@ -489,7 +482,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def _clock(self) -> dop853.Clock:
-        """A function from an epoch, s, to the library and parameters of rates that count time from the epoch."""
+        """A function from an epoch, s, to the compiled rates that count time from the epoch, and their parameters."""
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
@@ -523,14 +516,14 @@ class SciPyMotion(ShiftableMotion):
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch, python_rates)
 
     def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
-        """Return the bounds that limit SciPy's steps, for parameters of the rates; None if steps need no limit."""
+        """Return the bounds that limit SciPy's steps, for given parameters of the rates; None if no limit is needed."""
         if self.setup.deviations is None:
             return None
         names = [name for name, _ in self.kernel.rate_parameters]
         return self.setup.deviations(dict(zip(names, parameters, strict=True)))
 
     def options(self, parameters: Sequence[float]) -> "Options":
-        """Return the options for SciPy's steps and error control, for parameters of the rates."""
+        """Return the options for SciPy's steps and error control, for given parameters of the rates."""
         from symrot.propagation.steppers.fallback import Options
 
         blocks, scales = error_blocks(self.plan)
@@ -556,11 +549,11 @@ class SciPyMotion(ShiftableMotion):
 
 
 class MotionInParts(Motion):
-    """Interface of a motion that is smooth between the switches of its torques."""
+    """Interface of a motion under torques that jump or bend: it is smooth between their switches."""
 
     @abstractmethod
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to ``end`` as polynomials, and as a function of time.
+        """Return the motion from its start to ``end``, once as polynomials and once as a function of time.
 
         An error that ends the motion early is appended to ``broken``.
         """

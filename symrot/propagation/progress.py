@@ -1,4 +1,4 @@
-"""Progress reports of long motions to a reporter, such as a command line, if there is one."""
+"""Progress reports of long motions to a function that displays them, for example on the command line."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -14,7 +14,7 @@ _reporter: ContextVar[Reporter | None] = ContextVar("reporter", default=None)
 
 
 def report(t: float, start: float, stop: float) -> None:
-    """Tell the reporter, if there is one, how far a motion has come: the time ``t`` between ``start`` and ``stop``, s.
+    """Report that a motion from ``start`` to ``stop``, s, has reached the time ``t``; without a reporter, do nothing.
 
     Inside :func:`within`, the span of the whole motion is reported instead of the span of its part.
     """
@@ -29,7 +29,7 @@ def report(t: float, start: float, stop: float) -> None:
 
 @contextmanager
 def within(start: float, stop: float, zero: Callable[[], float] = lambda: 0.0) -> Iterator[None]:
-    """Have motions inside the block report as parts of one motion from ``start`` to ``stop``, s.
+    """Inside the block, report the progress of every motion as part of one motion from ``start`` to ``stop``, s.
 
     ``zero`` returns the time on the clock of the whole motion at which the clock of the part shows 0.
     """
@@ -42,7 +42,7 @@ def within(start: float, stop: float, zero: Callable[[], float] = lambda: 0.0) -
 
 @contextmanager
 def reporting(reporter: Reporter) -> Iterator[None]:
-    """Have motions inside the block report their progress to ``reporter``."""
+    """Inside the block, report the progress of every motion to the function ``reporter``."""
     token = _reporter.set(reporter)
     try:
         yield

@@ -1,4 +1,4 @@
-"""The propagator of a scene: the kind of its motion, and the options that this kind accepts."""
+"""The functions propagator() and propagate(): they check the options and choose the class of propagator."""
 
 from math import inf
 from pathlib import Path
@@ -29,36 +29,36 @@ def propagator(
     switching: bool = True,
     max_step: float = inf,
 ) -> Propagator:
-    """Return the propagator of a scene: derived, specialised, emitted and compiled, or taken from the cache.
+    """Return the propagator of a scene: a function from times to the motion, derived and compiled or from the cache.
 
     Parameters
     ----------
     scene : Scene, str or Path
-        A scene, the name of a shipped one, or the path of a scene file.
+        A scene, the name of a shipped scene, or the path of a scene file.
     method : str
-        One of :data:`symrot.propagation.method.METHODS`; ``"scipy:LSODA"`` and the like for SciPy's.
+        One of :data:`symrot.propagation.method.METHODS`, or a method of SciPy such as ``"scipy:LSODA"``.
     tolerance : float, optional
         Error of the trajectory to aim for: attitude in rad, angular velocity relative to its size; default: the
-        scene's own.
+        tolerance of the scene.
     torque : optional
-        One more torque, N m, that is no formula: a function of (t, omega, quaternion) that returns three numbers; a C
-        function of ctypes, ``int (double t, const double omega[3], const double quaternion[4], double torque[3], void
-        *user)``, which returns 0, with ``user`` null; or a table (times, samples of shape (n, 3)), which is
+        An additional torque, N m, without a formula: a function of (t, omega, quaternion) that returns three numbers;
+        a C function of ctypes, ``int (double t, const double omega[3], const double quaternion[4], double torque[3],
+        void *user)``, which returns 0, with ``user`` null; or a table (times, samples of shape (n, 3)), which is
         interpolated by cubic splines between the switching times. The method is then ``dop853``.
     switching_times : array, optional
         Times, s, at which that torque jumps: the motion is stepped exactly to each and restarted. A function is
-        called just inside them; a table has two samples at each, before and after the jump.
+        called just before and just after; a table has two samples at each time, before and after the jump.
     torque_frame : str
-        ``"body"`` or ``"space"``: the axes of the components of that torque.
+        ``"body"`` or ``"space"``: the frame of the components of that torque.
     state : str
         ``"quaternion"``, or an Euler sequence such as ``"ZXZ"`` to step its angles instead, for teaching; see
         :mod:`symrot.propagation.euler_state`.
     switching : bool
-        Whether the motion changes to angles of a regular sequence before such angles reach gimbal lock; ``stats``
-        counts how often.
+        Whether Euler angles change to another, regular sequence before they reach gimbal lock; ``stats`` counts the
+        changes.
     max_step : float
-        Longest step, s, under that torque: shorter than its narrowest feature. Formulas need no such limit; the
-        limit of a table follows from its samples.
+        Longest step, s, under that torque; choose it shorter than the narrowest feature of the torque. Formulas need no
+        such limit; the limit for a table follows from its samples.
 
     Returns
     -------
@@ -141,7 +141,7 @@ def _tolerance(tolerance: float) -> float:
 def propagate(
     scene: Scene | str | Path, method: str = "auto", tolerance: float | None = None, events: Any = None
 ) -> Trajectory:
-    """Return the motion of a scene at its own sample times.
+    """Return the motion of a scene at the sample times of the scene.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def propagate(
     method : str
         As for :func:`propagator`.
     tolerance : float, optional
-        Error of the trajectory to aim for; default: the scene's own.
+        Error of the trajectory to aim for; default: the tolerance of the scene.
     events : sequence, optional
         Formulas whose zeros are located, as for :class:`Propagator`: ``["omega_3 == 0"]``.
 

@@ -1,6 +1,4 @@
-"""The propagator of a scene: it chooses a method and binds the kernel to numbers once, then computes any number of
-motions.
-"""
+"""The propagator of a scene: it chooses a method and prepares the kernel once, then computes any number of motions."""
 
 from fractions import Fraction
 from functools import cached_property
@@ -34,7 +32,7 @@ Floats = NDArray[np.float64]
 class Propagator:
     """Function from sample times to the motion of one scene; made by :func:`symrot.propagator`.
 
-    Derivation, compilation and binding are done when it is made; a call only computes the motion.
+    Derivation and compilation are done when it is made; a call only computes the motion.
 
     Attributes
     ----------
@@ -64,8 +62,8 @@ class Propagator:
     def motion_from(self, initial: Initial) -> Motion:
         """Return the motion from another initial state.
 
-        The first initial state of each structure is planned and prepared like a new scene. Later ones change only the
-        numbers that depend on the initial state.
+        The first initial state of each structure is planned and prepared like a new scene. Later initial states change
+        only the numbers that depend on them.
         """
         if not isinstance(self._motion, RestartableMotion):
             return self._prepare(self._planned(initial))
@@ -93,18 +91,18 @@ class Propagator:
 
     @property
     def kernel(self) -> SceneKernel:
-        """The kernel of the scene, which computes rates and quantities."""
+        """The kernel of the scene, which computes the rates of the states and the output quantities."""
         return self._motion.kernel
 
     def prepare(self) -> None:
-        """Do the work of the first call now: derive the kernel while the closed form compiles."""
+        """Prepare the first call: derive the kernel, and let a closed form compile meanwhile."""
         self._motion.kernel  # noqa: B018
         if isinstance(self._motion, ClosedFormMotion):
             self._motion.exact  # noqa: B018
 
     @cached_property
     def sample_times(self) -> Floats:
-        """The scene's own sample times, s."""
+        """The sample times that the scene specifies, s."""
         span = self.scene.span
         return np.linspace(float(span.start), float(span.stop), span.samples)
 
@@ -121,14 +119,14 @@ class Propagator:
         Parameters
         ----------
         t : array, shape (n,), optional
-            Sample times in s, increasing or in any order, before or after the initial time; default: the scene's own.
+            Sample times in s, in any order, before or after the initial time; default: the sample times of the scene.
         omega : array, shape (3,), optional
             Another initial angular velocity, body components, rad/s.
         quaternion : array, shape (4,), optional
             Another initial attitude, scalar first; it is normalised.
         events : sequence, optional
             Formulas whose zeros are located: text, :class:`symrot.propagation.events.events.Event` or mappings with its
-            fields; see ``t_events`` of the trajectory. Samples end with one at a terminal event.
+            fields; see ``t_events`` of the trajectory. A terminal event is the last sample.
 
         Raises
         ------
@@ -188,7 +186,7 @@ def _times(t: ArrayLike) -> Floats:
 
 
 def _in_order(times: Floats) -> bool:
-    """Return whether times never fall; raise InputError if one is not finite."""
+    """Return whether times never decrease; raise InputError if one is not finite."""
     if not len(times):
         return True
     if isfinite(times.item(0)) and isfinite(times.item(-1)) and is_sorted(times):
@@ -212,7 +210,7 @@ def _exact(value: float, name: str) -> Fraction:
 
 
 def _lowest(top: int, bottom: int) -> Fraction:
-    """Return the fraction top/bottom of coprime integers, without a search for a common divisor."""
+    """Return the fraction of two coprime integers, without the search for a common divisor that Fraction makes."""
     fraction: Any = object.__new__(Fraction)
     fraction._numerator, fraction._denominator = top, bottom  # as Fraction._from_coprime_ints of Python 3.12 does
     return fraction  # type: ignore[no-any-return]
@@ -247,7 +245,7 @@ def _unit(q: list[float]) -> tuple[Fraction, ...]:
 def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None) -> Initial:
     """Return the exact initial state for a call of a propagator.
 
-    An argument that is None has the value of the scene.
+    An argument that is None is replaced by the value in the scene.
     """
     initial = scene.initial
     if omega is not None:

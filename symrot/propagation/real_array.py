@@ -1,4 +1,4 @@
-"""Arrays of real numbers from arguments; values that NumPy would silently convert raise an error."""
+"""Conversion of arguments to arrays of doubles; values that NumPy would silently convert raise an error."""
 
 from typing import Any
 
@@ -32,13 +32,13 @@ def real_array(values: Any, place: str, expected: str, ndmin: int = 0) -> NDArra
     place, expected : str
         Name of the argument and its expected content, such as ``"t"`` and ``"times in s"``, for the error.
     ndmin : int
-        Fewest dimensions.
+        Smallest number of dimensions of the result.
 
     Raises
     ------
     InputError
         For dates, differences of dates, complex numbers, true and false, text, objects that are not real numbers
-        (fractions are), and values that do not form an array.
+        (fractions are accepted), and values that do not form an array.
     """
     try:
         array = np.asarray(values)

@@ -1,14 +1,14 @@
 """Clocks that show 0 at the start, for motions that start far from t = 0.
 
-The numbers in the steppers are then small: neither phases such as ``a*t + b`` nor the ends of short steps lose digits.
-The clock is moved only where all differences of times are exact, for times between half the start and twice the start;
-a motion that goes farther loses no more digits than one that starts at 0 and goes as far. Long motions from 0 keep the
-digits of their phases in other ways: Taylor steps hold the time in two parts, DOP853 moves the clock of the rates
-repeatedly (:mod:`symrot.propagation.steppers.dop853`), and SciPy restarts on a moved clock where its steps are short
-(:mod:`symrot.propagation.steppers.fallback`).
+Times in the steppers are then small: neither phases such as ``a*t + b`` nor the ends of short steps lose digits. The
+clock is moved only if all times lie between half the start and twice the start, where their differences from the start
+are exact. A motion that goes farther loses no more digits than a motion of that length from t = 0. Long motions from 0
+keep the digits of their phases in other ways: Taylor steps hold the time in two parts, DOP853 moves the clock of the
+rates repeatedly (:mod:`symrot.propagation.steppers.dop853`), and SciPy restarts on a moved clock where its steps are
+short (:mod:`symrot.propagation.steppers.fallback`).
 
-A torque without a formula is evaluated at the times of the scene, so that motions under it use the clock of the scene:
-there a phase ``a*t`` is off by up to ``1e-16*|a*t|`` rad. Motions in Euler angles start on the clock of the scene too.
+A torque without a formula is evaluated at the times of the scene, so that motions under it use the clock of the scene,
+on which a phase ``a*t`` has an error of up to ``1e-16*|a*t|`` rad. Motions in Euler angles start on that clock too.
 """
 
 import json
@@ -36,7 +36,7 @@ __all__ = ["ShiftedParameters", "clock", "compiled", "starts_far", "time_shifted
 def starts_far(start: float, low: float, high: float) -> bool:
     """Return whether a motion over times from ``low`` to ``high``, s, needs a clock that shows 0 at its start.
 
-    It does if it starts far from t = 0 and all its times minus the start are exact.
+    It does if all times lie between half the start and twice the start, where differences from the start are exact.
     """
     nearest, farthest = sorted((0.5 * start, 2.0 * start))
     return start != 0.0 and nearest <= low and high <= farthest  # time - start is exact there (Sterbenz)
@@ -61,7 +61,7 @@ def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
 
 
 class ShiftedParameters:
-    """Parameters of formulas on a clock that is moved, as functions of the epoch.
+    """Parameters of formulas as functions of the epoch, the time at which a moved clock shows 0.
 
     The parts that do not depend on the epoch are computed once.
 
@@ -70,7 +70,7 @@ class ShiftedParameters:
     parameters : pairs of name and formula
         For example the parameters of the rates of a kernel that :func:`time_shifted` returns.
     constants : mapping
-        Of the scene.
+        Constants of the scene, by name.
     start : float
         Time of the scene, s, at which the clock of the motion shows 0.
     """
@@ -83,7 +83,7 @@ class ShiftedParameters:
         self._lines = [_line(node) for node in self._formulas]
 
     def parameters(self, epoch: float | Fraction) -> list[float]:
-        """Return the parameters for an epoch, s, on the clock of the motion: exact arithmetic, one rounding each."""
+        """Return the parameters for an epoch, s, on the clock of the motion, each computed exactly and rounded once."""
         time = self._start + Fraction(epoch)
         top, bottom, values = time.numerator, time.denominator, {EPOCH: time}
         try:
@@ -131,7 +131,7 @@ def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
 
 
 def compiled(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the path of the compiled library, kernel and DOP853 stepper, for a plan on a moved clock."""
+    """Return the path of the compiled library (kernel and DOP853 stepper) for a plan whose clock is moved."""
     return motion_library(plan, kernel)
 
 
@@ -141,7 +141,7 @@ def clock(
     start: float = 0.0,
     make: Callable[[Plan, SceneKernel], Any] = compiled,
 ) -> Callable[[float], tuple[Any, list[float]]]:
-    """Return a function from an epoch, s, to a library or function of the rates on a moved clock, and their parameters.
+    """Return a function from an epoch, s, to rates that count time from the epoch, and their parameters.
 
     ``moving`` returns plan and kernel as :func:`time_shifted` does; it is called on first use. ``constants`` and
     ``start`` are arguments of :class:`ShiftedParameters`. ``make`` returns the library that DOP853 calls, or the

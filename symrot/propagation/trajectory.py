@@ -1,4 +1,4 @@
-"""Trajectories: the states of a motion at its sample times, and quantities computed from them on first use."""
+"""Trajectories: the states of a motion at the sample times, and quantities computed from them on first use."""
 
 from collections.abc import Callable
 from functools import cached_property
@@ -21,16 +21,17 @@ Floats = NDArray[np.float64]
 
 
 class Invariant(NamedTuple):
-    """Values of a conserved quantity along a trajectory, and how far they drift.
+    """Values of a conserved quantity along a trajectory, and their drift.
 
     Attributes
     ----------
     name, unit, reason : str
-        Its name, its SI unit, and why it is conserved.
+        Its name, its SI unit, and the reason why it is conserved.
     values : array, shape (n,)
+        Its values at the sample times.
     scale : float
-        Kinetic plus potential magnitude for an energy, length of the angular momentum for its components, 1 for the
-        norm of the quaternion.
+        Largest magnitude along the trajectory: of energy and kinetic energy for an energy, of the whole vector for a
+        component of the angular momentum, of the spin for a spin. 1 for the norm of the quaternion.
     drift : float
         Largest change since the start, relative to ``scale``.
 
@@ -50,24 +51,24 @@ class Invariant(NamedTuple):
 
 
 class Trajectory:
-    """Motion of a scene at its sample times, as a propagator returns it. Conventions: :mod:`symrot.conventions`.
+    """Motion of a scene at the sample times, as a propagator returns it. Conventions: :mod:`symrot.conventions`.
 
     Attributes
     ----------
     t : array, shape (n,)
-        The requested sample times, s; a terminal event ends them.
+        The requested sample times, s, up to a terminal event.
     y : array, shape (N, n)
-        The integrated states, in the order of ``states`` (solve_ivp's layout).
+        The integrated states, in the order of ``states``, laid out as by solve_ivp.
     method, stats : str, Stats
         The method, and the cost of the motion: steps, evaluations, seconds.
     status, message, success : int, str, bool
         As in solve_ivp: 1 if a terminal event ended the motion, else 0. A motion that cannot be followed raises a
         PropagationError; its ``trajectory`` holds the samples before, with status -1 and ``success`` false.
     warnings : tuple of str
-        Sentences about what cannot be guaranteed: accuracy under a torque without a formula, or an event that comes
-        nearer to zero than the motion is accurate.
+        Sentences about missing guarantees: the accuracy under a torque without a formula, or an event whose formula
+        comes nearer to zero than the error of the motion.
     t_events, y_events : list of arrays or None
-        Per requested event: its times, shape (k,), and the states there, shape (k, N).
+        Per requested event: its times, s, shape (k,), and the states at these times, shape (k, N).
     event_kinds : list of lists of str, or None
         Per event: ``"rising"``, ``"falling"`` or ``"touching"`` for each of its times.
 
@@ -106,27 +107,27 @@ class Trajectory:
 
     @property
     def success(self) -> bool:
-        """Whether the motion reached its last sample time, or a terminal event."""
+        """Whether the motion reached its last sample time or a terminal event."""
         return self.status >= 0
 
     @property
     def plan(self) -> Plan:
-        """The plan of the motion: which states and quantities are computed, and which are skipped."""
+        """The plan of the motion, which says which states are integrated and why the others are not."""
         return self._motion.plan
 
     @property
     def scene(self) -> Scene:
-        """The scene of the motion, with the initial state that was used."""
+        """The scene of the motion, with the initial state of this trajectory."""
         return self._motion.plan.scene
 
     @property
     def states(self) -> tuple[str, ...]:
-        """Names of the integrated states."""
+        """Names of the integrated states, such as omega_1 and q0, in the order of ``y``."""
         return self._motion.plan.states
 
     @cached_property
     def _states(self) -> Floats:
-        """The integrated states, shape (n, N); the two arrays of a motion in closed form are joined on first use."""
+        """The integrated states, shape (n, N); the two arrays of a closed form are concatenated on first use."""
         return np.concatenate(self._parts, axis=1) if isinstance(self._parts, tuple) else self._parts
 
     @property
@@ -135,7 +136,7 @@ class Trajectory:
         return self._states.T
 
     def _evaluate(self, *names: str) -> Floats:
-        """Return the named quantities at the sample times, shape (n, len(names)), computed by the kernel."""
+        """Return output quantities by name at the sample times, shape (n, len(names)); the kernel computes them."""
         return self._motion.evaluate(self.t, self._states, names)
 
     @property
@@ -159,7 +160,7 @@ class Trajectory:
 
     @cached_property
     def quaternion(self) -> Floats:
-        """Attitude, unit, scalar first, body to space, shape (n, 4)."""
+        """Attitude as unit quaternions, scalar first, body to space, shape (n, 4)."""
         self._need_attitude()
         if isinstance(self._parts, tuple):
             return conversions.normalize(self._parts[1])
@@ -173,8 +174,8 @@ class Trajectory:
     def euler(self, sequence: str, degrees: bool = False) -> Floats:
         """Return Euler angles in order of application, shape (n, 3), rad.
 
-        At gimbal lock, where only a sum or difference of two angles is defined, see
-        :func:`symrot.kinematics.conversions.quaternion_to_euler` for the choice; :meth:`gimbal_lock` says where.
+        At gimbal lock (see :meth:`gimbal_lock`) only a sum or difference of two angles is defined;
+        :func:`symrot.kinematics.conversions.quaternion_to_euler` says which values are returned there.
         """
         return conversions.quaternion_to_euler(self.quaternion, sequence, degrees=degrees)[0]
 
@@ -203,12 +204,12 @@ class Trajectory:
 
     @cached_property
     def angular_momentum_body(self) -> Floats:
-        """Angular momentum (with that of a rotor), body components, kg m^2/s, shape (n, 3)."""
+        """Angular momentum including a rotor's, body components, kg m^2/s, shape (n, 3)."""
         return self._evaluate("momentum_1", "momentum_2", "momentum_3")
 
     @cached_property
     def angular_momentum_space(self) -> Floats:
-        """Angular momentum (with that of a rotor), space components, kg m^2/s, shape (n, 3)."""
+        """Angular momentum including a rotor's, space components, kg m^2/s, shape (n, 3)."""
         return self._to_space(self.angular_momentum_body)
 
     @cached_property
@@ -218,12 +219,12 @@ class Trajectory:
 
     @cached_property
     def energy(self) -> Floats:
-        """Kinetic energy and the potentials of the torques that have one, in J, shape (n,)."""
+        """Kinetic energy plus the potential energy of all torques that have a potential, in J, shape (n,)."""
         return self._evaluate("energy")[:, 0]
 
     @property
     def axis_number(self) -> int:
-        """The number of the body axis that :attr:`axis` follows: the symmetry axis, or the third axis."""
+        """Index of the body axis that :attr:`axis` follows, from 0: the symmetry axis, or 2 if no body axis is one."""
         principal = self.scene.body.principal
         return 2 if principal.symmetry_axis is None or not principal.given_axes else int(principal.symmetry_axis)
 
@@ -234,7 +235,7 @@ class Trajectory:
 
     @cached_property
     def invariants(self) -> list[Invariant]:
-        """The conserved quantities of the scene along this trajectory, each proven when the kernel was derived."""
+        """The conserved quantities along the trajectory; conservation was proven when the kernel was derived."""
         invariants = []
         conserved = [item for item in self._motion.kernel.conserved if item.holds]
         for item in conserved:
@@ -263,7 +264,7 @@ class Trajectory:
         return float(max(np.max(np.abs(values)), np.max(np.abs(self.kinetic_energy))))
 
     def sol(self, t: ArrayLike) -> Floats:
-        """Return omega and quaternion at any m times of the span by dense output, shape (7, m).
+        """Return omega and quaternion at any m times of the span, shape (7, m), as ``sol`` of solve_ivp does.
 
         Without attitude the shape is (3, m). A single time gives shape (7,). Steps are recorded on the first call.
         """
@@ -274,7 +275,7 @@ class Trajectory:
         return self._motion.solution(self.t, self.has_attitude)
 
     def quantity(self, name: str) -> Floats:
-        """Return a quantity by the name that scenes use for it (``output.quantities``)."""
+        """Return a quantity by its name in ``output.quantities`` of a scene, such as ``"euler"``."""
         if name == "euler":
             output = self.scene.output
             if output.sequence is None:

@@ -16,7 +16,7 @@ Survey = list[tuple[Document, list[Finding]]]
 def survey(
     names: Sequence[str] = DOCUMENTS, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Survey:
-    """Decide the claims of some textbooks and return the findings: each true or false, with a correction."""
+    """Decide the claims of some textbooks and return the verdicts, with corrections of claims that do not hold."""
     documents = []
     for name in names:
         source = document(name)

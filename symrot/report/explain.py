@@ -18,10 +18,7 @@ FREE = frozenset({"neg"})  # a minus sign counts as part of its addition or mult
 
 
 def _operations(structure: Structure) -> Counter[str]:
-    """Return the numbers of operations, by kind, in one evaluation of the equations of motion.
-
-    ``structure`` describes the body and its torques: symmetry, parameters and states.
-    """
+    """Return the numbers of operations, by kind, in one evaluation of the equations of motion of a structure."""
     from symrot.codegen.scene_kernels import rates_program
     from symrot.dynamics.equations import equations_of_motion
 
@@ -35,7 +32,7 @@ def _row(item: str, skipped: bool, why: str, derivation: str = "", operations: C
 
 
 def _ladder(plan: Plan) -> "list[PlanRow]":
-    """Return one table row for each rule of a plan: the operations that remain after the rule, and the saved ones."""
+    """Return one table row for each rule of a plan: operations that remain after it, and operations that it saves."""
     from symrot.planning.plan import general_structure
 
     general = _operations(general_structure(plan.scene, bool(plan.switches)))
@@ -76,13 +73,13 @@ BENDS = frozenset({"abs", "min", "max", "clip"})
 
 
 def _formulas(plan: Plan, method: str) -> "list[PlanRow]":
-    """Return the table rows on torques by formula: how no step misses a narrow feature or a switch of the torque."""
+    """Return the table rows on torques given by formulas: how steps notice their narrow features and switches."""
     from symrot.propagation.compiled_models import has_formulas
 
     if not has_formulas(plan):
         return []
     if method in ("exact", "constant"):
-        return [_row("narrow features", True, "no steps are taken that could pass one")]
+        return [_row("narrow features", True, "the motion has no steps that could miss one")]
     return [_narrow_features(plan), *([_switches(plan.switches)] if plan.switches else [])]
 
 
@@ -94,12 +91,12 @@ def _narrow_features(plan: Plan) -> "PlanRow":
 
     try:
         terms = enclosure(recurrences(scene_kernel(plan).rates))
-    except InputError as reason:  # without a Taylor series there is no bound for a feature between two samples
-        return _row("narrow features", False, f"NOT looked for: {reason}")
+    except InputError as reason:  # without a Taylor series there are no bounds inside a step
+        return _row("narrow features", False, f"may be missed by a step: {reason}")
     if terms is None:
-        why = "the formulas are polynomials of low degree, or sines and cosines of time: as broad as they look"
+        why = "the formulas are polynomials of low degree, or sines and cosines of time: they have no narrow features"
         return _row("narrow features", True, why)
-    why = "each step is held to an enclosure of the formulas, which no pulse, switch or pole escapes"
+    why = "bounds of the formulas (an enclosure) limit each step, so that it misses no pulse, switch or pole"
     return _row("narrow features", False, why)
 
 
@@ -112,8 +109,8 @@ def _switches(functions: list[str]) -> "PlanRow":
         if any(bent is bends for _, bent in named)
     ]
     why = (
-        f"{'; '.join(parts)}: their times are located to the last bits by enclosures and stepped to exactly; where "
-        "both sides of a jump lead back to it, the motion slides along it"
+        f"{'; '.join(parts)}: their times are located to the last bits by enclosures, and steps end exactly there; "
+        "where both sides of a jump lead back to it, the motion slides along it"
     )
     return _row("switches", False, one_line(why))
 
@@ -126,7 +123,7 @@ def _samples(plan: Plan) -> "list[PlanRow]":
     first, last, *switches = apart(table.times[0], table.times[-1], *table.switching_times)
     jumps = f", jumps at {', '.join(switches)} s" if switches else ""
     why = f"{len(table.times)} samples from {first} to {last} s, cubic splines{jumps}"
-    return [_row("torque by samples", False, f"{why}; besides the operations counted here")]
+    return [_row("torque by samples", False, f"{why}; its operations are not counted here")]
 
 
 def facts(plan: Plan) -> "PlanReport":

@@ -30,7 +30,7 @@ def number_text(value: float | Fraction, digits: int = 6) -> str:
 
 
 def apart(*values: float) -> list[str]:
-    """Return numbers as text with so many digits that the two closest numbers differ in their texts."""
+    """Return numbers as text, with enough digits to distinguish the two closest numbers."""
     ordered = sorted({float(value) for value in values})
     nearest = min((after - before for before, after in pairwise(ordered)), default=math.inf)
     digits = 6
@@ -74,7 +74,7 @@ def _wrapped(text: str, width: int) -> list[str]:
 
 
 def fields(rows: Iterable[tuple[str, str]], width: int | None = None) -> list[str]:
-    """Return pairs (name, text) as aligned, wrapped lines; a pair with an empty name continues the pair before."""
+    """Return pairs (name, text) as aligned, wrapped lines; a pair with an empty name continues the previous pair."""
     rows, width = list(rows), room() if width is None else width
     first = max((len(name) for name, _ in rows), default=0) + 2
     return [

@@ -1,6 +1,6 @@
 """Writing of trajectories to NPZ or CSV files with labels, units, conventions and the name of their scene.
 
-Equal motions give equal bytes.
+Equal motions give files with equal bytes.
 """
 
 import json
@@ -86,7 +86,7 @@ def _csv(stream: BinaryIO, arrays: list[Labelled], about: "FileRecord") -> None:
 
 
 def _printed(item: Labelled, part: slice) -> list[list[str]]:
-    """Return a quantity as columns of numbers in text, with all the digits that restore the same doubles."""
+    """Return a quantity as columns of numbers in text, with enough digits to restore the same doubles."""
     values = item.values[part].reshape(-1, len(item.components)).T
     return [[str(int(x)) if item.name == LOCK else repr(x) for x in column] for column in values.tolist()]
 

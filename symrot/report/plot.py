@@ -21,7 +21,7 @@ __all__ = ["SUFFIXES", "figure", "require_matplotlib", "save"]
 Floats = NDArray[np.float64]
 
 SUFFIXES = (".png", ".pdf", ".svg")
-FEWEST, MOST, PER_STEP = 1500, 20_000, 6  # numbers of samples to draw; with others, the scene is propagated again
+FEWEST, MOST, PER_STEP = 1500, 20_000, 6  # limits of the number of samples in a plot, and samples per step
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")  # Okabe & Ito, 2008
 WIDTHS = (2.0, 1.6, 1.2, 0.9)  # later curves are thinner and drawn on top, so that equal curves all stay visible
 GREY = "#606060"
@@ -55,7 +55,7 @@ def _times(trajectory: Any) -> tuple[Floats, str]:
 
 
 def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -> None:
-    """Draw components over time; a nearly constant one is written into the legend, as it would flatten the others."""
+    """Draw components over time; a nearly constant component that would flatten the others is written as text."""
     low, high = columns.min(axis=0), columns.max(axis=0)
     largest = np.maximum(np.abs(low), np.abs(high))
     steady = high - low <= QUIET * largest
@@ -72,7 +72,7 @@ def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -
 
 
 def _unwrapped(angles: Floats, turn: float) -> Floats:
-    """Return angles with NaN at each jump by a full rotation, so that a plot has no line across the jump."""
+    """Return angles with NaN at each jump by a full rotation, so that the curve is interrupted there."""
     gaps = np.zeros_like(angles, dtype=bool)
     gaps[1:] = np.abs(np.diff(angles)) > 0.5 * turn
     return np.where(gaps, np.nan, angles)
@@ -106,7 +106,7 @@ def _attitude(axes: Any, t: Floats, trajectory: Any) -> None:
 
 
 def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
-    axes.set_title("Drift of what is conserved")
+    axes.set_title("Drift of conserved quantities")
     axes.set_ylabel("relative to its size")
     axes.set_yscale("log")
     axes.set_autoscaley_on(False)  # the limits are set below, because a single flat line would give none

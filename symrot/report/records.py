@@ -80,7 +80,7 @@ class CostRecord(TypedDict):
 
 
 class SwitchingRecord(TypedDict):
-    """A time (s) of a jump or kink of a function, see :class:`symrot.propagation.steppers.stepping.Switching`."""
+    """One switching of a function in a torque, see :class:`symrot.propagation.steppers.stepping.Switching`."""
 
     t: float
     function: str

@@ -1,4 +1,4 @@
-"""The figure of the operations and the time that specialised kernels save, from a general kernel to a scene's own."""
+"""The figure of the operations and the time that a kernel specialised to its scene saves against a general kernel."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -53,7 +53,7 @@ def figure(ladder: Mapping[str, Any]) -> Any:
         axes.set_xlabel(title)
         low, high = axes.get_xlim()
         axes.set_xlim(low / 2, high * 1.2)
-    page.text(0.02, 0.965, "What is saved by leaving out what a motion does not need", fontsize=13,
+    page.text(0.02, 0.965, "Operations and time saved by leaving out terms that a motion does not need", fontsize=13,
               fontweight="bold", va="top")  # fmt: skip
     looks = (("general kernel: full tensor, all torques", "o", GENERAL, 6), ("the scene's own", "s", OWN, 6),
              ("what auto takes", "D", AUTO, 4))  # fmt: skip

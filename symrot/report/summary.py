@@ -187,7 +187,7 @@ def _conserved(report: "RunReport") -> list[str]:
 
 
 def _lost(candidates: "list[LostRecord]") -> list[tuple[str, str]]:
-    """Return rows of text about quantities that the motion does not conserve, one row for each reason."""
+    """Return rows of text about candidates that are not conserved, one row for each reason."""
     names: dict[str, list[str]] = {}
     for item in candidates:
         names.setdefault(item["reason"], []).append(item["name"])

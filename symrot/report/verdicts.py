@@ -24,7 +24,7 @@ def check(
 ) -> list[Verdict]:
     """Decide a claim (text or LaTeX), or all claims of a file, and return the verdicts.
 
-    A claim of a file that cannot be read gets the verdict ``"refused"``.
+    A claim in a file that cannot be parsed gets the verdict ``"refused"``.
 
     Raises
     ------

@@ -25,7 +25,7 @@ def _number(value: float) -> str:
 
 
 def _decades(study: Mapping[str, Any]) -> list[str]:
-    """Return a study as a table with a column for each decade of the error: the least time, and the ratios to it."""
+    """Return a study as a table with one column per decade of the error: the shortest time, and the ratios to it."""
     table = study["decades"]
     names = list(dict.fromkeys(name for row in table for name in row["methods"]))
     rows = [["error <=", *(f"{row['error']:.0e}" for row in table)]]
@@ -85,9 +85,9 @@ def lines(study: Mapping[str, Any]) -> list[str]:
         [
             ("span", f"{' to '.join(apart(*scene['span']))} s; the error is the largest at four times of it, "
                      "attitude in rad, angular velocity relative to its size"),
-            ("reference", "; ".join([reference["name"], *(others or ["no second one to hold it against"])])),
+            ("reference", "; ".join([reference["name"], *(others or ["not compared with a second reference"])])),
             ("machine", f"{machine['processor']}; {', '.join(versions)}"),
-            ("times", "processor time of a call from Python, medians of turns; fastest run at least as good"),
+            ("times", "processor time of a call from Python, median of all repetitions; fastest run at least as good"),
         ]
     )  # fmt: skip
     skipped = fields([(f"{item['method']}:", one_line(item["why"])) for item in study["skipped"]])
@@ -205,4 +205,4 @@ def lines_of_comparison(comparison: Mapping[str, Any]) -> list[str]:
     same = comparison["machines"][0]["processor"] == comparison["machines"][1]["processor"]
     note = [] if same else ["", "The studies are of two machines."]
     table = columns(rows, width=room(200), wrap=0, right=range(1, len(rows[0])))
-    return [f"{title} that of the first", "", *table, *note]
+    return [f"{title} the time of the first", "", *table, *note]

@@ -17,7 +17,7 @@ from symrot.scene.reader import Entry, Reader, fail, flag, number, read_table, t
 __all__ = ["ORTHOGONAL", "Attitude", "read_attitude", "read_sequence", "to_body", "to_space"]
 
 ORTHOGONAL = Fraction(1, 10**9)
-"""Largest difference of R R^T from the identity for a typed matrix R; R is then replaced by an exact rotation."""
+"""Largest allowed difference of R R^T from the identity for a matrix R in a scene; an exact rotation replaces R."""
 
 FORMS = '{quaternion = [..]}, {sequence = "ZXZ", angles = [..]}, {axis = [..], angle = ..} or {dcm = [[..], ..]}'
 
@@ -60,7 +60,7 @@ def _unit(q: Quaternion) -> Quaternion:
 
 
 def _dcm(q: Quaternion) -> Matrix:
-    """Return the matrix ``dcm_sb`` of a quaternion that need not have unit length; rational numbers stay rational."""
+    """Return the matrix ``dcm_sb`` of a quaternion of any length except zero; rational numbers stay rational."""
     w, x, y, z = q
     s = 2 / sum(map(Fraction.__mul__, q, q), Fraction(0))
     return (
@@ -101,7 +101,7 @@ def _of_sequence(name: str, angles: tuple[Angle, ...]) -> Attitude:
 
 
 def _of_dcm(rows: Matrix, value: object, where: str) -> Attitude:
-    """Return the attitude of a matrix in a scene, by way of its quaternion.
+    """Return the attitude that a matrix in a scene describes, as a quaternion and its exact matrix.
 
     The quaternion is computed from its largest component (Shepperd's method).
     """
@@ -221,7 +221,7 @@ _FORMS: dict[str, Callable[[Mapping[str, Any], str], Attitude]] = {
 
 
 def read_attitude(value: Any, where: str) -> Attitude:
-    """Return the attitude that a table of a scene describes, in exactly one of the supported forms."""
+    """Return the attitude that a table of a scene describes by exactly one of quaternion, angles, axis or matrix."""
     entries = table(value, where, f"an attitude: {FORMS}")
     form = next((reader for key, reader in _FORMS.items() if key in entries), None)
     if form is None:

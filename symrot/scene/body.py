@@ -1,4 +1,4 @@
-"""Bodies of scenes: their inertia from exactly one source, their point of rotation, and a check that they can exist.
+"""Bodies of scenes: inertia from exactly one source, point of rotation, and a check that such a body can exist.
 
 The sources are ``shape`` with dimensions and mass or density; ``[[body.part]]``, a body composed of parts;
 ``principal`` moments; and ``inertia``, the tensor. The result is exact (Fractions) and in the axes in which the body
@@ -40,23 +40,20 @@ _UNTURNED: Matrix = (
 class Body(NamedTuple):
     """A rigid body about its point of rotation, in the axes in which it was given.
 
-    ``inertia`` (kg m^2) is about that point; ``center_of_mass`` (m) is relative to it, None when it is unknown;
-    ``mass`` (kg) is None when it is unknown. ``principal`` holds the class of the body, its moments and axes.
-
     Attributes
     ----------
     mass : Fraction or None
-        kg.
+        Mass, kg; None if it is unknown.
     inertia : 3 x 3 Fraction
-        kg m^2, about the centre of mass or the fixed point.
+        Inertia tensor, kg m^2, about the point of rotation.
     center_of_mass : tuple of 3 Fraction, or None
-        m, relative to that point.
+        Position relative to the point of rotation, m; None if it is unknown.
     about : str
-        Which of the two points it is.
+        The point of rotation: ``"center_of_mass"`` or ``"fixed_point"``.
     description : str
         How the scene describes the body.
     principal : Principal
-        Principal moments, kg m^2, and axes.
+        Class of the body, principal moments, kg m^2, and axes.
 
     Examples
     --------
@@ -80,8 +77,8 @@ def read_body(value: Any, where: str) -> Body:
     Raises
     ------
     InputError
-        Naming file, key, value and expectation: none or several sources of the inertia, unknown shapes and keys,
-        dimensions out of range, an inertia that no body has, a body without three positive moments (a needle, a point).
+        For no or several sources of the inertia, unknown shapes and keys, dimensions out of range, an inertia that no
+        body has, or a body without three positive moments (a needle, a point). The message names file, key and value.
     """
     entries = table(value, where, f"a table with {EXPECTED_SOURCE}")
     sources = [way for way in INERTIA_SOURCES if way in entries]
@@ -145,7 +142,7 @@ def _tensor(value: Any, where: str) -> Matrix:
 
 
 def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return a body from the moments of inertia in a scene, which refer to the point about which the body rotates."""
+    """Return a body from moments of inertia in a scene; they refer to the point about which the body rotates."""
     about, center = values["about"], values["center_of_mass"]
     if about == "center_of_mass":
         if center is not None and any(center):
@@ -193,9 +190,9 @@ def _any_value(value: Any, where: str) -> Any:
 
 
 def _amount(shape: Shape) -> dict[str, Entry]:
-    """Return the readers of mass and density for a shape.
+    """Return the readers of the keys mass and density of a shape.
 
-    Point masses have no such keys: each has a mass of its own.
+    The shape of point masses has no such keys: each point has its own mass.
     """
     if shape.kind == "points":
         return {}
@@ -255,7 +252,7 @@ _length = number("a number in m")
 
 
 def _bounded(value: Any, where: str) -> None:
-    """Raise InputError for a dimension that is not a number or is out of range, before it is used."""
+    """Raise InputError if a dimension, or any number in a list of them, is not a number or is out of range."""
     if isinstance(value, list | tuple):
         for index, item in enumerate(value):
             _bounded(item, f"{where}[{index}]")
@@ -264,7 +261,7 @@ def _bounded(value: Any, where: str) -> None:
 
 
 def _placed(properties: MassProperties, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return a composed body about its centre of mass, or about a fixed point given in the axes of the body."""
+    """Return a body of shapes about its centre of mass, or about a fixed point given in the axes of the body."""
     about, point = values["about"], values["fixed_point"]
     if about == "center_of_mass" and point is not None:
         fail(
@@ -273,7 +270,7 @@ def _placed(properties: MassProperties, values: Mapping[str, Any], where: str, s
             point,
         )
     if about == "fixed_point" and point is None:
-        fail(f"{where}.fixed_point", "three numbers [x, y, z] in m, in the axes of the body: it turns "
+        fail(f"{where}.fixed_point", "three numbers [x, y, z] in m, in the axes of the body: it rotates "
                  "about a fixed point, the key is missing")  # fmt: skip
     inertia, center = properties.inertia, _ZERO
     if about == "fixed_point":

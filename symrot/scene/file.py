@@ -30,8 +30,8 @@ def shipped_names() -> list[str]:
 def names_with_kernels() -> list[str]:
     """Return the names of the shipped scenes that have one set of equations of motion.
 
-    Such scenes can be printed as C (``symrot emit``) and certified. A scene with a table of samples has no formula for
-    its torque. Functions with jumps or kinks have one set of equations in each mode.
+    They can be printed as C (``symrot emit``) and certified. A scene with a table of samples has no formula for its
+    torque. A scene with jumps or kinks has different equations on both sides of each.
     """
     return [name for name in shipped_names() if all(map(_has_kernel, _torques(name)))]
 
@@ -55,7 +55,7 @@ def find_scene(source: str | Path) -> Path:
     Raises
     ------
     InputError
-        When there is no such scene (with the shipped ones and the nearest name), or it is a folder.
+        If there is no such scene or it is a folder; the message lists the shipped scenes and the nearest name.
     """
     if not isinstance(source, str | Path) or not str(source).strip() or "\0" in str(source):
         raise InputError(f"expected the name of a scene or the path of a scene file, got {str(source)[:60]!r}")
@@ -91,8 +91,8 @@ def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
     Raises
     ------
     InputError
-        For a file that cannot be read, is no regular file, larger than 1 MB, empty, not UTF-8 text or not TOML (with
-        the line).
+        For a file that cannot be read, is not a regular file, is larger than 1 MB, is empty, is not UTF-8 text or is
+        not TOML; the message then names the line.
     """
     try:
         content = read_input(path, LARGEST_FILE)

@@ -29,7 +29,7 @@ __all__ = [
 Reader = Callable[[Any, str], Any]
 
 LARGEST = Fraction(10) ** 100
-"""Largest magnitude of a quantity of a scene, and the inverse of the smallest: so products are finite doubles."""
+"""Largest magnitude of a quantity in a scene, and inverse of the smallest, so that products are finite doubles."""
 
 
 class Entry(NamedTuple):
@@ -47,7 +47,7 @@ def key_path(where: str, key: str) -> str:
 
 
 def fail(where: str, expectation: str, value: object = ..., reason: str = "") -> NoReturn:
-    """Raise the InputError for one value: its place, the expectation, the value, and the reason."""
+    """Raise InputError with one sentence: the place, the expectation, the value and the reason."""
     place = where.removesuffix(": ")
     got = "" if value is ... else f", got {show(value)}"
     raise InputError(f"{place}: expected {expectation}{got}" + (f" ({reason})" if reason else ""))
@@ -126,9 +126,9 @@ def vector(unit: str, sign: str = "any") -> Reader:
 
 
 def text(value: Any, where: str) -> str:
-    """Return the value if it is a line of at most 1000 printable characters.
+    """Return the value if it is a line of at most 1000 printable characters; raise InputError otherwise.
 
-    Control characters, which may disturb a terminal, are refused.
+    Control characters are excluded since they may disturb a terminal.
     """
     if not isinstance(value, str) or len(value) > 1000 or not value.isprintable():
         fail(where, "a line of text of at most 1000 characters", value)

@@ -26,20 +26,20 @@ _STEEPEST = 1e100
 
 
 class Table(NamedTuple):
-    """Samples of a torque: ``times`` (s, increasing, each switching time twice) and ``moments`` (N m).
+    """A torque given by samples.
 
-    Between switching times a cubic spline interpolates the samples; outside of the samples the torque is not defined.
+    Between switching times a cubic spline interpolates the samples. Outside their times the torque is not defined.
 
     Attributes
     ----------
     times : tuple of float
-        s, rising; each switching time twice.
+        Times of the samples, s, increasing; each switching time twice.
     moments : tuple of 3 float each
-        N m.
+        Components of the torque, N m.
     frame : str
-        ``"body"`` or ``"space"``: the components of the moments.
+        ``"body"`` or ``"space"``: the frame of the components.
     switching_times : tuple of float
-        s, where the torque jumps.
+        Times, s, at which the torque jumps.
 
     Examples
     --------
@@ -50,7 +50,7 @@ class Table(NamedTuple):
 
     times: tuple[float, ...]
     moments: tuple[tuple[float, float, float], ...]
-    frame: str  # "body" or "space": whose components
+    frame: str  # "body" or "space"
     switching_times: tuple[float, ...]
 
     @property
@@ -64,7 +64,7 @@ _moment = vector("N m")
 
 
 def _plain(value: Any) -> bool:
-    """Return whether a number is a float that needs no further check, as most samples are."""
+    """Return whether a value is a float in the usual range, which needs no further check."""
     return type(value) is float and (1e-99 < abs(value) < 1e99 or value == 0.0)
 
 
@@ -110,19 +110,19 @@ def read_samples(
     value : mapping
         The table of the scene.
     folder : Path
-        Where a file of samples is looked for; it may lie there or in a folder below, links followed.
+        Folder of the scene. A file of samples must be there or in a folder below, after links are followed.
     where : str
-        The place in the scene, for complaints.
+        The place in the scene, for error messages.
     span : 2 Fractions
-        First and last time that the scene asks for, s.
+        First and last time of the scene, s.
     table_folders : str, Path or sequence of them
-        Further folders whose files a scene may name.
+        Further folders that may contain files of samples.
 
     Raises
     ------
     InputError
-        For an unknown key, a file elsewhere, a file that cannot be read, samples that are no numbers, too few, not in
-        order, or do not cover the span.
+        For an unknown key, a file in another folder, a file that cannot be read, or samples that are not numbers, are
+        too few, are not in order, or do not cover the span.
     """
     values = read_table(value, where, _ENTRIES, "a torque of kind table")
     written = [key for key in ("t", "moment") if values[key] is not None]
@@ -153,7 +153,7 @@ def read_samples(
 
 
 def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, rows: int) -> None:
-    """Raise InputError unless the times increase and each piece between switching times has at least two samples.
+    """Raise InputError unless the times increase, with at least two samples between consecutive switching times.
 
     A switching time occurs twice: for the torque before and after its jump.
     """
@@ -200,7 +200,7 @@ def _allowed_file(file: str, folder: Path, table_folders: str | Path | Sequence[
         fail(where, f"the name of a CSV file, got {getattr(reason, 'strerror', None) or reason}")
     if not inside:
         fail(where, "a file in the folder of the scene or below it", file, "`--table-folder DIR`, in Python "
-                 "load_scene(.., table_folders=[DIR]), allows those of a folder elsewhere")  # fmt: skip
+                 "load_scene(.., table_folders=[DIR]), allows files in another folder")  # fmt: skip
     return path
 
 

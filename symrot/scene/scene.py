@@ -42,7 +42,7 @@ QUANTITIES: dict[str, tuple[str, str]] = {
 
 
 class Initial(NamedTuple):
-    """Initial state of a motion: angular velocity and attitude, exact.
+    """Initial state of a motion: angular velocity and attitude, as exact fractions.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class Span(NamedTuple):
 
 
 class Output(NamedTuple):
-    """The quantities that a scene writes, and how Euler angles are written.
+    """The quantities in the output of a scene, and the form of its Euler angles.
 
     Attributes
     ----------
@@ -126,7 +126,7 @@ class Scene:
     initial : Initial
         Angular velocity, rad/s, body components, and attitude.
     torques : tuple of Torque
-        The torques that are formulas.
+        The torques given by formulas.
     span : Span
         Sample times, s.
     output : Output
@@ -134,7 +134,7 @@ class Scene:
     tolerance : Fraction
         Error of the trajectory to aim for: attitude in rad, angular velocity relative to its size.
     table : Table or None
-        A torque by samples, in addition to the formulas.
+        A torque given by samples, which acts in addition.
 
     Examples
     --------
@@ -154,7 +154,7 @@ class Scene:
     span: Span
     output: Output
     tolerance: Fraction
-    table: Table | None = None  # a torque by samples, besides the torques that are formulas
+    table: Table | None = None  # a torque given by samples, in addition to the torques given by formulas
 
     @property
     def torque_kinds(self) -> tuple[str, ...]:
@@ -171,40 +171,40 @@ class Scene:
         Parameters
         ----------
         content : mapping
-            As ``docs/scene_format.md`` says; numbers may be int, Fraction, Decimal, text, or float (its exact
-            binary value).
+            Keys and values as in ``docs/scene_format.md``; numbers may be int, Fraction, Decimal, text, or float (its
+            exact binary value).
         where : str
-            Name of the scene, put in front of every complaint.
+            Name of the scene, with which every error message begins.
         table_folders : str, Path or sequence of them
-            Folders, beside the current one, whose files a torque of kind table may name.
+            Folders, in addition to the current folder, whose files a torque of kind table may name.
 
         Raises
         ------
         InputError
-            One sentence: key, expectation, value.
+            For content that is not a valid scene; the message names key, expectation and value.
         """
         return _read_scene(content, where, where, None, table_folders)
 
 
 def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str | Path] = ()) -> Scene:
-    """Return a scene by the name of a shipped one, or from the path of a TOML file.
+    """Return a shipped scene by its name, or a scene from the path of a TOML file.
 
     Parameters
     ----------
     source : str or Path
-        The name, or the path.
+        Name of a shipped scene, or path of a file.
     table_folders : str, Path or sequence of them
-        Folders, beside that of the scene, whose files a torque of kind table may name.
+        Folders, in addition to that of the scene, whose files a torque of kind table may name.
 
     Returns
     -------
     Scene
-        All numbers exact, in SI units.
+        The scene, with exact numbers in SI units.
 
     Raises
     ------
     InputError
-        One sentence with file, key, expectation and value.
+        For a file that is not a valid scene; the message names file, key, expectation and value.
 
     Notes
     -----
@@ -223,7 +223,7 @@ def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str |
 def shipped_scenes() -> list[tuple[str, str, str]]:
     """Return the name, the title and the source of every scene that comes with symrot.
 
-    The rest of the files, such as bodies and torques, is not checked.
+    The other parts of the scene files, such as bodies and torques, are not checked.
 
     Returns
     -------
@@ -324,7 +324,7 @@ def _read_tolerance(value: Any, where: str) -> Fraction:
     smallest, largest = TOLERANCES
     if not smallest <= tolerance <= largest:
         reason = "it is a relative error" if tolerance <= 0 else "a double carries no more digits"
-        reason = "a motion with such errors means nothing" if tolerance > largest else reason
+        reason = "errors above it make a motion meaningless" if tolerance > largest else reason
         fail(where, "a tolerance from 1e-15 to 1e-2", value, reason)
     return tolerance
 
@@ -350,7 +350,7 @@ TOP: dict[str, Entry] = {
     "output": Entry(_read_output, default=Output(("omega", "quaternion"), None, False)),
     "accuracy": Entry(_read_accuracy, default=Fraction(1, 10**12)),
 }
-"""The tables and keys of a scene file; torques are read last, since they are fitted to the body."""
+"""The tables and keys of a scene file; torques are read last, since they may take values from the body."""
 
 
 def _read_torques(

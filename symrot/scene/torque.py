@@ -1,6 +1,6 @@
-"""Torques of scenes: read with the table of :mod:`symrot.dynamics.torque_kinds`.
+"""Torques of scenes, read with the table of :mod:`symrot.dynamics.torque_kinds`.
 
-Values that a torque lacks, such as the weight, come from the body.
+Values that a torque does not specify, such as the weight, come from the body.
 """
 
 import math
@@ -37,13 +37,14 @@ class Torque(NamedTuple):
     kind : str
         Name in the table of torques.
     values : mapping
-        The constants by name, SI units: the parameters of a torque given by formulas (with pi, if a formula uses it),
-        else all fields of the table. Vectors have three components, an attitude is a unit quaternion, and ``linear`` of
-        a damping is a vector. Gravity has ``weight``, ``center_of_mass`` and a unit ``direction``.
+        The constants by name, in SI units: the parameters of a torque given by formulas (with pi, if a formula contains
+        it), otherwise all fields in the table of torques. An attitude is a unit quaternion, and ``linear`` of a damping
+        is a vector. Gravity has ``weight``, ``center_of_mass`` and a unit ``direction``.
     formulas : tuple of str
-        The components of a torque given by formulas, which :func:`symrot.formula.tree.parse` reads, switches allowed.
+        The components of a torque given by formulas, as text for :func:`symrot.formula.tree.parse`; they may contain
+        functions with jumps or kinks.
     frame : str
-        ``"body"`` or ``"space"``: the axes of these components.
+        ``"body"`` or ``"space"``: the frame of these components.
 
     Examples
     --------
@@ -106,7 +107,7 @@ def _rest(value: Any, where: str) -> tuple[Fraction, ...]:
 
 
 def _depth(node: expression.Node) -> int:
-    """Return the number of levels of a formula, computed without recursion, since a long sum has very many."""
+    """Return the depth of a formula tree, computed without recursion, since a long sum is very deep."""
     depth, level = 0, [node]
     while level:
         depth, level = depth + 1, [child for parent in level for child in expression.children(parent)]
@@ -191,7 +192,7 @@ def _entries(kind: TorqueKind) -> dict[str, Entry]:
 
 
 def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
-    """Return weight, centre of mass and unit direction of gravity; the body provides values missing in the scene."""
+    """Return weight, centre of mass and unit direction of gravity; missing values are taken from the body."""
     weight, acceleration, center = values["weight"], values["gravity"], values["center_of_mass"]
     if weight is not None and acceleration is not None:
         fail(f"{where}.gravity", "weight or gravity, not both", acceleration)
@@ -278,7 +279,7 @@ _FITS: dict[str, Callable[[dict[str, Any], Body, str], dict[str, Any]]] = {
 
 _ABOUT_ADVICE = {
     "fixed_point": 'about = "fixed_point" in [body]: a weight has no torque about the centre of mass',
-    "center_of_mass": 'about = "center_of_mass" in [body]: a satellite turns about its centre of mass',
+    "center_of_mass": 'about = "center_of_mass" in [body]: a satellite rotates about its centre of mass',
 }
 
 

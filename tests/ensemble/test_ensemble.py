@@ -368,7 +368,7 @@ def test_a_failed_trajectory_says_so():
         assert found.status.tolist() == [-1, 0, 0] and not found.success
         assert "cannot be followed beyond" in found.messages[0] and found.messages[1:] == ("", "")
         assert np.isnan(found.omega[0, 2]).all() and not np.isnan(found.omega[1:]).any()
-        assert "1 broken off" in repr(found)
+        assert "1 stopped early" in repr(found)
 
 
 def test_a_propagator_gives_scene_and_tolerance():

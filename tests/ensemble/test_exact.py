@@ -365,7 +365,7 @@ def test_what_a_scene_gives_is_found_once(monkeypatch):
         given, omega=2 * omega, quaternion=quaternion, parameters={"weight": np.linspace(3, 9, 5)}
     )
     place = id(given)
-    assert place in variation._rooms
+    assert place in variation._caches
     del given, first, again
     gc.collect()
-    assert place not in variation._rooms
+    assert place not in variation._caches

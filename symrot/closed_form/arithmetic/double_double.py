@@ -1,7 +1,7 @@
 """Double-double arithmetic on arrays: each number is an unevaluated sum ``high + low`` of two doubles.
 
-Relative errors are about 2^-104. The algorithms require every operation to be rounded as it is written, which NumPy
-does. Sums and products: Dekker, Numer. Math. 18 (1971) 224; Knuth, The Art of Computer Programming, vol. 2, section
+Relative errors are about 2^-104. The algorithms require that every operation is rounded separately, as NumPy does.
+Sums and products: Dekker, Numer. Math. 18 (1971) 224; Knuth, The Art of Computer Programming, vol. 2, section
 4.2.2. The exponential is 2^(j/8) from a table times a power series.
 """
 
@@ -51,7 +51,7 @@ def two_product(a: Any, b: Any) -> Pair:
 
 
 def normalized(high: Any, low: Any) -> Pair:
-    """Return the pair of the same sum whose low part is at most half a unit in the last place of its high part."""
+    """Return a pair with the same sum, whose low part is at most half a unit in the last place of its high part."""
     total = high + low
     return total, low - (total - high)
 

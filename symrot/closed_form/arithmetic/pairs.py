@@ -26,13 +26,13 @@ __all__ = [
 Number = float | int | Fraction
 
 LARGEST = 1e205
-"""Largest number that may define a motion, in its unit; it keeps all constants of the motion finite doubles."""
+"""Largest number that may define a motion, in its unit, so that all constants of the motion are finite doubles."""
 
 SMALLEST = 1e-205
 """Smallest moment of inertia, kg m^2."""
 
 GRID = 2.0**-33
-"""Unit, in last bits of ``hi``, to multiples of which ``lo`` of an attitude is rounded."""
+"""``lo`` of an attitude is rounded to multiples of GRID times the last bit of ``hi``."""
 
 _BITS = 600  # 2^600 and its inverse lie inside these bounds
 
@@ -40,7 +40,7 @@ _BITS = 600  # 2^600 and its inverse lie inside these bounds
 def quotient(numerator: int, denominator: int) -> tuple[float, float]:
     """Return numerator/denominator as a sum of two doubles (hi, lo).
 
-    Python rounds quotients of integers correctly, so that both doubles are the nearest ones.
+    Both doubles are correctly rounded, because Python rounds quotients of integers correctly.
     """
     hi = numerator / denominator
     top, bottom = hi.as_integer_ratio()
@@ -64,8 +64,8 @@ def flatten_pairs(values: Sequence[Number]) -> list[float]:
 def attitude(values: Sequence[Number]) -> list[float]:
     """Return a quaternion as one list of 8 doubles: hi and lo of each component, correct to 2^-86 of the component.
 
-    An attitude needs no more digits. Because of this rounding, arithmetic on arrays of double-double numbers gives the
-    same doubles for many attitudes at once.
+    An attitude needs no more digits. Thanks to this rounding, double-double arithmetic on arrays of attitudes gives the
+    same doubles.
     """
     result: list[float] = []
     for value in values:
@@ -101,7 +101,7 @@ def over_common_denominator(values: Sequence[Number]) -> tuple[list[int], int]:
 
 
 def numbers(what: str, values: Sequence[Number], length: int, least: float = -LARGEST) -> list[Number]:
-    """Return ``values`` unchanged if they are ``length`` real numbers of a size that a motion can use.
+    """Return ``values`` unchanged if they are ``length`` real numbers in the range for which motions are computed.
 
     Floats (also NumPy's), ints and Fractions are accepted; ``what`` is the name of the argument in error messages.
 

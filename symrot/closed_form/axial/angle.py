@@ -3,8 +3,8 @@
 After time t the angle is ``rate t (exp(x) - 1)/x + push t^2 (exp(x) - 1 - x)/x^2`` revolutions, with ``x = -decay t``.
 Away from ``x = 0`` the equal expression ``(push/decay) t + (rate - push/decay) (1 - exp(x))/decay`` is used.
 
-Three kinds of arithmetic share the work. Doubles have a relative error of 1e-16, which suffices for small angles.
-Larger angles use double-double numbers, with an error of 1e-20 of a revolution. Angles above 1e10 revolutions, and
+The arithmetic depends on the angle. Doubles have a relative error of 1e-16, which suffices for small angles. Larger
+angles use double-double numbers, with an error of 1e-20 of a revolution. Angles above 1e10 revolutions, and
 calls with only a few times, use integers with as many bits as the motion needs; for a few times they are faster than
 one call of NumPy. Double-double numbers and integers round to the same double.
 
@@ -61,7 +61,7 @@ def _less_whole_turns(turns: dd.Pair) -> Floats:
 
 
 class Turning:
-    """A multiple of the angle of rotation of a driven body, as a function of time; its constants are rounded once.
+    """A multiple of the angle of rotation of a driven body, as a function of time, from constants of fractions.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ class Turning:
         return self._rate[0] * t * (1.0 + x * series) + self._push[0] * t * t * series
 
     def _near(self, t: Floats) -> Floats:
-        """Return the angle in revolutions as double-double numbers, by the series about ``x = -decay t = 0``."""
+        """Return the angle in revolutions as double-double numbers, by the series for small ``x = -decay t``."""
         time = t, np.zeros_like(t)
         x = dd.multiply(time, self._decay)
         series = dd.second(x) if self._decay[0] else (0.5, 0.0)

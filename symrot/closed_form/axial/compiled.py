@@ -29,7 +29,7 @@ _LARGEST = 200  # 2^200 replaces larger numbers: a product with it exceeds the r
 _BITS = 260  # more bits than a sum of four doubles represents
 _WIDE, _WIDER, _PAIR = 3, 4, 2  # numbers of doubles whose sum is one constant
 _TURNING = 14  # doubles in a struct `turning` of axial.h
-_TURN_BITS = 340  # bits of the factor from radians to a multiple of the angle in revolutions
+_TURN_BITS = 340  # bits of the factor that converts radians to a multiple of the angle in revolutions
 _EXPONENT = 700.0  # exp of a larger number may exceed the range of a double
 _PI_TOP, _PI_BOTTOM = number.PI.as_integer_ratio()
 _bound: dict[str, tuple[Any, Any]] = {}
@@ -38,7 +38,7 @@ _bound: dict[str, tuple[Any, Any]] = {}
 def parts(top: int, bottom: int, count: int) -> list[float]:
     """Return top/bottom as a list of ``count`` doubles whose sum is nearest to the ratio.
 
-    Each double is the rounded remainder after the doubles before it. Equal ratios give the same doubles.
+    Each double is the rounded remainder that the previous doubles leave. Equal ratios give the same doubles.
     """
     sign, top = (-1, -top) if top < 0 else (1, top)
     size = top.bit_length() - bottom.bit_length()
@@ -158,9 +158,9 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, turned: bool) -> tuple[int, int, list[float]]:
-        """Return the factor from radians to the needed multiple of the angle in revolutions, and the constants for C.
+        """Return the factor that converts radians to a multiple of the angle in revolutions, and the constants for C.
 
-        The factor is an integer; the second result is the number of its bits after the binary point.
+        The first two results are the factor as an integer, and the number of its bits after the binary point.
         """
         turn, bits = _HALF
         if turned:

@@ -119,7 +119,7 @@ class AxialMotion:
         left, lost = exp_and_expm1(x, error + t * low)
         spin = rate * left + push * (lost / high)
         early = x > 1.0
-        if early.any():  # the difference of rate and push would lose most digits at these times
+        if early.any():  # here the difference of rate and push would lose most digits
             final = self._push / self._decay
             spin[early] = float(final) + float(self._rate - final) * left[early]
         return spin
@@ -149,13 +149,13 @@ def motion(
     torque : number
         Torque about the axis, N m, fixed in the body.
     omega0 : 3 numbers
-        rad/s; nonzero across the axis only if the body is symmetric about it.
+        Angular velocity, rad/s; nonzero across the axis only if the body is symmetric about it.
     quaternion0 : 4 numbers
-        Body to space, scalar first.
+        Attitude, body to space, scalar first.
     damping : number
         Coefficient of the torque ``-damping*omega`` about the axis, N m s.
     damping_across : number
-        The same for every axis across the driven axis, N m s.
+        Coefficient of damping about the axes across the driven axis, N m s.
 
     Raises
     ------
@@ -168,7 +168,7 @@ def motion(
 def starts(
     inertia: Sequence[Number], axis: int, torque: Number, damping: Number = 0.0, damping_across: Number = 0.0
 ) -> Callable[[Initial], AxialMotion]:
-    """Return a function from initial states to motions of one driven body; arguments as :func:`motion` takes them.
+    """Return a function from initial states to motions of one driven body; arguments as for :func:`motion`.
 
     Constants that do not depend on the initial state are computed once.
     """
@@ -177,7 +177,7 @@ def starts(
 
 
 class Driven:
-    """A driven body with the exact constants that all its motions share."""
+    """A body driven about one axis, with the exact constants that all its motions share."""
 
     def __init__(
         self, inertia: Sequence[Number], axis: int, torque: Number, damping: Number, damping_across: Number

@@ -1,7 +1,7 @@
 """Constants of many free bodies, computed in one call of C (:file:`bodies_at.c`).
 
-Each constant is a correctly rounded sum of two doubles. If 248 bits do not determine the rounding, the constant is
-marked as doubtful, and the caller computes it with fractions.
+Each constant is a correctly rounded sum of two doubles. If 248 bits do not decide how to round it, it is marked as
+doubtful, and the caller computes it with fractions.
 """
 
 from collections.abc import Sequence

@@ -92,7 +92,7 @@ class FreeRigidBody:
 
     @cached_property
     def fixed(self) -> Any:
-        """Moments and axes in the form in which C computes many angular velocities along the principal axes."""
+        """Moments and axes as integers for the C function that finds many angular velocities along these axes."""
         from symrot.closed_form.free_body.bodies import fixed_body
 
         return fixed_body(self._principal.moments, [x for row in self._principal.axes for x in row])
@@ -128,7 +128,7 @@ class FreeRigidBody:
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
     """Return constants of a free body as one list hi, lo, hi, lo, ..: I2 - I3, I3 - I1, I1 - I2 and |L|^2 - 2 T I_mid.
 
-    They are scaled as free_body.c expects; computing them exactly avoids the cancellation of digits.
+    They are scaled as free_body.c expects. They are computed exactly, since differences of doubles would lose digits.
     """
     integers, shared = over_common_denominator(moments)
     return [*gaps(integers, shared), *Defect(integers)(over_common_denominator(omega)[0])]
@@ -149,10 +149,10 @@ def gaps(i: list[int], shared: int) -> list[float]:
 
 
 class Defect:
-    """The quantity |L|^2 - 2 T I_mid of one body as a function of its rates, scaled and exact.
+    """The exact, scaled quantity |L|^2 - 2 T I_mid of one free body as a function of its rates.
 
-    Its sign tells which axis a free body's motion goes around. The scale is the square of the largest moment times the
-    largest rate; the moments are integers.
+    Its sign tells whether the motion goes around the axis of the smallest or of the largest moment. The scale is the
+    square of the largest moment times the largest rate; the moments are integers.
     """
 
     def __init__(self, i: list[int]) -> None:

@@ -1,4 +1,4 @@
-"""A free symmetric body with a constant rotor along its axis, at any time: two steady rotations, in closed form.
+"""A free symmetric body with a rotor of constant relative momentum along its axis: two steady rotations.
 
 The formulas are in :file:`gyrostat.c`. Source: Landau & Lifshitz, Mechanics, 3rd ed., section 33, for a body without a
 rotor.
@@ -27,7 +27,7 @@ def motion(
     Parameters
     ----------
     inertia : 3 numbers
-        Principal moments, kg m^2, the rotor's mass included; the two across the rotor's axis are equal.
+        Principal moments, kg m^2, including the mass of the rotor; the two across the rotor's axis are equal.
     rotor : 3 numbers
         Angular momentum of the rotor relative to the body, kg m^2/s, constant; along one principal axis, or zero.
     omega0, quaternion0 : 3 and 4 numbers
@@ -42,7 +42,7 @@ def motion(
 
 
 def starts(inertia: Sequence[Number], rotor: Sequence[Number]) -> Callable[[Initial], ExactMotion]:
-    """Return a function from initial states to motions of one gyrostat; arguments as :func:`motion` takes them."""
+    """Return a function from initial states to motions of one gyrostat; arguments as for :func:`motion`."""
     body = Gyrostat(inertia, rotor)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 

@@ -53,7 +53,7 @@ def motion(
     weight : number
         Weight, N.
     center_of_mass : 3 numbers
-        From the fixed point, body axes, m; it must lie on one of the axes.
+        Position from the fixed point, body axes, m; it must lie on one of the axes.
     omega0 : 3 numbers
         Angular velocity in body axes, rad/s.
     quaternion0 : 4 numbers
@@ -77,7 +77,7 @@ def motion(
 def starts(
     inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number] = _DOWN
 ) -> Callable[[Initial], ExactMotion]:
-    """Return a function from initial states to motions of one heavy top; arguments as :func:`motion` takes them.
+    """Return a function from initial states to motions of one heavy top; arguments as for :func:`motion`.
 
     Constants that do not depend on the initial state are computed once.
     """
@@ -139,7 +139,7 @@ class Frame:
     axis : 0, 1 or 2
         The symmetry axis of the body.
     up : 3 numbers
-        The upward direction in space: opposite to gravity if the centre of mass is at a positive place on the axis.
+        Third axis of space in the formulas: opposite to gravity if the centre of mass is on the positive axis.
     """
 
     def __init__(self, axis: int, up: Sequence[Number]) -> None:
@@ -163,7 +163,7 @@ class Frame:
         return self._before is self._after is None
 
     def start(self, quaternion: Sequence[Number]) -> list[float]:
-        """Return an attitude between these axes as 8 doubles, hi and lo of each component.
+        """Return an attitude converted to these axes of body and space, as 8 doubles: hi and lo of each component.
 
         See :func:`symrot.closed_form.arithmetic.pairs.attitude`.
         """

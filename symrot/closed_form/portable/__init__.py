@@ -19,4 +19,4 @@ MOTIONS: dict[str, Callable[..., Any]] = {
     "gyrostat": PortableGyrostat,
     "heavy_top": PortableHeavyTop,
 }
-"""The motions of this folder by the names of the corresponding C files; arguments as the C functions take them."""
+"""The motions of this folder by the names of the corresponding C files; arguments as for the C functions."""

@@ -21,7 +21,7 @@ NEGLIGIBLE = mpf(10) ** -150  # size, relative to the largest component of omega
 class PortableFreeBody:
     """The motion of a free body, computed with mpmath and NumPy.
 
-    Its arguments are those of the C function ``symrot_free_body_prepare``: lists hi, lo, hi, lo, ..
+    Its arguments are as for the C function ``symrot_free_body_prepare``: lists hi, lo, hi, lo, ..
     """
 
     def __init__(
@@ -194,7 +194,8 @@ class PortableFreeBody:
     def _sums(self, t: Floats) -> tuple[Any, Any, Floats]:
         """Return the elliptic functions, the theta sum of the attitude, and the phase in half revolutions.
 
-        The first are cn, sn and dn times their amplitudes. The theta sum is complex: its real and imaginary part.
+        The elliptic functions are cn, sn and dn times their amplitudes. The complex theta sum is returned as its real
+        and imaginary part.
         """
         if self.regime == "circular":
             sine, cosine = self.axial.circle(t)

@@ -14,7 +14,7 @@ __all__ = ["PortableGyrostat"]
 class PortableGyrostat:
     """The motion of a gyrostat, computed with mpmath and NumPy.
 
-    Its arguments are those of the C function ``symrot_gyrostat_prepare``: lists hi, lo, hi, lo, ..
+    Its arguments are as for the C function ``symrot_gyrostat_prepare``: lists hi, lo, hi, lo, ..
     """
 
     regime = "steady"

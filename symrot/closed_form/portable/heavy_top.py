@@ -24,7 +24,7 @@ NOTHING = mpf(10) ** -31  # size, relative to alpha or beta, that counts as zero
 class PortableHeavyTop:
     """The motion of a symmetric heavy top, computed with mpmath and NumPy.
 
-    Its arguments are those of the C function ``symrot_heavy_top_prepare``: lists hi, lo, hi, lo, ..
+    Its arguments are as for the C function ``symrot_heavy_top_prepare``: lists hi, lo, hi, lo, ..
     """
 
     def __init__(
@@ -191,7 +191,7 @@ class PortableHeavyTop:
         across: Any,
         spin: Any,
     ) -> None:
-        """Compute the constant factors of the theta series from the initial attitude, or its rates if it is small."""
+        """Compute the constant factors of the theta series from alpha and beta at the start, or from their rates."""
         alpha, beta = start
         initial_rates = [
             mpc(0, spin / 2) * alpha - beta * mp.conj(across) / 2,

@@ -1,6 +1,6 @@
 """Phases that grow linearly with time, in revolutions, and functions of them at arrays of times, without a C compiler.
 
-The formulas are those of :file:`circular.h` and :file:`stages.h`.
+The formulas are the same as in :file:`circular.h` and :file:`stages.h`.
 """
 
 from typing import Any, NamedTuple
@@ -19,7 +19,7 @@ LARGEST = 80.0  # argument of a hyperbolic function above which the results are 
 
 
 def number(high: float, low: float) -> Any:
-    """Return the number ``high + low`` to all digits of mpmath's current precision."""
+    """Return the number ``high + low`` at mpmath's current precision."""
     return mpf(high) + mpf(low)
 
 
@@ -89,7 +89,7 @@ class Phase(NamedTuple):
         return whole, flip, np.clip(stretch * whole, -LARGEST, LARGEST)
 
     def argument_once(self, t: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return the results of :meth:`argument` for a phase that is not periodic: 0, 1 and the phase itself."""
+        """Return the result of :meth:`argument` for a phase that is not periodic: 0, 1 and the phase itself."""
         return np.zeros_like(t), np.ones_like(t), np.clip(self.whole(t), -LARGEST, LARGEST)
 
 

@@ -32,7 +32,7 @@ _bound: list[_Functions] = []
 
 
 def limits() -> tuple[float, float, float]:
-    """Return the numerical limits that the C function ``symrot_spin_up_prepare`` takes as its third argument."""
+    """Return the third argument of the C function ``symrot_spin_up_prepare``: limits of its series and phases."""
     return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
 

@@ -1,9 +1,9 @@
 """A symmetric body under a constant torque about its axis, in integer arithmetic, for any number of revolutions.
 
 The rotation far from resonance (:mod:`~symrot.closed_form.spin_up.off_resonance`) and the rotation near resonance
-(:mod:`~symrot.closed_form.spin_up.resonance`) are joined at the boundary of the two. This module computes, one by one,
-the samples whose number of revolutions is too large for double-double numbers. Without a C compiler it also computes
-the constants for NumPy. The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
+(:mod:`~symrot.closed_form.spin_up.resonance`) are composed at the boundary between them. This module computes, one by
+one, the samples whose number of revolutions is too large for double-double numbers. Without a C compiler it also
+computes the constants for NumPy. The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
 
 import math
@@ -46,14 +46,14 @@ def _scale(*values: Fraction) -> Fraction:
 
 
 def _map(left: Quaternion, right: Quaternion) -> list[float]:
-    """Return the matrix of the map q -> left q right of quaternions, row by row."""
+    """Return the 4 x 4 matrix that maps a quaternion q to the product left*q*right, row by row."""
     units = ((ONE[0] if i == k else 0 for i in range(4)) for k in range(4))
     columns = [product(left, (a, b, c, d), right) for a, b, c, d in units]
     return [column[i] / ONE[0] for i in range(4) for column in columns]
 
 
 class Integers:
-    """The motion of a body driven about its axis, in integers. Times are counted from the initial state, s.
+    """The motion of a body driven about its axis, computed in integers. Times are counted from the initial state, s.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ class Integers:
         return product(leaving, conjugate(self._near.quaternion(Fraction(side * int(NEAR)))))
 
     def _begin(self, side: int) -> tuple[Fraction, Fraction, Quaternion]:
-        """Return the time, the rate Omega and the attitude at which the formulas for one side of resonance begin.
+        """Return time, rate Omega and attitude at which the formulas for one side of resonance begin.
 
         The attitude is the rotation of the body since the start.
         """

@@ -6,8 +6,8 @@ two-level system swept through resonance (Zener, Proc. R. Soc. A 137 (1932) 696)
 solutions are parabolic cylinder functions of ``x = Omega/sqrt(s)``, with the sweep rate s and the only parameter
 ``kappa = W/sqrt(s)``.
 
-Far from resonance, or for a large kappa, asymptotic series give all digits of a double: they describe a slowly rotating
-vector and the rotation about it. Near resonance, Taylor series at 40 points give them. Phases are sums of two doubles,
+Far from resonance, or for a large kappa, asymptotic series are accurate to a double: they describe a slowly rotating
+vector and the rotation about it. Near resonance, Taylor series at 40 points are used. Phases are sums of two doubles,
 in revolutions, so the error of the attitude stays at a few 1e-16 for any number of revolutions. A sample takes the same
 time at any t; samples beyond 1e13 rad are computed in integers.
 
@@ -88,7 +88,7 @@ class SpinUp:
         return rates, attitudes
 
     def _by_integers(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Write, in integer arithmetic, samples whose number of revolutions is too large for double-double numbers."""
+        """Write samples with too many revolutions for double-double numbers into arrays, by integer arithmetic."""
         for time in (float(times.min()), float(times.max())):
             if not self.integers.finite(time):
                 raise InputError(f"expected times at which the angular velocity is a finite number, got {time!r} s")
@@ -126,7 +126,7 @@ def motion(
 
 
 def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[Initial], SpinUp]:
-    """Return a function from initial states to motions of one driven body; arguments as :func:`motion` takes them.
+    """Return a function from initial states to motions of one driven body; arguments as for :func:`motion`.
 
     Constants that do not depend on the initial state are computed once.
     """

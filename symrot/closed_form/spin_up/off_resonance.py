@@ -61,7 +61,7 @@ def conjugate(q: Quaternion) -> Quaternion:
 
 
 def about_third(angle: Fraction) -> Quaternion:
-    """Return the rotation by an angle, rad, about the third axis."""
+    """Return the rotation by an angle, rad, about the third axis, as a unit quaternion."""
     return fixed([number.cos(angle / 2), Fraction(0), Fraction(0), number.sin(angle / 2)])
 
 
@@ -117,9 +117,9 @@ class Sweep:
         return cosine * _polynomial(self.series.e, y)
 
     def axes(self, omega: Fraction) -> Quaternion:
-        """Return the rotation of the third axis to the slowly rotating vector.
+        """Return the rotation that takes the third axis to the vector at rest in space near the axis of rotation.
 
-        That vector is at rest in space and follows the axis of rotation.
+        In the rotating axes this vector rotates slowly, as the axis of rotation does.
         """
         sine, cosine, y = self._places(omega)
         g, c = _polynomial(self.series.g, y), _polynomial(self.series.c, y)
@@ -132,7 +132,7 @@ class Sweep:
         return product(turn, fixed(number.unit((m3, -m2, m1, Fraction(0)))))
 
     def angle(self, start: Fraction, time: Fraction) -> Fraction:
-        """Return the body's angle of rotation about the slowly rotating vector in a time, from Omega = ``start``."""
+        """Return the angle of rotation in a time about a vector that rotates slowly, from Omega = ``start`` on."""
         omega = start + self.s * time
         here, there, product = self.speed(omega), self.speed(start), rounded(omega * start)
         if product >= 0:
@@ -146,6 +146,6 @@ class Sweep:
         return rounded(steady) + Fraction(self.delta(omega)) - Fraction(self.delta(start))
 
     def rotation(self, start: Fraction, time: Fraction) -> Quaternion:
-        """Return the rotation of the body, in body axes, in a time interval that lies wholly far from resonance."""
+        """Return the rotation of the body, in body axes, during a time in which it stays far from resonance."""
         end = conjugate(self.axes(start + self.s * time))
         return product(self.axes(start), about_third(self.angle(start, time)), end)

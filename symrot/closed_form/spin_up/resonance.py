@@ -6,8 +6,8 @@ A body that rotates at ``(kappa, 0, x)`` and is aligned with space at ``x = 0`` 
     2 alpha' = i x alpha - kappa beta,  2 beta' = kappa alpha - i x beta.
 
 The solutions are parabolic cylinder functions of x. For ``-x``, q1 and q2 have the opposite signs. At each point the
-equations give each Taylor coefficient from the two coefficients before; each series begins with the final value of the
-series before.
+equations give each Taylor coefficient from the two previous coefficients; each series begins with the final value of
+the previous series.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -34,7 +34,7 @@ _Spinor = tuple[int, int, int, int]  # the complex pair alpha, beta as q0, q3, q
 
 
 class Near:
-    r"""Attitudes near resonance, \|x\| <= NEAR, for one kappa."""
+    r"""Attitudes of a driven body near resonance, \|x\| <= NEAR with x = Omega/sqrt(s), for one kappa = W/sqrt(s)."""
 
     def __init__(self, kappa: Fraction) -> None:
         self._kappa = self._fixed(kappa)

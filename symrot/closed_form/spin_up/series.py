@@ -6,14 +6,14 @@ In axes in which a body rotates at ``(kappa, 0, x)``, ``x`` the time, a vector `
     n1 = (kappa/r) a(v),  n2 = (kappa/r) v c(v),  n3 = (x/r) b(v),
 
 the equation becomes ``c = -(a + 2 v a')``, ``b - a = -v^2 (3 c + 2 v c')``, ``2 (1 - kappa^2 v) b' = kappa^2 (b + c)``,
-so each coefficient follows from the coefficients before. They are ordered by powers of ``v^2``; each order is a
+so each coefficient follows from the previous coefficients. They are ordered by powers of ``v^2``; each order is a
 polynomial in ``kappa^2 v``, which is at most 1. The series does not converge, but for x above :data:`NEAR`, or kappa
 above :data:`WIDE`, its terms fall below 1e-18 before they grow.
 
 In axes whose third axis is the axis of rotation, the components of ``n`` normal to it are
 ``m = (kappa/r) (x/r v^2 g, v c, ..)``. The angle about it exceeds the integral of ``r`` by ``delta = (x/r) e(v)``.
 
-Source: DLMF 12.9 and 12.10, for the functions whose modulus and phase these are. Proof:
+Source: DLMF 12.9 and 12.10, for the functions of which these are modulus and phase. Proof:
 ``derivations/driven_rotation.md``.
 """
 

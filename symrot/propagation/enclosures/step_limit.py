@@ -1,8 +1,8 @@
 """Proven limits of steps, in Python, for SciPy's steppers and as a reference for tests.
 
 A step is limited so that it cannot pass over a feature of a torque's formula. The steppers in C use :file:`disc.h` and
-:file:`enclosure.h` for the same purpose. See :mod:`symrot.codegen.enclosure.terms` for the terms that are enclosed, and
-why.
+:file:`enclosure.h` for the same purpose. :mod:`symrot.codegen.enclosure.terms` explains which terms of the rates need
+bounds (an enclosure).
 """
 
 import math
@@ -18,16 +18,16 @@ from symrot.formula.tree import evaluate
 __all__ = ["Deviations", "Disc", "deviations_of", "longest_followed"]
 
 LARGEST_EXPONENT = 700.0  # exponent of e, well within the range of doubles
-LEAST_EXPONENT = -745.0  # smaller numbers underflow to zero without being zero
-WEIGHTED = ("clock", "sum")  # rules of series that have constants of their own
-SLOWER = 10  # how many times longer bounds take disc by disc
-SHRINK = 0.3  # least factor by which a step is shortened at once
+LEAST_EXPONENT = -745.0  # exponent of e below which exp underflows to zero
+WEIGHTED = ("clock", "sum")  # rules of series that have constant coefficients
+SLOWER = 10  # factor by which the bounds take longer if computed disc by disc
+SHRINK = 0.3  # smallest factor by which a step is multiplied at once
 
 
 class Disc(NamedTuple):
     """Disc of all complex numbers within ``radius`` of a real ``centre``.
 
-    Where the numbers themselves over- or underflow, ``log_size`` still bounds the logarithm of their absolute values.
+    ``log_size`` bounds the logarithm of their absolute values, even if the numbers themselves over- or underflow.
     """
 
     centre: float
@@ -71,8 +71,10 @@ def _inverse(a: Disc) -> Disc:
 
 
 def _sqrt(a: Disc, whole: float) -> Disc:
-    """Return the disc of a root. Where it has a corner, ``whole`` makes up for the share of a deviation that is missed;
-    see :file:`disc.h`.
+    """Return a disc that contains the square root of a disc.
+
+    If the disc reaches zero, there is no Taylor series. The radius is then the size of the root times ``whole``, which
+    is one over the share of a deviation that a step misses; see :file:`disc.h`.
     """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
@@ -160,8 +162,8 @@ FUNCTIONS: dict[str, Callable[..., Disc]] = {
 def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
     """Return the bounds of an enclosure as one Python function of (t, reach, whole, y, radii, weights, their sizes).
 
-    The function omits the logarithms of sizes, which only matter where a bound is infinite or not a number. There the
-    caller uses the slow bounds instead; elsewhere the results are equal and take much less time.
+    The function is much faster than the computation disc by disc and gives equal results. It omits the logarithms of
+    sizes, which matter only if a bound is infinite or not a number: the caller then computes disc by disc.
     """
     lines, place = ["def bounds(t, reach, whole, y, radii, w, a):"], 0
     for number in enclosure.series:
@@ -206,7 +208,7 @@ def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
 
 
 class Deviations:
-    """Bounds of the deviation of each rate from a constant, when time and states vary within discs.
+    """Bounds of the deviation of each rate from a constant, while time and states vary within complex discs.
 
     Parameters
     ----------
@@ -214,7 +216,7 @@ class Deviations:
     parameters : mapping of str to number
         Parameters of the right-hand side, by name.
     bounds : function, optional
-        The enclosure as one function, where it is known.
+        The enclosure as one Python function, if it is already compiled.
     """
 
     def __init__(
@@ -236,8 +238,9 @@ class Deviations:
         self._sizes = [abs(weight) for weight in self._listed]
 
     def __call__(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return the bounds of the rates for times within ``reach`` of t and states within ``radii`` of y; infinite at
-        poles.
+        """Return the bounds for times within ``reach`` of t and states within ``radii`` of y; infinite at poles.
+
+        ``whole`` is one over the share of a deviation that a step misses; square roots near zero need it.
         """
         self.spent += 1
         try:
@@ -249,9 +252,7 @@ class Deviations:
         return self.slowly(t, reach, whole, y, radii)
 
     def slowly(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return the same bounds as a call, disc by disc, where numbers over- or underflow and logarithms are
-        needed.
-        """
+        """Return the same bounds as a call, computed disc by disc with logarithms, which over- or underflow later."""
         self.spent += SLOWER
         discs: dict[int, Disc] = {}
         try:
@@ -304,19 +305,18 @@ def longest_followed(
     edges: Sequence[int],
     order: int,
 ) -> float:
-    """Return the longest step of at most h that provably misses no more than the allowed error; see
-    :file:`enclosure.h`.
+    """Return the longest step, at most h, that provably stays within the allowed error; see :file:`enclosure.h`.
 
     Parameters
     ----------
     y : N numbers
         States at t.
     path : N sequences
-        Sizes of the coefficients 1, 2, .. of the polynomial that each state follows, in units of h.
+        Absolute values of the coefficients 1, 2, .. of the polynomial that each state follows, in powers of time/h.
     allowed : one number per block
         Error allowed in the step.
     edges : sequence of int
-        Edges of the blocks.
+        Edges of the blocks of states.
     order : int
         Order of the polynomials.
     """

@@ -35,8 +35,8 @@ Floats = NDArray[np.float64]
 
 TURN_PER_PIECE = 2.0  # rad: rotation in each of the first pieces into which a motion without steps is cut
 SAMPLES_OF_RATE = 257  # samples from which the largest rate of such a motion is estimated
-TOLERANCES = 20.0  # error of a stepped motion at most, see docs/step_control.md
-RESIDUE = 4.0 * float(np.finfo(np.float64).eps)  # part of the largest state that rounding leaves of a state that stops
+TOLERANCES = 20.0  # largest error of a stepped motion, in tolerances, see docs/step_control.md
+RESIDUE = 4.0 * float(np.finfo(np.float64).eps)  # relative to the largest state: rounding error left in a zero state
 EXACT_ERROR = 16.0 * float(np.finfo(np.float64).eps)  # error of a motion in closed form
 
 
@@ -50,11 +50,11 @@ class EventResult(NamedTuple):
     t_events, y_events : lists of arrays, shapes (k,) and (k, N)
         Per event, in rising order of time: its times, and the states at these times.
     kinds : list of lists of str
-        Per event: ``"rising"``, ``"falling"`` or ``"touching"``, seen along the motion away from its start.
+        Per event: ``"rising"``, ``"falling"`` or ``"touching"``, for a motion that runs away from its start.
     ended : bool
         Whether a terminal event ended the motion, on either side of the start.
     warnings : tuple of str
-        A sentence for each event that comes nearer to zero than the motion is accurate.
+        A sentence for each event whose formula comes nearer to zero than the error of the motion.
     error : PropagationError or None
         The error that ended the motion or the search early; samples and events end at its time.
     """
@@ -81,16 +81,17 @@ class _Side(NamedTuple):
 
 
 def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]) -> EventResult:
-    """Return the samples of a motion at the times, with all events between the start and the first and last of them.
+    """Return the samples of a motion at the times, and all events from its start to the earliest and the latest time.
 
     Raises
     ------
     InputError
-        If an event needs the attitude and the plan leaves it out, or if no state of the motion changes.
+        If an event needs the attitude and the plan does not compute it, or if no state of the motion changes.
     CompilerError
         If there is no C compiler.
     PropagationError
-        If the motion cannot be followed at all. A motion that stops before its last time is returned with its error.
+        If the motion cannot be followed at all. A motion that stops before its last time is returned with its
+        ``error``.
     """
     began, plan = perf_counter(), motion.plan
     if uses_attitude(events) and not plan.structure.attitude:
@@ -132,7 +133,7 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
         states[inside] = side.states(times[inside])
         rows = side.states(np.array([each.t for each in listed]))
         if stop is not None and times[inside[-1:]].tolist() != [stop]:
-            last = part[len(inside)]  # the first sample beyond the event is moved to the event
+            last = part[len(inside)]  # the sample at the event replaces the first sample beyond it
             known[last], sample_times[last], states[last] = True, stop + zero, rows[-1]
         zeros = _joined(zeros, list(zip(listed, rows, strict=True)), motion.start)
         doubts += [(event, t + zero) for event, t in result.doubts]
@@ -173,7 +174,7 @@ def _searched(
 
 
 def _warnings(events: Sequence[Event], doubts: Sequence[tuple[int, float]]) -> Iterator[str]:
-    """Yield a sentence for each event that has an extremum nearer to zero than the motion is accurate."""
+    """Yield a sentence for each event whose formula has an extremum nearer to zero than the error of the motion."""
     for number, event in enumerate(events):
         times = [t for each, t in doubts if each == number]
         if times:
@@ -189,7 +190,8 @@ def _joined(
 ) -> list[tuple[EventZero, Floats]]:
     """Return the zeros of a motion before and after its start as one list.
 
-    A zero at the start itself counts once; it is a touch if the formula has the same sign before and after.
+    A zero at the start itself is listed once. It is of kind ``"touching"`` if the formula has the same sign before and
+    after.
     """
     at_start = {each.event: each for each, _ in before if each.t == t0}
     joined = [
@@ -250,9 +252,9 @@ def _side(motion: Motion, end: float) -> _Side:
 
 
 def _without_residues(pieces: Sequence[Piece], blocks: Sequence[int]) -> Generator[Piece, None, None]:
-    """Yield the pieces of a motion with zero for states that are only rounding errors of earlier, larger ones.
+    """Yield the pieces of a motion with states set to zero that are rounding errors of earlier, larger values.
 
-    The angular velocity of a body that friction stopped is such a state.
+    An example is the angular velocity of a body that friction has stopped.
     """
     count = blocks[-1]
     terms = [np.abs(piece.rows[:, HEAD:]).reshape(len(piece.rows), -1, count) for piece in pieces]

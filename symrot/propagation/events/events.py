@@ -1,10 +1,10 @@
 """Events: all times at which a formula of the motion is zero, located to the last bits.
 
-An event is a formula in t, omega_1..3, q0..q3, or an equation between two formulas. It is read by the safe reader and
-printed as C together with a bound of its rounding errors and with enclosures of its values. The search runs along the
-polynomials of a motion (:file:`events.c`). It distinguishes sign changes from touches and locates both, however close
-together and even several in one step; it does not sample, so that it misses no zero. Poles, jumps past zero and zeros
-at the edge of the domain of a formula are no events.
+An event is a formula in t, omega_1..3, q0..q3, or an equation between two formulas. It is parsed like the formulas of a
+scene and printed as C, together with bounds of its rounding errors and of its values on intervals. The search runs
+along the polynomials of a motion (:file:`events.c`). It distinguishes sign changes from touches and locates both, even
+several in one step. It uses bounds instead of samples, so that it misses no zero. Poles, jumps past zero and zeros at
+the edge of the domain of a formula are not events.
 """
 
 import ctypes
@@ -44,7 +44,7 @@ KNOWN = {"t", "omega_1", "omega_2", "omega_3", *ATTITUDE}
 NEAR = 64 * float(np.finfo(float).eps)  # relative distance in time below which two entries are joined
 FIELDS = 6  # numbers in one entry of events.c
 ROOM = 1024  # entries per call
-LONG = 1e-3  # part of the motion: a formula that stays zero for longer, up to an end, has no event there
+LONG = 1e-3  # part of the motion: a formula that is zero for longer than this, up to an end, has no event there
 OPERATIONS_PER_CALL = 5e6  # operations in some 20 ms, after which Python can react to an interrupt
 MOST_OPERATIONS, OPERATIONS_PER_ROW = 4e9, 2e5  # operations allowed for a search; each row of a motion adds to them
 MOST_ENTRIES = 500_000
@@ -52,15 +52,15 @@ STATE_ERROR = 4 * float(np.finfo(float).eps)  # relative rounding error of a sta
 
 
 class Event(NamedTuple):
-    """A formula whose zeros are sought.
+    """A formula whose zeros along the motion are located.
 
     Attributes
     ----------
     formula : str
-        In t, omega_1..3 (rad/s, body components) and q0..q3, with the functions of scene formulas; ``"lhs == rhs"`` is
-        their difference.
+        A formula in t, omega_1..3 (rad/s, body components) and q0..q3, with the functions of scene formulas;
+        ``"lhs == rhs"`` means lhs - rhs.
     terminal : bool or int
-        Whether the motion ends there; a number ends it at that occurrence.
+        Whether the motion ends at a zero; a number n ends it at the n-th zero.
     direction : int
         1 for zeros through which the formula rises along the motion, -1 for zeros through which it falls, 0 for all
         zeros, including touches.
@@ -86,9 +86,9 @@ class Event(NamedTuple):
 
 
 class ZerosNotSeparated(PropagationError):
-    """Error of a search that cannot tell the zeros of formulas apart beyond the time ``t``, s.
+    """Error of a search that cannot separate the zeros of formulas beyond the time ``t``, s.
 
-    ``zeros`` are the zeros before that time.
+    ``zeros`` lists the zeros before that time.
     """
 
     def __init__(self, t: float, formulas: Sequence[str], effort: str) -> None:
@@ -101,7 +101,7 @@ class ZerosNotSeparated(PropagationError):
         self.zeros: list[EventZero] = []
 
     def later(self, epoch: float) -> "ZerosNotSeparated":
-        """Return the same error with its time on a clock that shows ``epoch`` where the present one shows 0."""
+        """Return the same error with ``epoch``, s, added to its time: a clock that shows ``epoch`` instead of 0."""
         later = ZerosNotSeparated(self.t + epoch, self.formulas, self.effort)
         later.zeros = self.zeros
         return later
@@ -119,7 +119,7 @@ class EventZero(NamedTuple):
 
 
 def read_events(events: Any) -> tuple[Event, ...]:
-    """Return events from formulas as text, from :class:`Event`, or from mappings with the fields of an Event.
+    """Return the requested events, each given as a formula, an :class:`Event`, or a mapping with the fields of one.
 
     Raises
     ------
@@ -184,7 +184,7 @@ def event_library_source(
 ) -> str:
     """Return the C source of a library that finds the events of a motion.
 
-    Its functions take the parameters of the kernel ``quantities``, which computes the quantities in the formulas.
+    Its functions take the parameters of ``quantities``, the kernel that computes omega and q from the states.
     """
     return guard_library_source(quantities, [_with_pi(event.node) for event in events], states, edges, scales)
 
@@ -192,9 +192,9 @@ def event_library_source(
 def guard_library_source(
     quantities: Program, formulas: Sequence[Node], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
 ) -> str:
-    """Return the C source of a library that finds the zeros of formulas (guards of switches) along a motion.
+    """Return the C source of a library that finds the zeros of formulas along a motion.
 
-    The formulas contain t, omega, q and parameters of ``quantities``.
+    At such zeros functions such as sign switch. The formulas contain t, omega, q and parameters of ``quantities``.
     """
     from symrot.codegen.printing.event_source import event_definitions
 
@@ -239,21 +239,21 @@ _library = cache(_Library)
 
 
 class _Search:
-    """State of a search for events along one motion: its state in C, and the number of operations so far."""
+    """A search for events along one motion: its state in C, and the number of operations so far."""
 
     def __init__(self, path: Path | str, p: Sequence[float], formulas: Sequence[str], error: float = 0.0) -> None:
         self.library, self.formulas, self.doubt = _library(str(path)), formulas, error / STATE_ERROR
         self.p = (ctypes.c_double * len(p))(*p)
         self.state = ctypes.create_string_buffer(self.library.bytes)
-        self.arrived: set[tuple[int, float]] = set()  # events that are zero at an edge, and its time
-        self.doubts: list[tuple[int, float]] = []  # events nearer to zero than the motion is accurate, and when
+        self.arrived: set[tuple[int, float]] = set()  # events that are zero at an edge of a piece, with the time
+        self.doubts: list[tuple[int, float]] = []  # events nearer to zero than the motion's error, with times
         self.again, self.spent, self.allowed = False, 0.0, MOST_OPERATIONS
 
     def entries(self, piece: Piece) -> tuple[list[list[float]], ZerosNotSeparated | None]:
-        """Return the candidates for zeros in a piece of the motion: event, from, to, sign before, sign after.
+        """Return candidates for zeros in a piece of the motion: event, start and end, s, sign before, sign after.
 
-        Extrema nearer to zero than the motion is accurate are added to ``doubts``. If the search takes more operations
-        than a motion of so many rows may, it ends early, and the error is returned too.
+        Extrema nearer to zero than the error of the motion are added to ``doubts``. If the search takes more operations
+        than the limit, which grows with the number of rows, it ends early and returns an error too.
         """
         edges, rows = np.ascontiguousarray(piece.edges), np.ascontiguousarray(piece.rows)
         count, listed, answer = len(rows), [], (ctypes.c_int64 * 3)()
@@ -288,9 +288,7 @@ class _Search:
         return count
 
     def sign(self, event: int, t: float, piece: Piece) -> int:
-        """Return the sign of an event's formula at a time inside a piece; 0 if the value is smaller than its rounding
-        error.
-        """
+        """Return the sign of an event's formula at a time in a piece; 0 if its rounding error exceeds the value."""
         edges, side = piece.edges, 1.0 if piece.edges[-1] >= piece.edges[0] else -1.0
         place = int(np.searchsorted(side * edges, side * t, "left")) - 1
         row = np.ascontiguousarray(piece.rows[min(max(place, 0), len(piece.rows) - 1)])
@@ -304,12 +302,12 @@ class SearchResult(NamedTuple):
     Attributes
     ----------
     zeros : list of EventZero
-        In the order of the motion.
+        The zeros, in the order of the motion.
     stop : float or None
         Time of the terminal event, s.
     doubts : list of (int, float)
-        Events, by number, and times, s, at which the formula has an extremum nearer to zero than the motion is
-        accurate: whether it touches zero there, crosses it twice or misses it is not known.
+        Number of the event and time, s, for each extremum nearer to zero than the error of the motion: whether the
+        formula touches zero there, crosses it twice or misses it is not known.
     """
 
     zeros: list[EventZero]
@@ -323,30 +321,30 @@ def search(
 ) -> SearchResult:  # fmt: skip
     """Return the zeros of events along a motion, up to the terminal event if there is one.
 
-    A zero at the start ``t0`` is listed too, with the sign that the formula takes after it, but does not end the
-    motion.
+    A zero at the start ``t0`` is listed too, but does not end the motion. Its kind follows from the sign of the formula
+    after it.
 
     Parameters
     ----------
     path : Path
         The library of :func:`event_library_source` for these events.
     p : sequence of float
-        The parameters of its quantities.
+        Parameters of the kernel in the library.
     pieces : iterable of Piece
-        The motion from t0 on as polynomials (:mod:`symrot.propagation.events.polynomials`), in its order, each Piece
-        beginning where the one before ends. The search takes pieces until it finds a terminal event.
+        Consecutive pieces of the motion from t0 on, as polynomials (:mod:`symrot.propagation.events.polynomials`). The
+        search takes pieces until it finds a terminal event.
     error : float
-        Error of the states, relative to their sizes. Extrema that it may move past zero are listed as doubts.
+        Error of the states, relative to their sizes. Extrema that this error may move past zero are listed as doubts.
 
     Raises
     ------
     ZerosNotSeparated
-        If the zeros cannot be told apart with the operations that a motion of such a length may take.
+        If the limit of operations, which grows with the number of steps, is too low to separate the zeros.
     """
     searcher = _Search(path, p, [event.formula for event in events], error)
     left = [int(event.terminal) for event in events]
     zeros: list[EventZero] = []
-    held: list[list[float]] = []  # entries at the last edge, which may continue in the next piece
+    held: list[list[float]] = []  # candidates at the last edge, which may continue in the next piece
     previous: Piece | None = None
     for piece in pieces:
         if not len(piece.rows):
@@ -372,7 +370,7 @@ def search(
 
 
 def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: float) -> list[tuple[int, float]]:
-    """Return the doubts that lie at no zero of their event, each once, in the order of the motion."""
+    """Return the doubts (event, time) that no located zero explains, without repetition, in the order of the motion."""
     settled: dict[int, list[float]] = {}
     for zero in zeros:
         insort(settled.setdefault(zero.event, []), zero.t)
@@ -389,7 +387,7 @@ def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: fl
 def signs_at_ends(
     path: Path | str, formulas: Sequence[str], p: Sequence[float], piece: Piece
 ) -> tuple[list[int], list[int]]:
-    """Return the signs of formulas just after the start of a piece, and at its end.
+    """Return the signs of formulas just after the start of a piece, and their signs at its end.
 
     A sign is 0 if the value is smaller than its rounding error.
     """
@@ -403,7 +401,8 @@ def signs_at_ends(
 def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
     """Return the sign of a formula just after the start of a piece.
 
-    It is the first sign that exceeds rounding and is found again at twice the distance from the start.
+    It is the sign at the smallest distance from the start at which the value exceeds its rounding error and has the
+    same sign at twice the distance.
     """
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(first), abs(last - first)), 1.0 if last >= first else -1.0
@@ -418,9 +417,9 @@ def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
 
 
 def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]], list[list[float]]]:
-    """Return entries with adjacent ones joined, and separately the entries that reach the last edge of a piece.
+    """Return two lists of time intervals with candidate zeros: those that end before the last edge, and the others.
 
-    An entry is a candidate for a zero: an interval of time.
+    Adjacent intervals of the same event are joined.
     """
     whole: list[list[float]] = []
     open_ones: dict[float, list[float]] = {}
@@ -443,7 +442,7 @@ def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]],
 
 
 def _sign_before_end(searcher: _Search, event: int, piece: Piece) -> int:
-    """Return the last sign of an event's formula, before the end of a piece, that exceeds its rounding error."""
+    """Return the last sign of an event's formula, before the end of a piece, that rounding cannot explain; or 0."""
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(last), abs(last - first)), 1.0 if last >= first else -1.0
     while width < abs(last - first):
@@ -458,14 +457,12 @@ def _settled(
     searcher: _Search, piece: Piece, events: Sequence[Event], entries: list[list[float]], t0: float, left: list[int],
     zeros: list[EventZero],
 ) -> float | None:  # fmt: skip
-    """Add the zeros proven by entries to ``zeros``, in the order of the motion; return the time of a terminal event, or
-    None.
-    """
+    """Classify candidate zeros, add real zeros to ``zeros``, and return the time of a terminal event, s, or None."""
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     side = 1.0 if last >= first else -1.0
 
     def sign(event: int, t: float, end: float, step: float) -> int:
-        """Return the first sign of the formula, in steps away from a zero, that exceeds its rounding error."""
+        """Return the first sign of a formula, at growing distance from a zero, that rounding cannot explain; or 0."""
         width = 4 * NEAR * max(abs(t), abs(last - first))
         while width < abs(end - t):
             value = searcher.sign(event, t + step * width, piece)
@@ -488,7 +485,7 @@ def _settled(
         if not (before and after) and rests and not arrived:
             continue  # zero up to the end of the known motion: no crossing
         if rests and arrived:
-            after = 0  # its sign after it leaves zero belongs to another event
+            after = 0  # the sign with which it leaves zero belongs to another event
         t = t0 if at_start else start if rests and arrived else end if start == end else 0.5 * (start + end)
         kind = "rising" if after > before else "falling" if after < before else "touching"
         if events[event].direction and kind != {1: "rising", -1: "falling"}[events[event].direction]:
@@ -504,7 +501,7 @@ def _settled(
 def stepped(
     integration: Integration, end: float, broken: list[PropagationError], records: list[Floats]
 ) -> Generator[Piece, None, None]:
-    """Yield the polynomials of an integration from its start to ``end``, step by step, while the steps are made.
+    """Yield the polynomials of an integration from its start to ``end``, piece by piece as the stepper proceeds.
 
     The recorded steps are appended to ``records``. An error that ends the motion early is appended to ``broken``.
     """

@@ -1,10 +1,10 @@
-"""Motions as polynomials in time, piece by piece, for searches along a motion, whatever method computed it.
+"""Motions by any method as piecewise polynomials in time, for the search for events.
 
-A row holds the states over one piece, in the layout of the steps of :file:`taylor.c`: t, h, the low part of t, a unit
-of time, then coefficient 0 of all N states, coefficient 1, and so on, of powers of ``(time - t)/unit``. Steps of the
-Taylor stepper are such rows. Steps of Dormand and Prince's dense output are converted to rows, exact up to rounding.
-Any other function of time is interpolated at Chebyshev points, on pieces that are halved until the polynomial has
-converged to rounding.
+A row holds one polynomial, in the layout of the steps of :file:`taylor.c`: t, h, the low part of t, a unit of time,
+then coefficient 0 of all N states, coefficient 1, and so on, of powers of ``(time - t)/unit``. Steps of the Taylor
+stepper are such rows. The dense output of Dormand and Prince's method is converted to rows, exact up to rounding. Any
+other function of time is interpolated at Chebyshev points, on pieces that are halved until the polynomial has converged
+to rounding.
 """
 
 import math
@@ -27,7 +27,7 @@ POINTS = 21  # coefficients of a fit, whose degree is one less
 EPS = float(np.finfo(float).eps)
 NOISE = 16.0  # units in the last place: assumed error of a motion's samples
 ROUGH = 1e-9  # relative: a fit that is off by more does not follow the motion
-SURE, HALVINGS = 6, 40  # halvings of a piece: after the first number, accuracy ROUGH is enough; the second is the limit
+SURE, HALVINGS = 6, 40  # halvings of a piece: after SURE of them accuracy ROUGH is enough; HALVINGS is the limit
 MOST_PIECES = 20_000  # pieces that one call may add by cutting the motion
 FEWEST, MOST = 16, 1024  # pieces fitted at a time
 
@@ -35,7 +35,7 @@ FEWEST, MOST = 16, 1024  # pieces fitted at a time
 class Piece(NamedTuple):
     """Part of a motion as consecutive polynomials, in the order of the motion.
 
-    Row i of the coefficients holds from the time of edge i to that of edge i + 1, s.
+    Row i of the coefficients is valid from edge i to edge i + 1; edges are times, s.
     """
 
     edges: Floats
@@ -57,9 +57,9 @@ def rows_of(stepper: Any, record: Floats) -> Floats:
 
 @cache
 def _nested(terms: int) -> Floats:
-    """Return the matrix that converts dense-output coefficients to powers of s.
+    """Return the matrix that converts coefficients of DOP853's dense output to powers of s.
 
-    Dense output uses s, s r, s^2 r, s^2 r^2, ... with r = 1 - s.
+    Dense output is a sum of s, s r, s^2 r, s^2 r^2, ... with r = 1 - s.
     """
     matrix = np.zeros((terms, terms))
     power = np.zeros(terms)
@@ -74,9 +74,7 @@ def _nested(terms: int) -> Floats:
 
 @cache
 def _chebyshev() -> tuple[Floats, Floats, Floats]:
-    """Return Chebyshev points on [-1, 1], and two matrices: from values there to Chebyshev coefficients, from these to
-    powers.
-    """
+    """Return Chebyshev points on [-1, 1], and matrices from values to Chebyshev coefficients and on to powers."""
     from numpy.polynomial import chebyshev
 
     angles = (np.arange(POINTS) + 0.5) * (math.pi / POINTS)
@@ -95,28 +93,28 @@ def fitted(
     states: Callable[[Floats], Floats], edges: Floats, blocks: Sequence[int], scales: Sequence[float], depth: int = 0,
     left: list[int] | None = None, accuracy: float | Floats = 0.0,
 ) -> Piece:  # fmt: skip
-    """Return polynomials that follow a motion, to rounding, between given edges.
+    """Return polynomials that fit a motion, to rounding, between given edges.
 
-    Where one polynomial cannot follow the motion, the piece is halved and an edge is added.
+    If one polynomial cannot fit the motion between two edges, the piece is halved and an edge is added.
 
     Parameters
     ----------
     states : function
-        From times, shape (n,), to states, shape (n, N).
+        Takes times, shape (n,), returns states, shape (n, N).
     edges : array, shape (k + 1,)
-        Rising or falling.
+        Times, s, increasing or decreasing.
     blocks, scales
-        As :func:`symrot.propagation.steppers.dop853.translation_unit` takes them: errors are relative to these sizes.
+        As for :func:`symrot.propagation.steppers.dop853.translation_unit`: errors are relative to these sizes.
     depth, left : int, list of int
-        For recursive calls: how often a piece was halved, and how many more pieces there may be.
+        For recursive calls: number of halvings so far, and number of pieces that may still be added.
     accuracy : float
-        Error of the motion itself, relative to its largest size here: no fit can be closer where its steps do not join.
+        Error of the motion itself, relative to its largest size here: where its steps leave gaps, no fit can be closer.
         Recursive calls pass one error per state.
 
     Raises
     ------
     PropagationError
-        If some piece cannot be followed however short it is.
+        If even the shortest piece allowed cannot be fitted, or too many pieces are needed.
     """
     left = [MOST_PIECES + len(edges)] if left is None else left
     left[0] -= len(edges) - 1
@@ -141,7 +139,7 @@ def fitted(
         accuracy = accuracy * size.max(axis=0)
     rate = np.abs(values[:, :, : blocks[1]]).max(axis=(1, 2)) if scales[0] == 0.0 else np.zeros(len(half))
     doubt = EPS * (NOISE + rate * np.abs(times).max(axis=1))[:, None] * size  # a phase is as inaccurate as the time
-    series[np.abs(series) < 0.25 * EPS * size[:, None, :]] = 0.0  # rounding errors would grow outside
+    series[np.abs(series) < 0.25 * EPS * size[:, None, :]] = 0.0  # outside [-1, 1] rounding errors would grow
     powers = np.einsum("mk,nki->nmi", to_powers, series)
     slope = np.abs(powers[:, 1]) / np.abs(half)[:, None]
     doubt = doubt + EPS * np.abs(times).max(axis=1)[:, None] * slope  # the time itself is rounded
@@ -185,7 +183,7 @@ def fitted_pieces(
     blocks: Sequence[int],
     scales: Sequence[float],
 ) -> Generator[Piece, None, None]:
-    """Yield polynomials that follow a motion without steps, in pieces as long as possible; see :func:`fitted`.
+    """Yield polynomials that fit a motion in closed form, which has no steps, in long pieces; see :func:`fitted`.
 
     ``longest``, s, is a first guess of the length of a piece.
     """

@@ -1,14 +1,14 @@
-"""Dormand-Prince 8(5,3) around an emitted kernel: the C of :file:`dop853.c` driven from Python, one call per span.
+"""Dormand-Prince 8(5,3) around an emitted kernel: Python calls the C of :file:`dop853.c` once per span.
 
 A library holds one kernel and the stepper compiled together (:func:`translation_unit`). An :func:`integration` follows
-a motion through sample times, or records every step so that the states are known at any time later.
+a motion through sample times, or records every step so that the states can be computed at any time later.
 
 Tolerance: it limits the error of the whole trajectory, not of one step, see :func:`step_tolerance`.
 
 Time: a double holds 53 bits of ``a*t``, so that phases of a torque lose digits as the time grows. That costs accuracy,
 and also steps, since the step control sees rounding errors as a rough torque. A kernel whose clock can be moved (a
-:data:`Clock`) is therefore given the time since an epoch, which moves along with the motion every :data:`WINDOW` steps,
-and where steps are short.
+:data:`Clock`) is therefore given the time since an epoch. The epoch moves with the motion every :data:`WINDOW` steps,
+and when steps are short compared with the time since the epoch.
 """
 
 import math
@@ -50,19 +50,19 @@ Clock = Callable[[float], tuple[PathLike, Sequence[float]]]
 
 WINDOW = 2048
 FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
-"""Steps after which the clock of a kernel is moved: phases on it stay below some 1e3 rad, and moving it costs a few
-per cent of the time. Phase errors are alike in all windows and add up: with 8192 they were five times as large."""
+"""Steps after which the clock of a kernel is moved: phases on it stay below some 1e3 rad, and moving it costs a few per
+cent of the time. Phase errors are alike in all windows and add up: with 8192 steps they were five times as large."""
 
 
 def step_tolerance(tolerance: float) -> tuple[float, float]:
-    """Return the error allowed in one step, and the fraction of the span from which on a step may use all of it.
+    """Return the error allowed in one step, and the fraction of the span that a step must cover to use all of it.
 
-    A shorter step is allowed a share in proportion. Steps are about ``tolerance^(1/8)`` times as long as the motion's
+    A shorter step is allowed a proportional share. Steps are about ``tolerance^(1/8)`` times as long as the motion's
     natural time. With the fraction chosen here, the allowed error depends on the number of natural times in the span,
     not on the number of steps: the error at the end then hardly depends on tolerance or span, except where the motion
     amplifies errors.
 
-    Both constants are calibrated on free asymmetric bodies, through flips about the intermediate axis too, and on heavy
+    Both constants are calibrated on free asymmetric bodies, also flipping about the intermediate axis, and on heavy
     tops, against 40-digit references (``tests/propagation/test_dop853.py``): errors stay below 5 times the tolerance.
     """
     check_tolerance(tolerance)
@@ -91,11 +91,11 @@ def translation_unit(
     blocks : sequence of int
         Edges of the blocks of states with separate error norms, from 0 to ``states``: omega, then quaternion.
     scales : sequence of float
-        One per block: with 0 the error is relative to the block's own size (a rate), otherwise to this number (1 for a
-        unit quaternion, or for an angle in rad).
+        One per block. With 0, errors are relative to the size of the block (angular velocity); otherwise to this number
+        (1 for a unit quaternion, or for an angle in rad).
     enclosure : str
         Output of :func:`symrot.codegen.enclosure.source.enclosure_source` for the kernel and order
-        :data:`DENSE_ORDER`: the proof in it limits the steps.
+        :data:`DENSE_ORDER`; its bounds of the rates limit the steps.
     """
     edges = list(blocks)
     if edges[:1] != [0] or edges[-1] != states or edges != sorted(set(edges)) or len(scales) != len(edges) - 1:
@@ -145,13 +145,13 @@ def integration(
     tolerance : float
         Error of the whole trajectory to aim for, see :func:`step_tolerance`.
     max_step : float
-        Longest step, s, where the kernel has features that a longer one could pass over.
+        Longest step, s, for a kernel with features that a longer step could pass over.
     max_steps : int
-        Most steps to try before giving up.
+        Number of steps after which the integration is given up.
     breaks : sequence of float
-        Times at which the rates jump; the motion is stepped exactly to each and restarted behind it.
+        Times, s, at which the rates jump; the motion is stepped exactly to each and restarted there.
     clock : function, optional
-        The clock of the kernel, if it can be moved.
+        A :data:`Clock`, if the kernel can count time from an epoch.
 
     Raises
     ------
@@ -171,7 +171,7 @@ class _Clocked(Integration):
         self._clock = clock
 
     def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
-        """Return the function that continues a run, after moving the epoch if the run is far from it."""
+        """Return the C function that continues a run, after the epoch is moved if the run is far from it."""
         tried = self.stepper.tried(run)
         window = run.window
         if window is None:
@@ -187,7 +187,7 @@ class _Clocked(Integration):
 
 
 class _Stepper(Stepper):
-    """A loaded library of :func:`translation_unit`: kernel and DOP853 stepper."""
+    """A loaded library with a kernel and the DOP853 stepper, built from :func:`translation_unit`."""
 
     name = "dop853"
     reals = ("t", "h", "growth", "stop", "first", "last", "tolerance", "pace", "max_step", "proven", "epoch", "far")

@@ -1,12 +1,12 @@
 """SciPy as a fallback: motions stepped by any method of ``scipy.integrate.solve_ivp``.
 
-It steps motions where there is no C compiler, and for users who want LSODA. The tolerance means the same as for the
+It steps motions if there is no C compiler, and for users who want LSODA. The tolerance means the same as for the
 steppers in C, as far as SciPy allows: the error of every block of states is relative to the largest size of the block
-along the motion, which a first coarse pass determines, and is shared out over the length of the motion. SciPy is
-imported when a motion is first followed.
+along the motion, which a first coarse pass determines, and each step is allowed a share of it. SciPy is imported when a
+motion is first followed.
 
-Time: where steps are short compared with the time, a double holds too few digits of it. If the clock of the right-hand
-side can be moved (a :data:`Clock`), SciPy then restarts on a clock that shows 0 nearby.
+Time: if steps are short compared with the time, a double holds too few digits of the time. If the clock of the
+right-hand side can be moved (a :data:`Clock`), SciPy then restarts on a clock that shows 0 nearby.
 """
 
 import math
@@ -45,7 +45,7 @@ Piece = tuple[float, float, Any]  # first time, last time, SciPy's solution betw
 
 
 class WholeMotion(NamedTuple):
-    """The whole motion of which SciPy follows a part: its two ends, s, and the evaluations spent before the part."""
+    """The motion of which SciPy follows only a part: its two ends, s, and the evaluations spent before the part."""
 
     start: float
     end: float
@@ -58,7 +58,7 @@ METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "
 DEFAULT = "DOP853"
 FIT_ORDER = 7  # degree of the polynomial that the states follow in a step
 SLACK = 1e4  # the same number as in dop853.c
-HELD, REGAIN = 0.5, 1.5  # a step longer than this part of the limit was held back; the next one may grow by this factor
+HELD, REGAIN = 0.5, 1.5  # a step above this fraction of the limit was held back; the next may grow by this factor
 FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
 STUCK = "the step shrank to nothing, as it does before a singularity"
 PILOT_TURN = 1e-3  # rad over the whole span
@@ -67,7 +67,7 @@ EFFORT_CUT_OFF = 4  # share of the evaluations for a motion that cannot be follo
 BEFORE_POLE = 0.5  # part of the way of a coarse pass that stops early: beyond it states may grow without bound
 PILOT_STEPS = 10  # coarse steps: a shorter motion may use the whole share of the tolerance in every step
 MAX_EVALUATIONS = 1_000_000  # default limit: half a minute
-PATIENCE = 50_000  # evaluations after each of which the pace is judged
+PATIENCE = 50_000  # evaluations between two checks of the pace
 MAX_IDLE = 100  # consecutive steps too short for the clock of the scene, as after a restart of LSODA
 MAX_BROKEN = 1000  # derivatives that are not finite, before the motion stops
 _NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, FIT_ORDER + 1) / FIT_ORDER)  # Chebyshev points of a step
@@ -81,7 +81,7 @@ def method_name(text: str) -> str:
     Raises
     ------
     InputError
-        If SciPy has no such method; the sentence lists those it has.
+        If SciPy has no such method; the message lists its methods.
     """
     name = text.removeprefix("scipy").removeprefix(":") or DEFAULT
     if name not in METHODS:
@@ -96,19 +96,19 @@ class Options:
     Attributes
     ----------
     method : str
-        As :func:`method_name` takes it.
+        Name of a SciPy method, as for :func:`method_name`.
     blocks, scales
-        As :func:`symrot.propagation.steppers.dop853.translation_unit` takes them; the last edge may lie beyond N.
+        As for :func:`symrot.propagation.steppers.dop853.translation_unit`; the last edge may lie beyond N.
     breaks, max_step
-        As :func:`symrot.propagation.steppers.dop853.integration` takes them.
+        As for :func:`symrot.propagation.steppers.dop853.integration`.
     max_steps : int
-        Most evaluations of the right-hand side.
+        Largest number of evaluations of the right-hand side.
     deviations : Deviations, optional
         Bounds of the terms of the right-hand side that may hide a feature: they limit the steps.
     clock : callable, optional
-        The clock of the right-hand side, if it can be moved.
+        A :data:`Clock`, if the right-hand side can count time from an epoch.
     whole : WholeMotion, optional
-        The whole motion, if only a part of it is followed. Then ``max_steps`` limits the whole.
+        The whole motion, if only a part of it is followed. Then ``max_steps`` limits the whole motion.
     """
 
     method: str = DEFAULT
@@ -132,7 +132,7 @@ def integrate(
     rhs : callable
         ``rhs(t, y, p)`` returns dy, shape (N,).
     p, y0, t0, tolerance
-        As :func:`symrot.propagation.steppers.dop853.integration` takes them.
+        As for :func:`symrot.propagation.steppers.dop853.integration`.
     times : array, shape (n,)
         Sample times, s, in any order, before or after ``t0``.
     options : Options
@@ -165,10 +165,10 @@ def record(
     tolerance: float,
     options: Options = Options(),
 ) -> "FallbackRecording":
-    """Return the motion over ``span`` as a function of time; the arguments are those of :func:`integrate`.
+    """Return the motion over ``span`` as a function of time; the arguments are as for :func:`integrate`.
 
-    If the motion stops early or is interrupted, the attribute ``recording`` of the exception holds the part before, if
-    there is one.
+    If the motion stops early or is interrupted, the attribute ``recording`` of the exception holds the motion until
+    then, if there is any.
     """
     motion = _Integration(rhs, p, y0, t0, tolerance, options)
     low, high = min(*span, motion.t0), max(*span, motion.t0)
@@ -186,15 +186,16 @@ def record(
 
 
 class FallbackRecording(Recording):
-    """A motion followed by SciPy as a function of time; see :class:`symrot.propagation.steppers.stepping.Recording`."""
+    """A motion by SciPy as a function of time; see :class:`symrot.propagation.steppers.stepping.Recording`."""
 
     def __init__(self, motion: "_Integration", pieces: list[Piece], low: float, high: float) -> None:
         self._pieces = pieces
         super().__init__(motion.t0, motion.y0, (low, high), motion.stats())
 
     def edges(self, start: float, end: float) -> list[Floats]:
-        """Return the ends of SciPy's steps between two times, in that order: one array for each segment between
-        switching times.
+        """Return the ends of SciPy's steps between two times, from ``start`` to ``end``, as a list of arrays.
+
+        There is one array for each segment between switching times.
         """
         side = 1.0 if end >= start else -1.0
         chosen = [
@@ -209,7 +210,7 @@ class FallbackRecording(Recording):
 
 
 def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
-    """Write the states at those times that lie inside the pieces, from SciPy's solution of each piece."""
+    """Fill in the states at all times that lie inside a piece of the motion, from SciPy's solution for that piece."""
     for low, high, solution in pieces:
         chosen = (times >= low) & (times <= high)
         if chosen.any():
@@ -217,7 +218,7 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
 
 
 class _ShiftedSolution:
-    """SciPy's solution for one step on a moved clock, as a function of time on the clock before the move."""
+    """SciPy's interpolant of one step on a moved clock, as a function of time on the clock before the move."""
 
     def __init__(self, solution: Any, epoch: float) -> None:
         self._solution, self._epoch = solution, epoch
@@ -250,7 +251,7 @@ class _Integration:
         self.steps = self.evaluations = self.broken = 0
         self.pieces: list[Piece] = []  # pieces of the pass that is running
         self.final = False  # whether this is the final pass, not the coarse one
-        self.mark = (0, self.t0)  # work and time when the pace was judged last
+        self.mark = (0, self.t0)  # work and time at the last check of the pace
         self.whole, self.before = options.whole, self.deviations.spent if self.deviations else 0
         with np.errstate(all="ignore"):  # the sentence says it
             first = self._derivative(self.t0, self.y0)
@@ -259,14 +260,14 @@ class _Integration:
 
     @property
     def work(self) -> int:
-        """Evaluations so far of the rates and of their bounds, which take as long as rates; the sum is limited."""
+        """Number of evaluations so far, of the rates and of their bounds, which take as long; this sum is limited."""
         return self.evaluations + (self.deviations.spent - self.before if self.deviations else 0)
 
     def stats(self) -> Stats:
         return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
 
     def follow(self, times: Floats) -> Floats:
-        """Return the states at times on one side of t0, sorted away from t0."""
+        """Return the states at times on one side of t0, which are sorted by their distance from t0."""
         states = np.empty((len(times), len(self.y0)))
         _evaluate(self.solutions(float(times[-1])), times, states)
         states[times == self.t0] = self.y0
@@ -285,7 +286,8 @@ class _Integration:
     def solutions(self, end: float) -> list[Piece]:
         """Return the motion from t0 to ``end`` as pieces (low, high, solution), one for each segment between switches.
 
-        If the coarse pass stops early, the final pass follows the motion as far, so that no sample is lost.
+        If the coarse pass stops early, the final pass follows the motion up to the same time, so that no sample is
+        lost.
         """
         self.final, self.pieces = False, []
         if end == self.t0:
@@ -421,7 +423,7 @@ class _Integration:
                     solver.max_step = longest
 
     def _move_clock(self, clock: Clock, now: float) -> float:
-        """Move the clock so that it shows about 0 at the time ``now``; return the exact time that it then shows."""
+        """Move the clock so that it shows about 0 at the time ``now``; return the exact time that it shows."""
         self.epoch, rest = two_sum(self.epoch, now)
         self.rhs, p = clock(self.epoch)
         self.p = np.array(p, dtype=np.float64)
@@ -444,9 +446,9 @@ class _Integration:
         return self.work + (self.whole.spent if self.whole else 0)
 
     def _proven(self, t: float, y: Floats, dense: Any, now: float, step: float, bars: list[float]) -> float:
-        """Return the longest part of a step, s, that provably passes over no feature of a torque.
+        """Return how much of a step, s, provably passes over no feature of a torque.
 
-        The time ``now`` is on the present clock.
+        The step begins at the time ``now`` of the present clock.
         """
         assert self.deviations is not None
         path = np.abs(_FIT @ (dense(now + _NODES * step).T - y)).T.tolist()

@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 
 class IntegrationStopped(PropagationError):
-    """Error of a motion that stops at the time t, s, before it reaches the time ``stop``."""
+    """Error raised when a motion cannot be followed beyond the time t, s, on the way to the time ``stop``."""
 
     def __init__(self, t: float, reason: str, stop: float | None = None) -> None:
         way = "" if stop is None else f" on the way to {stop!r} s"
@@ -28,9 +28,7 @@ class IntegrationStopped(PropagationError):
         self.recording: Any = None  # the motion before t, if it was being recorded
 
     def later(self, epoch: float) -> "IntegrationStopped":
-        """Return the same error with its times on another clock, which shows ``epoch`` where the present one shows
-        0.
-        """
+        """Return the same error with ``epoch``, s, added to its times: a clock that shows ``epoch`` instead of 0."""
         later = IntegrationStopped(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
         later.samples = self.samples
         return later
@@ -44,8 +42,9 @@ class Samples(NamedTuple):
     numbers : array, shape (k,)
         Indices of the samples among all requested samples.
     states : array, shape (k, N)
+        States of the samples.
     cost : (int, int, int)
-        Steps accepted and rejected, and evaluations, that were spent until then.
+        Accepted steps, rejected steps and evaluations until then.
     """
 
     numbers: NDArray[np.intp]
@@ -66,9 +65,7 @@ def add_samples(
 
 
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
-    """Return the reason why steps shrank to zero at t: ``reason``, or that the clock is too coarse for the whole
-    span.
-    """
+    """Return why steps shrank to zero at t: ``reason``, or that doubles lie too far apart at such times."""
     apart = math.ulp(t)
     if abs(stop - t0) > MANY_TICKS * apart:
         return reason
@@ -77,9 +74,9 @@ def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
 
 
 def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
-    """Return the reason why a motion would take far too many steps, or an empty text if it would not.
+    """Return a sentence that a motion would take far too many steps, or an empty text if it would not.
 
-    The last ``steps`` steps covered ``way``, s, and ``left``, s, remain.
+    The last ``steps`` steps covered a time of ``way``, s; a time of ``left``, s, remains.
     """
     if steps * left <= HOPELESS * limit * way:
         return ""

@@ -1,8 +1,8 @@
 """Smoothness of the torques of a plan, which decides whether Taylor series can be used. Does not use SymPy.
 
 A series needs derivatives of every order at its centre. Quotients, powers, sin, cos, exp and log have them wherever
-they are defined. The absolute value and the square root have none where their argument is zero, and a motion may reach
-such a point, for example at rest. Dormand and Prince's method steps such torques instead.
+they are defined. The absolute value and the square root have no derivative at zero, and a motion may reach such a
+point, for example at rest. Dormand and Prince's method steps such torques instead.
 """
 
 from symrot.dynamics.structure import FormulaTorque, Pattern, TorqueStructure
@@ -36,5 +36,5 @@ def _of_torque(torque: TorqueStructure) -> str:
 
 
 def non_smooth_torque(plan: Plan) -> str:
-    """Return a sentence that names the torque of a plan that is not smooth, or an empty text if all torques are."""
+    """Return a sentence that names a non-smooth torque of a plan, or an empty text if all torques are smooth."""
     return next(filter(None, map(_of_torque, plan.structure.torques)), "")

@@ -1,8 +1,8 @@
-"""The common part of the steppers: loaded libraries, integrations of motions, recordings, and error sentences.
+"""Code that all steppers share: loaded libraries, integrations of motions, recordings, and error messages.
 
 :mod:`symrot.propagation.steppers.dop853` and :mod:`symrot.propagation.steppers.taylor` define their own parts in
-subclasses of :class:`Stepper`. :mod:`symrot.propagation.steppers.fallback` uses the order of times, the segments
-between switching times and the sentences.
+subclasses of :class:`Stepper`. :mod:`symrot.propagation.steppers.fallback` uses the sorting of times, the segments
+between switching times and the messages.
 """
 
 import ctypes
@@ -52,9 +52,9 @@ __all__ = [
 
 MAX_STEPS = 100_000_000  # default limit of a motion: a minute or two
 MOST_RECORDED = 2 << 30  # bytes of recorded steps
-PATIENCE = 200_000  # steps after each of which the pace is judged
+PATIENCE = 200_000  # steps between two checks of the pace
 FEW = 40  # sample times that are compared one by one
-SLIVER = 2.0**-100  # part of a segment: a time so near its end that no formula has another value there
+SLIVER = 2.0**-100  # part of a segment: so near its end, every formula has the same value as at the end
 
 Floats = NDArray[np.float64]
 PathLike = str | os.PathLike[str]
@@ -64,10 +64,10 @@ NOT_FINITE_SENTENCE = "its rate of change is not finite there"
 
 
 class Switching(NamedTuple):
-    """One switching of a function in a torque, such as ``sign(omega_3)``, at a time, s.
+    """The switching of a function in a torque, such as ``sign(omega_3)``, at a time, s.
 
-    ``how`` is ``"passed"`` if the motion continues beyond the switch, ``"held"`` if it slides along the switch, as a
-    wheel that friction holds at rest, and ``"released"`` if it leaves the switch along which it slid.
+    ``how`` is ``"passed"`` if the argument changes its sign, ``"held"`` if it stays at zero from then on (dry friction
+    holds a wheel at rest), and ``"released"`` if it leaves zero after being held there.
     """
 
     t: float
@@ -81,17 +81,17 @@ class Stats(NamedTuple):
     Attributes
     ----------
     accepted, rejected : int
-        Steps.
+        Numbers of steps.
     evaluations : int
         Evaluations of the kernel.
     seconds : float
         Time of the whole propagation.
     switches : int
-        Changes of the Euler sequence where angles are the state; otherwise the number of switching times.
+        Changes of the Euler sequence if angles are the state; otherwise the number of switching times.
     switching_times : tuple of float
-        s, at which torques with switches switch, each once.
+        Times, s, at which functions such as sign switch in the torques, without repetition.
     switchings : tuple of Switching
-        Which functions switch there.
+        The functions that switch, with their times.
 
     Examples
     --------
@@ -110,7 +110,7 @@ class Stats(NamedTuple):
 
 
 def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching]) -> Stats:
-    """Return the statistics of a motion from its cost (steps accepted and rejected, evaluations) and its switchings."""
+    """Return the statistics of a motion from its cost (accepted steps, rejected steps, evaluations) and switchings."""
     accepted, rejected, evaluations = map(int, cost)
     listed = tuple(sorted(switchings))
     times = tuple(sorted({change.t for change in listed}))  # coinciding switches count once
@@ -127,7 +127,7 @@ def check_tolerance(tolerance: float) -> None:
 
 
 def check_longest_step(max_step: float) -> None:
-    """Raise InputError for a longest step, s, that is not positive; infinity means no limit."""
+    """Raise InputError if the limit of the step length, s, is not positive; infinity means no limit."""
     if not max_step > 0.0:
         raise InputError(f"max_step: expected a positive number of seconds, got {max_step}")
 
@@ -148,8 +148,8 @@ def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
 class Segment(NamedTuple):
     """Part of a span, from ``start`` to ``stop``, s, without switching times inside.
 
-    ``first`` and ``last`` are the times passed to the kernel at the two ends: just inside the segment if it ends at a
-    switching time.
+    ``first`` and ``last`` are the times passed to the kernel at the two ends. At a switching time they lie just inside
+    the segment.
     """
 
     start: float
@@ -177,17 +177,15 @@ def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
 
 
 def _inside(edge: float, other: float) -> float:
-    """Return a time just inside one end of a segment, so near to it that the choice of the first step is not
-    affected.
-    """
+    """Return a time just inside one end of a segment, near enough not to affect the choice of the first step."""
     time = edge + SLIVER * (other - edge)
     return time if time != edge else math.nextafter(edge, other)
 
 
 def split_at(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
-    """Yield the indices of the times from t0 on, then those of the times before t0; each group is sorted away from t0.
+    """Yield the indices of the times from t0 on, then the indices of the times before t0.
 
-    An empty group is left out.
+    Each group is sorted by distance from t0; an empty group is left out.
     """
     order = np.argsort(times, kind="stable")
     first_after = int(np.searchsorted(times[order], t0))
@@ -202,9 +200,9 @@ def split_at(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
 class Recording(ABC):
     """A motion that can be evaluated at any time of its span.
 
-    ``recording(t)`` returns the states at a time or an array of times, shape (N,) or (n, N); a time outside ``span`` is
-    an InputError. ``stats`` is the cost of the recording; ``epoch`` is the time of the scene at which its clock shows
-    0.
+    ``recording(t)`` returns the states at a time or an array of times, shape (N,) or (n, N), and raises InputError for
+    a time outside ``span``. ``stats`` is the cost of the recording; ``epoch`` is the time of the scene at which its
+    clock shows 0.
     """
 
     epoch = 0.0
@@ -214,7 +212,7 @@ class Recording(ABC):
 
     @abstractmethod
     def _fill(self, times: Floats, states: Floats) -> None:
-        """Write the states at times of the span other than t0."""
+        """Write the states at the times, all inside the span and different from t0, into an array."""
 
     def __call__(self, t: ArrayLike) -> Floats:
         times = np.asarray(t, dtype=np.float64)
@@ -230,7 +228,7 @@ class Recording(ABC):
 
 
 class SteppedRecording(Recording):
-    """A recorded motion made of the steps of a stepper in C."""
+    """A motion as a function of time, made of the recorded steps of a stepper in C."""
 
     def __init__(self, task: "Integration", span: tuple[float, float], backward: Floats, forward: Floats) -> None:
         super().__init__(task.t0, task.y0, span, task.stats())
@@ -246,9 +244,7 @@ class SteppedRecording(Recording):
 
 
 class Window(NamedTuple):
-    """Function and parameters that continue a run for a number of steps, until the clock of the kernel is moved
-    again.
-    """
+    """C function and parameters with which a run continues until the clock of its kernel is moved again."""
 
     step: Callable[..., Any]
     parameters: Any
@@ -258,7 +254,8 @@ class Window(NamedTuple):
 class Run(ctypes.Structure):
     """State of a motion in C: the struct ``symrot_run`` in :file:`dop853.c` and :file:`taylor.c`.
 
-    A stepper makes a subclass with the fields of its method; the fields that Python reads and writes are listed here.
+    Each stepper creates a subclass with the fields of its method. The fields that Python reads and writes are listed
+    here.
     """
 
     t: float  # time reached so far, s
@@ -296,7 +293,7 @@ class Stepper(ABC):
     reals: ClassVar[tuple[str, ...]]
     integers: ClassVar[tuple[str, ...]]
     vectors: ClassVar[tuple[str, ...]]
-    tail: ClassVar[tuple[str, ...]] = ()  # a vector at the end, of a length that the library says
+    tail: ClassVar[tuple[str, ...]] = ()  # a vector at the end, whose length the library returns
     steps_per_call: ClassVar[int]  # steps in some 20 ms of C, after which Python can react to an interrupt
     rows_per_call: ClassVar[int]  # steps recorded per call
     reasons: ClassVar[dict[int, str]]  # why a motion stops, per status; PAUSED: the limit of steps
@@ -336,21 +333,21 @@ class Stepper(ABC):
 
     @abstractmethod
     def row_length(self) -> int:
-        """Return how many doubles record one step."""
+        """Return the number of doubles in the record of one step."""
 
     @staticmethod
     @abstractmethod
     def allowance(tolerance: float) -> tuple[float, float]:
-        """Return the error allowed in one step, and the fraction of the span from which on a step may use all of it."""
+        """Return the error allowed in one step, and the fraction of the span that a step must cover to use it all."""
 
     @abstractmethod
     def enter(self, run: Run, segment: Segment, allowed: float) -> None:
-        """Set those fields of a run that only this method has, before it steps the next segment."""
+        """Set the fields of a run that only this method uses, before the run steps the next segment."""
 
     @staticmethod
     @abstractmethod
     def tried(run: Run) -> int:
-        """Return how many steps of a run count against the limit of steps."""
+        """Return the number of steps of a run that count towards the limit of steps."""
 
     @staticmethod
     @abstractmethod
@@ -369,7 +366,7 @@ def _no_stepper(path: str, error: Exception) -> CompilerError:
 
 
 def is_sorted(times: Floats) -> bool:
-    """Return whether times never fall; a not-a-number counts as a fall.
+    """Return whether times never decrease; NaN counts as a decrease.
 
     A few times are compared faster one by one than by NumPy.
     """
@@ -380,10 +377,10 @@ def is_sorted(times: Floats) -> bool:
 
 
 class Integration:
-    """The integration of one motion: its checked arguments, and the cost of all calls made so far.
+    """The integration of one motion by a stepper in C: its checked arguments, and the cost of all calls so far.
 
-    ``load`` returns the stepper for a library's path. :func:`symrot.propagation.steppers.dop853.integration` explains
-    the other parameters.
+    ``load`` returns the stepper for the path of a library.
+    :func:`symrot.propagation.steppers.dop853.integration` explains the other parameters.
     """
 
     def __init__(
@@ -409,7 +406,7 @@ class Integration:
         check_longest_step(self.max_step)
         self.allowed, self.pace = stepper.allowance(tolerance)
         self.accepted = self.rejected = self.evaluations = 0
-        self.mark = (0, self.t0)  # steps and time when the pace was judged last
+        self.mark = (0, self.t0)  # steps and time at the last check of the pace
         self.goal = t0  # end of the motion, beyond all switching times
         self.way = 0.0  # length of the whole motion of which this is a part, s; 0: this is the whole
         self.fields: dict[str, int] = {}  # more fields of the run in C, which a method sets
@@ -449,7 +446,7 @@ class Integration:
         InputError
             If the times are not finite or have a wrong shape.
         PropagationError
-            If the motion cannot be followed to the end; the sentence says how far it came.
+            If the motion cannot be followed to the end; the message says how far it came.
         """
         times = np.asarray(times, dtype=np.float64, order="C")
         if times.ndim != 1:
@@ -482,9 +479,9 @@ class Integration:
         return states, self.stats()
 
     def sample_sorted(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the result of ``restarted().sample(times)``, faster if the times rise from t0 on.
+        """Return the result of ``restarted().sample(times)``, but faster if the times increase from t0 on.
 
-        ``in_order`` says that the times are finite and never fall.
+        ``in_order`` promises that the times are finite and never decrease.
         """
         if self.breaks or not in_order or not len(times) or times.item(0) < self.t0:
             return self.restarted().sample(times)
@@ -505,7 +502,7 @@ class Integration:
 
     @cached_property
     def _ready(self) -> Run:
-        """A run at the start of the motion, which each new run copies."""
+        """State of the motion in C at its start, which each new run copies."""
         run = self.stepper.new_run(t=self.t0, max_step=self.max_step, **self.fields)
         run.y[:] = self.y0
         return run
@@ -513,8 +510,8 @@ class Integration:
     def record(self, span: tuple[float, float]) -> SteppedRecording:
         """Return the motion as a function of time over a span and over all times between the span and t0.
 
-        The steps are those of :meth:`sample` to the ends of the span, so that the two agree. A step takes 8 N + 2
-        numbers of memory by DOP853, and 21 N + 4 by Taylor series of order 20.
+        The steps are the same as those of :meth:`sample` to the ends of the span, so that both give equal states. The
+        record of a step takes 8 N + 2 numbers by DOP853, and 21 N + 4 by Taylor series of order 20.
         """
         low, high = min(span), max(span)
         if not (math.isfinite(low) and math.isfinite(high)):
@@ -524,7 +521,7 @@ class Integration:
         return SteppedRecording(self, span, backward, forward)
 
     def follow(self, times: Floats, states: Floats) -> None:
-        """Write the states at times on one side of t0, sorted away from t0, into an array."""
+        """Write the states at times on one side of t0, sorted by their distance from t0, into an array."""
         count, done, first, out = len(times), 0, address(times), address(states)
         row = 8 * self.stepper.states
         for run in self.runs(float(times[-1])):
@@ -538,7 +535,7 @@ class Integration:
             done += run.next
 
     def _cost(self, run: Run) -> tuple[int, int, int]:
-        """Return the cost of a run and of all runs before it: steps accepted, steps rejected, evaluations."""
+        """Return accepted steps, rejected steps and evaluations of a run together with all earlier runs."""
         accepted, rejected, evaluations = self.stepper.cost(run)
         return self.accepted + accepted, self.rejected + rejected, self.evaluations + evaluations
 
@@ -574,9 +571,7 @@ class Integration:
             self.evaluations += evaluations
 
     def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
-        """Return the C function that continues a run, the parameters of its kernel, and the limit of steps in one
-        call.
-        """
+        """Return the C function that continues a run, the parameters of its kernel, and the most steps per call."""
         return self.stepper.run, self.p, self.stepper.steps_per_call
 
     def advance(self, run: Run, times: int | None, count: int, states: int | None, rows: int | None, room: int) -> int:

@@ -232,7 +232,7 @@ DENSE: Mapping[int, Mapping[int, str]] = {
 
 
 def _sum(row: Mapping[int, str]) -> str:
-    """Return ``a*k(1) - b*k(5) ...`` in the order of the stages, so that the stage computed last is added last."""
+    """Return the C text of a weighted sum of stages, ``a*k(1) - b*k(5) ...``, in the order of the stages."""
     terms = [f"{'-' if value.startswith('-') else '+'} {value.lstrip('-')}*k({stage})" for stage, value in row.items()]
     return " ".join(terms).removeprefix("+ ")
 
@@ -240,8 +240,8 @@ def _sum(row: Mapping[int, str]) -> str:
 def c_header() -> str:
     """Return the text of ``dop853_tableau.h``, which defines every sum of stages as a macro over ``k(stage)``.
 
-    A stage's sum is split in two: ``DOP853_OLD_s`` is the sum over all earlier stages but the last, ``DOP853_NEW_s``
-    the coefficient of that last one (stage s - 1), which dop853.c adds by itself.
+    The sum for stage s is split in two: ``DOP853_OLD_s`` is the sum over the stages before s - 1, ``DOP853_NEW_s`` the
+    coefficient of stage s - 1, which dop853.c adds separately.
     """
     lines = [
         "/*",

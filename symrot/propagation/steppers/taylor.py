@@ -1,7 +1,7 @@
-"""Taylor series of order 20 around an emitted jet: the C of :file:`taylor.c` driven from Python, one call per span.
+"""Taylor series, usually of order 20, around an emitted jet: Python calls the C of :file:`taylor.c` once per span.
 
-A jet is the list of all Taylor coefficients of a right-hand side at one time. Smooth right-hand sides are stepped in a
-few long steps. Each step is accurate to rounding if the tolerance is small, and the same coefficients give the states
+A jet is the list of all Taylor coefficients of a right-hand side at one time. Smooth right-hand sides need only a few
+long steps. Each step is accurate to rounding if the tolerance is small, and the same coefficients give the states
 at any time inside it. A library holds one system and the stepper compiled together (:func:`translation_unit`).
 :mod:`symrot.propagation.steppers.dop853` has the same interface.
 
@@ -39,7 +39,7 @@ from symrot.propagation.steppers.stepping import (
 __all__ = ["FLAGS", "integration", "order_for", "refusal", "step_tail", "translation_unit"]
 
 FLAGS = (*compiled.FLAGS, *compiled.SCHEDULED)
-STEPS_OF_ALL = 4.0  # in a span of so many steps each step may use the whole tolerance, see step_tail
+STEPS_OF_ALL = 4.0  # in a span of this many steps or fewer, each step may use the whole tolerance, see step_tail
 FILES = {
     "error_free.h": "closed_form/arithmetic/error_free.h",
     **{
@@ -54,7 +54,7 @@ NO_INVARIANTS = NO_INVARIANT + "#define SYMROT_INVARIANT_PARAMETERS 0\n"
 NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n"
 MIDDLE_REACH = 3  # index of the first disc to try in symrot.codegen.enclosure.terms.REACHES
 PROJECTED_EVERY = 16  # steps: by measurement, seldom enough to cost a few percent and often enough to lose nothing
-MANY_PRODUCTS = 40  # products from which on the sums of a step, which grow as order squared, dominate its cost
+MANY_PRODUCTS = 40  # from this number of products on, the sums of a step (order squared) dominate its cost
 ORDERS = {  # for few and for many products: least tolerance, and the fastest order from there on
     False: ((1e-3, 14), (1e-6, 16), (0.0, 20)),
     True: ((3e-2, 8), (1e-3, 10), (1e-5, 12), (1e-7, 16), (0.0, 20)),
@@ -62,21 +62,20 @@ ORDERS = {  # for few and for many products: least tolerance, and the fastest or
 
 
 def step_tail(tolerance: float) -> tuple[float, float]:
-    """Return the size allowed to the last terms of a step's series, and the fraction of the span that allows all of it.
+    """Return the allowed size of the last terms of a step's series, and the fraction of the span that allows all of it.
 
     A step shorter than this fraction is allowed its share of the span to the power 7/4: if only the rotation amplifies
     errors, they grow with the number of steps. The error at the end then hardly depends on the span.
 
-    The constant is calibrated on free asymmetric bodies, through flips about the intermediate axis too, and on heavy
-    tops, against references of 50 digits (``tests/propagation/test_taylor.py``): errors stay below 5 times the
-    tolerance.
+    The constant is calibrated on free asymmetric bodies, also flipping about the intermediate axis, and on heavy tops,
+    against references of 50 digits (``tests/propagation/test_taylor.py``): errors stay below 5 times the tolerance.
     """
     check_tolerance(tolerance)
     return tolerance, 1.0 / STEPS_OF_ALL
 
 
 def order_for(tolerance: float, program: Program | None = None) -> int:
-    """Return the fastest order of the series for a tolerance; every order is accurate enough.
+    """Return the order of the series that is fastest for a tolerance; every order is accurate enough.
 
     It depends on the number of products in the right-hand side. Measured by ``python -m symrot.bench.taylor --orders``:
     below 1e-6 orders 16 to 24 lie within a tenth of each other.
@@ -87,7 +86,7 @@ def order_for(tolerance: float, program: Program | None = None) -> int:
 
 
 def refusal(program: Program) -> str:
-    """Return a sentence that says why a right-hand side has no Taylor series, or an empty text if it has one."""
+    """Return the reason why a right-hand side has no Taylor series, as a sentence; empty if it has a series."""
     from symrot.codegen.taylor.recurrences import recurrences
 
     try:
@@ -112,9 +111,9 @@ def translation_unit(
     program : Program
         The right-hand side ``dy = f(t, y, p)``.
     blocks, scales
-        As :func:`symrot.propagation.steppers.dop853.translation_unit` takes them.
+        As for :func:`symrot.propagation.steppers.dop853.translation_unit`.
     order : int, optional
-        Of the series, even; default: 20. See :func:`order_for`.
+        Order of the series, even; default: 20. See :func:`order_for`.
     invariants : str
         Output of :func:`symrot.codegen.taylor.invariant_source.invariant_definitions`: the motion is projected onto
         these invariants. Their parameters follow the parameters of the program.
@@ -124,7 +123,7 @@ def translation_unit(
     Raises
     ------
     InputError
-        For a right-hand side that is not smooth (abs).
+        For a right-hand side that is not smooth, such as abs.
     """
     from symrot.codegen.enclosure.source import enclosure_source
     from symrot.codegen.taylor.source import ORDER, taylor_definitions
@@ -156,7 +155,7 @@ def integration(
     """Return the integration of a motion by Taylor series, as :func:`symrot.propagation.steppers.dop853.integration`
     does.
 
-    Its ``stats`` count jets as evaluations: a jet is all coefficients of one step.
+    Its ``stats`` count jets as evaluations: a jet is the set of all Taylor coefficients of one step.
 
     Parameters
     ----------
@@ -165,7 +164,7 @@ def integration(
     tolerance : float
         Error of the whole trajectory to aim for, see :func:`step_tail`.
     max_steps : int
-        Most steps to take before giving up.
+        Number of steps after which the integration is given up.
     project : bool
         Whether to project the motion onto its invariants, if the library has any.
     """
@@ -175,7 +174,7 @@ def integration(
 
 
 class _Stepper(Stepper):
-    """A loaded library of :func:`translation_unit`: jet and Taylor stepper."""
+    """A loaded library with a jet and the Taylor stepper, built from :func:`translation_unit`."""
 
     name = "taylor"
     reals = ("t", "t_low", "unit", "stop", "tail", "pace", "max_step", "proven")

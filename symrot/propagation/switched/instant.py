@@ -1,7 +1,7 @@
 """Times as sums of two doubles, and clocks that show 0 at such a time.
 
-At t = 1e6 s doubles lie 1e-10 s apart: a switch that is located to the last bit of one double changes the motion by
-1e-10 of the effect that the torque has within a second. As a sum of two doubles a time has 32 digits.
+At t = 1e6 s doubles lie 1e-10 s apart. A switch located to the last bit of one double then changes the motion by 1e-10
+of the effect that the torque has within a second. As a sum of two doubles a time has 32 digits.
 """
 
 from fractions import Fraction
@@ -28,7 +28,7 @@ class Instant(NamedTuple):
         return Fraction(self.high) + Fraction(self.low)
 
     def after(self, *seconds: float) -> "Instant":
-        """Return a later instant: this one plus one or more numbers of seconds."""
+        """Return the instant that is later than this one by the sum of the given seconds."""
         high, low = self
         for second in seconds:
             high, error = two_sum(high, second)
@@ -40,11 +40,11 @@ class Instant(NamedTuple):
         return (self.high - other.high) + (self.low - other.low)
 
     def since(self, times: Any) -> Any:
-        """Return times, s, counted from this instant."""
+        """Return times of the scene, s, converted to seconds since this instant."""
         return (times - self.high) - self.low
 
     def reached(self, times: Floats, side: float) -> int:
-        """Return how many of the times do not lie beyond this instant; the times rise (``side`` 1) or fall (-1)."""
+        """Return how many of the times, increasing (``side`` 1) or decreasing (-1), do not lie beyond this instant."""
         count = int(np.searchsorted(side * times, side * self.high, "right"))
         while side * self.low < 0.0 and count and times[count - 1] == self.high:
             count -= 1

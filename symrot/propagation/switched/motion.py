@@ -1,11 +1,11 @@
 """Motions under torques that jump or bend: followed from one switch to the next, each located to the last bits.
 
 A switch is a function such as sign or abs in a torque; its guard is the formula inside, and its mode is the present
-value of the function. Between switches the modes are constants and the motion is smooth, so that any stepper can follow
+value of the function. Between switches the modes are constant and the motion is smooth, so that any stepper can follow
 it, while the guards are searched for zeros like events (:mod:`symrot.formula.switches`). Where a guard changes its
-sign, the motion is stepped exactly to that time and continues with the mode of the other side. If both sides send it
-back (dry friction at rest, relay control) the guard stays at zero: the motion slides, and the mode takes the value that
-holds it there, until that value leaves the range of the switch.
+sign, the motion is stepped exactly to that time and continues with the mode of the other side. If the rates on both
+sides drive the guard back to zero (dry friction at rest, relay control) it stays at zero: the motion slides, and the
+mode takes the value that keeps the guard at zero, until that value leaves the range of the function.
 
 Source: A. F. Filippov, Differential Equations with Discontinuous Righthand Sides, Kluwer 1988, sections 4 and 8.
 """
@@ -45,7 +45,7 @@ class SwitchedPropagator(Propagator):
 
 @final
 class SwitchedMotion(MotionInParts):
-    """Motion under torques with switches; each smooth part between two switches has its own clock."""
+    """Motion under torques with switches (sign, abs, ..); each smooth part has a clock that shows 0 at its start."""
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
         start = float(plan.scene.span.start)
@@ -85,7 +85,7 @@ class SwitchedMotion(MotionInParts):
         return states, stats_of(cost, perf_counter() - began, _switchings(changes))
 
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to ``end`` as polynomials, and as a function of time.
+        """Return the motion from its start to ``end``, once as polynomials and once as a function of time.
 
         An error that ends the motion early is appended to ``broken``.
         """
@@ -117,7 +117,7 @@ def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:
 
 
 class SwitchedRecording(Recording):
-    """A motion under torques with switches as a function of time, made of the parts between the switches."""
+    """A motion under torques with switches (sign, abs, ..) as a function of time, made of its smooth parts."""
 
     def __init__(
         self, t0: float, y0: tuple[float, ...], span: tuple[float, float], stats: Stats, chunks: list[Chunk]

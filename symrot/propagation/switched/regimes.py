@@ -33,21 +33,20 @@ Modes = dict[str, int]
 
 
 class Guard(NamedTuple):
-    """A formula inside a switching function (sign, abs, ..): it is positive while the function keeps its mode (value).
+    """A formula that is positive as long as a switching function (sign, abs, ..) keeps its present value, its mode.
 
-    The guard also says how the mode changes where the formula becomes negative.
+    ``change`` says how the mode changes when the formula becomes negative.
     """
 
     mode: str
     formula: str
     change: int  # 0: the mode changes to the opposite sign; 1 or -1: it changes to that sign, or by that number
-    # a held mode with the change 0: motions near the held guards no longer return to them
+    # 0 for a mode that slides: motions near the switch no longer return to it
     where: Conditions
 
 
 class RegimeParameters(NamedTuple):
-    """Parameters of a regime for fixed modes (values of its switching functions), as functions of the epoch of its
-    clock.
+    """Parameters of a smooth motion for fixed values of its switching functions, as functions of the clock's epoch.
 
     ``invariants`` are pairs of doubles that do not depend on the clock; only Taylor steps use them.
     """
@@ -59,11 +58,10 @@ class RegimeParameters(NamedTuple):
 
 
 class Regime:
-    """A smooth motion between two switches: its rates, and the guards (formulas inside sign, abs, ..) whose zeros end
-    it.
+    """A smooth motion between two switches: its rates, and the guards (formulas inside sign, abs, ..) that end it.
 
-    Some guards may stay at zero during the regime. Its clock shows 0 at the instant at which the motion enters it;
-    rates and guards have parameters for that instant.
+    It ends when a guard becomes zero; some guards may stay at zero throughout. Its clock shows 0 at the instant at
+    which the motion enters the regime. That instant is a parameter of rates and guards.
     """
 
     def __init__(
@@ -95,7 +93,7 @@ class Regime:
         columns |= {f"{mode}_of_t": f"{mode} of t" for mode in held}
         columns |= {f"attraction_{k}_of_t": f"attraction {k} of t" for k in range(len(held))}
         quantities, self.quantity_parameters = motion.kernel.quantities, motion.kernel.quantity_parameters
-        if quantities.uses("t"):  # for example the value of a mode that holds its guard at zero
+        if quantities.uses("t"):  # for example the value of sign(..) that keeps its argument at zero
             quantities, self.quantity_parameters = moved(quantities, self.quantity_parameters)
         self.quantities = quantities
         program = _with_parameters(quantities, [columns[name] for name in self.more])
@@ -120,7 +118,7 @@ class Regime:
             yield Guard(mode, f"1 - ({guard})", 1, where)
 
     def _parameters_under(self, modes: Modes) -> RegimeParameters:
-        """Return the parameters of the regime for given modes, which are the values of its switching functions."""
+        """Return the parameters of the regime for given modes (values of its switching functions)."""
         key = tuple(modes.values())
         if key not in self._parameters:
             values = {name: Fraction(value) for name, value in modes.items()}
@@ -148,7 +146,7 @@ class Regime:
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
-        """Return the parameters of the stepper and those of the guards, which are the formulas that end the regime.
+        """Return the parameters of the stepper, and the parameters of the guards: the formulas that end the regime.
 
         They are for a clock that shows 0 at the instant ``zero``.
         """
@@ -163,11 +161,11 @@ class Regime:
         return self._bound[place]
 
     def zeros(self, modes: Modes, zero: Instant, y: Floats) -> set[str]:
-        """Return the states and the parameters of the quantities that are zero, by name."""
+        """Return the names of those states and parameters of the quantities that are zero."""
         return {name for name, value in self._inputs(modes, zero, y).items() if value == 0.0}
 
     def attraction(self, modes: Modes, zero: Instant, t: float, y: Floats) -> list[float]:
-        """Return the numbers that are positive while motions near the held guards return to them."""
+        """Return one number per guard held at zero; all are positive while motions near these guards return to them."""
         names = [f"attraction {k} of t" for k in range(len(self.held))]
         values = {**self._inputs(modes, zero, y), "t": t}
         quantities = self.quantities.evaluate(values, FLOAT_FUNCTIONS, float, names)
@@ -213,10 +211,10 @@ class Regime:
 
 
 def _distance(switch: Switch) -> Node:
-    """Return a formula that is zero where a switch changes its mode.
+    """Return a formula that is zero where a switching function changes its value.
 
-    It is the guard of the switch; for a floor, the guard minus the whole number below it. The number is subtracted
-    before rounding: far from t = 0 it cancels most digits of the guard.
+    It is the argument of the function; for a floor, the argument minus the integer below it. The integer is subtracted
+    before rounding, since far from t = 0 it cancels most digits of the argument.
     """
     return switch.guard if switch.kind == "sign" else ("-", switch.guard, ("symbol", switch.mode))
 

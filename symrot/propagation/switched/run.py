@@ -1,4 +1,4 @@
-"""A motion under torques with switches, followed from its start to one end: where it switches, slides or stops."""
+"""A motion under torques with switches (sign, abs, ..), followed from its start through all switches to one end."""
 
 import math
 from collections.abc import Callable, Generator
@@ -31,18 +31,18 @@ MOST_SWITCHES, MOST_AT_ONCE = 1_000_000, 1000
 HOP_BITS = 10  # a hop over a switch is at most 2 to this power units in the last place of the clock long
 LEAST_TURN = 1e-3  # rad over the whole span: errors of slower rotations are relative to this rate
 AWAY = range(50, 400, 10)  # a hop away from a switch is the span divided by 2 to this power
-NEARBY, MOST_ULPS = 1e-6, 64.0  # part of the way since the last switch; units in the last place of a located time
+NEARBY, MOST_ULPS = 1e-6, 64.0  # part of the time since the last switch; units in the last place of a located time
 PERTURBATION, PARALLEL = 1e-6, 1e-6  # of time and states, for slopes; relative difference of parallel slopes
-ERRORS = 100.0  # tolerances that the errors of a motion may have
-SHORT = 1e-9  # part of the span: how far formulas are looked at beyond an instant without rates
-CHATTERING = 1e-9  # part of the span: CHATTER switches within it count as endlessly many
+ERRORS = 100.0  # largest error of a motion, in tolerances
+SHORT = 1e-9  # part of the span: distance beyond an instant without rates at which formulas are evaluated
+CHATTERING = 1e-9  # part of the span: CHATTER switches within it count as infinitely many
 Consumer = Callable[["Chunk"], None]
 SwitchState = tuple[frozenset[tuple[str, int]], frozenset[str]]
 """The values (modes) of all switching functions that are not held, and the modes that are held."""
 
 
 class Chunk(NamedTuple):
-    """Part of a motion from ``start`` to ``stop``, with its polynomials on a clock that shows 0 at ``zero``."""
+    """Part of a motion from ``start`` to ``stop``: states and polynomials, with times counted from ``zero``."""
 
     start: Instant
     stop: Instant
@@ -55,7 +55,7 @@ class Chunk(NamedTuple):
         return self.own_states(self.zero.since(times))
 
     def piece(self) -> Piece:
-        """Return the polynomials with their times on the clock of the scene."""
+        """Return the polynomials with their times converted to the clock of the scene."""
         rows, edges = self.own_piece.rows.copy(), self.own_piece.edges + self.zero.low + self.zero.high
         edges[0], edges[-1] = self.start.high, self.stop.high  # the same numbers as in the parts before and after
         time, low = two_sum(self.zero.high, rows[:, 0])
@@ -79,12 +79,12 @@ class SwitchedRun(RunState):
         self.switches = 0
         self.changes: dict[tuple[float, str], str] = {}  # how each function switched, with time and function as key
         self.flipped: dict[str, int] = {}  # the modes that changed at the present time, and how often
-        self.released: set[str] = set()  # modes whose guards were held until this time: they leave zero slowly
+        self.released: set[str] = set()  # modes held until this time: their guards leave zero slowly
         self.order: list[str] = []  # the modes that changed at the present time, in the order of the changes
-        self.rested: set[str] = set()  # modes that were held at the present time and needed no holding
+        self.rested: set[str] = set()  # modes that were held at the present time though no torque was needed for it
         self.left: set[tuple[str, int]] = set()  # the values of all modes before the changes at the present time
-        self.visited: dict[SwitchState, int] = {}  # at the present time, with the number of changes before them
-        self.attraction: tuple[frozenset[str], list[float]] = frozenset(), []  # of the held modes, since they are held
+        self.visited: dict[SwitchState, int] = {}  # states at the present time, with the number of changes before each
+        self.attraction: tuple[frozenset[str], list[float]] = frozenset(), []  # held modes, and its values at first
         self.settled, self.hopped = 0, False
 
     def follow(self, consume: Consumer) -> None:
@@ -122,7 +122,7 @@ class SwitchedRun(RunState):
             self.end = 0.0
 
     def _check_start(self) -> None:
-        """Raise IntegrationStopped if the motion starts on a switch from which both sides lead away.
+        """Raise IntegrationStopped if the motion starts at a switch and can leave it to both sides.
 
         Then there are two motions from the same start.
         """
@@ -244,9 +244,10 @@ class SwitchedRun(RunState):
         return guard
 
     def _coincident(self, regime: Regime, active: list[bool], values: list[float], most: int) -> Guard | None:
-        """Return a guard whose sign at the present instant is at most ``most``, where the rates have no value; or None.
+        """Return the guard to switch next at an instant at which the rates have no value, or None.
 
-        Several functions that switch at one instant do so one after the other; rates in between need not have values.
+        Its formula has a sign of at most ``most`` there. Functions that switch at the same instant do so one after the
+        other; in between, the rates need not have a value.
         """
         h = self.side * SHORT * self.span
         row = np.concatenate([[self.t, h, 0.0, h], self.y, np.zeros_like(self.y)])
@@ -260,9 +261,7 @@ class SwitchedRun(RunState):
         return min(guards, key=lambda pair: pair[0])[1] if guards else None
 
     def _arrive(self, instant: Instant) -> None:
-        """Continue at a switch: the present time becomes ``instant``, and the clock shows 0 there, unless it is the
-        end.
-        """
+        """Make the instant of a switch the present time, at which the clock shows 0, unless the motion ends there."""
         if self.t != self.end:
             self._move_clock(instant)
         self._forget_changes()
@@ -276,13 +275,13 @@ class SwitchedRun(RunState):
     def _hop(
         self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: IntegrationStopped
     ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
-        """Return a straight piece of motion over a place where a stepper is stuck, and the switch that it reaches; or
+        """Return a linear piece of motion past a point where a stepper is stuck, and the switch that it reaches; or
         None.
 
         Steps shrink to zero where a torque has no derivative, though its impulse is finite. Examples are sqrt(1 - t)
-        before a switch at 1 s, and sqrt(t - 1) after it. While the impulse is less than the tolerance the motion may
-        continue straight: to the switch if it is that near, or away from the last switch. The result also has the
-        states along the piece.
+        before a switch at 1 s, and sqrt(t - 1) after it. As long as the impulse is less than the tolerance, the states
+        may change linearly: up to a switch that is near, or away from the last switch. The result consists of the
+        polynomial, the states as a function of time, and the guard or None.
         """
         kernel, motion = regime.motion.kernel, regime.motion
         p = np.array(rates[: len(kernel.rate_parameters)])
@@ -323,7 +322,7 @@ class SwitchedRun(RunState):
         return None
 
     def _crosses(self, regime: Regime, guard: Guard, *places: tuple[float, Floats]) -> bool:
-        """Return whether the formula of a guard becomes negative between two places, each a time with states."""
+        """Return whether the formula of a guard becomes negative between two points, each a time with its states."""
         try:
             before, after = (
                 float(evaluate(parse(guard.formula), self._values(regime, place), FLOAT_FUNCTIONS, float))
@@ -337,10 +336,10 @@ class SwitchedRun(RunState):
         return Chunk(self._at(start), self._at(stop), self.zero, states, piece)
 
     def _located(self, regime: Regime, guard: Guard, t: float) -> Instant:
-        """Return the instant at which the formula of a guard is zero, which lies next to the time t.
+        """Return the instant near the time t at which the formula of a guard is zero.
 
-        On a clock that shows 0 at t, a formula of time alone is known to all digits; one step of Newton's method finds
-        its zero to twice the digits of t.
+        A formula that depends on time alone has full accuracy on a clock that shows 0 at t. One step of Newton's method
+        then locates its zero to twice the digits of t.
         """
         instant = self.zero.after(t)
         if guard.mode in self.held or guard.mode not in regime.of_time:
@@ -364,7 +363,7 @@ class SwitchedRun(RunState):
     def _past(self, regime: Regime, guard: Guard, instant: Instant) -> Instant:
         """Return the first instant, from a given one on, at which a formula of time alone is no longer positive.
 
-        A zero that was rounded to an earlier instant would switch the function back at once.
+        If the zero were rounded to an earlier instant, the function would switch back at once.
         """
         formula, later = parse(guard.formula), instant
         step = self.side * math.ulp(math.ulp(instant.high))
@@ -376,7 +375,7 @@ class SwitchedRun(RunState):
         return instant
 
     def _is_rounding(self, regime: Regime, guard: Guard) -> bool:
-        """Return whether a formula of time alone that has just switched is negative only up to rounding of the time."""
+        """Return whether a formula of time alone, just after its switch, is negative only because time is rounded."""
         if guard.mode in self.held or guard.mode not in regime.of_time or not self.flipped.get(guard.mode):
             return False
         later = self.t + self.side * MOST_ULPS * math.ulp(self.zero.high)
@@ -386,9 +385,7 @@ class SwitchedRun(RunState):
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
     ) -> tuple[list[Guard], list[Guard]]:
-        """Return two lists of guards: those whose formulas are negative from the start of a piece on, and those at its
-        end.
-        """
+        """Return two lists of guards: negative from the start of a piece on, and negative at its end."""
         formulas = [guard.formula for guard in regime.guards]
         first, last = (
             [guard for guard, on, sign in zip(regime.guards, active, signs, strict=True) if on and sign < 0]
@@ -436,10 +433,9 @@ class SwitchedRun(RunState):
         return bool(changed)
 
     def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
-        """Return how far the argument of a switching function is from the switch, now or at another time with states.
+        """Return the argument of the switching function with a given mode, now or at another time with its states.
 
-        The function is named by its mode. For a floor it is the distance of the argument from the whole number that is
-        its value.
+        For a floor it is the argument minus the integer that is the present value.
         """
         regime = self._regime(self.modes)
         return float(
@@ -458,22 +454,22 @@ class SwitchedRun(RunState):
     def _switch(self, regime: Regime, guard: Guard) -> None:
         """Change the value (mode) of a function whose argument (guard) crosses zero.
 
-        Where the rates on both sides send the motion back, the argument is held at zero: the motion slides.
+        If the rates on both sides drive the argument back to zero, it is held there: the motion slides.
         """
         mode, kind = guard.mode, self.by_name[guard.mode].kind
         if mode in self.held and (guard.change == 0 or not self._still_attracts(regime)):
             raise IntegrationStopped(
-                self.t, f"the motion would slide along {self._names_of_held()} beside motions that lead away", self.end
+                self.t, f"the motion slides along {self._names_of_held()}, but motions next to it lead away", self.end
             )
         self.left.add((mode, self.modes[mode]))
         self.visited.setdefault(self._state(), len(self.order))
         again = self.flipped.get(mode, 0)
-        if again and self._jumped(mode):  # a mode inside its guard changed too, so that the motion does not return
+        if again and self._jumped(mode):  # a mode in its guard changed too: the motion does not return
             again = 0
         slides = kind == "sign" and again > 0 and mode not in self.held and self._returns(mode)
         self.order.append(mode)
         if len(self.order) > MOST_AT_ONCE or (slides and self._state(hold=mode) in self.visited):
-            raise IntegrationStopped(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
+            raise IntegrationStopped(self.t, f"no value of {self._name(mode)} lets the motion continue", self.end)
         if again == 0:
             self._count()
         self.flipped[mode] = again + 1
@@ -499,9 +495,9 @@ class SwitchedRun(RunState):
             self._wake(other)
 
     def _returns(self, mode: str) -> bool:
-        """Return whether a change of a sign brings back a state of all functions, so that this sign has to be held.
+        """Return whether a change of a sign would restore an earlier state of all functions: it then has to be held.
 
-        Where a jump is among the changes since that state, the jump is held and not the function that only bends.
+        If a function jumped since that state, the jump is held, and not a function that only bends.
         """
         first = self.visited.get(self._state(flip=mode))
         if first is None:
@@ -510,15 +506,13 @@ class SwitchedRun(RunState):
         return not (jumps and is_continuous(self.by_name[mode]))
 
     def _state(self, flip: str = "", hold: str = "") -> SwitchState:
-        """Return the present state of all switching functions, or that after a change of one of them."""
+        """Return the state of all switching functions now, after ``flip`` changes sign, or after ``hold`` is held."""
         modes = {**self.modes, flip: -self.modes[flip]} if flip else self.modes
         held = self.held | {self.system.twins[hold][0][0]} if hold else self.held
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether, since a function last switched at the present time, a function inside its argument has
-        switched too.
-        """
+        """Return whether a function in the argument of another has switched after the latter, at the present time."""
         last = len(self.order) - self.order[::-1].index(mode)
         return bool(self._inside(mode) & set(self.order[last:]))
 
@@ -527,13 +521,11 @@ class SwitchedRun(RunState):
         return set(names(self.by_name[mode].guard))
 
     def _asleep(self) -> set[str]:
-        """Return the modes of those switching functions that do not matter in the present regime."""
+        """Return the modes of the switching functions that do not affect the motion at present (see ``where``)."""
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
-        """Set the value (mode) of a switching function that begins to matter, by the sign of its argument if it is not
-        zero.
-        """
+        """Set the value (mode) of a switching function that begins to affect the motion, from its argument."""
         try:
             guard = self._guard_value(mode)
         except (ArithmeticError, ValueError, IntegrationStopped):
@@ -555,9 +547,9 @@ class SwitchedRun(RunState):
         self._regime(self.modes)
 
     def _comes_to_rest(self, regime: Regime) -> bool:
-        """Give signs that no torque needs to hold their values at zero; return whether there is such a sign.
+        """Set signs that stay at zero without any torque to their values at zero; return whether there is such a sign.
 
-        A body at rest then moves with the values of all functions at zero, and not with a mixture of both sides.
+        A body at rest then moves with the values of all functions at zero, not with a mean of the two sides.
         """
         resting = [mode for mode in sorted(self.held - self.rested) if self.system.matters_at_zero(mode)]
         if resting:
@@ -571,17 +563,17 @@ class SwitchedRun(RunState):
         return bool(resting)
 
     def _still_attracts(self, regime: Regime) -> bool:
-        """Return whether motions near the held guards return to them by more than the errors of the motion.
+        """Return whether nearby motions return to the guards held at zero faster than errors drive them away.
 
-        If they do not, these errors decide to which side the motion goes.
+        If they do not, numerical errors would decide to which side the motion goes.
         """
         now, least = regime.attraction(self.modes, self.zero, self.t, self.y), ERRORS * regime.motion.tolerance
         return all(value > least * first for value, first in zip(now, self.attraction[1], strict=True))
 
     def _leaves_zero(self, regime: Regime, active: list[bool], piece: Piece) -> bool:
-        """Give signs of formulas that are zero, and no longer so at the end of a piece, the values of that side.
+        """Give each sign that is 0 the sign that its formula has at the end of a piece, unless that is zero too.
 
-        The result says whether there is such a sign.
+        The result says whether a sign changed.
         """
         numbers = [
             n
@@ -598,7 +590,7 @@ class SwitchedRun(RunState):
         return any(signs[n] for n in numbers)
 
     def _regime(self, modes: Modes) -> Regime:
-        """Return the smooth motion for given values (modes) of the switching functions, sliding along those held."""
+        """Return the regime (smooth motion) for given modes, with the arguments of held functions kept at zero."""
         try:
             return self.system.regime(self.held, modes)
         except InputError:
@@ -612,7 +604,7 @@ class SwitchedRun(RunState):
     def _check_held_alone(self) -> None:
         """Raise IntegrationStopped if a function that is not held jumps where the motion slides.
 
-        Its value there is not determined. Its argument is zero, and changes only with the arguments of held functions.
+        Its value there is not determined: its argument is zero, and changes only with the arguments of held functions.
         """
         y = self.y.tolist()
         steps = [PERTURBATION * max(abs(self.t), self.span), *(PERTURBATION * max(1.0, abs(x)) for x in y)]

@@ -1,4 +1,4 @@
-"""Present state of a motion under torques with switches: its clock, its states and its cost so far."""
+"""Present state of a motion under torques with switches (sign, abs, ..): its clock, its states and its cost."""
 
 from collections import deque
 from collections.abc import Callable
@@ -12,7 +12,7 @@ from symrot.propagation.switched.regimes import Modes, Regime
 
 __all__ = ["CHATTER", "RunState"]
 
-CHATTER = 50  # number of last switches that are remembered
+CHATTER = 50  # number of recent switches whose times are stored
 
 
 class RunState:
@@ -21,9 +21,9 @@ class RunState:
     Attributes
     ----------
     zero : Instant
-        When that clock shows 0.
+        The time at which that clock shows 0.
     t, end, start : float
-        The present time, and when the motion ends and started, s, on that clock.
+        Present time, end and start of the motion, s, on that clock.
     span, side : float
         Length of the whole motion, s, and its direction, 1 or -1.
     y : array, shape (N,)
@@ -33,7 +33,7 @@ class RunState:
     interrupt : KeyboardInterrupt or None
         An interrupt that came while SciPy followed the motion beyond a switch.
     recent : deque of Instant
-        The last switches.
+        The times of the last switches.
     """
 
     def __init__(self, motion: Motion, end: float, modes: Modes) -> None:
@@ -51,10 +51,9 @@ class RunState:
         return Instant(self.motion.start) - self.zero
 
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
-        """Return a function from an epoch, s, to the rates ``stepped`` and their parameters on a clock moved by the
-        epoch.
+        """Return a function from an epoch, s, to ``stepped`` (library or function of the rates) and its parameters.
 
-        The result is None if the rates of the regime do not depend on the time.
+        With these parameters the rates count time from the epoch. The result is None if they do not depend on time.
         """
         parameters = regime.rates_since(self.modes, self.zero)
         return (lambda since: (stepped, parameters(since))) if parameters else None

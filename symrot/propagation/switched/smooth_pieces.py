@@ -1,4 +1,4 @@
-"""Pieces of a smooth motion up to the next switch, by each stepper: polynomials, and states as a function of time."""
+"""Pieces of a smooth motion up to the next switch, by any stepper: polynomials, and states as a function of time."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -21,12 +21,12 @@ from symrot.propagation.switched.run_state import RunState
 __all__ = ["SciPyPieces", "SteppedPieces", "smooth_pieces"]
 
 ROOM = 4  # steps in the first piece after a switch; each further piece has twice as many
-WINDOWS, FEWEST = 64, 8  # parts of the span that SciPy follows at a time, at first and later
+WINDOWS, FEWEST = 64, 8  # SciPy follows at most 1/64 of the span at first, later at most 1/8
 JOIN = 0.01  # part of the tolerance: largest gap between the ends of two LSODA steps
 RECENT = 4  # number of smooth parts whose lengths predict the length of the next one
-FIRST_ANGLE = 30.0  # rad
-SHORTEST = 1e-6  # part of the span
-OVERHEAD = 200  # evaluations that take as long as the rest of a window
+FIRST_ANGLE = 30.0  # rad: rotation in the first window of SciPy
+SHORTEST = 1e-6  # part of the span: shortest first window
+OVERHEAD = 200  # evaluations that take as long as the other work for a window
 
 
 class SteppedPieces:
@@ -43,9 +43,7 @@ class SteppedPieces:
         self.integration.way, self.end = run.span, run.end
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
-        """Yield the polynomials of the pieces in the order of the motion, each with its states as a function of
-        time.
-        """
+        """Yield each piece in the order of the motion: its polynomials, and its states as a function of time."""
         integration, room = self.integration, ROOM
         for run in integration.runs(self.end):
             while run.t != run.stop:
@@ -74,16 +72,14 @@ class SteppedPieces:
 
 
 class SciPyPieces:
-    """Pieces of a smooth motion by SciPy, which follows one window of time after another up to the next switch."""
+    """Pieces of a smooth motion by SciPy, which follows one interval of time (window) after another."""
 
     def __init__(self, run: RunState, regime: Regime, motion: SciPyMotion, rates: list[float]) -> None:
         self.run, self.motion, self.rates, self.counts = run, motion, rates, np.zeros(3, dtype=np.int64)
         self.clock = run.clock(regime, motion.rates)
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
-        """Yield the polynomials of the pieces in the order of the motion, each with its states as a function of
-        time.
-        """
+        """Yield each piece in the order of the motion: its polynomials, and its states as a function of time."""
         from symrot.propagation.steppers import fallback
 
         run, t, y = self.run, self.run.t, self.run.y
@@ -125,7 +121,7 @@ class SciPyPieces:
         """
         run = self.run
         (_, rates, *_), _ = error_blocks(self.motion.plan)
-        turning = float(np.linalg.norm(run.y[:rates]))  # rad/s, or 1 where omega is no state
+        turning = float(np.linalg.norm(run.y[:rates]))  # rad/s, or 1 if omega is not a state
         instants = [Instant(run.motion.start), *run.recent][-RECENT - 1 :]
         longest = max((abs(after - before) for before, after in pairwise(instants)), default=run.span)
         likely = min(longest, FIRST_ANGLE / max(turning, FIRST_ANGLE / run.span))
@@ -152,9 +148,9 @@ class SciPyPieces:
 
 
 def smooth_pieces(run: RunState, regime: Regime, rates: list[float]) -> SteppedPieces | SciPyPieces:
-    """Return the pieces of a smooth motion from the present state of a run on, stepped in its regime.
+    """Return the pieces of the smooth motion that begins at the present state of a run.
 
-    ``rates`` are the parameters of the rates.
+    ``regime`` has the rates of the motion, ``rates`` the values of their parameters.
     """
     motion = regime.motion
     if isinstance(motion, SteppedMotion):

@@ -22,12 +22,11 @@ from symrot.propagation.switched.regimes import Modes, Regime
 __all__ = ["SwitchedSystem", "is_continuous"]
 
 STATES = frozenset({*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4))})
-CONTINUOUS = ("abs(", "max(", "min(", "clip(", "sqrt(")  # how the labels of functions begin that bend and do not jump
+CONTINUOUS = ("abs(", "max(", "min(", "clip(", "sqrt(")  # first characters of labels of functions that do not jump
 
 
 class SwitchedSystem:
-    """All switching functions (sign, abs, ..) in the torques of a plan, and the smooth motions (regimes) between
-    switches.
+    """All switching functions (sign, abs, ..) in the torques of a plan, and the regimes (smooth motions) between them.
 
     There is one regime for each combination of arguments (guards) that stay at zero.
     """
@@ -47,10 +46,10 @@ class SwitchedSystem:
 
     @cached_property
     def twins(self) -> dict[str, list[tuple[str, int]]]:
-        """For each mode, the modes of the same torque whose functions switch at the same place, itself included.
+        """For each mode, the modes in the same torque that change together with it, itself included.
 
-        A mode is the value of a switching function. Functions that jump come first, each with the sign of its argument
-        relative to that of the first. An example is sign(omega_3) and abs(2*omega_3) in the friction of a bearing that
+        A mode is the value of a switching function. Functions that jump come first. Each mode has the sign of its
+        argument relative to the first argument. Examples are sign(omega_3) and abs(2*omega_3) in bearing friction that
         is greater at rest.
         """
         numbers: dict[str, Node] = {name: ("number", value) for name, value in self.constants.items()}
@@ -68,13 +67,14 @@ class SwitchedSystem:
         return twins
 
     def tied(self, held: frozenset[str]) -> dict[str, tuple[str, int]]:
-        """Return, for each mode that equals a held mode or its negative, the held mode and the sign."""
+        """Return, for each mode that equals a held mode or its negative, the held mode and the sign (1 or -1)."""
         return {twin: (mode, sign) for mode in held for twin, sign in self.twins[mode] if twin != mode}
 
     def matters_at_zero(self, mode: str) -> bool:
-        """Return whether the motion depends on more than the mean of both sides of a sign that is held at zero.
+        """Return whether the value of a sign at zero affects a motion that is held there.
 
-        Other functions then switch at the same place, or a torque is not linear in the sign.
+        It does if another function that jumps switches at the same place, or if a torque is not linear in the sign.
+        Otherwise only a mean of the two sides matters.
         """
         if next(switch for switch in self.switches if switch.mode == mode).at_zero != 0:
             return False
@@ -84,9 +84,7 @@ class SwitchedSystem:
 
     @cached_property
     def settled(self) -> set[str]:
-        """The modes of switching functions whose arguments are constant: they contain no time, no state and no changing
-        mode.
-        """
+        """The modes of switching functions with constant arguments: without time, states and modes that change."""
         settled = set[str]()
         for switch in self.switches:
             if names(switch.guard) <= self.constants.keys() - ({each.mode for each in self.switches} - settled):
@@ -114,9 +112,9 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the modes (values of the switching functions) just beside the start, where one argument is zero.
+        """Return the modes (values of the switching functions) next to a start at which the argument of one is zero.
 
-        ``sign`` is the side of that argument; modes that depend on it follow.
+        That mode becomes ``sign``; modes that depend on it change with it.
         """
         return self._modes_at_start({mode: sign})[0]
 
@@ -144,10 +142,10 @@ class SwitchedSystem:
         return modes, undecided
 
     def regime(self, held: frozenset[str], modes: Modes) -> Regime:
-        """Return the smooth motion while the arguments of the functions ``held`` stay at zero; it is derived on first
-        use.
+        """Return the regime (smooth motion) in which the arguments of the functions ``held`` stay at zero.
 
-        The values of the other functions (modes) matter if they choose between the parts of a ``where``.
+        It is derived on first use. The values of the other functions (modes) are used only to choose between the parts
+        of a ``where``.
         """
         key = held, tuple(modes.values()) if self._chooses else ()
         if key not in self._regimes:
@@ -202,21 +200,21 @@ def _switches(torque: FormulaTorque) -> list[Switch]:
 
 
 def _is_mixed(torque: FormulaTorque, mode: str) -> bool:
-    """Return whether a torque is not linear in a mode."""
+    """Return whether a torque is not linear in a mode, the value of a switching function."""
     own = mode.removeprefix(torque.prefix)
     nodes = [parse(formula, switching=True) for formula in torque.choices or torque.formulas]
     return own in torque.parameters and any(between_sides(node, own) != node for node in nodes)
 
 
 def is_continuous(switch: Switch) -> bool:
-    """Return whether the function of a switch bends where it switches, and does not jump."""
+    """Return whether a switching function such as abs is continuous where it switches."""
     return switch.label.startswith(CONTINUOUS)
 
 
 def _bends(switch: Switch | TorqueSwitch) -> bool:
     """Return whether a formula bends but does not jump where a switching function switches.
 
-    Then either value of the function is right at the switch.
+    Either value of the function then gives the right result at the switch.
     """
     return switch.at_zero == 1
 
@@ -224,11 +222,11 @@ def _bends(switch: Switch | TorqueSwitch) -> bool:
 def _chosen(
     torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: Mapping[str, tuple[str, int]]
 ) -> TorqueStructure:
-    """Return a torque reduced to the parts of its formulas that apply for given values (modes) of its switching
-    functions.
+    """Return a torque reduced to the parts of its formulas that apply for given modes of its switching functions.
 
-    Functions that do not matter are left out. A function that switches where a held one does is ``tied`` to it: if the
-    formula jumps there, it takes the value of the held function or its negative. Formulas become linear in held modes.
+    A mode is the value of such a function. Functions without effect are left out. A function that switches together
+    with a held function is ``tied`` to it: if the formula jumps there, it takes the value of the held function or its
+    negative. Formulas become linear in held modes.
     """
     if not isinstance(torque, FormulaTorque):
         return torque
