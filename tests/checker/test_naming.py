@@ -216,7 +216,8 @@ def test_a_constraint_of_quantities_is_not_called_false(claim):
     [
         "sin(a + asin(k)) == z/z",
         "sin(a + asin(k)) == y + y - y - y",
-        "(x + y)*(z - x) == x + y", "sin(a)*sin(b)*sin(c) == sin(a)*sin(a)*sin(c)",
+        "(x + y)*(z - x) == x + y",
+        "sin(a)*sin(b)*sin(c) == sin(a)*sin(a)*sin(c)",
         "cos(a + k)*cos(b) == cos(a + k)/4*(sin(a)**2 + cos(a)**2)",
         "x*y == 0",
         "sin(x)^2 + cos(y)^2 = 1",
