@@ -95,7 +95,7 @@ def measure(name: str, samples: int, rounds: int) -> list[Sampled]:
 
 
 def _distance(states: Floats, exact: Floats) -> float:
-    """Return the largest difference between samples of two runs; differences of rates are relative to their size."""
+    """Return the largest difference between samples of two runs; for angular velocities, relative to their size."""
     apart, rates = abs(states - exact), states.shape[-1] - 4
     size = float(np.linalg.norm(np.atleast_2d(exact)[-1, :rates]))
     return max(float(apart[:, :rates].max()) / size, float(apart[:, rates:].max()))

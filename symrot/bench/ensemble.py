@@ -38,7 +38,7 @@ ENSEMBLE_TOLERANCES = (1e-6, 1e-12)  # few: each of its trajectories takes a cop
 
 
 class Start(NamedTuple):
-    """An ensemble to measure: motion, initial states (n, N), end time, reference end states of its first members."""
+    """An ensemble to measure: motion, initial states (n, N), end time, reference end states of the first members."""
 
     problem: Any
     y: Floats
@@ -201,7 +201,7 @@ def _print_table(runs: list[Run], n: int) -> None:
 
 
 def _print_widths(start: Start, rounds: int) -> None:
-    """Print a comparison of four lanes with eight lanes."""
+    """Print a comparison of SIMD vectors of four and of eight trajectories."""
     tasks = [
         (f"{width} lanes", *task[1:]) for width in WIDTHS for task in _ours(start, [1e-12], [20], width)
     ]  # fmt: skip

@@ -84,7 +84,7 @@ class Problem:
 
     @staticmethod
     def error(state: State, exact: State, least: float = 0.0) -> float:
-        """Return the larger of two errors: of the angular velocity, relative to its size; of the attitude, in rad.
+        """Return the larger of two errors: relative error of the angular velocity, and error of the attitude in rad.
 
         For a body slower than ``least``, rad/s, the first error is relative to ``least``: a body that is nearly at rest
         before a pulse may rotate at 1e-40 rad/s, where relative errors are meaningless.
