@@ -95,7 +95,7 @@ class Polynomial:
         return {exponents: Polynomial(part) for exponents, part in parts.items()}
 
     def derivative(self, name: str) -> "Polynomial":
-        """Return the partial derivative by a coordinate; the cosine and sine of an angle are differentiated as such."""
+        """Return the partial derivative by a coordinate; the cosine and sine of an angle depend on the angle."""
         inner = ((generator(name), constant(1)), (cosine(name), -sine(name)), (sine(name), cosine(name)))
         total = constant(0)
         for argument, rate in inner:
