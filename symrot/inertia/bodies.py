@@ -1,4 +1,4 @@
-"""Mass properties of bodies over any kind of number: moved, rotated, added and subtracted. Standard library only.
+"""Mass properties of bodies that are moved, rotated, added or subtracted, over any kind of number. Standard library.
 
 The same functions serve symbolic bodies (:class:`symrot.inertia.solids.Solid`) and the exact numbers of a scene.
 """
