@@ -122,10 +122,7 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
 
 
 def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | None]) -> list[str]:
-    """Check a certificate against symrot's own derivations and bounds.
-
-    Return one sentence for each check that it passed.
-    """
+    """Check a certificate against symrot's own derivations and bounds; return a sentence for each check."""
     name = data["kernel"]
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
     check_header(header, source, name)
@@ -142,7 +139,7 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
 
 
 def _compared(data: Data) -> list[str]:
-    """Return the sentence that the verdicts on object code were not checked.
+    """Return the sentence that the verdicts on object code were not checked, if there are any.
 
     Such verdicts hold only for the machine that made them.
     """
@@ -160,10 +157,7 @@ def _compare(path: Path, data: Mapping[str, Any], statement: Mapping[str, Any]) 
 
 
 def _bounds(path: Path, data: Data, source: str) -> str:
-    """Return a sentence about the rounding error bounds; raise CertificateError unless they belong to the C text.
-
-    Raise CertificateError if they are not bounds of the C text.
-    """
+    """Return a sentence about the rounding error bounds; raise CertificateError if they do not hold for the C text."""
     section = data.get("rounding")
     own = library_section(data["kernel"], source) if data["kernel"] in kernel_names() else None
     if section is None:
@@ -187,10 +181,7 @@ def _bounds(path: Path, data: Data, source: str) -> str:
 
 
 def operations_of(data: Data, source: str) -> dict[str, Operations]:
-    """Return the operations of a certificate's one-sample functions, by function name, read from the C text.
-
-    Return the operations of each, by function name.
-    """
+    """Return the operations of a certificate's one-sample functions, by function name, read from the C text."""
     return {name: read_kernel(source, name, f"{data['kernel']}.c") for name in data["readback"]}
 
 

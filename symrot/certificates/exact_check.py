@@ -82,10 +82,7 @@ def nearest(value, real):
 
 
 class RandomIntegers(defaultdict):
-    """A random integer for each variable, and for each function call with its arguments.
-
-    It is drawn when it is first needed.
-    """
+    """A random integer for each variable and for each function call with its arguments, drawn at the first use."""
 
     def __missing__(self, key):
         return self.setdefault(key, Fraction(secrets.randbits(128)))
@@ -154,10 +151,7 @@ class Evaluator:
         return self.functions[name, *values]
 
     def run(self, body, places, targets=()):
-        """Run C statements.
-
-        Return the assigned values by target such as ``"q[1]"``, or the value of the ``return`` statement.
-        """
+        """Run C statements; return the assigned values by target, such as ``"q[1]"``, or the value of ``return``."""
         self.names, results, statements = dict(places), {}, body.split(";")
         require(not statements.pop().strip(), f"expected a semicolon at the end, got {body[-60:]!r}")
         for place, statement in enumerate(statements, 1):
@@ -445,7 +439,7 @@ def functions_of(text, name, files):
 
 
 def check(path):
-    """Check a certificate; return a line that lists the checks.
+    """Check a certificate and its files exactly; return a line that lists the checks.
 
     A failed check raises an exception of the types REFUSALS.
     """

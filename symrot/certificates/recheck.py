@@ -235,10 +235,7 @@ class Arithmetic:
         return OPERATIONS[operation](x, y)
 
     def choose(self, comparison, a, b, x, y):
-        """Return the value of ``x`` if the comparison of ``a`` with ``b`` holds, else of ``y``.
-
-        The other branch is not computed.
-        """
+        """Return ``x()`` if the comparison of ``a`` with ``b`` holds, else ``y()``; the other one is not called."""
         return x() if COMPARISONS[comparison](a, b) else y()
 
 
@@ -464,10 +461,7 @@ class Reader:
                 self.refuse(f"`{word.text}` of `{phrase}`")
 
     def take_name(self, what):
-        """Return the next word, which must be a name.
-
-        Refuse names with leading _ and names of macros, as compilers reserve them.
-        """
+        """Return the next word, a name; refuse names that compilers reserve (with leading _) and names of macros."""
         if self.token.kind != "name" or self.token.text.startswith(("_", "SYMROT_")):
             self.refuse(what)
         return self.advance()
@@ -496,7 +490,7 @@ class Reader:
         return Chain(first, rest) if rest else first
 
     def factor(self):
-        """Read a number, a variable, a call or a sum in parentheses, with a power if the subclass allows one."""
+        """Read a number, a variable, a call or a sum in parentheses, with an exponent if the subclass allows it."""
         if self.accept("-"):
             return Negative(self.factor())
         if self.token.kind == "number":
@@ -537,7 +531,7 @@ class Reader:
 class FormulaReader(Reader):
     """A parser of the formulas in a certificate: symbols, powers, and functions that the certificate defines.
 
-    If ``symbols`` is passed, any other name is refused; in a constant, functions are refused too.
+    A name outside ``symbols``, if passed, is refused; in a constant, functions are refused too.
     """
 
     def __init__(self, text, place, own, symbols=None, is_constant=False):
@@ -610,10 +604,7 @@ COUNTERS = {"double": "uint64_t", "float": "uint32_t"}
 
 
 class Parameter(NamedTuple):
-    """A parameter of a C function.
-
-    Its form is "value" (one number), "array" (one sample) or "samples" (all samples).
-    """
+    """A parameter of a C function; its form is "value" (a number), "array" (one sample) or "samples" (all samples)."""
 
     name: str
     form: str
@@ -622,7 +613,7 @@ class Parameter(NamedTuple):
 
 
 class Body(NamedTuple):
-    """The statements that are computed for one sample, in order."""
+    """The statements of a C function that are computed for one sample, in order."""
 
     statements: list  # of (name or (array, component), expression)
     far: list  # expressions that `symrot_far` is asked about
@@ -715,9 +706,9 @@ class CReader(Reader):
         return Variable(name)
 
     def component(self, name, is_input):
-        """Read an array index and return the component: ``[2]`` of one sample, ``[2*n + k]`` of many.
+        """Read an array index and return the number of the component: 2 for ``[2]`` of one sample.
 
-        ``[k]`` is 0, ``[n + k]`` is 1.
+        Of sample k of n samples, ``[k]`` is component 0, ``[n + k]`` is 1 and ``[2*n + k]`` is 2.
         """
         parameter = self.parameters.get(name)
         self.need(
@@ -875,10 +866,7 @@ class CReader(Reader):
         return words == [token.text for token in self.tokens[self.position : self.position + len(words)]]
 
     def body(self, asks_far=False):
-        """Read statements up to a closing brace.
-
-        The names of variables that they declare are forgotten after the brace.
-        """
+        """Read statements up to a closing brace, at which the variables that they declare go out of scope."""
         outer, self.names, self.assigned = self.names, set(self.names), set()
         statements, far = [], []
         while not self.accept("}"):
@@ -924,10 +912,7 @@ class CReader(Reader):
 
 
 def run(body, numbers, inputs):
-    """Run a C function's body at given inputs; return its outputs, and the angles that it tests for their range.
-
-    Return its outputs, and the angles that it tests for their range.
-    """
+    """Run a C function's body at given inputs; return its outputs, and the angles that it tests for their range."""
     names, outputs = dict(inputs), {}
     for target, expression in body.statements:
         value = expression.value(numbers, names)
@@ -987,10 +972,7 @@ def text_of(path):
 
 
 def without_repetition(pairs):
-    """Return a JSON object from its (name, value) pairs.
-
-    Refuse a repeated name, since JSON readers differ in its value.
-    """
+    """Return a JSON object from its (name, value) pairs; refuse a repeated name, whose value depends on the reader."""
     items = dict(pairs)
     need(len(items) == len(pairs), "expected each name once in an object of the certificate, got one twice")
     return items
@@ -1044,10 +1026,7 @@ def is_name(text):
 
 
 def defined_functions(definitions):
-    """Return the functions that a certificate defines, in the arguments x, y, z, w.
-
-    Each may only call functions above it.
-    """
+    """Return the functions of x, y, z, w that a certificate defines; each may only call functions above it."""
     functions = {}
     for name, text in definitions:
         new = is_name(name) and name not in functions
@@ -1093,10 +1072,7 @@ class Specification:
         return FormulaReader(text, place, self.functions).whole()
 
     def set_values(self, names):
-        """Compute intermediate quantities and outputs and store them by name.
-
-        Return the inputs by index text such as ``q[2]``.
-        """
+        """Store intermediate quantities and outputs by name; return the inputs by index text such as ``q[2]``."""
         inputs = {place: expression.value(names.numbers, names) for place, expression in self.inputs}
         for symbol, expression in self.named:
             names.define(symbol, expression.value(names.numbers, names))
@@ -1130,8 +1106,8 @@ def check_law(law, specification, points):
     """Raise ValueError if an expression of a law, which must be zero, is not zero to 60 digits at random points.
 
     At each point the hypotheses of the law hold and the outputs have the values of their formulas. An expression counts
-    as zero if it is small compared with its size at another point, where all symbols are random, and at most 1e-40 in
-    any case. An analytic expression that is not zero is that small at a random point with negligible probability.
+    as zero if it is small compared with its size at another point, where all symbols are random, and at most 1e-40. An
+    analytic expression that is not identically zero is so small at a random point with negligible probability.
     """
     place = f"the law {quoted(law['law'])}"
     need(law["vanishing"], f"{place} does not follow: expected an expression that vanishes, got none")
@@ -1162,7 +1138,7 @@ LEAST = {"double": Fraction(1, 2**55), "float": Fraction(1, 2**26)}  # a quarter
 
 
 def check_series(series, functions, real):
-    """Return a function that uses a polynomial where x*x is below a limit; refuse a polynomial with a large error.
+    """Return the functions, one of them replaced by a polynomial near x = 0; refuse a polynomial with a large error.
 
     The error of the polynomial, relative to the function, is computed at 64 random points of the interval. It must be
     at most as large as the certificate says, and at most a quarter of a unit in the last place.
@@ -1234,8 +1210,8 @@ def array_sizes(data, is_input):
 def expected_parameters(data, in_batch):
     """Return the parameters that a C function must have, according to the inputs and outputs of the certificate.
 
-    A number is passed by value and an array by its components; in a batch, both are passed as arrays of all samples,
-    except the parameters of a scene, which all samples share. Inputs are const.
+    For one sample, a number is passed by value and other quantities as arrays. In a batch, both are arrays of all
+    samples, except the parameters of a scene, which all samples share. Inputs are const.
     """
     by_value = {place for place, *_ in data["inputs"] if "[" not in place}
     parameters = []
@@ -1250,7 +1226,7 @@ def expected_parameters(data, in_batch):
 
 
 def by_component(values):
-    """Convert a mapping with keys such as ``q[2]``: each key becomes (array, component), or a number's name."""
+    """Return a mapping with keys such as ``q[2]`` under the keys (array, component), and numbers by name too."""
     named = {component_of(place): value for place, value in values.items()}
     return named | {place: value for place, value in values.items() if "[" not in place}
 
@@ -1336,9 +1312,9 @@ def hexadecimal(text, place):
 
 
 def point_of_box(data, specification, real):
-    """Return a random point of the box of the rounding bounds.
+    """Return a random point of the box of the rounding bounds, or None if no point of the box can be drawn.
 
-    None if there are no bounds, or the box has excluded points.
+    That is so without bounds, for a box with excluded points, and for a kernel with the parameters of a scene.
     """
     if "rounding" not in data or data["spec"]["parameters"]:
         return None
@@ -1532,10 +1508,7 @@ def check_files(path):
 
 
 def check(path):
-    """Check a certificate; return a line about what it proves.
-
-    Raise ValueError or OSError with one sentence if a check fails.
-    """
+    """Check a certificate; return one line about the checks, or raise ValueError or OSError with one sentence."""
     try:
         return check_files(path)
     except (ValueError, OSError):

@@ -89,7 +89,7 @@ _HALF_TURN = Coordinate("theta", "0", "pi")
 
 
 def _corner(axis: str) -> str:
-    """Return a component of a point in a tetrahedron, the fraction f_1 of the way from corner 1 to the face opposite."""
+    """Return a component of a point in a tetrahedron, a fraction f_1 of the way from corner 1 to the opposite face."""
     return f"{axis}1 + f_1*({axis}2 - {axis}1 + f_2*({axis}3 - {axis}2 + f_3*({axis}4 - {axis}3)))"
 
 

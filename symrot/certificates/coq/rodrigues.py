@@ -1,4 +1,4 @@
-"""Theorems of Coq about classical and modified Rodrigues parameters: the attitude they describe, and their rates."""
+"""Coq theorems about classical and modified Rodrigues parameters: the attitude they describe, and their rates."""
 
 from symrot import symbols
 from symrot.certificates.coq.euler import DCM_RATE, OMEGA

@@ -58,7 +58,7 @@ class ExecutionPath:
 def state_at_call(
     context: CallContext, names: tuple[str, ...], numbers: tuple[str, ...], start: tuple[str, int]
 ) -> MachineState:
-    """Return the processor's state at the call of a function whose arguments are some arrays and numbers."""
+    """Return the processor's state at the call of a function with the given arrays and numbers as arguments."""
     terms = context.terms
     state = MachineState(context, start, {}, {})
     for name in (*CALLER_SAVED, *CALLEE_SAVED, "rsp"):

@@ -21,10 +21,7 @@ SPARE = Fraction(1, 2**240)  # larger than the error of irrational numbers, whic
 
 @dataclass(frozen=True)
 class ExactRange:
-    """The range of numbers from ``low`` to ``high``; an operation returns a range that contains all results.
-
-    An operation on ranges returns a range that contains all results.
-    """
+    """The range of numbers from ``low`` to ``high``; an operation returns a range that contains all results."""
 
     low: Fraction
     high: Fraction

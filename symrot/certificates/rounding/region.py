@@ -52,10 +52,7 @@ def off_unit(boxes: Array, region: Region, places: Sequence[str]) -> NDArray[np.
 
 
 def narrowed(boxes: Array, region: Region, places: Sequence[str]) -> Array:
-    """Return boxes shrunk to the allowed inputs in them, such as unit quaternions; others are not changed.
-
-    Boxes without any are not changed.
-    """
+    """Return boxes shrunk to the allowed inputs in them, such as unit quaternions; without any, a box is unchanged."""
     shrunk = boxes
     for group, numbers in zip(region.unit, _numbers(region, places), strict=True):
         for number in numbers:
