@@ -5,19 +5,19 @@ What is checked
 Files (`certified`): the seal of the certificate and the hash of every file that it names.
 
 C text (`check_precision`): each function computes the formulas of the certificate. Both are evaluated at one random
-point, exactly, in fractions. There, sin(x) is a random number that depends on x alone, and ``a < b ? x : y`` is a
-random mean of x and y that depends on a and b alone. Two texts that differ as rational expressions of their functions
-and choices agree at such a point with negligible probability. An identity of the functions themselves, such as
-sin^2 + cos^2 = 1, is not used, so a C text may not rely on it.
+point, exactly, in fractions. There, sin(x) is a random number that depends on x alone, and ``a < b ? x : y`` is a mean
+of x and y with a random weight that depends on a and b alone. Two texts that differ as rational expressions of their
+functions and choices agree at such a point with negligible probability. Identities of functions, such as sin^2 + cos^2
+= 1, do not hold for such random numbers, so a C text may not rely on them.
 
 Series (`check_series`): a polynomial that replaces a function near a removable singularity is close enough to it,
 measured at 64 random points.
 
 Laws (`check_law`): the formulas obey the laws, to 60 digits, at 8 random points up to 1000 (64 points if there are
-choices). A law that fails by less, or only near few points or far out, is not noticed: `symrot audit` proves laws.
+choices). A smaller violation, or one near few points or far out, is not noticed: `symrot audit` proves laws.
 
 Rounding (`check_rounding`): at one random point of the box, computed as C computes, the error is within its bound. So
-``(x + 1e20) - 1e20`` is refused, which is x in exact arithmetic.
+a text with ``(x + 1e20) - 1e20`` for x is refused, although both are equal in exact arithmetic.
 
 Header (`check_header`): it declares the functions of the C file and defines only the known macros.
 
@@ -68,9 +68,9 @@ from secrets import randbelow
 from typing import NamedTuple
 
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803482534211707")
-DIGITS = Context(prec=190, Emax=120)  # of laws and exact values; what overflows is drawn again
+DIGITS = Context(prec=190, Emax=120)  # arithmetic of laws and exact values; after an overflow another point is drawn
 LARGEST_FILE = 16_000_000  # bytes
-LONGEST_TEXT = 200_000  # words of a function or formula, those of the functions that it calls included
+LONGEST_TEXT = 200_000  # words of a function or formula, including the functions that it calls
 LONGEST_NUMBER = 50_000  # binary digits of a numerator or denominator
 MATH_HEADER_SHA256 = "ec48bca7f8eb7ed77612704a0672155f4af0330d0679ba59524c5cfb5f5b0a19"  # of symrot_math.h
 
@@ -97,7 +97,7 @@ def quoted(value):
 
 
 # --- expressions ------------------------------------------------------------------------------------------------------
-# Every node has value(numbers, names): `numbers` is an arithmetic of the next section, `names` the values of variables.
+# A node's method value(numbers, names) takes an arithmetic of the next section and the values of variables by name.
 
 
 class Number(NamedTuple):
@@ -242,8 +242,8 @@ class Arithmetic:
 class AnyFunctions(Arithmetic):
     """An arithmetic of exact fractions, in which functions and choices have random values.
 
-    A function has a random value for each argument; ``a < b ? x : y`` is a random mean of x and y for each a and b.
-    Expressions that agree here agree, with overwhelming probability, for all functions of these names.
+    A function has a random value for each argument; ``a < b ? x : y`` is a mean of x and y with a random weight for
+    each a and b. Expressions that agree here agree, with overwhelming probability, for all functions of these names.
     """
 
     def __init__(self):
@@ -296,7 +296,7 @@ def sine(x):
 
 
 def cosine(x):
-    """Return the cosine of a Decimal."""
+    """Return the cosine of a Decimal, as the sine of x + pi/2."""
     return sine(x + Decimal(PI.numerator) / PI.denominator / 2)
 
 
@@ -424,7 +424,7 @@ class Reader:
         self.place = place
         self.tokens = tokens(text, place)
         self.position = 0
-        self.weight = 0  # words read, and those of each function at each call
+        self.weight = 0  # number of words read, including the words of a function at each of its calls
 
     @property
     def token(self):
@@ -616,7 +616,7 @@ class Body(NamedTuple):
     """The statements of a C function that are computed for one sample, in order."""
 
     statements: list  # of (name or (array, component), expression)
-    far: list  # expressions that `symrot_far` is asked about
+    far: list  # arguments of `symrot_far`, the angles that are tested for their range
 
 
 class Kernel(NamedTuple):
@@ -861,7 +861,7 @@ class CReader(Reader):
         return shape, bodies
 
     def comes(self, phrase):
-        """Tell whether the next words are those of a phrase."""
+        """Tell whether the next words are a given phrase."""
         words = [token.text for token in tokens(phrase, phrase)[:-1]]
         return words == [token.text for token in self.tokens[self.position : self.position + len(words)]]
 
@@ -979,7 +979,7 @@ def without_repetition(pairs):
 
 
 def certified(path):
-    """Read a certificate and return it, after checking its seal (hash) and the hashes of the files that it names.
+    """Read and return a certificate whose seal (hash) and whose hashes of the files that it names are right.
 
     Hashes show only that no file was changed after it was certified; other checks show that the files are right. Files
     in other folders (NumPy texts) may be missing, but those in the folder of the certificate may not.

@@ -170,7 +170,7 @@ def arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace, say: Progress) -> ModeReport:
-    """Run the mode that the options choose.
+    """Run the mode of ``symrot bench`` that the options choose.
 
     Raises
     ------

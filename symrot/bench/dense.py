@@ -102,7 +102,7 @@ def _distance(states: Floats, exact: Floats) -> float:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table of times and errors of dense output."""
+    """Print the times and errors of symrot and heyoka for many samples of a motion."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.dense", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--samples", type=int, default=20_000)
     parser.add_argument("--rounds", type=int, default=15)

@@ -404,7 +404,7 @@ def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table of kernels and tools."""
+    """Print, for each kernel, operations and times of symrot and of the other tools."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.kernels", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=63)
     parser.add_argument("--many", type=int, default=MANY, help="samples of the large batch; 0 leaves it out")

@@ -277,7 +277,7 @@ def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tup
 
 
 def ensembles(scenes: list[str], rounds: int, most: int) -> None:
-    """Print the table of trajectories of ensembles."""
+    """Print the times of one trajectory of an ensemble, in closed form and by steps."""
     print(f"{'us per trajectory':26}{'varied':36}{'n':>8}{'exact':>9}{'taylor':>9}   auto takes")
     for name in scenes:
         scene = _scene(name)
@@ -293,7 +293,7 @@ def ensembles(scenes: list[str], rounds: int, most: int) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table that the arguments choose."""
+    """Print the table of calls with another initial state, or with ``--ensembles`` the table of ensembles."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.starts", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("scenes", metavar="SCENE", nargs="*")
     parser.add_argument("--rounds", type=int)

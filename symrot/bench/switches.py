@@ -98,7 +98,7 @@ def _measured(problem: Problem, method: str, tolerance: float) -> tuple[float, A
 
 
 def main() -> None:
-    """Print the table of motions with switches."""
+    """Print error, steps and time for each motion with a switched torque."""
     rows = [("torque", "method", "tolerance", "error, tolerances", "steps", "switches", "time")]
     for name, problem in PROBLEMS.items():
         for method in METHODS:

@@ -366,7 +366,7 @@ def _print_orders(name: str, rounds: int) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the tables of the comparison of steppers."""
+    """Print, for each motion, the fastest steppers at each decade of the error."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.taylor", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--quick", action="store_true", help="race heyoka in its default setting only")

@@ -227,7 +227,7 @@ def _called(loaded: ctypes.CDLL, name: str, arguments: Floats, real: Real) -> li
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table of errors."""
+    """Print the largest errors of the functions that kernels call, in ulp."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.ulps", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--points", type=int, default=20_000)
     points = parser.parse_args(arguments).points

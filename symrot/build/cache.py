@@ -167,7 +167,7 @@ class Building:
             self._error = error
 
     def wait(self) -> None:
-        """Wait until the compiler has finished or failed."""
+        """Wait until the compiler has ended, with or without success."""
         if self._thread is not None:
             try:
                 self._thread.join()

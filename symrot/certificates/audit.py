@@ -1,11 +1,12 @@
 """Audit a certificate: check that every statement in it holds for its files and agrees with what symrot derives.
 
-:mod:`symrot.certificates.exact_check` decides what can be decided from the files alone. The audit adds: the header
-holds nothing but prototypes; the operations are the certified ones; the statements about the kernel (formulas, laws and
-their proofs, domain, units, assumptions) are those that symrot derives for a kernel of that name and proves exactly, as
-identities of fractions of polynomials (:mod:`symrot.certificates.laws.laws`,
-:mod:`symrot.certificates.laws.equality`), so that a correct certificate of another kernel is refused; and the bounds of
-rounding errors are those that symrot computes on the box of the certificate.
+:mod:`symrot.certificates.exact_check` first checks all that follows from the files alone. The audit then checks that
+
+- the header holds nothing but prototypes, and the C text performs the certified operations;
+- symrot derives the same statements (formulas, laws and their proofs, domain, units, assumptions) for a kernel of that
+  name and proves them exactly, as identities of fractions of polynomials (:mod:`symrot.certificates.laws.laws`,
+  :mod:`symrot.certificates.laws.equality`), so that a correct certificate of another kernel is refused;
+- symrot computes the same bounds of rounding errors on the box of the certificate.
 """
 
 import json
@@ -106,7 +107,7 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
     Raises
     ------
     CertificateError
-        Naming the first statement that does not hold.
+        If a statement does not hold; the message names the first.
     """
     data = load_certificate(path)
     for file in data["files"]:

@@ -103,11 +103,11 @@ class Evaluator:
         return ast.parse(NUMBER.sub(r"'\1'", text.strip()), mode="eval").body
 
     def read(self, text):
-        """Return the value of an expression from its text."""
+        """Return the value of an expression that is given as text."""
         return self.value(self.parsed(text))
 
     def value(self, node):
-        """Return the value of an expression from its syntax tree."""
+        """Return the value of an expression that is given as a syntax tree."""
         match node:
             case ast.Constant(value=int(number)) if not self.real:
                 return Fraction(number)
@@ -334,8 +334,8 @@ def prove(law, case, formulas):
     """Check the stored proof of a law in one case: entry times factor must be the sum of cofactors times relations.
 
     An entry is an expression that the law states to be zero; a relation is a polynomial that is known to be zero.
-    Factors and cofactors are also evaluated at the witness, a stored point where the hypotheses of the law hold, so
-    that none of them hides a division by zero.
+    Factors and cofactors are also evaluated at the witness, a stored point where the hypotheses of the law hold, to
+    exclude a hidden division by zero.
     """
     witness = {name: Fraction(text) for name, text in law["witness"].items()} | {"pi": PI}
     there, reader = (

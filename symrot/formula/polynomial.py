@@ -148,7 +148,7 @@ def constant(value: Fraction | int) -> Polynomial:
 
 
 def generator(name: str | int) -> Polynomial:
-    """Return the polynomial that is a single generator."""
+    """Return the polynomial that consists of one variable (generator)."""
     return Polynomial({((name, 1),): Fraction(1)})
 
 
@@ -173,7 +173,7 @@ def reduce_circular(source: Polynomial, angles: Iterable[str]) -> Polynomial:
 
 
 def _exponents(names: list[str]) -> Callable[[Term], list[int]]:
-    """Return the sort key that orders terms lexicographically."""
+    """Return the sort key that orders monomials lexicographically in the given variables."""
     return lambda term: [dict(term[0]).get(name, 0) for name in names]
 
 

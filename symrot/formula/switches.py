@@ -134,7 +134,7 @@ def hold(conditions: Iterable[tuple[Node, int]], modes: Mapping[str, int], held:
 
 
 def has_choices(node: Node) -> bool:
-    """Return whether a formula contains a ``where``."""
+    """Return whether a formula contains a choice ``where(p, a, b)``."""
     return node[:2] == ("call", "where") or any(map(has_choices, children(node)))
 
 
@@ -194,7 +194,7 @@ def between_sides(node: Node, mode: str) -> Node:
 
 
 def _is_linear(node: Node, mode: str) -> bool:
-    """Return whether a formula is linear in a mode, judged by its form."""
+    """Return whether a formula, as it is written, is linear in a mode (the sign of a guard)."""
     if mode not in names(node) or node == ("symbol", mode):
         return True
     parts = children(node)

@@ -46,7 +46,7 @@ def place(body: HasInertia, at: Any = _ORIGIN, rotation: Any = IDENTITY) -> Mass
 
 
 def compose(added: Iterable[HasInertia], subtracted: Iterable[HasInertia] = ()) -> MassProperties:
-    """Return the mass properties of a rigid assembly: the sum of the added bodies minus the subtracted ones (holes).
+    """Return the mass properties of a rigid assembly: the sum of the added bodies minus the subtracted bodies (holes).
 
     All bodies are given in the same axes, with components of any numeric type, SymPy expressions included. The total
     mass must not be zero.

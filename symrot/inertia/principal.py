@@ -24,7 +24,7 @@ _Work = list[list[Decimal]]
 
 
 class Principal(NamedTuple):
-    """Principal moments and axes of a body.
+    """Principal moments and axes of a body, and its kind of symmetry.
 
     ``moments`` are in kg m^2, exact if they are rational, and exactly equal if they are equal. Column k of ``axes`` is
     principal axis k in the given axes: ``v_given = axes * v_principal``, right-handed, orthonormal to 1e-110. If the

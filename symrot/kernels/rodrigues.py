@@ -43,7 +43,7 @@ _SQUARE = Symbol("square", real=True)  # square of the length of the parameters
 def _ray(which: Projection) -> tuple[Named, Expr]:
     """Return (definitions, s) such that the quaternion (s, parameters), before normalisation, describes the attitude.
 
-    The definitions are those of symbols in the formula of s.
+    The definitions belong to symbols in the formula of s.
     """
     if not which.centre:
         return (), Integer(1)

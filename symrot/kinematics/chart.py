@@ -240,7 +240,7 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
         return type(self).build, (self.as_immutable(), self.facts)
 
     def as_immutable(self) -> ImmutableMatrix:
-        """Return the plain immutable matrix."""
+        """Return the entries as a plain immutable SymPy matrix."""
         return ImmutableDenseMatrix._fromrep(self._rep)
 
     @property

@@ -1,8 +1,8 @@
 """Rodrigues parameters: classical, axis times tan(angle/2), and modified, axis times tan(angle/4).
 
 Both are projections of the unit quaternions from a point on the scalar axis: the classical parameters from the centre
-of the unit sphere, the modified ones from (-1, 0, 0, 0). Each projection is described by a quaternion h(p) of any norm
-that is polynomial in the parameters; the dcm and the rates follow from h by the Hamilton product and are rational in p.
+of the unit sphere, the modified parameters from (-1, 0, 0, 0). Each projection is described by a quaternion h(p) of any
+norm, polynomial in the parameters; the dcm and the rates follow from h by the Hamilton product and are rational in p.
 Convention: :mod:`symrot.conventions`. Proof: ``derivations/rodrigues.md``.
 """
 

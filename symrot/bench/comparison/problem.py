@@ -61,7 +61,7 @@ class Problem:
 
     @cached_property
     def parameters(self) -> dict[str, float]:
-        """The values of the rate parameters, by name."""
+        """The values of the parameters of the rates dy/dt, by name."""
         return dict(zip((name for name, _ in self.kernel.rate_parameters), self.p, strict=True))
 
     @property

@@ -1,4 +1,4 @@
-"""Reference states of a scene's motion, computed in several independent ways, and the differences between them.
+"""Reference states of a scene's motion, computed by several independent methods, and their differences.
 
 ===========================  =====================  ============================  ==========================
 reference                    equations              method                        arithmetic

@@ -38,7 +38,7 @@ OURS = ("exact", "exact with set-up", *STEPPED)
 
 
 class Effort(NamedTuple):
-    """Limits of the duration of a study."""
+    """Limits of the duration of a work-precision study."""
 
     rounds: int
     longest: float  # s: after a longer run, the tighter tolerances of its contestant are skipped

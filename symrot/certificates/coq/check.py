@@ -50,7 +50,7 @@ class CoqResult:
     axioms : tuple of str
         The axioms on which the theorems rest, all together.
     problems : tuple of str
-        One sentence each: what was refused, where, and the message of Coq.
+        One sentence for each refused file or theorem, with the place and the message of Coq.
     seconds : float
     version : str
     """

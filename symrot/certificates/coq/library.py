@@ -127,7 +127,7 @@ def coq_section(kernel: str) -> dict[str, Any] | None:
     -------
     dict or None
         ``file``, ``theorem``, ``statement`` (its text), ``statement_sha256``, ``file_sha256``, ``requires`` (file ->
-        sha256) and ``axioms``, the only ones on which the theorem may rest.
+        sha256) and ``axioms``, the only axioms on which the theorem may rest.
     """
     home = _theorem_about(kernel)
     if home is None:

@@ -13,7 +13,7 @@ _RATES = {"rodrigues": tuple(map(str, symbols.rodrigues_rates)), "mrp": tuple(ma
 
 
 def rodrigues_file(name: str) -> CoqFile:
-    """Return the Coq file about ``"rodrigues"`` (classical Rodrigues parameters) or ``"mrp"`` (modified ones)."""
+    """Return the Coq file about classical (``"rodrigues"``) or modified (``"mrp"``) Rodrigues parameters."""
     which = projection(name)
     parameters = tuple(map(str, which.parameters))
     return CoqFile(

@@ -41,7 +41,7 @@ class Truncation:
 
 @dataclass(frozen=True)
 class Equality:
-    """The proof that each output of the C text is its formula.
+    """The proof that the C text computes the formula of each output.
 
     ``atoms`` are tuples (symbol, function, arguments): each symbol stands for the value of a function such as
     ``sin(x)``. ``formulas`` are tuples (output such as ``"q[1]"``, numerator, denominator), as text over inputs, pi and
@@ -297,7 +297,7 @@ def prove_equal(
     Raises
     ------
     CertificateError
-        Naming the first output that differs, or the operation that has no counterpart in the formulas.
+        If an output differs, or an operation has no counterpart in the formulas; the message names the first.
     """
     parameters = parameters or {}
     constants = {str(symbol) for value in parameters.values() for symbol in value.free_symbols}

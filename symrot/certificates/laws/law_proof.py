@@ -355,7 +355,7 @@ class LawProver(FormulaReader):
     # --- cofactors ----------------------------------------------------------------------------------------------------
 
     def remainder(self, value: PolyElement) -> PolyElement:
-        """Return a polynomial's remainder after division by the relations, and by the hypothesis if there is one only."""
+        """Return the remainder of a polynomial divided by the relations, and by the hypothesis if there is only one."""
         basis = [*self.rules, *(self.hypotheses if len(self.hypotheses) == 1 else ())]
         return value.rem(basis) if basis else value
 

@@ -91,7 +91,7 @@ def prove_law(name: str, law: Law, formulas: Mapping[str, Expr]) -> LawProof:
     return LawProof(law.text, tuple(map(str, law.vanishing)), hypothesis_names, tuple(cases), witness)
 
 
-ENTRIES = 9  # of a rotation matrix
+ENTRIES = 9  # number of entries of a rotation matrix
 
 
 def hypotheses(symbols: Sequence[Symbol]) -> tuple[Expr, ...]:

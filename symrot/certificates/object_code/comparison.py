@@ -44,7 +44,7 @@ MAX_CASES = 20_000
 
 @dataclass(frozen=True)
 class ObjectVerdict:
-    """The verdict on the machine code of one function.
+    """The result of comparing the machine code of one function with its C text.
 
     ``verdict`` is "identical"; "identical up to contraction" (each fused multiply-add replaces a product and a sum of
     the C text with one rounding fewer; the sign of a sum that is zero may differ); "differs" (``output`` is the first
@@ -61,7 +61,7 @@ class ObjectVerdict:
 
     @property
     def accepted(self) -> bool:
-        """Whether the verdict accepts the function: its bits, or at least its error bounds, are those of the C text."""
+        """Whether the verdict accepts the function: its bits, or at least its error bounds, agree with the C text."""
         return self.verdict in (IDENTICAL, CONTRACTED)
 
     def sentence(self) -> str:

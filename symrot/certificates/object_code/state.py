@@ -74,7 +74,7 @@ class CallContext:
 
 @dataclass
 class MachineState:
-    """The state of the processor before one instruction.
+    """The symbolic state of the processor before one instruction: registers, memory, flags.
 
     ``known`` holds the outcomes of earlier comparisons on the path.
     """

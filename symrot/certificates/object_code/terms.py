@@ -350,7 +350,7 @@ class Terms:
     # --- choices ------------------------------------------------------------------------------------------------------
 
     def compared(self, outcomes: Outcomes, a: int, b: int) -> tuple[Outcomes, int, int]:
-        """Return a comparison in a normal form, the same for equivalent ones such as ``a < b`` and ``b > a``."""
+        """Return a comparison in a normal form, which is the same for ``a < b`` and ``b > a``, for example."""
         zero = self.bits(self.width(a), 0)
         a, b = (zero if self._value(item) == 0.0 else item for item in (a, b))
         if self.constant(a) is not None and self.constant(b) is None:

@@ -35,7 +35,7 @@ RELATIONS: dict[str, Callable[[Any, Any], bool]] = {
 
 
 def operands(node: Node) -> tuple[int, ...]:
-    """Return the indices of the operands of a node."""
+    """Return the indices of the operands of an operation (node)."""
     kind = node[0]
     if kind in ("in", "const"):
         return ()

@@ -6,11 +6,11 @@ theorem,
 
     computed - exact = sum over operations of (derivative of the output by the result) * (rounding error of the result),
 
-where the derivatives are evaluated between exact and computed values, and the rounding errors are those of operations
-on computed operands. Interval arithmetic encloses all these values, one pass backwards through the graph encloses the
-derivatives, and half a unit in the last place bounds the rounding errors. No term of second order is neglected.
+where the derivatives are evaluated between exact and computed values, and each operation acts on computed operands.
+Interval arithmetic encloses all these values, one pass backwards through the graph of operations encloses the
+derivatives, and half a unit in the last place bounds each rounding error. No term of second order is neglected.
 
-Choices compare computed numbers: the condition of a branch narrows the rounding errors, not the derivatives.
+Conditionals compare computed numbers: the condition of a branch narrows the rounding errors, not the derivatives.
 """
 
 from collections.abc import Callable, Sequence

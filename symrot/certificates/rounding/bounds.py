@@ -344,7 +344,7 @@ def check_section(
     Raises
     ------
     CertificateError
-        Naming what is wrong.
+        If the section is wrong; the message names the part.
     """
     kernels = {kernel.precision: kernel for kernel in (operations_double, operations_float) if kernel is not None}
     try:
@@ -383,7 +383,7 @@ def check_bounds(
     Raises
     ------
     CertificateError
-        Naming the first bound that differs.
+        If a bound differs; the message names the first.
     """
     region = Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
     box = {

@@ -33,8 +33,8 @@ NARROWEST = 2.0**-24  # relative to the box: a part this narrow without a bound 
 class SearchResult:
     """The result of a search: no error on the box is larger than ``bound``; at ``worst`` the bound is ``pointwise``.
 
-    ``turns`` says that errors are meant modulo 2 pi. If no bound was found, ``bound`` is infinite and ``obstacle`` is
-    the node that prevents it, near the point ``worst``.
+    ``turns`` says that errors are measured modulo 2 pi. If no bound was found, ``bound`` is infinite and ``obstacle``
+    is the operation (node) that prevents it, near the point ``worst``.
     """
 
     bound: float

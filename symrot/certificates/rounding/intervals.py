@@ -135,7 +135,7 @@ def binade(size: Array) -> Array:
 
 
 def half_ulp(size: Array, precision: str) -> Array:
-    """Return a bound of the error of rounding a number up to a size: half a unit in the last place just below it."""
+    """Return a bound of the rounding error of numbers up to ``size``: half a unit in the last place just below it."""
     below = ((size.view(np.int64) - 1) & _EXPONENT).view(np.float64)
     unit = np.maximum(below * 2.0 ** -DIGITS[precision], _LEAST[precision])
     return np.where(size > 0, unit, 0.0)

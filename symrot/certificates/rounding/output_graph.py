@@ -130,7 +130,7 @@ class OutputGraph:
         return int({"div": node[-1], "sqrt": node[-1]}.get(node[0], index))
 
     def text(self, index: int) -> str:
-        """Return a node as a short formula for messages."""
+        """Return an operation (node) as a short formula for messages."""
         return self._text(index)
 
 

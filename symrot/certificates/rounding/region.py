@@ -20,7 +20,7 @@ UNIT_NORM = 2.0**-20  # tolerance of the squared norm of a unit quaternion; roun
 
 @dataclass(frozen=True)
 class Region:
-    """Restrictions of the inputs in a box.
+    """Restrictions of the inputs in a box, such as a quaternion of unit norm.
 
     ``unit`` are groups of places whose squares add up to 1, within 2^-20; ``clearance`` is the least length of the
     vector (y, x) of arguments of every atan2, so that the angle is defined.

@@ -39,7 +39,7 @@ def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequen
         deviate by at most D on a disc of ``reach`` steps, a step of size h has an error of at most ``h D
         reach^-N/((N + 1)(1 - 1/reach))``.
     edges : sequence of int
-        Edges of the blocks of states whose errors are judged separately, from 0 to the number of states.
+        State i is in block j if ``edges[j] <= i < edges[j + 1]``; each block of states has its own error.
     """
     if enclosure is None:
         return "#define SYMROT_ENCLOSED 0\n#define SYMROT_DEPENDS 0\n"

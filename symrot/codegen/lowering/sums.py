@@ -56,7 +56,7 @@ def _terms(node: Node) -> list[tuple[int, Node]]:
 
 
 def summed(first: Node, terms: Sequence[tuple[int, Node]]) -> Node:
-    """Return the sum of ``first`` and signed terms, positive terms before negative ones."""
+    """Return the sum of ``first`` and signed terms; positive terms come before negative terms."""
     for sign, term in sorted((_turned(*each) for each in terms), key=lambda item: item[0] < 0):
         first = ("+" if sign > 0 else "-", first, term)
     return first

@@ -68,7 +68,7 @@ class Real:
 
     @property
     def bits(self) -> str:
-        """Return the unsigned integer type of C with the same size."""
+        """Return the unsigned integer type of C with the same number of bits."""
         return "uint32_t" if self.suffix else "uint64_t"
 
 
@@ -91,13 +91,13 @@ def _as_float(value: float) -> float:
 def c_expression(node: Node, real: Real = DOUBLE, near: bool = False) -> str:
     """Return a formula as a C expression, with the brackets that its order of evaluation needs.
 
-    ``near`` selects the functions for batches, which are those of ``symrot_math.h`` and need moderate angles.
+    ``near`` selects the functions of ``symrot_math.h`` for batches, which need moderate angles.
     """
     return text(rename(node, functions=real.near_functions if near else real.functions), 0, real.literal)
 
 
 def c_arguments(program: Program, real: Real = DOUBLE) -> str:
-    """Return the parameter list of the one-sample function."""
+    """Return the parameter list of the C function for one sample."""
     return ", ".join(_declared(argument, real) for argument in program.signature.arguments if argument.size)
 
 
@@ -277,7 +277,7 @@ def _batch_arguments(program: Program, real: Real) -> str:
 
 
 def _batch(program: Program, real: Real, near: bool) -> list[str]:
-    """Return the C function that computes n samples.
+    """Return the C text of the batch function, which computes n samples.
 
     With ``near``, a block that contains an angle out of range is computed again with the functions of <math.h>.
     """
@@ -317,7 +317,7 @@ def _batch(program: Program, real: Real, near: bool) -> list[str]:
 
 
 def _blocks(size: str) -> list[str]:
-    """Return the first lines of a loop over blocks of samples."""
+    """Return the first C lines of a loop over blocks of ``size`` samples."""
     return [
         f"    for (size_t start = 0; start < n; start += {size}) {{",
         f"        const size_t end = n - start < {size} ? n : start + {size};",

@@ -81,7 +81,7 @@ def quarter_turn_parts(precision: str) -> list[Fraction]:
 
 
 def _leading(value: Fraction, bits: int) -> Fraction:
-    """Return a positive number truncated to its leading bits."""
+    """Return a positive number truncated to its first ``bits`` significant bits."""
     shift = bits
     while value * Fraction(2) ** shift >= 2**bits:
         shift -= 1

@@ -161,7 +161,7 @@ class _Jet:
         return f"c[{self.constants.setdefault(node, len(self.constants))}]"
 
     def signed(self, node: Node | None) -> str:
-        """Return a constant of either sign as C; None is zero."""
+        """Return the C expression of a constant of either sign; None is written as zero."""
         sign, size = split_sign(node or ("number", 0))
         return self.weight(size) if sign > 0 else f"V_SUB(V_ALL(0.0), {self.weight(size)})"
 
@@ -334,9 +334,9 @@ class _Jet:
         return [line for group in self._groups() for line in self._loop(group)]
 
     def _groups(self) -> list[list[int]]:
-        """Return the accumulators that each C loop computes.
+        """Return, for each C loop, the numbers of the convolution sums (slots) that it computes.
 
-        Accumulators with common factors share a loop as long as registers suffice.
+        Sums with common factors share a loop as long as registers suffice.
         """
         left = list(range(len(self.slots)))
         groups: list[list[int]] = []

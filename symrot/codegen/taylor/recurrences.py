@@ -58,8 +58,8 @@ class Series(NamedTuple):
 class Recurrences(NamedTuple):
     """The recurrences of a program: all series, in an order in which each coefficient can be computed.
 
-    ``rates`` holds the series of the rate of each state. Auxiliary states, if any, come after those of the program;
-    ``seeds`` holds formulas of the states and t for their coefficient 0, see
+    ``rates`` holds the series of the rate of each state. Auxiliary states, if any, come after the states of the
+    program; ``seeds`` holds formulas of the states and t for their coefficient 0, see
     :mod:`symrot.codegen.taylor.auxiliary_states`.
     """
 
@@ -313,7 +313,7 @@ class _Builder:
         return _alone(own)
 
     def one_and_square(self, series: int, sign: int) -> _Linear:
-        """Return 1 + sign u^2 for a series u."""
+        """Return ``1 + sign*u^2`` for a series u, as a constant plus a weighted series."""
         return _sum(_Linear(ONE, {}), _scaled(self.product(_alone(series), _alone(series)), sign), 1)
 
     def root(self, name: str, argument: _Linear) -> _Linear:

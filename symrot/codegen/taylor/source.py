@@ -33,7 +33,7 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
     program : Program
         The right-hand side ``dy = f(t, y, p)``.
     edges : sequence of int
-        Edges of the blocks of states whose errors are judged separately, from 0 to the number of states.
+        State i is in block j if ``edges[j] <= i < edges[j + 1]``; each block of states has its own error.
     scales : sequence of float
         One per block: with 0 its error is relative to the block's own size, otherwise relative to this positive
         number.

@@ -50,7 +50,7 @@ def moved(program: Program, parameters: Parameters) -> tuple[Program, Parameters
     program : Program
         ``dy = f(t, y, p)``, with the arguments t, y, p (optional) and dy; the time occurs in it.
     parameters : tuple of (name, Node)
-        The components of p as formulas of constants. Those of the result also contain the symbol ``epoch``, in s.
+        The components of p as formulas of constants. The formulas in the result may contain ``epoch`` too, in s.
     """
     return _Mover(program, parameters).result()
 
