@@ -170,9 +170,7 @@ def _batch_of_one(name: str, inputs: Sequence[Argument], outputs: Sequence[Argum
 
 
 def _heyoka_drivers(signature: Signature) -> str:
-    """Return C functions that repeat heyoka's compiled functions, for one sample and for ``LANES`` samples of a
-    batch.
-    """
+    """Return C functions that repeat heyoka's compiled functions, for one sample and for batches."""
     sizes = {role: sum(a.size for a in signature.arguments if a.role == role) for role in ("in", "out")}
     out = sum(a.role == "in" for a in signature.arguments)
     return "\n".join([

@@ -1020,7 +1020,7 @@ def certified(path):
 
 
 def is_name(text):
-    """Tell whether a text can be the name of a symbol in a formula: a name that has no other meaning."""
+    """Tell whether a text can be the name of a symbol in a formula: a name without another meaning there."""
     reserved = text in FORMULA_FUNCTIONS or text in FORMULA_CHOICES or text == "pi"
     return bool(re.fullmatch(r"[A-Za-z]\w*", text, re.ASCII)) and not reserved
 

@@ -240,7 +240,7 @@ def _degree(node: Node) -> int:
 
 @lru_cache(maxsize=256)
 def smooth(sources: tuple[str, ...]) -> Smooth:
-    """Return the given texts as smooth formulas, with the switches that replace their jumps and kinks."""
+    """Return formulas, given as text, in smooth form, together with the switches that replace jumps and kinks."""
     nodes = [parse(source, switching=True) for source in sources]
     used_names = set().union(*map(names, nodes))
     prefix = MODES

@@ -223,7 +223,7 @@ def children(node: Node) -> tuple[Node, ...]:
 
 
 def rename(node: Node, symbols: Mapping[str, str] | None = None, functions: Mapping[str, str] | None = None) -> Node:
-    """Return a formula with some symbols and functions renamed; names that are not listed stay."""
+    """Return a formula with some symbols and functions renamed; other names are unchanged."""
     kind = node[0]
     if kind == "number":
         return node

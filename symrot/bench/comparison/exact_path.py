@@ -136,9 +136,7 @@ class ExactPath:
         raise InputError("expected a free body off its separatrix, got one whose angular velocity does not return")
 
     def _newton(self, t: Any) -> Any:
-        """Return the time near t at which the angular velocity has its initial value, by Newton's method; None if it
-        fails.
-        """
+        """Return the time near t at which omega has its initial value, or None if Newton's method fails."""
         start = self.start[: self.rates]
         self._state(self.t0)
         speeds = [one[1] for one in self.pieces[0][2][: self.rates]]

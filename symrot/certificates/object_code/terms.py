@@ -69,7 +69,7 @@ def _bits_from_number(value: float, width: int) -> int | None:
 
 
 def swapped(outcomes: Iterable[str]) -> Outcomes:
-    """Return the outcomes of ``b ? a`` that correspond to given outcomes of the comparison ``a ? b``."""
+    """Return the outcomes of comparing b with a that correspond to given outcomes of comparing a with b."""
     return frozenset(_SWAPPED[item] for item in outcomes)
 
 
@@ -363,7 +363,7 @@ class Terms:
         return outcomes, a, b
 
     def mask(self, width: int, outcomes: Outcomes, a: int, b: int) -> int:
-        """Return the mask of a comparison: all ones if ``a`` and ``b`` compare with one of the outcomes, else zero."""
+        """Return the mask of a comparison: all bits 1 if comparing ``a`` with ``b`` has one of the outcomes, else 0."""
         outcomes, a, b = self.compared(outcomes, a, b)
         x, y = self._value(a), self._value(b)
         if x is not None and y is not None:

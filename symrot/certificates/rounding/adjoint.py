@@ -131,7 +131,7 @@ def _constant_error(written: Fraction, precision: str, use_intended: bool) -> fl
 
 
 def _grid_step(state: _ErrorPass, index: int) -> Array:
-    """Return a power of two of which all values of a node are multiples, so that some sums are known to be exact."""
+    """Return a power of two that divides all values of a node, by which some sums are known to be exact."""
     node, value = state.graph.nodes[index], state.values[index]
     if node[0] == "const":
         above, below = abs(node[1].numerator), node[1].denominator

@@ -72,7 +72,7 @@ def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fra
 
 
 def quarter_turn_parts(precision: str) -> list[Fraction]:
-    """Return parts of pi/2, whose sum it is: parts with few bits, and a last part with full precision."""
+    """Return pi/2 as a list of parts to add: several with few bits, and a last part with full precision."""
     rest, parts = PI / 2, []
     for bits in _PARTS[precision]:
         parts.append(_leading(rest, bits))

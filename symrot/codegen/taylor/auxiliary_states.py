@@ -27,7 +27,7 @@ ONE: Node = ("number", Fraction(1))
 
 
 class _Open(Exception):
-    """Raised if the rates of the auxiliary states keep introducing new quantities, or are too large to be of use."""
+    """Raised if the rates of the auxiliary states contain ever more new quantities, or are not of the right form."""
 
 
 class _Term(NamedTuple):

@@ -43,11 +43,12 @@ class Series(NamedTuple):
     """One series of Taylor coefficients: its rule, its operands, and the constants of the rule.
 
     ``weights`` holds the constants of a sum, one per operand, followed by the constant that is added to coefficient 0
-    (or None); for a clock, it holds a and b. ``function`` gives coefficient 0, from coefficient 0 of the last operands,
-    if the rule does not. ``sign`` is the s of the rule. ``number`` is the index of a state.
+    (or None); for a function of ``a t + b`` (a clock), it holds a and b. ``function`` gives coefficient 0, from
+    coefficient 0 of the last operands, if the rule does not. ``sign`` is the s of the rule, ``number`` the index of a
+    state.
     """
 
-    rule: str  # state time sum product quotient root theta driven primitive clock
+    rule: str  # state time sum product quotient root driven primitive clock, or theta (t u')
     operands: tuple[int, ...] = ()
     weights: tuple[Node | None, ...] = ()
     function: str = ""

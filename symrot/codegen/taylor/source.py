@@ -256,7 +256,7 @@ class _Jet:
         return [f"{divisor} = {terms[0]};", f"{name} = V_DIV({upper}, {divisor});"]
 
     def _seed(self, row: Row) -> str:
-        """Return the C expression for coefficient 0 of four functions such as exp, by calls of the C library."""
+        """Return the C expression, with calls of the C library, for coefficient 0 of four functions such as exp."""
         first = {"driven": 2, "primitive": 3, "root": 0}[row.rule]
         lanes = []
         for series in row.lanes:
