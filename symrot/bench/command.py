@@ -33,7 +33,7 @@ class Mode(NamedTuple):
 
     option: str
     about: str
-    takes: frozenset[str]  # names of the accepted options
+    takes: frozenset[str]  # names of the other options that it accepts
     run: Callable[[Namespace, Progress], ModeReport]
     more: Mapping[str, Any] | None = None  # further arguments of argparse's add_argument
 
@@ -53,7 +53,7 @@ def _study(options: Namespace, say: Progress) -> ModeReport:
 
 
 def _targets(options: Namespace) -> None:
-    """Raise InputError for output files that cannot be written, before anything is measured."""
+    """Raise InputError if an output file cannot be written, before anything is measured."""
     from symrot.files.writing import check_target
 
     if options.out:
@@ -170,7 +170,7 @@ def arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace, say: Progress) -> ModeReport:
-    """Run the mode that the options choose.
+    """Run the mode of ``symrot bench`` that the options choose.
 
     Raises
     ------

@@ -95,14 +95,14 @@ def measure(name: str, samples: int, rounds: int) -> list[Sampled]:
 
 
 def _distance(states: Floats, exact: Floats) -> float:
-    """Return the largest difference between samples of two runs; differences of rates are relative to their size."""
+    """Return the largest difference between samples of two runs; for angular velocities, relative to their size."""
     apart, rates = abs(states - exact), states.shape[-1] - 4
     size = float(np.linalg.norm(np.atleast_2d(exact)[-1, :rates]))
     return max(float(apart[:, :rates].max()) / size, float(apart[:, rates:].max()))
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table of times and errors of dense output."""
+    """Print the times and errors of symrot and heyoka for many samples of a motion."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.dense", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--samples", type=int, default=20_000)
     parser.add_argument("--rounds", type=int, default=15)

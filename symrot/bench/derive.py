@@ -33,7 +33,7 @@ ROWS: tuple[tuple[str, Callable[[], int]], ...] = (
 
 
 def main() -> int:
-    """Print the table of times of derivations."""
+    """Print the processor time of deriving Euler sequences and solids."""
     import sympy
 
     print(f"SymPy {sympy.__version__}")

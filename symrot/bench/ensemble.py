@@ -1,14 +1,14 @@
-"""Times of ensembles in SIMD lanes against heyoka's batch and ensemble modes, at equal error, on one core.
+"""Times of ensembles, computed in SIMD vectors, against heyoka's batch and ensemble modes at equal error, on one core.
 
     python -m symrot.bench.ensemble [--rounds 9] [--orders] [--motion NAME] [--many 4096]
 
-The motions are those of :mod:`symrot.bench.taylor`, from initial states that differ by a tenth: 8 trajectories over the
-whole span, and 4096 trajectories over a twentieth of it. heyoka compiles the same right-hand side with its constants as
-numbers. It runs in batches of 4 and of 8; the 4096 trajectories also run through ``ensemble_propagate_until`` and its
-batch form with one thread. Runs are interleaved; the least processor time counts, since wall-clock time grows with
-other work on the machine. The error is the largest of all trajectories (of 4096: the first 16) against heyoka in long
-double, which is checked against a series in 40 digits. For each decade of the error, the table has the fastest run with
-at most that error.
+The motions are listed in :mod:`symrot.bench.taylor`; initial states differ by a tenth. There are 8 trajectories over
+the whole span, and 4096 trajectories over a twentieth of it. heyoka compiles the same right-hand side with its
+constants as numbers. It runs in batches of 4 and of 8; the 4096 trajectories also run through
+``ensemble_propagate_until`` and its batch form with one thread. Runs are interleaved; the least processor time counts,
+since wall-clock time grows with other work on the machine. The error is the largest of all trajectories (of 4096: the
+first 16) against heyoka in long double, which is checked against a series in 40 digits. For each decade of the error,
+the table has the fastest run with at most that error.
 
 ``--orders`` compares orders of our own series instead. heyoka is needed: ``pip install heyoka``.
 """
@@ -38,7 +38,7 @@ ENSEMBLE_TOLERANCES = (1e-6, 1e-12)  # few: each of its trajectories takes a cop
 
 
 class Start(NamedTuple):
-    """An ensemble to measure: motion, initial states (n, N), end time, reference end states of its first members."""
+    """An ensemble to measure: motion, initial states (n, N), end time, reference end states of the first members."""
 
     problem: Any
     y: Floats
@@ -201,7 +201,7 @@ def _print_table(runs: list[Run], n: int) -> None:
 
 
 def _print_widths(start: Start, rounds: int) -> None:
-    """Print a comparison of four lanes with eight lanes."""
+    """Print a comparison of SIMD vectors of four and of eight trajectories."""
     tasks = [
         (f"{width} lanes", *task[1:]) for width in WIDTHS for task in _ours(start, [1e-12], [20], width)
     ]  # fmt: skip
@@ -220,7 +220,7 @@ def _print_orders(start: Start, rounds: int) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the tables of times of ensembles."""
+    """Print the times of ensembles, symrot against heyoka, at equal error."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.ensemble", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=9)
     parser.add_argument("--orders", action="store_true", help="compare orders of the series")

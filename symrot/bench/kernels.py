@@ -1,14 +1,14 @@
-"""Comparison of kernels with those of other tools: operations, and ns for one sample and in batches of two sizes.
+"""Comparison of symrot's kernels with kernels of other tools: operations, and ns per sample, alone and in batches.
 
     python -m symrot.bench.kernels [--rounds 63] [--many 1000000] [--kernels NAME ..]
 
 All contestants alternate in one run, on one thread, on the same memory, and their results are compared. For batches of
 10^6, the rounds alternate between several blocks of memory: the place of a block's pages in the processor's caches is
-random, and changes the time of the same machine code by up to 8 %. Tools that emit C are compiled with the same
-compiler and flags; heyoka's machine code, with its sines of 3.5 ulp, is linked to the same loops. CasADi's own
-evaluation is called from Python. "moves only" reads each input and writes each output of a batch with only a sum in
-between: roughly the time that memory access alone takes for a batch of 10^6. A kernel with a longer loop, which
-processes fewer samples at once, can be a few percent faster.
+random, and changes the time of the same machine code by up to 8 %. All emitted C is compiled with the same compiler and
+flags; heyoka's machine code, with its sines of 3.5 ulp, is linked to the same loops. CasADi's own evaluation is called
+from Python. The row "moves only" reads each input of a batch, adds them up and writes each output: roughly the time
+that memory access alone takes for a batch of 10^6. A kernel with a longer loop, which processes fewer samples at once,
+can be a few percent faster.
 """
 
 import argparse
@@ -54,11 +54,11 @@ SHAPES = ("one", "cached", "many")
 
 @dataclass
 class Contestant:
-    """One tool's version of a kernel: operations, and seconds per sample for each shape of input and each round."""
+    """One tool's version of a kernel: its operations, and seconds per sample for each shape of input and each round."""
 
     name: str
     operations: Counter[str]
-    runs: dict[str, Callable[[int], float]]  # shape -> run it once in a place of memory, return seconds per sample
+    runs: dict[str, Callable[[int], float]]  # shape -> function of a memory block's number that returns s per sample
     seconds: dict[str, list[float]] = field(default_factory=lambda: {shape: [] for shape in SHAPES})
 
     def nanoseconds(self, shape: str) -> float | None:
@@ -113,7 +113,10 @@ def _addresses(name: str, shape: str, count: int, place: int) -> Any:
 
 
 def _drivers(signature: Signature, batch: bool) -> str:
-    """Return C functions that repeat a one-sample function and a batch function; a missing batch function is added."""
+    """Return C functions that repeat a one-sample function and a batch function, for timing.
+
+    If a tool has no batch function, a loop over its one-sample function is added.
+    """
     inputs = [a for a in signature.arguments if a.role == "in"]
     outputs = [a for a in signature.arguments if a.role == "out"]
     every = [*inputs, *outputs]
@@ -167,9 +170,7 @@ def _batch_of_one(name: str, inputs: Sequence[Argument], outputs: Sequence[Argum
 
 
 def _heyoka_drivers(signature: Signature) -> str:
-    """Return C functions that repeat heyoka's compiled functions, for one sample and for ``LANES`` samples of a
-    batch.
-    """
+    """Return C functions that repeat heyoka's compiled functions, for one sample and for batches."""
     sizes = {role: sum(a.size for a in signature.arguments if a.role == role) for role in ("in", "out")}
     out = sum(a.role == "in" for a in signature.arguments)
     return "\n".join([
@@ -187,7 +188,7 @@ def _heyoka_drivers(signature: Signature) -> str:
 
 
 def _moving(signature: Signature) -> str:
-    """Return C text that reads every input and writes every output of a batch, and computes nothing else."""
+    """Return C code that reads every input and writes every output of a batch, with only a sum in between."""
     inputs, outputs = ([a for a in signature.arguments if a.role == role] for role in ("in", "out"))
     heads = [f"const double *restrict {a.name}" for a in inputs] + [f"double *restrict {a.name}" for a in outputs]
     total = " + ".join(f"{a.name}[{i}*n + k]" for a in inputs for i in range(a.size))
@@ -217,7 +218,7 @@ def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], f
 
 
 def _runs(name: str, loaded: ctypes.CDLL, shapes: Sequence[str], many: int) -> dict[str, Callable[[int], float]]:
-    """Return a timing function for each shape of input, which calls the functions of a compiled driver."""
+    """Return a timing function for each shape of input (one sample, batches), from a compiled library."""
     runs = {}
     for shape in shapes:
         count = many if shape == "many" else CACHED
@@ -252,7 +253,7 @@ def _symrot_text(name: str) -> str:
 
 
 def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
-    """Return the contestants of a kernel, symrot first, and the tools that are missing.
+    """Return each tool's version of a kernel, symrot first, and the names of the tools that are missing.
 
     The outputs must agree; otherwise an error is raised.
     """
@@ -305,7 +306,7 @@ def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int],
 
 
 def _casadi_text(name: str, function: Any) -> str:
-    """Return CasADi's C text for a kernel, and a function around it with the kernel's own arguments."""
+    """Return CasADi's C code for a kernel, and a C function with the kernel's own arguments that calls it."""
     import casadi
 
     generator = casadi.CodeGenerator("peer", {"with_header": False})
@@ -330,7 +331,7 @@ def _casadi_text(name: str, function: Any) -> str:
 
 
 def measure(contestants: Sequence[Contestant], rounds: int) -> None:
-    """Measure all contestants in rounds, each in another order, because the previous contestant fills the caches."""
+    """Time all contestants in rounds, each round in another order, because the previous contestant fills the caches."""
     draw = Random(5)
     for number in range(rounds):
         for contestant in draw.sample(contestants, len(contestants)):
@@ -351,7 +352,7 @@ def _line(contestant: Contestant) -> str:
 
 
 def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
-    """Return the operation count of symrot and the smallest count of the other tools."""
+    """Return symrot's number of operations and the smallest number of the other tools."""
     mine, *others = (sum(c.operations.values()) for c in contestants if c.operations)
     return mine, min(others)
 
@@ -394,14 +395,14 @@ def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
 
 
 def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return the cases in which symrot misses its goal: more operations than the best tool, or 1.05 of its time."""
+    """Return the cases in which symrot needs more operations than the best tool, or more than 1.05 of its time."""
     mine, best = _operations(contestants)
     over = [f"{name} {shape} {ratio:.3f}" for shape, ratio in _ratios(contestants).items() if ratio > BAR]
     return [f"{name} operations {mine} to {best}"] * (mine > best) + over
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table of kernels and tools."""
+    """Print, for each kernel, operations and times of symrot and of the other tools."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.kernels", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=63)
     parser.add_argument("--many", type=int, default=MANY, help="samples of the large batch; 0 leaves it out")

@@ -88,7 +88,7 @@ def measure(omega: Sequence[Any], revolutions: float) -> dict[str, tuple[float, 
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table of errors after many revolutions."""
+    """Print the errors of each stepper after many revolutions of a free body."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.long", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--revolutions", type=float, default=1e6)
     parser.add_argument("--states", type=int, default=len(STATES), help="how many of the initial states")

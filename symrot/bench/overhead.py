@@ -80,7 +80,7 @@ def measure(name: str, method: str, samples: int, rounds: int) -> tuple[float, f
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table of overheads."""
+    """Print the times of calls from Python against bare calls of the same C function."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.overhead", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("scenes", metavar="SCENE", nargs="*", default=list(SCENES))
     parser.add_argument("--rounds", type=int, default=25)

@@ -3,8 +3,8 @@
 The general kernel has a full tensor, the full attitude and all kinds of torque that can act together, each with
 arbitrary constants, which are zero for a torque that the motion lacks. Both kernels compute the same motion by Taylor
 series at the same tolerance. Their final states must agree; otherwise the table says so and the command fails.
-per evaluation of the rates in C, in a loop over many states; microseconds are for the whole motion. The last column is
-the time of `auto`, which uses a closed form where there is one.
+Nanoseconds are per evaluation of the rates in C, in a loop over many states; microseconds are for the whole motion. The
+last column is the time of `auto`, which uses a closed form where there is one.
 """
 
 import ctypes
@@ -48,7 +48,7 @@ Progress = Callable[[str], object]
 
 
 def rungs() -> dict[str, tuple[str, Scene]]:
-    """Return the scenes of the ladder, the most general first: name -> (description, scene)."""
+    """Return the compared motions as name -> (description, scene), from the most general to the most special."""
     scenes = {}
     for name, entry in read_toml(LADDER, LADDER.name).items():
         about = str(entry.pop("about"))
@@ -67,7 +67,7 @@ def _nothing(kind: str) -> Torque:
 
 
 def general_plan(scene: Scene) -> Plan:
-    """Return the plan of a scene with no rule applied and a zero torque of every kind that the scene lacks."""
+    """Return the plan of a scene without any simplification, with a zero torque of every kind that the scene lacks."""
     kinds = {torque.kind for torque in scene.torques}
     left_out = ABOUT_POINT if kinds & set(ABOUT_CENTRE) else ABOUT_CENTRE
     lacking = [kind for kind in TORQUE_KINDS if kind not in kinds and kind != "expression" and kind not in left_out]
@@ -76,7 +76,7 @@ def general_plan(scene: Scene) -> Plan:
 
 
 def measure(name: str | None = None, quick: bool = False, say: Progress = lambda text: None) -> dict[str, Any]:
-    """Measure the savings by specialised kernels, for several scenes or for one, and return them as data for JSON.
+    """Measure the time that specialised kernels save, for several scenes or for one; return it as data for JSON.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def measure(name: str | None = None, quick: bool = False, say: Progress = lambda
 
 
 def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[], object]]]:
-    """Return a row of the table without its times, and the runs that are timed for it."""
+    """Return a row of the table without its times, and the runs to be timed for it."""
     plans = {"general": general_plan(scene), "own": make_plan(scene)}
     row: dict[str, Any] = {"motion": about}
     runs: dict[str, Callable[[], object]] = {}

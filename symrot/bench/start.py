@@ -1,4 +1,4 @@
-"""Time to the first result: `symrot run` from a warm and a cold start, and the unavoidable part of it.
+"""Time of a whole `symrot run` from the shell, with a warm and an empty cache, and the unavoidable part of it.
 
     python -m symrot.bench.start [ROUNDS] [SCENE]
 

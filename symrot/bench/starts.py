@@ -1,4 +1,4 @@
-"""Times of another initial state: one more call of a propagator, part by part, and one trajectory of an ensemble.
+"""Times to compute a motion from another initial state: by one more call of a propagator, and in an ensemble.
 
     python -m symrot.bench.starts [--rounds 300] [SCENE ...]
     python -m symrot.bench.starts --ensembles [--most 100000] [--rounds 5] [SCENE ...]
@@ -139,8 +139,8 @@ def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int
 class _Row(NamedTuple):
     """Microseconds of a scene and method, for calls with another omega, with another attitude, and with both."""
 
-    parts: tuple[float, ...]  # read, plan, bind, set up
-    motion: float  # with both
+    parts: tuple[float, ...]  # to read the initial state, plan, bind parameters, set up the motion
+    motion: float  # the motion itself, with both changed
     calls: tuple[float, ...]
     python: tuple[float, ...]  # the part of each call that is not the motion itself
     idle: float  # the most expensive call of a stepper while nothing is done in C
@@ -218,7 +218,7 @@ def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
 
 
 def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
-    """Return the microseconds that C takes for the constants of a spin-up.
+    """Return the microseconds that C takes for the constants of the motion of a body driven about its symmetry axis.
 
     The table of polynomials counts only if the samples need it.
     """
@@ -277,7 +277,7 @@ def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tup
 
 
 def ensembles(scenes: list[str], rounds: int, most: int) -> None:
-    """Print the table of trajectories of ensembles."""
+    """Print the times of one trajectory of an ensemble, in closed form and by steps."""
     print(f"{'us per trajectory':26}{'varied':36}{'n':>8}{'exact':>9}{'taylor':>9}   auto takes")
     for name in scenes:
         scene = _scene(name)
@@ -293,7 +293,7 @@ def ensembles(scenes: list[str], rounds: int, most: int) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table that the arguments choose."""
+    """Print the table of calls with another initial state, or with ``--ensembles`` the table of ensembles."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.starts", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("scenes", metavar="SCENE", nargs="*")
     parser.add_argument("--rounds", type=int)

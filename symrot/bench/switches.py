@@ -1,7 +1,7 @@
-"""Comparison of switched torques with closed forms: error, steps, switches and time at tolerances 1e-6 to 1e-12.
+"""Error, steps and time of motions with switched torques, compared with closed forms at tolerances 1e-6 to 1e-12.
 
-Dry friction stops a wheel and lets it go again, a relay swings a body in parabolas, a thruster fires 10 ms in each of
-1000 seconds. Run it as ``python -m symrot.bench.switches``.
+There are three motions: a wheel that dry friction stops and releases; a body whose angle swings in parabolas under a
+relay; and a thruster that fires for 10 ms in each of 1000 seconds. Run it as ``python -m symrot.bench.switches``.
 """
 
 import math
@@ -98,7 +98,7 @@ def _measured(problem: Problem, method: str, tolerance: float) -> tuple[float, A
 
 
 def main() -> None:
-    """Print the table of motions with switches."""
+    """Print error, steps and time for each motion with a switched torque."""
     rows = [("torque", "method", "tolerance", "error, tolerances", "steps", "switches", "time")]
     for name, problem in PROBLEMS.items():
         for method in METHODS:

@@ -1,4 +1,4 @@
-"""Steppers at equal error: symrot's against heyoka in each of its settings, and against loops written by hand in C.
+"""Times of steppers at equal error: symrot, heyoka in each of its settings, and loops written by hand in C.
 
     python -m symrot.bench.taylor [--rounds 7] [--quick] [--orders] [--motion NAME]
 
@@ -191,7 +191,7 @@ TimedRun = Callable[[], StepsAndState]
 def _stepper(
     follow: Callable[..., Any], path: Any, p: Sequence[float], problem: _Problem, tolerance: float
 ) -> TimedRun:
-    """Return a run of one of symrot's steppers, set up once and called as a propagator does."""
+    """Return a function that runs one of symrot's steppers, which is set up once, as in a propagator."""
     motion, times = follow(path, p, problem.y0, 0.0, tolerance), np.array([problem.stop])
 
     def task() -> StepsAndState:
@@ -202,7 +202,7 @@ def _stepper(
 
 
 def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> TimedRun | None:
-    """Return a run of heyoka with the same right-hand side, its parameters compiled in as numbers."""
+    """Return a function that runs heyoka on the same right-hand side, with its parameters compiled in as numbers."""
     parameters = dict(zip((name for name, _ in problem.kernel.rate_parameters), problem.p, strict=True))
     run = heyoka_integrator(problem.kernel.rates, parameters, problem.y0, tolerance, settings)
     if run is None:
@@ -216,7 +216,7 @@ def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> T
 
 
 def _by_hand(library_: Any, method: str, problem: _Problem, steps: int) -> TimedRun:
-    """Return a run of a handwritten loop in C, with a fixed number of steps."""
+    """Return a function that runs a handwritten loop in C, with a fixed number of steps."""
     function = getattr(library_, f"symrot_{method}")
     real = ctypes.c_double
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
@@ -231,7 +231,7 @@ def _by_hand(library_: Any, method: str, problem: _Problem, steps: int) -> Timed
 
 
 def _loops(problem: _Problem) -> list[tuple[str, float, TimedRun]]:
-    """Return the runs of handwritten loops, with step counts instead of tolerances."""
+    """Return (name, steps, function) for handwritten loops with several numbers of steps."""
     text = "\n".join(
         (
             problem.kernel.source,
@@ -366,7 +366,7 @@ def _print_orders(name: str, rounds: int) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the tables of the comparison of steppers."""
+    """Print, for each motion, the fastest steppers at each decade of the error."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.taylor", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--quick", action="store_true", help="race heyoka in its default setting only")

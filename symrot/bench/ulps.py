@@ -9,7 +9,7 @@ within the range of ``symrot_math.h``, all numbers for arc tangents). The refere
 are taken at all scales from the smallest normal number to the reach, on both sides of the threshold below which a
 series is used, and next to multiples of pi/2.
 
-The reach is every finite number for one sample, and the range of ``symrot_math.h`` for a batch, outside which it calls
+The reach is all finite numbers for one sample, and the range of ``symrot_math.h`` for a batch, which outside it calls
 the form for one sample. tangent_gap is measured in ulp up to pi, before its first zero, and for larger x in units of
 2^-53/x^2 (float: 2^-24): it decreases as cos(x)/x^2, and its relative error has no bound near its zeros, which are no
 floating-point numbers.
@@ -227,7 +227,7 @@ def _called(loaded: ctypes.CDLL, name: str, arguments: Floats, real: Real) -> li
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table of errors."""
+    """Print the largest errors of the functions that kernels call, in ulp."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.ulps", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--points", type=int, default=20_000)
     points = parser.parse_args(arguments).points

@@ -54,7 +54,7 @@ FLAGS = (
     "-shared",
 )
 SCHEDULED = ("-fschedule-insns", "-fsched-pressure")  # reorder sums to fit the number of registers
-TUNING = (*SCHEDULED, "-fno-tree-pre", "-fno-gcse", "-fno-ivopts")  # keep numbers in memory, not in registers
+TUNING = (*SCHEDULED, "-fno-tree-pre", "-fno-gcse", "-fno-ivopts")  # so that numbers stay in memory, not in registers
 """Flags of gcc that make long sums faster, as measured; they are dropped for a compiler that does not accept them."""
 
 COMPILERS = ("cc", "gcc", "clang")
@@ -167,7 +167,7 @@ class Building:
             self._error = error
 
     def wait(self) -> None:
-        """Wait until the compiler has finished or failed."""
+        """Wait until the compiler has ended, with or without success."""
         if self._thread is not None:
             try:
                 self._thread.join()

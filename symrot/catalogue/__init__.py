@@ -217,7 +217,7 @@ def derive_all(directory: Path | str, say: Say = _quiet) -> list[Path]:
 
 
 def check(directory: Path | str, say: Say = _quiet) -> list[tuple[Path, str]]:
-    """Return the pages in a directory that differ from newly printed ones, each with a unified diff.
+    """Return the pages in a directory that differ from newly printed pages, each with a unified diff.
 
     The list is empty if all pages are up to date.
     """

@@ -1,11 +1,12 @@
 """Audit a certificate: check that every statement in it holds for its files and agrees with what symrot derives.
 
-:mod:`symrot.certificates.exact_check` decides what can be decided from the files alone. The audit adds: the header
-holds nothing but prototypes; the operations are the certified ones; the statements about the kernel (formulas, laws and
-their proofs, domain, units, assumptions) are those that symrot derives for a kernel of that name and proves exactly, as
-identities of fractions of polynomials (:mod:`symrot.certificates.laws.laws`,
-:mod:`symrot.certificates.laws.equality`), so that a correct certificate of another kernel is refused; and the bounds of
-rounding errors are those that symrot computes on the box of the certificate.
+:mod:`symrot.certificates.exact_check` first checks all that follows from the files alone. The audit then checks that
+
+- the header holds nothing but prototypes, and the C text performs the certified operations;
+- symrot derives the same statements (formulas, laws and their proofs, domain, units, assumptions) for a kernel of that
+  name and proves them exactly, as identities of fractions of polynomials (:mod:`symrot.certificates.laws.laws`,
+  :mod:`symrot.certificates.laws.equality`), so that a correct certificate of another kernel is refused;
+- symrot computes the same bounds of rounding errors on the box of the certificate.
 """
 
 import json
@@ -106,7 +107,7 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
     Raises
     ------
     CertificateError
-        Naming the first statement that does not hold.
+        If a statement does not hold; the message names the first.
     """
     data = load_certificate(path)
     for file in data["files"]:
@@ -122,10 +123,7 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
 
 
 def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | None]) -> list[str]:
-    """Check a certificate against symrot's own derivations and bounds.
-
-    Return one sentence for each check that it passed.
-    """
+    """Check a certificate against symrot's own derivations and bounds; return a sentence for each check."""
     name = data["kernel"]
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
     check_header(header, source, name)
@@ -142,7 +140,7 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
 
 
 def _compared(data: Data) -> list[str]:
-    """Return the sentence that the verdicts on object code were not checked.
+    """Return the sentence that the verdicts on object code were not checked, if there are any.
 
     Such verdicts hold only for the machine that made them.
     """
@@ -160,10 +158,7 @@ def _compare(path: Path, data: Mapping[str, Any], statement: Mapping[str, Any]) 
 
 
 def _bounds(path: Path, data: Data, source: str) -> str:
-    """Return a sentence about the rounding error bounds; raise CertificateError unless they belong to the C text.
-
-    Raise CertificateError if they are not bounds of the C text.
-    """
+    """Return a sentence about the rounding error bounds; raise CertificateError if they do not hold for the C text."""
     section = data.get("rounding")
     own = library_section(data["kernel"], source) if data["kernel"] in kernel_names() else None
     if section is None:
@@ -187,10 +182,7 @@ def _bounds(path: Path, data: Data, source: str) -> str:
 
 
 def operations_of(data: Data, source: str) -> dict[str, Operations]:
-    """Return the operations of a certificate's one-sample functions, by function name, read from the C text.
-
-    Return the operations of each, by function name.
-    """
+    """Return the operations of a certificate's one-sample functions, by function name, read from the C text."""
     return {name: read_kernel(source, name, f"{data['kernel']}.c") for name in data["readback"]}
 
 

@@ -82,10 +82,7 @@ def nearest(value, real):
 
 
 class RandomIntegers(defaultdict):
-    """A random integer for each variable, and for each function call with its arguments.
-
-    It is drawn when it is first needed.
-    """
+    """A random integer for each variable and for each function call with its arguments, drawn at the first use."""
 
     def __missing__(self, key):
         return self.setdefault(key, Fraction(secrets.randbits(128)))
@@ -106,11 +103,11 @@ class Evaluator:
         return ast.parse(NUMBER.sub(r"'\1'", text.strip()), mode="eval").body
 
     def read(self, text):
-        """Return the value of an expression from its text."""
+        """Return the value of an expression that is given as text."""
         return self.value(self.parsed(text))
 
     def value(self, node):
-        """Return the value of an expression from its syntax tree."""
+        """Return the value of an expression that is given as a syntax tree."""
         match node:
             case ast.Constant(value=int(number)) if not self.real:
                 return Fraction(number)
@@ -154,10 +151,7 @@ class Evaluator:
         return self.functions[name, *values]
 
     def run(self, body, places, targets=()):
-        """Run C statements.
-
-        Return the assigned values by target such as ``"q[1]"``, or the value of the ``return`` statement.
-        """
+        """Run C statements; return the assigned values by target, such as ``"q[1]"``, or the value of ``return``."""
         self.names, results, statements = dict(places), {}, body.split(";")
         require(not statements.pop().strip(), f"expected a semicolon at the end, got {body[-60:]!r}")
         for place, statement in enumerate(statements, 1):
@@ -340,8 +334,8 @@ def prove(law, case, formulas):
     """Check the stored proof of a law in one case: entry times factor must be the sum of cofactors times relations.
 
     An entry is an expression that the law states to be zero; a relation is a polynomial that is known to be zero.
-    Factors and cofactors are also evaluated at the witness, a stored point where the hypotheses of the law hold, so
-    that none of them hides a division by zero.
+    Factors and cofactors are also evaluated at the witness, a stored point where the hypotheses of the law hold, to
+    exclude a hidden division by zero.
     """
     witness = {name: Fraction(text) for name, text in law["witness"].items()} | {"pi": PI}
     there, reader = (
@@ -445,7 +439,7 @@ def functions_of(text, name, files):
 
 
 def check(path):
-    """Check a certificate; return a line that lists the checks.
+    """Check a certificate and its files exactly; return a line that lists the checks.
 
     A failed check raises an exception of the types REFUSALS.
     """

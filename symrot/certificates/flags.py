@@ -1,8 +1,8 @@
 """The effect of compiler flags on a certificate: bits and error bounds hold, only the bounds hold, or nothing holds.
 
 A certificate is about the operations of the C text, each rounded once to nearest. A flag that lets the compiler round
-elsewhere voids it. Contraction (a*b + c rounded once) removes roundings: the bits change, but the bounds hold, unless a
-product is fused in some places and rounded in others, so that errors that cancelled no longer cancel.
+elsewhere voids it. Contraction (a*b + c rounded once) removes roundings: the bits change, but the bounds hold. The
+exception is a product that is fused in some places and rounded in others, so that its errors no longer cancel.
 The table follows the documentation of the flags; a comparison of object code
 (:mod:`symrot.certificates.object_code.comparison`) shows the effect in one case. Only the standard library is used.
 """

@@ -1,4 +1,4 @@
-"""The kernels that can be certified: those of the library, and the equations of motion of a scene with their laws."""
+"""The kernels that can be certified: library kernels, and the equations of motion of a scene, each with its laws."""
 
 from collections.abc import Mapping, Sequence
 from functools import reduce

@@ -5,19 +5,19 @@ What is checked
 Files (`certified`): the seal of the certificate and the hash of every file that it names.
 
 C text (`check_precision`): each function computes the formulas of the certificate. Both are evaluated at one random
-point, exactly, in fractions. There, sin(x) is a random number that depends on x alone, and ``a < b ? x : y`` is a
-random mean of x and y that depends on a and b alone. Two texts that differ as rational expressions of their functions
-and choices agree at such a point with negligible probability. An identity of the functions themselves, such as
-sin^2 + cos^2 = 1, is not used, so a C text may not rely on it.
+point, exactly, in fractions. There, sin(x) is a random number that depends on x alone, and ``a < b ? x : y`` is a mean
+of x and y with a random weight that depends on a and b alone. Two texts that differ as rational expressions of their
+functions and choices agree at such a point with negligible probability. Identities of functions, such as sin^2 + cos^2
+= 1, do not hold for such random numbers, so a C text may not rely on them.
 
 Series (`check_series`): a polynomial that replaces a function near a removable singularity is close enough to it,
 measured at 64 random points.
 
 Laws (`check_law`): the formulas obey the laws, to 60 digits, at 8 random points up to 1000 (64 points if there are
-choices). A law that fails by less, or only near few points or far out, is not noticed: `symrot audit` proves laws.
+choices). A smaller violation, or one near few points or far out, is not noticed: `symrot audit` proves laws.
 
 Rounding (`check_rounding`): at one random point of the box, computed as C computes, the error is within its bound. So
-``(x + 1e20) - 1e20`` is refused, which is x in exact arithmetic.
+a text with ``(x + 1e20) - 1e20`` for x is refused, although both are equal in exact arithmetic.
 
 Header (`check_header`): it declares the functions of the C file and defines only the known macros.
 
@@ -68,9 +68,9 @@ from secrets import randbelow
 from typing import NamedTuple
 
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803482534211707")
-DIGITS = Context(prec=190, Emax=120)  # of laws and exact values; what overflows is drawn again
+DIGITS = Context(prec=190, Emax=120)  # arithmetic of laws and exact values; after an overflow another point is drawn
 LARGEST_FILE = 16_000_000  # bytes
-LONGEST_TEXT = 200_000  # words of a function or formula, those of the functions that it calls included
+LONGEST_TEXT = 200_000  # words of a function or formula, including the functions that it calls
 LONGEST_NUMBER = 50_000  # binary digits of a numerator or denominator
 MATH_HEADER_SHA256 = "ec48bca7f8eb7ed77612704a0672155f4af0330d0679ba59524c5cfb5f5b0a19"  # of symrot_math.h
 
@@ -97,7 +97,7 @@ def quoted(value):
 
 
 # --- expressions ------------------------------------------------------------------------------------------------------
-# Every node has value(numbers, names): `numbers` is an arithmetic of the next section, `names` the values of variables.
+# A node's method value(numbers, names) takes an arithmetic of the next section and the values of variables by name.
 
 
 class Number(NamedTuple):
@@ -235,18 +235,15 @@ class Arithmetic:
         return OPERATIONS[operation](x, y)
 
     def choose(self, comparison, a, b, x, y):
-        """Return the value of ``x`` if the comparison of ``a`` with ``b`` holds, else of ``y``.
-
-        The other branch is not computed.
-        """
+        """Return ``x()`` if the comparison of ``a`` with ``b`` holds, else ``y()``; the other one is not called."""
         return x() if COMPARISONS[comparison](a, b) else y()
 
 
 class AnyFunctions(Arithmetic):
     """An arithmetic of exact fractions, in which functions and choices have random values.
 
-    A function has a random value for each argument; ``a < b ? x : y`` is a random mean of x and y for each a and b.
-    Expressions that agree here agree, with overwhelming probability, for all functions of these names.
+    A function has a random value for each argument; ``a < b ? x : y`` is a mean of x and y with a random weight for
+    each a and b. Expressions that agree here agree, with overwhelming probability, for all functions of these names.
     """
 
     def __init__(self):
@@ -299,7 +296,7 @@ def sine(x):
 
 
 def cosine(x):
-    """Return the cosine of a Decimal."""
+    """Return the cosine of a Decimal, as the sine of x + pi/2."""
     return sine(x + Decimal(PI.numerator) / PI.denominator / 2)
 
 
@@ -427,7 +424,7 @@ class Reader:
         self.place = place
         self.tokens = tokens(text, place)
         self.position = 0
-        self.weight = 0  # words read, and those of each function at each call
+        self.weight = 0  # number of words read, including the words of a function at each of its calls
 
     @property
     def token(self):
@@ -464,10 +461,7 @@ class Reader:
                 self.refuse(f"`{word.text}` of `{phrase}`")
 
     def take_name(self, what):
-        """Return the next word, which must be a name.
-
-        Refuse names with leading _ and names of macros, as compilers reserve them.
-        """
+        """Return the next word, a name; refuse names that compilers reserve (with leading _) and names of macros."""
         if self.token.kind != "name" or self.token.text.startswith(("_", "SYMROT_")):
             self.refuse(what)
         return self.advance()
@@ -496,7 +490,7 @@ class Reader:
         return Chain(first, rest) if rest else first
 
     def factor(self):
-        """Read a number, a variable, a call or a sum in parentheses, with a power if the subclass allows one."""
+        """Read a number, a variable, a call or a sum in parentheses, with an exponent if the subclass allows it."""
         if self.accept("-"):
             return Negative(self.factor())
         if self.token.kind == "number":
@@ -537,7 +531,7 @@ class Reader:
 class FormulaReader(Reader):
     """A parser of the formulas in a certificate: symbols, powers, and functions that the certificate defines.
 
-    If ``symbols`` is passed, any other name is refused; in a constant, functions are refused too.
+    A name outside ``symbols``, if passed, is refused; in a constant, functions are refused too.
     """
 
     def __init__(self, text, place, own, symbols=None, is_constant=False):
@@ -610,10 +604,7 @@ COUNTERS = {"double": "uint64_t", "float": "uint32_t"}
 
 
 class Parameter(NamedTuple):
-    """A parameter of a C function.
-
-    Its form is "value" (one number), "array" (one sample) or "samples" (all samples).
-    """
+    """A parameter of a C function; its form is "value" (a number), "array" (one sample) or "samples" (all samples)."""
 
     name: str
     form: str
@@ -622,10 +613,10 @@ class Parameter(NamedTuple):
 
 
 class Body(NamedTuple):
-    """The statements that are computed for one sample, in order."""
+    """The statements of a C function that are computed for one sample, in order."""
 
     statements: list  # of (name or (array, component), expression)
-    far: list  # expressions that `symrot_far` is asked about
+    far: list  # arguments of `symrot_far`, the angles that are tested for their range
 
 
 class Kernel(NamedTuple):
@@ -715,9 +706,9 @@ class CReader(Reader):
         return Variable(name)
 
     def component(self, name, is_input):
-        """Read an array index and return the component: ``[2]`` of one sample, ``[2*n + k]`` of many.
+        """Read an array index and return the number of the component: 2 for ``[2]`` of one sample.
 
-        ``[k]`` is 0, ``[n + k]`` is 1.
+        Of sample k of n samples, ``[k]`` is component 0, ``[n + k]`` is 1 and ``[2*n + k]`` is 2.
         """
         parameter = self.parameters.get(name)
         self.need(
@@ -870,15 +861,12 @@ class CReader(Reader):
         return shape, bodies
 
     def comes(self, phrase):
-        """Tell whether the next words are those of a phrase."""
+        """Tell whether the next words are a given phrase."""
         words = [token.text for token in tokens(phrase, phrase)[:-1]]
         return words == [token.text for token in self.tokens[self.position : self.position + len(words)]]
 
     def body(self, asks_far=False):
-        """Read statements up to a closing brace.
-
-        The names of variables that they declare are forgotten after the brace.
-        """
+        """Read statements up to a closing brace, at which the variables that they declare go out of scope."""
         outer, self.names, self.assigned = self.names, set(self.names), set()
         statements, far = [], []
         while not self.accept("}"):
@@ -924,10 +912,7 @@ class CReader(Reader):
 
 
 def run(body, numbers, inputs):
-    """Run a C function's body at given inputs; return its outputs, and the angles that it tests for their range.
-
-    Return its outputs, and the angles that it tests for their range.
-    """
+    """Run a C function's body at given inputs; return its outputs, and the angles that it tests for their range."""
     names, outputs = dict(inputs), {}
     for target, expression in body.statements:
         value = expression.value(numbers, names)
@@ -987,17 +972,14 @@ def text_of(path):
 
 
 def without_repetition(pairs):
-    """Return a JSON object from its (name, value) pairs.
-
-    Refuse a repeated name, since JSON readers differ in its value.
-    """
+    """Return a JSON object from its (name, value) pairs; refuse a repeated name, whose value depends on the reader."""
     items = dict(pairs)
     need(len(items) == len(pairs), "expected each name once in an object of the certificate, got one twice")
     return items
 
 
 def certified(path):
-    """Read a certificate and return it, after checking its seal (hash) and the hashes of the files that it names.
+    """Read and return a certificate whose seal (hash) and whose hashes of the files that it names are right.
 
     Hashes show only that no file was changed after it was certified; other checks show that the files are right. Files
     in other folders (NumPy texts) may be missing, but those in the folder of the certificate may not.
@@ -1038,16 +1020,13 @@ def certified(path):
 
 
 def is_name(text):
-    """Tell whether a text can be the name of a symbol in a formula: a name that has no other meaning."""
+    """Tell whether a text can be the name of a symbol in a formula: a name without another meaning there."""
     reserved = text in FORMULA_FUNCTIONS or text in FORMULA_CHOICES or text == "pi"
     return bool(re.fullmatch(r"[A-Za-z]\w*", text, re.ASCII)) and not reserved
 
 
 def defined_functions(definitions):
-    """Return the functions that a certificate defines, in the arguments x, y, z, w.
-
-    Each may only call functions above it.
-    """
+    """Return the functions of x, y, z, w that a certificate defines; each may only call functions above it."""
     functions = {}
     for name, text in definitions:
         new = is_name(name) and name not in functions
@@ -1093,10 +1072,7 @@ class Specification:
         return FormulaReader(text, place, self.functions).whole()
 
     def set_values(self, names):
-        """Compute intermediate quantities and outputs and store them by name.
-
-        Return the inputs by index text such as ``q[2]``.
-        """
+        """Store intermediate quantities and outputs by name; return the inputs by index text such as ``q[2]``."""
         inputs = {place: expression.value(names.numbers, names) for place, expression in self.inputs}
         for symbol, expression in self.named:
             names.define(symbol, expression.value(names.numbers, names))
@@ -1130,8 +1106,8 @@ def check_law(law, specification, points):
     """Raise ValueError if an expression of a law, which must be zero, is not zero to 60 digits at random points.
 
     At each point the hypotheses of the law hold and the outputs have the values of their formulas. An expression counts
-    as zero if it is small compared with its size at another point, where all symbols are random, and at most 1e-40 in
-    any case. An analytic expression that is not zero is that small at a random point with negligible probability.
+    as zero if it is small compared with its size at another point, where all symbols are random, and at most 1e-40. An
+    analytic expression that is not identically zero is so small at a random point with negligible probability.
     """
     place = f"the law {quoted(law['law'])}"
     need(law["vanishing"], f"{place} does not follow: expected an expression that vanishes, got none")
@@ -1162,7 +1138,7 @@ LEAST = {"double": Fraction(1, 2**55), "float": Fraction(1, 2**26)}  # a quarter
 
 
 def check_series(series, functions, real):
-    """Return a function that uses a polynomial where x*x is below a limit; refuse a polynomial with a large error.
+    """Return the functions, one of them replaced by a polynomial near x = 0; refuse a polynomial with a large error.
 
     The error of the polynomial, relative to the function, is computed at 64 random points of the interval. It must be
     at most as large as the certificate says, and at most a quarter of a unit in the last place.
@@ -1234,8 +1210,8 @@ def array_sizes(data, is_input):
 def expected_parameters(data, in_batch):
     """Return the parameters that a C function must have, according to the inputs and outputs of the certificate.
 
-    A number is passed by value and an array by its components; in a batch, both are passed as arrays of all samples,
-    except the parameters of a scene, which all samples share. Inputs are const.
+    For one sample, a number is passed by value and other quantities as arrays. In a batch, both are arrays of all
+    samples, except the parameters of a scene, which all samples share. Inputs are const.
     """
     by_value = {place for place, *_ in data["inputs"] if "[" not in place}
     parameters = []
@@ -1250,7 +1226,7 @@ def expected_parameters(data, in_batch):
 
 
 def by_component(values):
-    """Convert a mapping with keys such as ``q[2]``: each key becomes (array, component), or a number's name."""
+    """Return a mapping with keys such as ``q[2]`` under the keys (array, component), and numbers by name too."""
     named = {component_of(place): value for place, value in values.items()}
     return named | {place: value for place, value in values.items() if "[" not in place}
 
@@ -1336,9 +1312,9 @@ def hexadecimal(text, place):
 
 
 def point_of_box(data, specification, real):
-    """Return a random point of the box of the rounding bounds.
+    """Return a random point of the box of the rounding bounds, or None if no point of the box can be drawn.
 
-    None if there are no bounds, or the box has excluded points.
+    That is so without bounds, for a box with excluded points, and for a kernel with the parameters of a scene.
     """
     if "rounding" not in data or data["spec"]["parameters"]:
         return None
@@ -1532,10 +1508,7 @@ def check_files(path):
 
 
 def check(path):
-    """Check a certificate; return a line about what it proves.
-
-    Raise ValueError or OSError with one sentence if a check fails.
-    """
+    """Check a certificate; return one line about the checks, or raise ValueError or OSError with one sentence."""
     try:
         return check_files(path)
     except (ValueError, OSError):

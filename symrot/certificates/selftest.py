@@ -201,7 +201,7 @@ class SelfTest:
     flags: tuple[str, ...]
 
     def lines(self) -> list[str]:
-        """Return the result of the self-test as lines of text."""
+        """Return the result of the self-test, with the worst errors, as lines of text."""
         rows = [f"  {name:<7} {ulp:.3f} ulp" for name, ulp in self.ulps.items()]
         error_lines = ["worst errors found:", *rows] if rows else []
         return [f"{'good' if self.passed else 'refused'}: {self.sentence}", *error_lines]

@@ -1,4 +1,4 @@
-"""Programs of the library's kernels: lowered from their definitions, with constants such as pi as printed numbers."""
+"""Straight-line programs of the library's kernels, made from their formulas; constants such as pi become numbers."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -16,7 +16,7 @@ __all__ = ["kernel_description", "kernel_program"]
 
 @cache
 def kernel_program(name: str) -> Program:
-    """Return the straight-line program of a kernel of the library."""
+    """Return the straight-line program (temporaries, then outputs) of a kernel of the library, given its name."""
     kernel = definition(name)
     signature = Signature(name, (*kernel.inputs, *(target for target, _ in kernel.results)))
     lowered = lower(signature, kernel.formulas, kernel.named, parameter_argument="constant_")

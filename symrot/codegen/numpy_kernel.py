@@ -1,4 +1,4 @@
-"""Loading of emitted NumPy kernels: the text is written to a module and imported, as a user would do."""
+"""Loading of emitted NumPy kernels: the text is written to a file and imported as a module, as a user would do."""
 
 from collections.abc import Callable
 from importlib.util import module_from_spec, spec_from_file_location
@@ -18,7 +18,7 @@ _UNNAMED = Description(
 
 
 def load_numpy_kernel(program: Program) -> Callable[..., Any]:
-    """Return the function of the NumPy module that is emitted for a program."""
+    """Return a program as a Python function, imported from the NumPy module that symrot emits for it."""
     with TemporaryDirectory(prefix="symrot-") as directory:
         path = Path(directory) / f"{program.signature.name}.py"
         path.write_text(numpy_source(program, _UNNAMED), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Kernels of a scene: programs and C text, derived from the structure of its plan."""
+"""Kernels of a scene: the programs and the C code of its rates and other quantities, derived from its plan."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -74,7 +74,7 @@ def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
 def derive_scene_kernel(
     structure: Structure, on_rates: Callable[[Program, str], object] = lambda rates, source: None
 ) -> SceneKernel:
-    """Return the kernels for the structure of a plan, and prove its conserved quantities.
+    """Derive the rates and the other quantities of a planned motion, and prove which quantities are conserved.
 
     ``on_rates`` is called with the rates and their C text as soon as they are derived, so that a compiler can run while
     the rest is derived.
@@ -94,7 +94,7 @@ def derive_scene_kernel(
 
 
 def rates_source(rates: Lowered) -> str:
-    """Return the C text of the rates as a function of ``(t, y, p, dy)``, even if they have no parameters p."""
+    """Return the C code of the rates as a function of ``(t, y, p, dy)``, with p even if there are no parameters."""
     source = c_function(rates.program, "static inline ")
     if rates.parameters:
         return source
@@ -105,7 +105,7 @@ def rates_source(rates: Lowered) -> str:
 
 
 def with_values(program: Program, parameters: Parameters, constants: Mapping[str, Fraction]) -> Program:
-    """Return a program whose parameters are described by formula and value, for the head comment of its C."""
+    """Return a program with the formula and value of each parameter as its description in the head comment of the C."""
     values = bind(parameters, constants)
     described = tuple(
         (name, "", f"{text(formula)} = {value!r}") for (name, formula), value in zip(parameters, values, strict=True)

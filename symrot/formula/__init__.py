@@ -1,1 +1,1 @@
-"""Formulas as trees, exact numbers, straight-line programs, and functions that jump. Standard library only."""
+"""Formulas as trees, exact numbers, straight-line programs, functions with jumps. Standard library only."""

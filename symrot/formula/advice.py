@@ -128,7 +128,7 @@ def name_advice(name: str, known: Collection[str]) -> str:
 
 
 def mark_advice(source: str, position: int, known: Collection[str]) -> str:
-    """Return advice for a character that formulas do not use, or a missing operator; an empty text if there is none."""
+    """Return advice for a character that formulas do not use, or a missing operator; an empty text without advice."""
     rest, before = source[position:], source[:position].rstrip()
     if rest[:1] in MARKS:
         return f"write {MARKS[rest[0]]}"

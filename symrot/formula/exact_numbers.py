@@ -42,7 +42,7 @@ EXPECTATION = 'a number, such as 2, 0.5, "1/3", "sqrt(2)" or "pi/6"'
 
 
 def show(value: object, limit: int = 60) -> str:
-    """Return ``value`` for an error message: as the user wrote it, cut to at most one line."""
+    """Return the text of ``value`` for an error message: as the user wrote it, cut to at most one line."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
@@ -67,7 +67,7 @@ def show(value: object, limit: int = 60) -> str:
 
 
 def _round(value: Fraction, bits: int = BITS) -> Fraction:
-    """Return ``value`` with a relative error below 2^-bits, as an integer times a power of two."""
+    """Return ``value`` rounded to an integer times a power of two, with a relative error below 2^-bits."""
     shift = bits + 2 - value.numerator.bit_length() + value.denominator.bit_length()
     scaled = value.numerator << shift if shift > 0 else value.numerator >> -shift
     quotient = scaled // value.denominator
@@ -310,7 +310,7 @@ def _from_float(value: float) -> Angle:
 
 
 def _from_scalar(value: SupportsFloat) -> Angle:
-    """Return a NumPy scalar or SymPy number as the angle that its exact value gives in rad."""
+    """Return the exact value of a NumPy scalar or SymPy number, as an angle in rad."""
     return _from_float(float(value))
 
 
@@ -329,7 +329,7 @@ def _in_range(value: Fraction) -> None:
 
 
 def _read(value: object, where: str, expect: str) -> Angle:
-    """Return a number as an angle rational + half_turns * pi; raise InputError for a value that is not a number."""
+    """Return a number in the form rational + half_turns * pi; raise InputError for a value that is not a number."""
     kind = type(value)
     if not isinstance(value, bool):
         reader = _READERS.get(kind) or next((r for k, r in _READERS.items() if isinstance(value, k)), None)

@@ -95,7 +95,7 @@ class Polynomial:
         return {exponents: Polynomial(part) for exponents, part in parts.items()}
 
     def derivative(self, name: str) -> "Polynomial":
-        """Return the partial derivative by a coordinate; the cosine and sine of an angle are differentiated as such."""
+        """Return the partial derivative by a coordinate; the cosine and sine of an angle depend on the angle."""
         inner = ((generator(name), constant(1)), (cosine(name), -sine(name)), (sine(name), cosine(name)))
         total = constant(0)
         for argument, rate in inner:
@@ -148,7 +148,7 @@ def constant(value: Fraction | int) -> Polynomial:
 
 
 def generator(name: str | int) -> Polynomial:
-    """Return the polynomial that is a single generator."""
+    """Return the polynomial that consists of one variable (generator)."""
     return Polynomial({((name, 1),): Fraction(1)})
 
 
@@ -173,7 +173,7 @@ def reduce_circular(source: Polynomial, angles: Iterable[str]) -> Polynomial:
 
 
 def _exponents(names: list[str]) -> Callable[[Term], list[int]]:
-    """Return the sort key that orders terms lexicographically."""
+    """Return the sort key that orders monomials lexicographically in the given variables."""
     return lambda term: [dict(term[0]).get(name, 0) for name in names]
 
 

@@ -17,9 +17,9 @@ __all__ = ["Argument", "Program", "ProgramRecord", "Signature", "node_from_json"
 
 @dataclass(frozen=True)
 class Argument:
-    """One argument of a kernel.
+    """One input or output argument of a kernel.
 
-    ``components`` holds (name, unit, meaning) for each number in the argument; a scalar has one, and ``is_scalar`` set.
+    ``components`` holds (name, unit, meaning) for each number in the argument; a scalar has one component.
     """
 
     name: str
@@ -40,7 +40,7 @@ class Signature:
     arguments: tuple[Argument, ...]
 
     def argument(self, name: str) -> Argument:
-        """Return the argument with a given name; raise ``KeyError`` if there is none."""
+        """Return the argument with a given name; raise ``KeyError`` if there is no such argument."""
         for argument in self.arguments:
             if argument.name == name:
                 return argument
@@ -80,7 +80,7 @@ class Program:
         return sum((operations(node) for _, node in self.temporaries + self.outputs), Counter())
 
     def vanishing(self, zeros: Collection[str]) -> frozenset[str]:
-        """Return the outputs that are zero if the given inputs are zero, judged by the form of their formulas."""
+        """Return the outputs that are zero if the given inputs are zero, as far as their formulas show directly."""
         known = set(zeros)
         for name, node in (*self.temporaries, *self.outputs):
             if vanishes(node, known):

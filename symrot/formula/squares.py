@@ -14,8 +14,8 @@ MOST_TERMS = 60  # largest number of terms of a polynomial that is tested for be
 def square_under_root(radicand: Node) -> tuple[Node, Node] | None:
     """Return (u, v) with radicand = u^2 v, so that its square root is abs(u) sqrt(v), or None if u is 1.
 
-    Besides factors that are written as squares, a sum such as t**2 - 2*c*t + c**2 counts as a square if it is the
-    square of a polynomial in its symbols and functions.
+    A sum such as t**2 - 2*c*t + c**2 counts as a square too if it is the square of a polynomial in its symbols and
+    functions.
     """
     root, rest = _split(radicand)
     if rest != ONE and (more := _root_of_sum(rest)) is not None:

@@ -1,4 +1,4 @@
-"""Formulas with jumps or kinks, rewritten as smooth formulas with modes, which a stepper integrates between switches.
+"""Formulas with jumps or kinks, rewritten as smooth formulas that a stepper integrates from one jump to the next.
 
 A switch has a guard, which is a formula whose sign changes, and a mode, which is the number that the smooth formula
 contains instead of the jump. As long as no guard changes sign, the smooth formula with the current values of the modes
@@ -106,7 +106,7 @@ def has_switches(node: Node) -> bool:
 
 
 def condition_error(node: Node) -> str:
-    """Return the expected form of a condition if one in the formula is wrong; an empty text if all are right."""
+    """Return the expected form of the first wrong condition in a formula; an empty text if all conditions are right."""
 
     def wrong(node: Node, condition: bool) -> str:
         if node[0] != "call" or node[1] not in CONDITIONS:
@@ -126,19 +126,23 @@ def condition_error(node: Node) -> str:
 
 
 def hold(conditions: Iterable[tuple[Node, int]], modes: Mapping[str, int], held: Collection[str] = ()) -> bool:
-    """Return whether conditions hold for given modes; a condition with a mode in ``held`` counts as true."""
+    """Return whether all conditions hold for given modes; a condition with a mode in ``held`` counts as true.
+
+    A mode is the number that replaces a jump: the sign of a formula, or its integer part.
+    """
     return all(names(share) & set(held) or evaluate(share, modes) == value for share, value in conditions)
 
 
 def has_choices(node: Node) -> bool:
-    """Return whether a smooth formula contains a ``where``, of which one part applies once the modes are known."""
+    """Return whether a formula contains a choice ``where(p, a, b)``."""
     return node[:2] == ("call", "where") or any(map(has_choices, children(node)))
 
 
 def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> Node:
     """Return a smooth formula in which each ``where`` is replaced by the part that applies for given modes.
 
-    If a mode of the condition is in ``held``, a value between those of the two sides, both parts are blended.
+    A mode is the number that replaces a jump, such as the sign of a formula. While a motion slides along a switch, its
+    mode is in ``held``; then both parts are blended.
     """
     if not has_choices(node):
         return node
@@ -178,7 +182,7 @@ def on_line(node: Node) -> tuple[Any, int]:
 
 
 def between_sides(node: Node, mode: str) -> Node:
-    """Return a formula that is linear in a mode and agrees with the given formula for the modes 1 and -1.
+    """Return a formula that is linear in a mode (the sign of a guard) and equal to the given one at modes 1 and -1.
 
     A motion that slides along a switch moves with a mixture of the rates on both sides (A. F. Filippov). A formula that
     is linear in the mode is already such a mixture and is returned unchanged.
@@ -190,7 +194,7 @@ def between_sides(node: Node, mode: str) -> Node:
 
 
 def _is_linear(node: Node, mode: str) -> bool:
-    """Return whether a formula is linear in a mode, judged by its form."""
+    """Return whether a formula, as it is written, is linear in a mode (the sign of a guard)."""
     if mode not in names(node) or node == ("symbol", mode):
         return True
     parts = children(node)
@@ -236,7 +240,7 @@ def _degree(node: Node) -> int:
 
 @lru_cache(maxsize=256)
 def smooth(sources: tuple[str, ...]) -> Smooth:
-    """Return formulas, given as text, as smooth formulas with the switches that replace their jumps and kinks."""
+    """Return formulas, given as text, in smooth form, together with the switches that replace jumps and kinks."""
     nodes = [parse(source, switching=True) for source in sources]
     used_names = set().union(*map(names, nodes))
     prefix = MODES
@@ -254,7 +258,7 @@ class _Writer:
         self.conditions: Conditions = ()  # conditions under which the part being rewritten applies
 
     def mode(self, kind: str, guard: Node, where: Conditions = (), at_zero: int = 1) -> Node:
-        """Return the mode of a guard; the first call with a guard creates it."""
+        """Return the mode of a guard, the number that replaces its jump; the first call with a guard creates it."""
         where = self.conditions + where
         for count in range(len(where) + 1):  # a mode that applies under fewer of the conditions serves as well
             if (mode := self.known.get((kind, guard, where[:count], at_zero))) is not None:
@@ -265,7 +269,7 @@ class _Writer:
         return ("symbol", name)
 
     def part(self, node: Node, share: Node, value: int) -> Node:
-        """Return a part of a ``where`` as a smooth formula; its guards matter only where ``share`` equals ``value``."""
+        """Return a part of a ``where`` as a smooth formula; its jumps count only while ``share`` equals ``value``."""
         outside = self.conditions
         self.conditions = (*outside, (share, value))
         smooth = self.smooth(node)

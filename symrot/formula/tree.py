@@ -178,7 +178,7 @@ class _Reader:
 
 
 def parse(source: str, where: str = "", switching: bool = False) -> Node:
-    """Return the tree of a formula.
+    """Return the tree of a formula that is given as text.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ def parse(source: str, where: str = "", switching: bool = False) -> Node:
 
 
 def children(node: Node) -> tuple[Node, ...]:
-    """Return the operands of a node."""
+    """Return the operands of the operation at the root of a formula tree."""
     kind = node[0]
     if kind in ("number", "symbol"):
         return ()
@@ -223,7 +223,7 @@ def children(node: Node) -> tuple[Node, ...]:
 
 
 def rename(node: Node, symbols: Mapping[str, str] | None = None, functions: Mapping[str, str] | None = None) -> Node:
-    """Return a formula with some symbols and functions renamed; names that are not listed stay."""
+    """Return a formula with some symbols and functions renamed; other names are unchanged."""
     kind = node[0]
     if kind == "number":
         return node
@@ -263,7 +263,7 @@ ODD = {"sqrt", "sin", "tan", "sinh", "tanh", "asin", "atan", "abs"}  # functions
 
 
 def vanishes(node: Node, zeros: Collection[str]) -> bool:
-    """Return whether a formula is zero if the given symbols are zero, judged by its form."""
+    """Return whether a formula, as it is written, is zero if the given symbols are zero."""
     kind = node[0]
     if kind in ("number", "symbol"):
         return node[1] == 0 if kind == "number" else node[1] in zeros

@@ -1,4 +1,4 @@
-"""Mass properties of bodies over any kind of number: moved, rotated, added and subtracted. Standard library only.
+"""Mass properties of bodies that are moved, rotated, added or subtracted, over any kind of number. Standard library.
 
 The same functions serve symbolic bodies (:class:`symrot.inertia.solids.Solid`) and the exact numbers of a scene.
 """
@@ -46,7 +46,7 @@ def place(body: HasInertia, at: Any = _ORIGIN, rotation: Any = IDENTITY) -> Mass
 
 
 def compose(added: Iterable[HasInertia], subtracted: Iterable[HasInertia] = ()) -> MassProperties:
-    """Return the mass properties of a rigid assembly: the sum of the added bodies minus the subtracted ones (holes).
+    """Return the mass properties of a rigid assembly: the sum of the added bodies minus the subtracted bodies (holes).
 
     All bodies are given in the same axes, with components of any numeric type, SymPy expressions included. The total
     mass must not be zero.

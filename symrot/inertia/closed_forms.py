@@ -46,7 +46,6 @@ def uniform(
     Parameters
     ----------
     shape : Shape
-        Any but separate points.
         Any shape but ``point_masses``.
     dimensions : mapping
         As returned by :func:`symrot.inertia.shapes.check_dimensions`.

@@ -1,4 +1,4 @@
-"""Exact integrals of polynomials over the shapes: map, Jacobian, and moments of mass. Standard library only.
+"""Exact integrals of polynomials over shapes such as cylinders, by a map and its Jacobian. Standard library only.
 
 A shape is described by a map from coordinates to positions. Its Jacobian is computed: the determinant for a solid, the
 root of the Gram determinant for a surface or a curve. Every integrand is a polynomial in the coordinates and in cosines
@@ -39,7 +39,7 @@ _PI = {"pi": PI}
 
 
 class Domain(NamedTuple):
-    """The map of a shape: position in the shape's axes (m), Jacobian, and the coordinates with their limits."""
+    """A shape as a map of coordinates: position in the shape's axes (m), Jacobian, coordinates with their limits."""
 
     position: tuple[Polynomial, ...]
     jacobian: Polynomial
@@ -203,10 +203,10 @@ def moments(region: Domain, density: Polynomial | None = None) -> Moments:
 
 
 def moments_per_measure(region: Domain, density: Polynomial | None = None) -> tuple[Polynomial, Moments]:
-    """Return a factor and the moments of a shape divided by that factor.
+    """Return (measure, moments per measure) of a shape: its volume, area or length, and its moments divided by it.
 
-    The factor is the volume, area or length if it divides the Jacobian, else 1. Dividing before integration keeps a
-    tetrahedron with twelve symbols fast.
+    The measure is replaced by 1 if it does not divide the Jacobian. Division before integration keeps a tetrahedron
+    with twelve symbols fast.
     """
     measure = integrate(region.jacobian, region.limits)
     share = exact_quotient(region.jacobian, measure)

@@ -24,7 +24,7 @@ _Work = list[list[Decimal]]
 
 
 class Principal(NamedTuple):
-    """Principal moments and axes of a body.
+    """Principal moments and axes of a body, and its kind of symmetry.
 
     ``moments`` are in kg m^2, exact if they are rational, and exactly equal if they are equal. Column k of ``axes`` is
     principal axis k in the given axes: ``v_given = axes * v_principal``, right-handed, orthonormal to 1e-110. If the
@@ -85,7 +85,7 @@ def _jacobi(tensor: Tensor) -> tuple[list[Decimal], _Work]:
 
 
 def _eliminate(work: _Work, vectors: _Work, p: int, q: int) -> None:
-    """Rotate axes p and q by the smaller of the angles that make ``work[p][q]`` zero."""
+    """Rotate axes p and q, in place, by the smallest angle that makes ``work[p][q]`` zero."""
     cotangent = (work[q][q] - work[p][p]) / (2 * work[p][q])  # of twice the rotation angle
     tangent = 1 / (abs(cotangent) + (cotangent * cotangent + 1).sqrt())
     tangent = tangent if cotangent >= 0 else -tangent
@@ -113,7 +113,7 @@ def _closest_order(vectors: _Work) -> tuple[int, ...]:
 
 
 def _directed(columns: list[tuple[Fraction, ...]]) -> Tensor:
-    """Return the axes as columns, right-handed, each within 90 degrees of the given axis with its number."""
+    """Return right-handed principal axes as columns, with axis k in the direction of the given axis k if possible."""
     for k, column in enumerate(columns):
         leading = column[k] or max(column, key=abs)
         if leading < 0:
@@ -125,7 +125,7 @@ def _directed(columns: list[tuple[Fraction, ...]]) -> Tensor:
 
 
 def _settle(moments: list[Fraction]) -> tuple[Fraction, Fraction, Fraction]:
-    """Return the moments without rounding errors: negligible ones become zero, nearly equal ones exactly equal."""
+    """Return the moments without rounding errors: zero if negligible, and exactly equal if nearly equal."""
     limit = max(map(abs, moments)) * NEGLIGIBLE
     settled = [Fraction(0) if abs(moment) <= limit else moment for moment in moments]
     for i, j in _PAIRS:

@@ -62,7 +62,7 @@ class Shape(NamedTuple):
 
     @property
     def density_unit(self) -> str:
-        """The unit of a density of this shape."""
+        """The unit of a density of this shape: kg per m^3, m^2 or m."""
         return DENSITY_UNITS[self.kind]
 
 
@@ -89,7 +89,7 @@ _HALF_TURN = Coordinate("theta", "0", "pi")
 
 
 def _corner(axis: str) -> str:
-    """Return one component of the map of a tetrahedron: f_1 of the way from corner 1 to 2, f_2 on to 3, f_3 on to 4."""
+    """Return a component of a point in a tetrahedron, a fraction f_1 of the way from corner 1 to the opposite face."""
     return f"{axis}1 + f_1*({axis}2 - {axis}1 + f_2*({axis}3 - {axis}2 + f_3*({axis}4 - {axis}3)))"
 
 
@@ -242,7 +242,7 @@ def _read_dimension(value: object, dimension: Dimension, where: str) -> Any:
 
 
 def check_names(shape: Shape, dimensions: Mapping[str, object], where: str = "") -> None:
-    """Raise InputError unless the names of the given dimensions are exactly those of the shape."""
+    """Raise InputError unless the given dimensions are exactly the dimensions of the shape."""
     expected = [dimension.name for dimension in shape.dimensions]
     unknown, missing = sorted(set(dimensions) - set(expected)), [name for name in expected if name not in dimensions]
     if unknown or missing:
@@ -251,7 +251,7 @@ def check_names(shape: Shape, dimensions: Mapping[str, object], where: str = "")
 
 
 def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str = "") -> dict[str, Any]:
-    """Return the dimensions of a shape as exact numbers.
+    """Check the dimensions of a shape, and return them as exact numbers.
 
     Parameters
     ----------

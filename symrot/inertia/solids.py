@@ -162,7 +162,7 @@ def _tidy(expression: Expr) -> Expr:
 
 
 def _tidy_measure(expression: Expr) -> Expr:
-    """Return a measure as common factors times a sum: ``pi*L*(R_2**2 - R_1**2)``."""
+    """Return a volume, area or length as common factors times a sum: ``pi*L*(R_2**2 - R_1**2)``."""
     return factor_terms(expand(expression))
 
 
@@ -375,7 +375,7 @@ _MASS = Dimension("mass", "kg", "m")
 
 
 def _weighted(shape: Shape, values: Mapping[str, Expr], profile: Poly, measure: Expr) -> Solid:
-    """Return a body of varying density; the integration treats the density's coefficients as symbols."""
+    """Return a solid whose density is a polynomial; the integration treats its coefficients as symbols."""
     known = {name: Fraction(value.p, value.q) for name, value in values.items() if value.is_Rational}
     region = domain(shape, known)
     density, coefficients = constant(0), {}

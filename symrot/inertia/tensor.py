@@ -110,7 +110,7 @@ def determinant(tensor: Any) -> Any:
 def rotate(tensor: Any, dcm: Any) -> Tensor:
     """Return the components of a tensor in other axes: ``dcm * tensor * dcm^T``.
 
-    ``dcm`` maps components in the old axes to components in the new ones, as ``dcm_sb`` maps body to space.
+    ``dcm`` maps components in the old axes to components in the new axes, as ``dcm_sb`` maps body to space.
     """
     return multiply(multiply(dcm, tensor), transpose(dcm))
 

@@ -171,7 +171,7 @@ def _heavy_top(name: str, body: str) -> Definition:
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
     """Return symbols for twice the weight times the centre of mass, and their definitions.
 
-    A zero component needs no symbol: it is 0.
+    A zero component is 0 and gets no symbol.
     """
     components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
     return Matrix(components), tuple(

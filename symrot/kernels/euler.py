@@ -59,10 +59,10 @@ def _regular_box(sequence: str) -> Box:
 
 
 def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
-    """Return the entries of a matrix, written with products of functions of the first and last angle as new quantities.
+    """Return (definitions, entries) of a matrix, with a new symbol for each product such as ``sin(phi)*cos(psi)``.
 
-    These intermediate quantities come first in the result. In a sum, a common factor, which depends on the middle
-    angle, is factored out.
+    These are the products of functions of the first and the last angle. In a sum, a common factor, which depends on the
+    middle angle, is factored out.
     """
     named: dict[Expr, Symbol] = {}
     formulas = []
@@ -133,11 +133,10 @@ def _rates(frame: str, name: str, sequence: str) -> Definition:
 
 
 def _solved(jacobian: RateMatrix, omega: Matrix) -> tuple[Named, list[Expr]]:
-    """Return the rates of all three Euler angles; the rate of the first or last angle is an intermediate quantity.
+    """Return (definitions, formulas) of the rates of the Euler angles, with a single division.
 
-    The axis of the other outer angle is an axis of the frame; along that axis, omega is the sum of that angle's rate
-    and a part of the intermediate rate. Only the formula of the intermediate rate contains a division, by the
-    determinant.
+    One outer angle rotates about an axis of the frame. The rate of the other outer angle is computed first, by a
+    division by the determinant, and gets a symbol; the first outer rate follows from a component of omega and from it.
     """
     matrix, determinant = Matrix(jacobian), jacobian.determinant
     last = next(place for place in (0, 2) if not matrix[:, place].free_symbols)

@@ -39,10 +39,10 @@ def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
 
 
 def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -> tuple[Named, ImmutableMatrix]:
-    """Return the rotation matrix as ``1 + scalar [t] + [t][axis]``, and the intermediate quantities ``t = doubled``.
+    """Return (definitions, matrix) for the rotation matrix ``1 + scalar [t] + [t][axis]``, with symbols for t.
 
-    Here [v] is the matrix of the cross product with v. For a unit quaternion (q0, u), pass q0, u and t = 2 u. Because t
-    is parallel to the axis, [t][axis] is symmetric, so each of its products is computed once.
+    Here [v] is the matrix of the cross product with v, and t = ``doubled`` is parallel to the axis. For a unit
+    quaternion (q0, u), pass q0, u and 2 u. Because [t][axis] is symmetric, each of its products is computed once.
     """
     twice = tuple(Symbol(f"twice_{i}", real=True) for i in "123")
     square = skew(twice) * skew(axis)
@@ -54,7 +54,7 @@ def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -
 
 
 def halved(omega: Sequence[Expr]) -> tuple[Named, tuple[Symbol, ...]]:
-    """Return the components of half an angular velocity as intermediate quantities, and their symbols."""
+    """Return (definitions, symbols) of the components of half an angular velocity."""
     half = tuple(Symbol(f"half_{i}", real=True) for i in "123")
     return tuple(zip(half, (w / 2 for w in omega), strict=True)), half
 
@@ -116,9 +116,9 @@ Branch = tuple[Expr, list[Expr]]  # four times the square of a component, and it
 
 
 def _branch(matrix: Matrix, pivot: int) -> Branch:
-    """Return ``4 q_pivot^2`` and the row ``4 q_pivot q``, both linear in the rotation matrix of the quaternion q.
+    """Return ``4 q_k^2`` and ``4 q_k q`` for k = ``pivot``, both linear in the rotation matrix of the quaternion q.
 
-    Dividing the row by twice the root of ``4 q_pivot^2`` gives q, without loss of digits if ``q_pivot`` is large.
+    ``4 q_k q`` divided by twice the root of ``4 q_k^2`` is q or -q, without loss of digits if ``q_k`` is large.
     """
     q = quaternion_of_dcm(matrix, pivot)
     square = 4 * q[pivot] ** 2
@@ -126,7 +126,7 @@ def _branch(matrix: Matrix, pivot: int) -> Branch:
 
 
 def _larger(left: Branch, right: Branch) -> Branch:
-    """Return the one of two branches (quaternion formulas) whose component has the larger square."""
+    """Return the formulas that choose, of two branches ``(4 q_k^2, 4 q_k q)``, the one with the larger ``4 q_k^2``."""
     (a, row_a), (b, row_b) = left, right
     return select_ge(a, b, a, b), [select_ge(a, b, x, y) for x, y in zip(row_a, row_b, strict=True)]
 
@@ -189,10 +189,9 @@ def _rotate(towards: str, name: str) -> Definition:
 
 
 def turned(q: Sequence[Expr], vector: Matrix) -> tuple[Named, Matrix]:
-    """Return the vector ``v`` rotated by the quaternion ``q = (q0, u)``, as ``v + q0 h + u x h`` with ``h = 2 u x v``.
+    """Return (definitions, formulas) of a vector v rotated by q = (q0, u): ``v + q0 h + u x h`` with ``h = 2 u x v``.
 
-    The definition of h as an intermediate quantity comes first in the result. This takes fewer operations than the
-    rotation matrix.
+    The definitions give each component of h a symbol. This takes fewer operations than the rotation matrix.
     """
     scalar, axis = q[0], Matrix([*q][1:])
     half = Matrix([Symbol(f"twice_cross_{i}", real=True) for i in "123"])

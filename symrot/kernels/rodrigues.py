@@ -41,9 +41,9 @@ _SQUARE = Symbol("square", real=True)  # square of the length of the parameters
 
 
 def _ray(which: Projection) -> tuple[Named, Expr]:
-    """Return the scalar s for which the quaternion (s, parameters), before normalisation, describes the attitude.
+    """Return (definitions, s) such that the quaternion (s, parameters), before normalisation, describes the attitude.
 
-    The intermediate quantities in the formula of s come first in the result.
+    The definitions belong to symbols in the formula of s.
     """
     if not which.centre:
         return (), Integer(1)

@@ -97,7 +97,7 @@ class SingularSet:
 
 
 def condition_of(gram: Matrix) -> Expr:
-    """Return the condition number of B from a Gram matrix ``B^T B`` or ``B B^T``.
+    """Return the condition number of a rate matrix B from its Gram matrix, ``B^T B`` or ``B B^T``.
 
     It is the root of the ratio of the largest to the smallest eigenvalue.
     """
@@ -170,7 +170,7 @@ class Limit:
 
 @dataclass(frozen=True)
 class RateFacts:
-    """The data of a :class:`RateMatrix` in addition to its entries: frame, parameters, determinant, inverse.
+    """The data of a :class:`RateMatrix` besides its entries: frame, parameters, determinant, inverse.
 
     The determinant depends on the parameters only through ``variable`` (an angle or a length). ``along(x)`` returns
     the determinant and the inverse with ``variable`` set to x, for x in ``domain``; their limits at the singular values
@@ -221,7 +221,7 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     facts: RateFacts
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Any:
-        """Return a plain matrix, not a rate matrix: SymPy calls this when it rebuilds a matrix with ``func(*args)``."""
+        """Return a plain matrix instead of a rate matrix, for SymPy, which rebuilds matrices with ``func(*args)``."""
         return ImmutableDenseMatrix(*args, **kwargs)
 
     @classmethod
@@ -240,7 +240,7 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
         return type(self).build, (self.as_immutable(), self.facts)
 
     def as_immutable(self) -> ImmutableMatrix:
-        """Return the plain immutable matrix."""
+        """Return the entries as a plain immutable SymPy matrix."""
         return ImmutableDenseMatrix._fromrep(self._rep)
 
     @property

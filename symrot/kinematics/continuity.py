@@ -61,7 +61,7 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
 
 
 def _step(before: Array, after: Array) -> Array:
-    """Return the sum of the squared differences of two sets of angles, each difference taken modulo 2 pi."""
+    """Return the squared distance between two sets of angles, in revolutions, with differences modulo 2 pi."""
     turns = (after - before) / (2 * np.pi)
     step: Array = np.sum((turns - np.rint(turns)) ** 2, axis=-1)
     return step

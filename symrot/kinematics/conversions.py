@@ -388,7 +388,7 @@ def mrp_switch(s: Any) -> tuple[Array, Mask]:
 
 
 def places(sequence: str) -> tuple[tuple[int, int, int], tuple[int, int, int], int, int]:
-    """Return axes and angle indices of the factors of ``dcm_sb``, and m, sign of ``e_1 x e_2 = sign e_m``."""
+    """Return (axes, angle indices, m, sign) of the factors of ``dcm_sb``, with ``e_1 x e_2 = sign e_m``."""
     axes, intrinsic = parse_sequence(sequence)
     (first, middle, last), order = (axes, (0, 1, 2)) if intrinsic else (axes[::-1], (2, 1, 0))
     return (first, middle, last), order, 3 - first - middle, 1 if (middle - first) % 3 == 1 else -1

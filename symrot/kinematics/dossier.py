@@ -1,4 +1,4 @@
-"""The singularities of an Euler sequence: where it locks, how its rates grow there, and which sequences to use instead.
+"""The singularities of an Euler sequence: where gimbal lock occurs, how the rates grow there, which sequences to use.
 
 Every entry is derived from :func:`symrot.kinematics.euler.rate_jacobian`; no table is typed in.
 """
@@ -43,14 +43,14 @@ class LockedPoint:
 
     @property
     def combination(self) -> Expr:
-        """The sum or difference of first and third angle; at lock the attitude depends on this combination alone."""
+        """The sum or difference of first and third angle on which alone the attitude depends at gimbal lock."""
         first, _, third = symbols.angles
         return first - third * self.silent_rates[0] / self.silent_rates[2]
 
 
 @dataclass(frozen=True)
 class SingularityDossier:
-    """The singularities of an Euler sequence: where it locks, its lost rates, and the sequences that are regular there.
+    """The singularities of an Euler sequence: where gimbal lock occurs, the lost axis there, and regular sequences.
 
     Attributes
     ----------
@@ -168,7 +168,7 @@ def _rows(matrix: Matrix, indent: str = "  ") -> list[str]:
 
 
 def _locked_point(sequence: str, middle: Expr) -> LockedPoint:
-    """Return a singular value of the middle angle with its ineffective angle rates and its lost axis.
+    """Return the data of gimbal lock at a value of the middle angle: rates without effect, and the lost axis.
 
     There the first and last axis coincide up to sign, ``b_first = s b_last``. So the rates ``1, 0, -s`` do not rotate
     the body, and no rates rotate the body about the axis perpendicular to the last and the middle axis.
@@ -185,7 +185,7 @@ def _locked_point(sequence: str, middle: Expr) -> LockedPoint:
 
 @cache
 def singularity_dossier(sequence: str) -> SingularityDossier:
-    """Return the singular points of an Euler sequence, its lost rates, and the sequences that are regular there.
+    """Return where an Euler sequence has gimbal lock, the axes lost there, and the sequences that are regular there.
 
     Parameters
     ----------

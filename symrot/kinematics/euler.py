@@ -152,7 +152,7 @@ def _core(sequence: str, frame: str, angles: Sequence[Any] | None) -> tuple[Matr
 
 
 def _solved(carry: Matrix, core: Matrix, order: Matrix) -> tuple[Expr, ImmutableMatrix | None]:
-    """Return determinant and inverse of ``carry * core * order``; None as the inverse if the determinant is 0.
+    """Return (determinant, inverse) of the rate matrix ``carry * core * order``; no inverse if the determinant is 0.
 
     Only ``core``, which depends on one angle, is inverted: ``carry`` is a rotation and ``order`` a permutation.
     """
@@ -277,7 +277,7 @@ def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> E
 
 @cache
 def sequences_at_lock(sequence: str) -> dict[str, Set]:
-    """Return, for each other sequence, at which of the attitudes where ``sequence`` locks that sequence locks too.
+    """Return, for each other sequence, at which gimbal-lock attitudes of ``sequence`` it is in gimbal lock too.
 
     In gimbal lock the first and the last rotation are about the same line, and the attitude depends on one combination
     of their angles; so the angle of the right factor is set to zero here. Each value is a set of angles of the left

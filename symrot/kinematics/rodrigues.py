@@ -1,8 +1,8 @@
 """Rodrigues parameters: classical, axis times tan(angle/2), and modified, axis times tan(angle/4).
 
 Both are projections of the unit quaternions from a point on the scalar axis: the classical parameters from the centre
-of the unit sphere, the modified ones from (-1, 0, 0, 0). Each projection is described by a quaternion h(p) of any norm
-that is polynomial in the parameters; the dcm and the rates follow from h by the Hamilton product and are rational in p.
+of the unit sphere, the modified parameters from (-1, 0, 0, 0). Each projection is described by a quaternion h(p) of any
+norm, polynomial in the parameters; the dcm and the rates follow from h by the Hamilton product and are rational in p.
 Convention: :mod:`symrot.conventions`. Proof: ``derivations/rodrigues.md``.
 """
 
@@ -39,8 +39,8 @@ class Projection:
     def homogeneous(self, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
         """Return a quaternion h(p) of the attitude, polynomial in the parameters, of any norm, shape (4, 1).
 
-        The line from ``(-centre, 0, 0, 0)`` through ``(0, p)`` meets the unit sphere at ``(-centre, 0) + k (centre or
-        1, p)``. Leaving the scale free avoids the square root of a unit quaternion.
+        It is ``(1, p)`` for classical and ``(1 - p^2, 2 p)`` for modified parameters. Leaving the norm free avoids the
+        square root of a unit quaternion.
         """
         p = expressions(self.parameters if values is None else values, 3, self.name)
         if self.centre == 0:
@@ -125,7 +125,7 @@ def _rate_matrix(which: Projection, frame: str) -> RateMatrix:
 def _along(
     parameters: tuple[Symbol, ...], determinant: Expr, inverse: ImmutableMatrix, size: Expr
 ) -> tuple[Expr, ImmutableMatrix]:
-    """Return the determinant and the inverse of the rate matrix at ``p = size * n``, for a unit axis n."""
+    """Return (determinant, inverse) of the rate matrix at the parameters ``size * n``, for a unit axis n."""
     straight = dict(zip(parameters, (size, Integer(0), Integer(0)), strict=True))
     turned = dict(zip(parameters, (size * n for n in symbols.axis), strict=True))
     return determinant.xreplace(straight), inverse.xreplace(turned)

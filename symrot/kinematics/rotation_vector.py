@@ -127,7 +127,7 @@ def jacobian(frame: str = "body", vector: Sequence[Any] | Matrix = symbols.rotat
 
 
 def _along(frame: str, size: Expr) -> tuple[Expr, ImmutableMatrix]:
-    """Return the determinant and the inverse of the rate matrix at ``v = size * n``, for a unit axis n."""
+    """Return (determinant, inverse) of the rate matrix at the rotation vector ``size * n``, for a unit axis n."""
     vector = tuple(size * n for n in symbols.axis)
     return (sin(size / 2) / (size / 2)) ** 2, _combine(f"{frame} inverse", vector, size)
 

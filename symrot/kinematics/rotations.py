@@ -93,7 +93,7 @@ def elementary_rotation(axis: int | str, angle: Any) -> ImmutableMatrix:
 
     Notes
     -----
-    A vector along the axis e stays, a vector normal to it rotates:
+    A vector along the axis e is unchanged, and a vector normal to it rotates:
     ``e e^T + cos(angle) (1 - e e^T) + sin(angle) skew(e)``.
     """
     return _elementary_rotation(axis_number(axis), sympify(angle))

@@ -152,7 +152,7 @@ PEERS_IN_C: dict[str, Callable[[str], str | None]] = {"by hand": by_hand, "SymPy
 def counted(text: str, name: str) -> Counter[str]:
     """Return the number of operations of each kind in a C function; equal operations count only once.
 
-    :mod:`symrot.certificates.readback` reads the C text.
+    The C code is parsed by :mod:`symrot.certificates.readback`.
     """
     text = re.sub(r"^#include.*\n", "", text, flags=re.MULTILINE)
     counts: Counter[str] = Counter()
@@ -165,7 +165,7 @@ def counted(text: str, name: str) -> Counter[str]:
 
 
 def casadi_function(name: str) -> tuple[Any, Counter[str]]:
-    """Return CasADi's function for a kernel, with its common subexpressions shared, and its operations by kind.
+    """Return CasADi's function for a kernel, with common subexpressions shared, and its number of operations by kind.
 
     All inputs are components of one vector.
     """

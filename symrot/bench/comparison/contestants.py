@@ -1,10 +1,9 @@
-"""Contestants of a work-precision study: symrot's methods, SciPy's, and heyoka in each of its settings.
+"""Contestants of a work-precision study: symrot's methods, SciPy's methods, and heyoka in each of its settings.
 
 For one tolerance, a contestant prepares a function that computes the motion from its start to a given time and returns
-the states there and the number of steps. Work that a user does once (deriving, compiling, heyoka's own compiling) is
-part of the preparation and not timed. All functions are called from Python, as users call them. SciPy gets the NumPy
-kernel that symrot emits for the scene, rewritten for single states with Python floats and :mod:`math`, which takes half
-the time.
+the states at that time and the number of steps. Work that a user does once (deriving, compiling) is part of the
+preparation and not timed. All functions are called from Python, as users call them. SciPy gets the NumPy kernel that
+symrot emits for the scene, rewritten for single states with Python floats and :mod:`math`, which takes half the time.
 """
 
 from collections.abc import Callable, Sequence
@@ -37,7 +36,7 @@ ADAPTIVE = tuple(float(Fraction(1, 10**k)) for k in range(2, 14))  # SciPy takes
 
 
 class Contestant(NamedTuple):
-    """One contestant of a study: a method with its settings, which gives one curve of time against error.
+    """One contestant of a work-precision study: a method with its settings, one curve of time against error.
 
     ``group`` is the name that selects it in ``--methods``; ``missing`` returns why it cannot take part, or an empty
     text; ``prepare`` returns the timed function for a tolerance.
@@ -61,7 +60,7 @@ class Contestant(NamedTuple):
 
 
 def _exact(problem: Problem, tolerance: float) -> Run:
-    """Return a run of the closed form that computes its constants from the initial state in every call."""
+    """Return the timed function of the closed form; every call computes its constants from the initial state."""
     form, attitude = exact_form(problem.scene), len(problem.names) > 3
     assert form is not None
 
@@ -78,7 +77,7 @@ def _no_form(problem: Problem) -> str:
 
 
 def _symrot(method: str) -> Callable[[Problem, float], Run]:
-    """Return a function that prepares a propagator; the run calls the propagator with the end time, as a user does."""
+    """Return a function that prepares a propagator, and returns a timed function that calls it with the end time."""
 
     def prepare(problem: Problem, tolerance: float) -> Run:
         propagate = propagator(problem.scene, method, tolerance)
@@ -189,7 +188,7 @@ GROUPS = tuple(dict.fromkeys(contestant.group for contestant in CONTESTANTS))
 
 
 def chosen(methods: str | None, quick: bool) -> Sequence[Contestant]:
-    """Return the contestants of some groups (a comma-separated list), or of all groups if ``methods`` is None.
+    """Return the contestants in a comma-separated list of groups, or all contestants if ``methods`` is None.
 
     Raises
     ------

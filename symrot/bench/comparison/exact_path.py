@@ -1,8 +1,8 @@
-"""Motions computed to 30 digits at any time by Taylor series in mpmath; for free bodies, over any number of periods.
+"""Reference motions, computed to 30 digits by Taylor series in mpmath; for free bodies, over any number of periods.
 
 The angular velocity of a free body is periodic, and every period adds the same rotation: with period P and ``R = q(P)
 q(0)^-1`` the attitude is ``q(t + n P) = R^n q(t)``. So the series of one period give the motion after a million
-periods. They share no code or formula with the closed form that is compared with them.
+periods. This computation shares no code or formula with the closed form that it tests.
 """
 
 from fractions import Fraction
@@ -30,7 +30,7 @@ Floats = NDArray[np.float64]
 DIGITS, ORDER, TAIL = 40, 32, 1e-28
 FUNCTIONS = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
 MOST_STEPS = 2000
-SLOWEST = 1e-8  # part of the initial angular speed (rad/s if it is zero); errors of slower bodies are relative to it
+SLOWEST = 1e-8  # times the initial angular speed (rad/s if it is zero): errors of slower bodies are relative to this
 
 
 def _as_mpf(value: Fraction) -> Any:
@@ -38,7 +38,7 @@ def _as_mpf(value: Fraction) -> Any:
 
 
 class ExactPath:
-    """A reference for one motion: its integrated states, computed in 40 digits from the exact numbers of the scene."""
+    """The reference solution of one motion: its integrated states in 40 digits, from the exact numbers of the scene."""
 
     def __init__(self, motion: Motion) -> None:
         self.motion, plan, kernel = motion, motion.plan, motion.kernel
@@ -136,9 +136,7 @@ class ExactPath:
         raise InputError("expected a free body off its separatrix, got one whose angular velocity does not return")
 
     def _newton(self, t: Any) -> Any:
-        """Return the time near t at which the angular velocity has its initial value, by Newton's method; None if it
-        fails.
-        """
+        """Return the time near t at which omega has its initial value, or None if Newton's method fails."""
         start = self.start[: self.rates]
         self._state(self.t0)
         speeds = [one[1] for one in self.pieces[0][2][: self.rates]]

@@ -1,4 +1,4 @@
-"""Runs of heyoka and SciPy, for comparison, on the same right-hand sides that symrot emits."""
+"""Runs of heyoka and SciPy, for comparison with symrot, on the right-hand sides that symrot derives."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -53,10 +53,9 @@ def heyoka_integrator(
 
 
 def scalar_kernel(program: Program) -> Callable[..., Any]:
-    """Return the emitted NumPy kernel as ``f(t, y, p)`` for SciPy, rewritten for one state at a time.
+    """Return the emitted NumPy kernel as ``f(t, y, p)`` for SciPy, rewritten for one state at a time, given as a list.
 
-    An expert would write it so: Python floats and :mod:`math` replace zero-dimensional arrays, which halves the time.
-    The state is a list.
+    Python floats and :mod:`math` replace zero-dimensional arrays, which halves the time; an expert would do so too.
     """
     text = numpy_source(program, UNNAMED).replace("import numpy as np", "import math\n\nimport numpy as np")
     text = re.sub(r"np\.empty\(\((\d+), \*np\.shape\(y\)\[1:\]\)\)", r"np.empty(\1)", text)

@@ -61,7 +61,7 @@ class Problem:
 
     @cached_property
     def parameters(self) -> dict[str, float]:
-        """The values of the rate parameters, by name."""
+        """The values of the parameters of the rates dy/dt, by name."""
         return dict(zip((name for name, _ in self.kernel.rate_parameters), self.p, strict=True))
 
     @property
@@ -84,7 +84,7 @@ class Problem:
 
     @staticmethod
     def error(state: State, exact: State, least: float = 0.0) -> float:
-        """Return the larger of two errors: of the angular velocity, relative to its size; of the attitude, in rad.
+        """Return the larger of two errors: relative error of the angular velocity, and error of the attitude in rad.
 
         For a body slower than ``least``, rad/s, the first error is relative to ``least``: a body that is nearly at rest
         before a pulse may rotate at 1e-40 rad/s, where relative errors are meaningless.

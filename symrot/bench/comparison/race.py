@@ -71,7 +71,10 @@ def race(
     rounds: int,
     turn: Callable[[int], object] = lambda number: None,
 ) -> None:
-    """Time all runs alternately and append their seconds; ``turn`` is called with the number of each round."""
+    """Time all runs alternately, and append the seconds to their entries.
+
+    ``turn`` is called with the number of each round.
+    """
     collecting = gc.isenabled()
     gc.disable()
     try:

@@ -1,4 +1,4 @@
-"""Reference states of a scene's motion, computed in several independent ways, and the differences between them.
+"""Reference states of a scene's motion, computed by several independent methods, and their differences.
 
 ===========================  =====================  ============================  ==========================
 reference                    equations              method                        arithmetic
@@ -68,7 +68,7 @@ FEWEST_STEPS = 64
 GRID_TOLERANCE = 1e-8  # tolerance of the motion whose steps show where fixed steps must be short
 CONTRADICTION = 1e-6  # a larger difference between references means that one of them is wrong
 CONVERGED = 4e-19  # smallest error per radian of rotation (at least one radian) that long double can reach
-ROUNDED = 1e-15  # per radian: smaller changes may be rounding errors, larger ones come from kinks in the torque
+ROUNDED = 1e-15  # per radian: smaller changes may be rounding errors, larger changes come from kinks in the torque
 LONG_DOUBLE_BITS = 63  # smallest number of bits of the fraction that makes long double better than double
 LITERAL = re.compile(r"(?<![\w.])(\d+\.\d*(?:[eE][+-]?\d+)?|\d+[eE][+-]?\d+)(?![\w.])")
 CALLS = re.compile(r"\b(sqrt|sin|cos|tan|exp|log|fabs|sinh|cosh|tanh|asin|acos|atan|atan2|pow)\(")
@@ -101,7 +101,7 @@ class Reference(NamedTuple):
 
 
 class _Unavailable(Exception):
-    """The signal that a reference is not available for this motion or on this machine; its text is the reason."""
+    """Raised if a reference is not available for this motion or on this machine; its text is the reason."""
 
 
 def reference(problem: Problem, say: Progress = lambda text: None, seconds: float = MOST_SECONDS) -> Reference:
@@ -190,7 +190,7 @@ def _taylor(problem: Problem, say: Progress, seconds: float) -> list[State]:
 def _series(
     problem: Problem, exact_numbers: tuple[dict[str, Fraction], list[Fraction]], say: Progress, seconds: float
 ) -> list[list[Any]]:
-    """Return the integrated states at the times of comparison, computed step by step."""
+    """Return the integrated states at the times of comparison, by Taylor series step by step."""
     import mpmath
 
     system, functions, sizes = recurrences(problem.kernel.rates), _functions(), _sizes(problem)
@@ -229,13 +229,13 @@ def _series(
 
 
 def _sizes(problem: Problem) -> list[float]:
-    """Return the unit of the error of each state: the size of omega for angular velocities, 1 for an attitude."""
+    """Return the unit of the error of each state: the initial |omega| for angular velocities, 1 for an attitude."""
     spin = float(np.linalg.norm([float(value) for value in problem.scene.initial.omega_b])) or 1.0
     return [spin if name.startswith("omega") else 1.0 for name in problem.plan.states]
 
 
 def _state(problem: Problem, last: list[Any], end: float) -> State:
-    """Return the state of the body from the integrated states, evaluated in their working precision."""
+    """Return the state of the body at time ``end`` from the integrated states ``last``, evaluated in mpmath."""
     import mpmath
 
     kernel, plan = problem.kernel, problem.plan
@@ -253,7 +253,7 @@ def _state(problem: Problem, last: list[Any], end: float) -> State:
 
 
 def longer(source: str) -> str:
-    """Return C text in which every double, literal and function is its long double version."""
+    """Return C code with every double, literal and library function replaced by its long double version."""
     text = CALLS.sub(r"\1l(", LITERAL.sub(r"\1L", source))
     return re.sub(r"\bdouble\b", "long double", text)
 
@@ -355,7 +355,7 @@ def _fixed_steps(
 
 
 def _long_state(general: Problem, y: Any, end: float) -> State:
-    """Return the state of the body from integrated states, evaluated in long double."""
+    """Return the state of the body at time ``end`` from the integrated states ``y``, evaluated in long double."""
     exact = _exact_parameters(general.kernel.quantity_parameters, general.plan)
     values: dict[str, Any] = dict(zip(general.plan.states, y, strict=True)) | {"t": np.longdouble(end)}
     values |= {name: _long_number(value) for name, value in exact.items()}

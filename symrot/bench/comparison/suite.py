@@ -161,7 +161,7 @@ def _cell(one: Mapping[str, Any], peer: str, side: str = "stepped") -> str:
 
 
 def _ratio(middle: float, least: float) -> str:
-    """Return a median ratio and, in brackets, the smallest ratio as text, each with at least two digits."""
+    """Return the text of a median ratio and, in brackets, of the smallest ratio, each with at least two digits."""
     return " ".join(
         form.format(f"{value:.{0 if value >= 10 else 1}f}") for form, value in (("{}", middle), ("({})", least))
     )

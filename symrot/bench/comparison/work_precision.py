@@ -38,7 +38,7 @@ OURS = ("exact", "exact with set-up", *STEPPED)
 
 
 class Effort(NamedTuple):
-    """Limits of the duration of a study."""
+    """Limits of the duration of a work-precision study."""
 
     rounds: int
     longest: float  # s: after a longer run, the tighter tolerances of its contestant are skipped
@@ -170,7 +170,7 @@ def best(runs: Iterable[dict[str, Any]], error: float) -> dict[str, Any] | None:
 
 
 def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str, Any]]:
-    """Return, for each decade of the error, the fastest run and the ratios of all methods to it.
+    """Return, for each decade of the error, the fastest run, and the times of all methods relative to it.
 
     Decades below ``floor``, the difference between the references, are left out.
     """
@@ -195,9 +195,10 @@ def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str
 
 
 def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return, for each peer, median and least ratio of its time to symrot's steppers, and to all methods of symrot.
+    """Return, for each peer, the median and least ratio of its time to that of symrot, over the decades of the error.
 
-    If heyoka ran in several settings, its fastest setting at each decade is one more peer.
+    The ratios are to symrot's steppers and to all its methods. If heyoka ran in several settings, its fastest setting
+    at each decade is one more peer.
     """
     peers = list(dict.fromkeys(name for row in rows for name in row["methods"] if name not in (*OURS, "symrot scipy")))
     settings = [name for name in peers if name.startswith("heyoka")]

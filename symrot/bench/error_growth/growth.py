@@ -67,7 +67,7 @@ class Track:
 
     @staticmethod
     def rough(scene: Scene) -> str:
-        """Return a sentence that says why a motion has no Taylor series, or an empty text if it has one."""
+        """Return the reason, as a sentence, why a motion has no Taylor series, or an empty text if it has one."""
         return non_smooth_torque(propagator(scene, "scipy").plan)
 
     def trajectory(self, states: Floats, motion: Motion | None = None) -> Trajectory:
@@ -203,6 +203,6 @@ def exponent(revolutions: Floats, errors: Floats) -> float:
 
 
 def median_curve(curves: list[Any], name: str) -> Floats:
-    """Return the median over several motions of one method's errors; ``name`` is the field of :class:`Curve`."""
+    """Return the median over several motions of one kind of error, a field of :class:`Curve` such as ``attitude``."""
     medians: Floats = np.exp(np.median(np.log(np.array([getattr(c, name) for c in curves]) + 1e-18), axis=0))
     return medians

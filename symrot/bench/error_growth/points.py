@@ -120,9 +120,9 @@ def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.
 
 
 def _strain(first: Floats, last: Floats) -> float:
-    """Return the change of shape between two sets of points, the spread of the ratios of their distances.
+    """Return the strain between two positions of a set of points: largest over least ratio of a distance, minus 1.
 
-    A uniform change of size does not count.
+    So a uniform change of size does not count.
     """
     pairs = np.triu_indices(len(first), 1)
     before, after = (np.linalg.norm(each[pairs[0]] - each[pairs[1]], axis=1) for each in (first, last))

@@ -60,7 +60,7 @@ def _rates(axes: Any, data: Any) -> None:
 
 
 def _smoothed(at: Any, values: Any, linear: bool) -> Any:
-    """Return the largest error so far at each time, because an error that changes sign is not small there."""
+    """Return the largest error up to each time, since an error that changes sign is not really small at its zeros."""
     if not linear:
         return values
     largest = np.fmax.accumulate(values)

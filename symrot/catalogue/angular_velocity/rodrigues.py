@@ -1,4 +1,4 @@
-"""Rodrigues parameters, classical and modified: projections of the unit quaternions from a point onto a space."""
+"""Rodrigues parameters, classical and modified: projections of the unit quaternions from a point onto a hyperplane."""
 
 from dataclasses import dataclass
 

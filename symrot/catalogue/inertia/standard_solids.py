@@ -173,7 +173,7 @@ def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
 
 
 def _between(body: Solid, axes: Sequence[int]) -> list[tuple[str, Expr, Expr]]:
-    """Return, for each integration, words and an equation for the antiderivative between its limits."""
+    """Return (words, left side, right side) for the antiderivative between its limits, for each integration."""
     equations = []
     for stage in _stages(body, axes)[1]:
         upper, lower = (stage.antiderivative.subs(stage.variable, end) for end in (stage.upper, stage.lower))

@@ -14,7 +14,7 @@ I = Symbol("i")  # noqa: E741
 
 
 def imaginary() -> Expr:
-    """Return the expression i^2 + 1, which as a hypothesis is zero, for the symbol i."""
+    """Return the expression i^2 + 1 for the symbol i; proofs assume that it is zero."""
     return I**2 + 1
 
 

@@ -19,7 +19,7 @@ V, X, R, KAPPA = Symbol("v"), Symbol("x"), Symbol("r"), Symbol("kappa")
 def far(d: Derivation) -> None:
     """Append steps to the derivation ``d`` on the coefficients of the series far from resonance.
 
-    These series describe the vector at rest in space, and the small angle about this vector.
+    These series describe a vector that is fixed in space, and the small angle of rotation about this vector.
     """
     d.section("The coefficients far from resonance")
     _vector(d)

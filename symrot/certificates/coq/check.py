@@ -50,7 +50,7 @@ class CoqResult:
     axioms : tuple of str
         The axioms on which the theorems rest, all together.
     problems : tuple of str
-        One sentence each: what was refused, where, and the message of Coq.
+        One sentence for each refused file or theorem, with the place and the message of Coq.
     seconds : float
     version : str
     """
@@ -66,10 +66,7 @@ class CoqResult:
 
 
 def coqc() -> str | None:
-    """Return the path of Coq's compiler ``coqc``, from the variable ``COQC`` or the search path.
-
-    None if it is not installed.
-    """
+    """Return the path of Coq's compiler, from the variable ``COQC`` or the search path; None if it is not installed."""
     return shutil.which(os.environ.get("COQC") or "coqc")
 
 
@@ -80,10 +77,7 @@ def coq_version(compiler: str) -> str:
 
 
 def unproven(text: str) -> tuple[str, ...]:
-    """Return the words of a Coq file that assume a statement or skip a proof, such as ``Admitted``.
-
-    Comments are ignored.
-    """
+    """Return the words of a Coq file, comments excluded, that assume a statement or skip a proof: ``Admitted`` etc."""
     return tuple(match[0] for match in _UNPROVEN.finditer(_COMMENT.sub(" ", text)))
 
 
@@ -172,10 +166,7 @@ def _required(text: str) -> set[str]:
 
 
 def _levels(sources: Mapping[str, str]) -> list[list[str]]:
-    """Return files of theorems in groups, so that each file needs only files of earlier groups.
-
-    The files of a group are checked in parallel.
-    """
+    """Return Coq files in groups that can be checked in parallel: each file needs only files of earlier groups."""
     levels: list[list[str]] = []
     left, done = dict(sources), set[str]()
     while left:

@@ -1,4 +1,4 @@
-"""Theorems of Coq about dynamics: Euler's equations from the law of angular momentum, energy, the inertia tensor."""
+"""Coq theorems about dynamics: Euler's equations follow from the law of angular momentum; energy; inertia tensor."""
 
 from symrot import symbols
 from symrot.certificates.coq.file import CoqFile, Theorem, statement

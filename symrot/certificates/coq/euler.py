@@ -1,9 +1,9 @@
-"""Theorems of Coq about Euler angles: the angle rates agree with the derivative of the rotation matrix (24 sequences).
+"""Coq theorems about Euler angles: the angle rates agree with the derivative of the rotation matrix (24 sequences).
 
-The rotation matrix (dcm) is the product of three rotations with an angular velocity each. The angular velocity of the
-product is the sum of the three, after the rotations in between carry each of them into one common frame
+The rotation matrix (dcm) is the product of three rotations, each with its own angular velocity. The angular velocity of
+the product is the sum of all three in one common frame, into which the rotations in between carry them
 (``three_turns_body`` and ``three_turns_space`` in ``rotation.v``). It remains to prove that the printed rate Jacobian
-is that sum: three identities of products of sines and cosines.
+gives that sum: three identities of products of sines and cosines.
 """
 
 from sympy import cos, sin

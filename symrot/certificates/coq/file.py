@@ -74,10 +74,7 @@ def _short(line: str) -> str:
 
 
 def derivatives(functions: Sequence[str], rates: Sequence[str]) -> str:
-    """Return Coq hypotheses: each function of time in ``functions`` has at t the derivative in ``rates``.
-
-    Each hypothesis is followed by ``->``.
-    """
+    """Return Coq hypotheses, each followed by ``->``: the derivative at t of each function of time is its rate."""
     pairs = zip(functions, rates, strict=True)
     return folded("  " + " ".join(f"derivable_pt_lim {each} t {rate} ->" for each, rate in pairs), 2)
 

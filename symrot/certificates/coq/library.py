@@ -113,12 +113,10 @@ def _theorem_about(kernel: str) -> tuple[str, Theorem] | None:
 
 
 def coq_section(kernel: str) -> dict[str, Any] | None:
-    """Return the section ``coq`` of a kernel's certificate, which states the theorem about the kernel.
-
-    None without a theorem.
+    """Return the section ``coq`` of a kernel's certificate, which states the theorem about the kernel, or None.
 
     The section is made without Coq: it states the theorem and does not say that Coq has checked it
-    (:func:`symrot.certificates.coq.check.check_kernel` checks it).
+    (:func:`symrot.certificates.coq.check.check_kernel` checks it). Not every kernel has a theorem.
 
     Parameters
     ----------
@@ -129,7 +127,7 @@ def coq_section(kernel: str) -> dict[str, Any] | None:
     -------
     dict or None
         ``file``, ``theorem``, ``statement`` (its text), ``statement_sha256``, ``file_sha256``, ``requires`` (file ->
-        sha256) and ``axioms``, the only ones on which the theorem may rest.
+        sha256) and ``axioms``, the only axioms on which the theorem may rest.
     """
     home = _theorem_about(kernel)
     if home is None:

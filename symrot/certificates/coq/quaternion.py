@@ -1,4 +1,4 @@
-"""Theorems of Coq about unit quaternions: the rotations that they represent, and their rates."""
+"""Coq theorems about unit quaternions: the rotations that they represent, and their rates."""
 
 from collections.abc import Sequence
 
@@ -75,7 +75,7 @@ def _wrapped(text: str) -> str:
 
 
 def _path(name: str, parameters: Sequence[str]) -> tuple[str, str]:
-    """Return the Coq text of a rotation matrix (dcm), twice: as a function of time, and as its value at time t."""
+    """Return the Coq texts of a rotation matrix (dcm) as a function of time, and of its value at time t."""
     return (f"fun u => {name} " + " ".join(f"({each} u)" for each in parameters),
             f"{name} " + " ".join(f"({each} t)" for each in parameters))  # fmt: skip
 

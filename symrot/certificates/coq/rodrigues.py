@@ -1,4 +1,4 @@
-"""Theorems of Coq about classical and modified Rodrigues parameters: the attitude they describe, and their rates."""
+"""Coq theorems about classical and modified Rodrigues parameters: the attitude they describe, and their rates."""
 
 from symrot import symbols
 from symrot.certificates.coq.euler import DCM_RATE, OMEGA
@@ -13,7 +13,7 @@ _RATES = {"rodrigues": tuple(map(str, symbols.rodrigues_rates)), "mrp": tuple(ma
 
 
 def rodrigues_file(name: str) -> CoqFile:
-    """Return the Coq file about ``"rodrigues"`` (classical Rodrigues parameters) or ``"mrp"`` (modified ones)."""
+    """Return the Coq file about classical (``"rodrigues"``) or modified (``"mrp"``) Rodrigues parameters."""
     which = projection(name)
     parameters = tuple(map(str, which.parameters))
     return CoqFile(

@@ -1,4 +1,4 @@
-"""Print SymPy expressions and kernels as text of Coq: rational functions, sines, cosines and roots of real variables.
+"""Print SymPy expressions and kernels as Coq text: rational functions, sines, cosines and roots of real variables.
 
 Terms and factors are in SymPy's canonical order, so that the same formula gives the same bytes on every machine.
 """

@@ -1,1 +1,1 @@
-"""Proofs that a kernel's formulas obey their laws (such as "the norm is 1") and that its C text computes them."""
+"""Proofs that a kernel's formulas obey laws (such as "the norm is 1"), and that its C code computes the formulas."""

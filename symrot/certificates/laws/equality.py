@@ -41,7 +41,7 @@ class Truncation:
 
 @dataclass(frozen=True)
 class Equality:
-    """The proof that each output of the C text is its formula.
+    """The proof that the C text computes the formula of each output.
 
     ``atoms`` are tuples (symbol, function, arguments): each symbol stands for the value of a function such as
     ``sin(x)``. ``formulas`` are tuples (output such as ``"q[1]"``, numerator, denominator), as text over inputs, pi and
@@ -77,10 +77,7 @@ class _AtomField(FractionField):
 
 
 class _Formulas(FormulaReader):
-    """A converter of SymPy formulas to fractions of polynomials; functions such as ``sin(x)`` become symbols.
-
-    Values of functions such as ``sin(x)`` become symbols.
-    """
+    """A converter of SymPy formulas to fractions of polynomials; functions such as ``sin(x)`` become symbols."""
 
     def __init__(self, fractions: _AtomField, named: Sequence[tuple[Symbol, Expr]] = ()) -> None:
         self.fractions: _AtomField = fractions
@@ -101,10 +98,7 @@ class _Formulas(FormulaReader):
 
 @dataclass(frozen=True)
 class FunctionWithLimit:
-    """A function that the C text computes by a conditional: its limit at zero, its formula elsewhere.
-
-    ``sin(x)/x`` is one.
-    """
+    """A function, such as ``sin(x)/x``, that the C text computes by its limit at zero and its formula elsewhere."""
 
     name: str
     formula: Expr
@@ -148,7 +142,7 @@ class _EqualityProver:
         return {place: self.values[index] for place, index in self.operations.outputs}
 
     def _below(self, index: int, leaf: int) -> set[int]:
-        """Return the nodes of the graph of operations that form a polynomial in the value of the node ``leaf``."""
+        """Return the operations from node ``leaf`` to node ``index``, which must form a polynomial in the leaf."""
         if index == leaf:
             return set()
         node = self.operations.nodes[index]
@@ -220,7 +214,7 @@ class _EqualityProver:
         return then == reader.read(function.limit) and other == reader.read(function.formula)
 
     def _series(self, square: int, split: int, near: int, far: int) -> Quotient:
-        """Return the symbol for the function with the series ``near`` and the formula ``far``, two branches in C."""
+        """Return the symbol for a function that the C text computes by a series near zero and a formula far from it."""
         for (name, arguments), atom in list(self.fractions.atoms.items()):
             if name not in REMOVABLE or self.fractions.multiply(arguments[0], arguments[0]) != self.values[square]:
                 continue
@@ -303,7 +297,7 @@ def prove_equal(
     Raises
     ------
     CertificateError
-        Naming the first output that differs, or the operation that has no counterpart in the formulas.
+        If an output differs, or an operation has no counterpart in the formulas; the message names the first.
     """
     parameters = parameters or {}
     constants = {str(symbol) for value in parameters.values() for symbol in value.free_symbols}

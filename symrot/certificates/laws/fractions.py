@@ -1,8 +1,7 @@
 """Exact arithmetic with fractions of polynomials over the rationals, and SymPy formulas as such fractions.
 
-The proofs of laws and of the equality of C text and formulas share this arithmetic, although they prove different
-statements. Neither checks the other; the check that is independent of both is :mod:`symrot.certificates.exact_check`,
-which uses no polynomials at all.
+Two kinds of proof share this arithmetic: of the laws, and of the equality of C text and formulas. An independent check
+of both is :mod:`symrot.certificates.exact_check`, which uses no polynomials at all.
 """
 
 from abc import ABC, abstractmethod

@@ -66,21 +66,18 @@ class CaseProof:
 
 
 class UndecidedChoice(Exception):
-    """The exception for a conditional whose branch is not chosen yet; its arguments are both compared sides.
-
-    Its arguments are both compared sides.
-    """
+    """Raised for a conditional whose branch is not chosen yet; the arguments are the two sides that it compares."""
 
 
 class BaseAngleTooLarge(Exception):
-    """The exception for an angle, such as x/2, that is no integer multiple of its base angle, such as x.
+    """Raised for an angle, such as x/2, that is no integer multiple of its base angle, such as x.
 
-    Its arguments are the monomial x of which both are multiples, and the coefficient of the smaller base angle needed.
+    The arguments are the monomial x of which both are multiples, and the coefficient of the smaller base angle needed.
     """
 
 
 class OutOfGenerators(Exception):
-    """The exception for a proof that needs more variables (generators) than the polynomial ring has."""
+    """Raised if a proof needs more variables (generators) than the polynomial ring has."""
 
 
 @dataclass
@@ -115,10 +112,7 @@ class LawProver(FormulaReader):
         self.pool = sum(name.endswith("_") and name[0] == "g" and name[1:-1].isdigit() for name in generators)
 
     def run(self, decided: Sequence[Choice]) -> CaseProof:
-        """Return the proof of one case.
-
-        Raise CertificateError if an expression of the law is not a combination of the relations.
-        """
+        """Return the proof of one case; raise CertificateError if the law does not follow from the relations."""
         self.decided = {(left, right): relation for left, relation, right in decided}
         hypotheses = [self.read(relation) for relation in self.law.relations]
         if any(below != 1 for _, below in hypotheses):
@@ -147,10 +141,7 @@ class LawProver(FormulaReader):
         return self.read(self.formulas[name]) if name in self.formulas else self.fractions.generator(name)
 
     def function(self, expr: Expr) -> Quotient:
-        """Return a function call, such as ``sin(x)``, in variables of the ring.
-
-        Record the facts that the conversion uses.
-        """
+        """Return a function call, such as ``sin(x)``, in variables of the ring, and record the facts used for it."""
         name = "abs" if isinstance(expr, Abs) else expr.func.__name__
         if isinstance(expr, (cos, sin)):
             return self.cosine_and_sine(self.angle(expr.args[0]))[isinstance(expr, sin)]
@@ -178,10 +169,7 @@ class LawProver(FormulaReader):
         return self.decided[left, right] == ">="
 
     def generator(self, meaning: str) -> PolyElement:
-        """Return a new variable of the ring for the value of a function.
-
-        Raise :class:`OutOfGenerators` if none is left.
-        """
+        """Return a new variable of the ring for the value of a function; raise OutOfGenerators if all are in use."""
         if self.generator_count == self.pool:
             raise OutOfGenerators
         self.generator_count += 1
@@ -190,10 +178,7 @@ class LawProver(FormulaReader):
         return self.fractions.generators[name]
 
     def root(self, square: Quotient) -> Quotient:
-        """Return the square root of a fraction, reduced by the relations first.
-
-        The root of a perfect square is a polynomial.
-        """
+        """Return the square root of a fraction, which is reduced by the relations first to find perfect squares."""
         if square not in self.roots:
             above, below = self.fractions.lowest(self.remainder(square[0]), self.remainder(square[1]))
             if not self.is_nonnegative(below):
@@ -224,10 +209,7 @@ class LawProver(FormulaReader):
         return self.radicals[inside]
 
     def perfect(self, inside: PolyElement) -> PolyElement | None:
-        """Return the root of a polynomial that is a perfect square, if the root is never negative; otherwise None.
-
-        Otherwise None.
-        """
+        """Return the root of a polynomial that is a perfect square, if the root is never negative; otherwise None."""
         content, factors = inside.factor_list()
         roots = [isqrt(abs(int(number))) for number in (content.numerator, content.denominator)]
         if content < 0 or roots[0] ** 2 != content.numerator or roots[1] ** 2 != content.denominator:
@@ -344,10 +326,7 @@ class LawProver(FormulaReader):
         return result if times > 0 else (result[0], (-result[1][0], result[1][1]))
 
     def _base(self, unit: PolyElement, coefficient: Fraction) -> Fraction:
-        """Return the coefficient of a monomial's base angle; raise BaseAngleTooLarge if it must be smaller.
-
-        Raise BaseAngleTooLarge if a smaller base angle is needed.
-        """
+        """Return the coefficient of a monomial's base angle; raise BaseAngleTooLarge if it must be smaller."""
         if unit in self.angle_functions and unit in self.arcs.values():
             if coefficient.denominator != 1:
                 raise CertificateError(
@@ -376,16 +355,14 @@ class LawProver(FormulaReader):
     # --- cofactors ----------------------------------------------------------------------------------------------------
 
     def remainder(self, value: PolyElement) -> PolyElement:
-        """Return a polynomial's remainder after division by the relations, and by a single hypothesis."""
+        """Return the remainder of a polynomial divided by the relations, and by the hypothesis if there is only one."""
         basis = [*self.rules, *(self.hypotheses if len(self.hypotheses) == 1 else ())]
         return value.rem(basis) if basis else value
 
     def cofactors(self, value: PolyElement) -> Cofactors | None:
-        """Return cofactors for which a polynomial is the sum of cofactors times relations.
+        """Return cofactors for which a polynomial is the sum of cofactors times relations, or None if not found.
 
-        None if no cofactors are found.
-
-        The relations have different leading variables, so division by them decides. If a division by the relations and
+        The relations have different leading variables, so division by them decides. If division by the relations and
         the hypotheses leaves a remainder, constants and then linear polynomials are tried as cofactors, by linear
         algebra.
         """
@@ -409,10 +386,7 @@ class LawProver(FormulaReader):
 
 
 def _combination(polynomial: PolyElement, relations: Sequence[PolyElement], degree: int) -> list[PolyElement] | None:
-    """Return cofactors of a degree (0 or 1) for which the sum of cofactors times relations is a polynomial.
-
-    None if there are none.
-    """
+    """Return cofactors of a degree (0 or 1) such that a polynomial is the sum of cofactors times relations, or None."""
     ring = polynomial.ring
     occurring = {
         place for p in (polynomial, *relations) for monomial in p for place, power in enumerate(monomial) if power

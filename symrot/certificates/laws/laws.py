@@ -1,11 +1,11 @@
-"""Prove the laws of a kernel from its formulas, as polynomial identities with cofactors that anyone can multiply out.
+"""Prove the laws of a kernel, such as "the norm is 1", from its formulas, as polynomial identities with cofactors.
 
 In a law the outputs are replaced by their formulas. The result is a fraction of polynomials over the inputs and over
 generators: variables for cosine and sine of base angles, roots, signs and arc tangents. Its numerator is a sum of
 cofactors times relations: the hypotheses of the law, ``s^2 + c^2 - 1`` for a base angle, ``r^2 - P`` for a root, ``g^2
-- 1`` for a sign. The way from functions to generators is recorded in steps, each an instance of a fact about functions
-(the tables FACTS and RELATIONS of :mod:`symrot.certificates.exact_check`), so that a second program can follow the
-proof. Each branch of a conditional is a case of its own. A law holds wherever no denominator that occurs is zero.
+- 1`` for a sign. The steps from functions to generators are recorded, each an instance of a fact about functions (the
+tables FACTS and RELATIONS of :mod:`symrot.certificates.exact_check`), so that a second program can follow the proof by
+multiplication. Each branch of a conditional is a case of its own. A law holds where no denominator is zero.
 """
 
 from collections.abc import Mapping, Sequence
@@ -91,7 +91,7 @@ def prove_law(name: str, law: Law, formulas: Mapping[str, Expr]) -> LawProof:
     return LawProof(law.text, tuple(map(str, law.vanishing)), hypothesis_names, tuple(cases), witness)
 
 
-ENTRIES = 9  # of a rotation matrix
+ENTRIES = 9  # number of entries of a rotation matrix
 
 
 def hypotheses(symbols: Sequence[Symbol]) -> tuple[Expr, ...]:
@@ -102,10 +102,7 @@ def hypotheses(symbols: Sequence[Symbol]) -> tuple[Expr, ...]:
 
 
 def _hypothesis_names(name: str, law: Law) -> tuple[str, ...]:
-    """Return the names of the symbols in a law's hypotheses.
-
-    Raise CertificateError unless they are unit vectors or rotations.
-    """
+    """Return the names of the symbols in a law's hypotheses, which must be about unit vectors or rotation matrices."""
     symbols = sorted({symbol for relation in law.relations for symbol in relation.free_symbols}, key=str)
     if hypotheses(symbols) != law.relations:
         expected = "hypotheses that some numbers have squares that sum to one, or are the entries of a rotation"
@@ -150,8 +147,5 @@ def _inputs(law: Law, formulas: Mapping[str, Expr]) -> list[str]:
 
 
 def _pool(size: int) -> list[str]:
-    """Return names of variables that a proof may still add, the last name first.
-
-    Later variables then lead in the order of monomials.
-    """
+    """Return names for variables that a proof may add, last name first, so that later variables lead in monomials."""
     return [f"g{k}_" for k in reversed(range(size))]

@@ -44,7 +44,7 @@ MAX_CASES = 20_000
 
 @dataclass(frozen=True)
 class ObjectVerdict:
-    """The verdict on the machine code of one function.
+    """The result of comparing the machine code of one function with its C text.
 
     ``verdict`` is "identical"; "identical up to contraction" (each fused multiply-add replaces a product and a sum of
     the C text with one rounding fewer; the sign of a sum that is zero may differ); "differs" (``output`` is the first
@@ -61,7 +61,7 @@ class ObjectVerdict:
 
     @property
     def accepted(self) -> bool:
-        """Whether the verdict accepts the function: its bits, or at least its error bounds, are those of the C text."""
+        """Whether the verdict accepts the function: its bits, or at least its error bounds, agree with the C text."""
         return self.verdict in (IDENTICAL, CONTRACTED)
 
     def sentence(self) -> str:
@@ -195,10 +195,10 @@ def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) ->
 
 
 def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Known, str]:
-    """Return the machine code's terms after each fused multiply-add is replaced by a rounded product and a rounded sum.
+    """Return (terms, comparisons, text) of machine code whose fused multiply-adds are split into products and sums.
 
-    The second result is a text, empty if all is well: the product that is fused in one place and rounded in another, or
-    whose comparison contradicts another comparison.
+    The text is a product that is fused in one place and rounded in another, or a number whose comparison contradicts
+    another comparison; it is empty if neither occurs.
     """
     pairs = [operand for pair in known for operand in pair]
     if not any(terms.kind(index) in ("fma", "fnma") for index in terms.order(got + pairs)):
@@ -239,19 +239,14 @@ def _cases(
 
 
 def _apart_from_zeros(terms: Terms, first: list[int], second: list[int]) -> bool:
-    """Tell whether two lists of outputs differ at most in signs of zeros.
-
-    They do if gcc fuses -(a*b + c) into (-a)*b + (-c).
-    """
+    """Tell whether two lists of outputs differ at most in signs of zeros, as if gcc fuses -(a*b + c) to (-a)*b - c."""
     return terms.without_signs_of_zero(first) == terms.without_signs_of_zero(second)
 
 
 def _split_product(terms: Terms, roots: list[int]) -> str:
-    """Return the text of a product that is rounded in one place and fused in another.
+    """Return the text of a product that is rounded in one place and fused in another; empty if there is none.
 
-    An empty text without such a product.
-
-    Its rounding error may cancel in the C text, but then does not cancel in the object code.
+    The rounding error of the product may cancel in the C text; then it does not cancel in the object code.
     """
     below = terms.order(roots)
     fused = {terms.mul(*terms.nodes[index][2:4]) for index in below if terms.kind(index) in ("fma", "fnma")}

@@ -71,10 +71,7 @@ class Constant:
 
 @dataclass(frozen=True)
 class Memory:
-    """A memory operand: ``size`` bytes at base + index*scale + offset; size 0 if the instruction states none.
-
-    Size 0 if the instruction does not state a size.
-    """
+    """A memory operand: ``size`` bytes at base + index*scale + offset; ``size`` is 0 if the instruction omits it."""
 
     size: int
     segment: str

@@ -1,4 +1,4 @@
-"""The effect of machine instructions on integers and addresses, and the reading and writing of operands."""
+"""The effect of machine instructions on integers and addresses; reading and writing of operands."""
 
 from collections.abc import Callable
 
@@ -43,7 +43,7 @@ CONDITIONS = set(OF_NUMBERS) | set(OF_INTEGERS)
 
 
 def memory_place(state: MachineState, instruction: Instruction, operand: Memory) -> tuple[str, int]:
-    """Return the base and offset of a memory operand, also of one relative to the instruction pointer."""
+    """Return the base and offset of a memory operand, which may be relative to the instruction pointer."""
     if operand.base != "rip":
         return state.address(operand)
     if operand.segment or operand.index:
@@ -52,10 +52,7 @@ def memory_place(state: MachineState, instruction: Instruction, operand: Memory)
 
 
 def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[str, ...]) -> tuple[str, int]:
-    """Return the base and offset of an address that the linker fills in.
-
-    The base of another file's symbol is an empty text.
-    """
+    """Return (base, offset) of an address that the linker fills in; the base of another file's symbol is empty."""
     relocation = instruction.relocation
     if relocation is None or relocation.kind not in kinds:
         raise NotUnderstood("expected an address that a relocation of a known kind defines, got another")

@@ -1,8 +1,8 @@
 """Symbolic execution of a function of an object file, along every path that its comparisons allow.
 
-Integers and addresses must have known values, so that each loop runs a known number of times. A comparison of
-floating-point numbers whose outcome is not known is followed both ways. An instruction that is in no table, or a state
-of stack, registers or arrays that the calling convention (System V, x86-64) forbids, raises :class:`NotUnderstood`.
+Integers and addresses must have known values, so that each loop runs a known number of times. If the outcome of a
+floating-point comparison is not known, both branches are followed. An instruction that is in no table, or a state of
+stack, registers or arrays that the calling convention (System V, x86-64) forbids, raises :class:`NotUnderstood`.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -58,7 +58,7 @@ class ExecutionPath:
 def state_at_call(
     context: CallContext, names: tuple[str, ...], numbers: tuple[str, ...], start: tuple[str, int]
 ) -> MachineState:
-    """Return the processor's state at the call of a function whose arguments are some arrays and numbers."""
+    """Return the processor's state at the call of a function with the given arrays and numbers as arguments."""
     terms = context.terms
     state = MachineState(context, start, {}, {})
     for name in (*CALLER_SAVED, *CALLEE_SAVED, "rsp"):
@@ -89,7 +89,7 @@ def execution_paths(state: MachineState) -> Iterator[ExecutionPath]:
     Raises
     ------
     NotUnderstood
-        Naming the instruction that cannot be followed, and its address.
+        If an instruction cannot be followed; the message names it and its address.
     """
     waiting, count = [(state, 0, frozenset[tuple[str, int]]())], 0
     while waiting:

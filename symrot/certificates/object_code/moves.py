@@ -62,9 +62,9 @@ def run_vector_instruction(state: MachineState, instruction: Instruction) -> Non
 
 
 def _bytes_of(bare: str, operand: object, whole: int) -> int:
-    """Return the size in bytes of a source operand in memory.
+    """Return the size in bytes of a source operand in memory; ``bare`` is the instruction's name without prefix ``v``.
 
-    It depends on the instruction's name without the prefix ``v`` (``bare``).
+    A register operand has the size ``whole``.
     """
     if not isinstance(operand, Memory):
         return whole

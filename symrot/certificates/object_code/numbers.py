@@ -29,7 +29,7 @@ _QUIET = (  # predicates of the same relation, which differ in the floating-poin
 
 
 def _lanes(state: MachineState, words: Words, width: int) -> list[int]:
-    """Return the numbers, each ``width`` bits long, in a list of 32-bit words: a pair of words makes one double."""
+    """Return the numbers, each ``width`` bits long, in a list of 32-bit words; a double consists of two words."""
     if width == 32:
         return list(words)
     return [state.whole(words[place : place + 2]) for place in range(0, len(words), 2)]

@@ -13,9 +13,9 @@ Shuffle = Callable[[MachineState, list[Words], int], Words]
 
 
 def _pick(places: Sequence[int]) -> Shuffle:
-    """Return the function that executes a shuffle of fixed words per 128 bits.
+    """Return the function that executes a shuffle with the same word numbers in every 128 bits.
 
-    Word numbers 0 to 3 are in the first source, 4 to 7 in the last.
+    Words 0 to 3 are in the first source, and words 4 to 7 in the last.
     """
 
     def shuffle(_: MachineState, sources: list[Words], __: int) -> Words:

@@ -74,7 +74,7 @@ class CallContext:
 
 @dataclass
 class MachineState:
-    """The state of the processor before one instruction.
+    """The symbolic state of the processor before one instruction: registers, memory, flags.
 
     ``known`` holds the outcomes of earlier comparisons on the path.
     """
@@ -100,10 +100,7 @@ class MachineState:
     # --- numbers ------------------------------------------------------------------------------------------------------
 
     def decide(self, outcomes: Outcomes, a: int, b: int) -> bool:
-        """Tell whether the comparison of ``a`` with ``b`` has one of the outcomes.
-
-        Raise :class:`UndecidedBranch` if unknown.
-        """
+        """Tell whether the comparison of ``a`` with ``b`` has one of the outcomes; raise UndecidedBranch if unknown."""
         terms = self.context.terms
         a, b = terms.rebuilt((a, b), self.known)
         inner = terms.undecided((a, b))
@@ -118,7 +115,7 @@ class MachineState:
         raise UndecidedBranch((pair[0], pair[1]), possible & accepted, possible - accepted)
 
     def integer(self, words: Words) -> int | None:
-        """Return the integer in some 32-bit words, or None if they are not constant."""
+        """Return the integer that 32-bit words hold, or None if the words are not constant."""
         values = [self.context.terms.constant(word) for word in words]
         if any(value is None for value in values):
             return None

@@ -69,7 +69,7 @@ def _bits_from_number(value: float, width: int) -> int | None:
 
 
 def swapped(outcomes: Iterable[str]) -> Outcomes:
-    """Return the outcomes of ``b ? a`` that correspond to given outcomes of the comparison ``a ? b``."""
+    """Return the outcomes of comparing b with a that correspond to given outcomes of comparing a with b."""
     return frozenset(_SWAPPED[item] for item in outcomes)
 
 
@@ -105,20 +105,14 @@ class Terms:
         return self._add("bits", width, value & ((1 << width) - 1))
 
     def number(self, width: int, value: Fraction) -> int:
-        """Return the constant term with a value; raise ValueError if ``width`` bits cannot represent it.
-
-        Raise ValueError if ``width`` bits cannot represent the value exactly.
-        """
+        """Return the constant term with a value; raise ValueError if ``width`` bits cannot represent it exactly."""
         bits = _bits_from_number(float(value), width)
         if bits is None or Fraction(number_from_bits(bits, width)) != value:
             raise ValueError(f"expected a number that {width} bits represent exactly, got {value}")
         return self.bits(width, bits)
 
     def unknown(self, byte: int | None = None) -> int:
-        """Return a new 32-bit term with unknown bits.
-
-        If ``byte`` is given, the lowest byte is known and has this value.
-        """
+        """Return a new 32-bit term with unknown bits, except the lowest byte if its value ``byte`` is passed."""
         return self._add("unknown", 32, len(self.nodes), byte)
 
     def lowest_byte(self, a: int) -> int | None:
@@ -356,7 +350,7 @@ class Terms:
     # --- choices ------------------------------------------------------------------------------------------------------
 
     def compared(self, outcomes: Outcomes, a: int, b: int) -> tuple[Outcomes, int, int]:
-        """Return a comparison in a normal form, the same for equivalent ones such as ``a < b`` and ``b > a``."""
+        """Return a comparison in a normal form, which is the same for ``a < b`` and ``b > a``, for example."""
         zero = self.bits(self.width(a), 0)
         a, b = (zero if self._value(item) == 0.0 else item for item in (a, b))
         if self.constant(a) is not None and self.constant(b) is None:
@@ -369,7 +363,7 @@ class Terms:
         return outcomes, a, b
 
     def mask(self, width: int, outcomes: Outcomes, a: int, b: int) -> int:
-        """Return the mask of a comparison: all ones if ``a`` and ``b`` compare with one of the outcomes, else zero."""
+        """Return the mask of a comparison: all bits 1 if comparing ``a`` with ``b`` has one of the outcomes, else 0."""
         outcomes, a, b = self.compared(outcomes, a, b)
         x, y = self._value(a), self._value(b)
         if x is not None and y is not None:
@@ -394,7 +388,7 @@ class Terms:
         return tuple(node[_FIRST_OPERAND[node[0]] :]) if node[0] in _FIRST_OPERAND else ()
 
     def order(self, roots: Iterable[int]) -> list[int]:
-        """Return some terms and all terms on which they depend, sorted so that each comes after its operands."""
+        """Return the terms ``roots`` and all terms on which they depend, each after its operands."""
         seen: set[int] = set()
         ordered: list[int] = []
         stack = [(root, False) for root in reversed(list(roots))]
@@ -409,9 +403,9 @@ class Terms:
         return ordered
 
     def rebuilt(self, roots: Iterable[int], known: Known, fused: bool = True) -> list[int]:
-        """Return terms after simplifying them by comparisons whose outcomes are known.
+        """Return the terms ``roots`` simplified by comparisons whose outcomes are known.
 
-        With ``fused=False``, each fused multiply-add becomes a rounded product and a rounded sum.
+        With ``fused=False``, each fused multiply-add is split into a rounded product and a rounded sum.
         """
         roots = list(roots)
         new: dict[int, int] = {}
@@ -452,8 +446,8 @@ class Terms:
     def without_signs_of_zero(self, roots: Iterable[int]) -> list[int]:
         """Return terms simplified by -(a + b) = (-a) + (-b), which fails only in the sign of a sum that is zero.
 
-        The law is not applied to divisors, arguments of functions and terms whose sign is extracted: there the sign of
-        a zero would change more than the sign of a zero.
+        The law is not applied to divisors, arguments of functions and terms whose sign is extracted, because the sign
+        of a zero would change their values.
         """
         roots = list(roots)
         new: dict[int, int] = {}
@@ -472,10 +466,7 @@ class Terms:
         return [new[root] for root in roots]
 
     def undecided(self, roots: Iterable[int]) -> int | None:
-        """Return a comparison mask on which some terms depend and which depends on no other mask.
-
-        None if there is none.
-        """
+        """Return a comparison mask on which the terms ``roots`` depend and which depends on no other mask, or None."""
         return next((index for index in self.order(roots) if self.kind(index) == "mask"), None)
 
 

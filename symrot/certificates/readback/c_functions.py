@@ -89,10 +89,7 @@ class Cursor:
         self.tokens, self.where, self.index = tokens, where, 0
 
     def peek(self, ahead: int = 0) -> str:
-        """Return the text of the next token, or of the token ``ahead`` places later; empty beyond the end.
-
-        An empty text beyond the end.
-        """
+        """Return the text of the next token, or of the token ``ahead`` places later; empty beyond the end."""
         index = self.index + ahead
         return self.tokens[index].text if index < len(self.tokens) else ""
 
@@ -143,7 +140,7 @@ class Cursor:
 def functions_of(text: str, where: str = "kernel") -> Mapping[str, CFunction]:
     """Return the functions that a C file defines, by name; prototypes are skipped.
 
-    A text is read once for its functions in double and float, of one sample and of a batch.
+    The result is cached, because each text holds several functions: double and float, one sample and batch.
 
     Raises
     ------

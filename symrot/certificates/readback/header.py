@@ -66,7 +66,7 @@ def check_header(header: str, source: str, name: str) -> None:
     Raises
     ------
     CertificateError
-        Naming the first unexpected line, or a prototype without a function.
+        If a line is unexpected or a prototype has no function; the message names the first.
     """
     if re.search(r"\\|\?\?|[\0-\x09\x0b-\x1f]", header):
         raise CertificateError(

@@ -31,10 +31,7 @@ class IntendedConstant:
 
 
 def rounds_to(value: Fraction, precision: str) -> Fraction:
-    """Return a value rounded to the nearest number of a precision, such as ``"binary64"``; ties to even.
-
-    Ties to even.
-    """
+    """Return a value rounded to the nearest number of a precision, such as ``"binary64"``; ties to even."""
     if precision == "binary64":
         return Fraction(value.numerator / value.denominator)  # Python rounds a quotient of integers correctly
     near = float(unpack("f", pack("f", float(value)))[0])
@@ -50,7 +47,7 @@ def rounds_to(value: Fraction, precision: str) -> Fraction:
 def intended_value(value: Fraction, precision: str) -> IntendedConstant:
     """Return the exact number for which a constant of the C text stands, such as 1/3 for 0.3333333333333333.
 
-    A constant with few binary digits stands for itself, a long one for a simple fraction or multiple of pi.
+    A constant with few binary digits stands for itself; a longer constant for a simple fraction or multiple of pi.
 
     Raises
     ------

@@ -35,7 +35,7 @@ RELATIONS: dict[str, Callable[[Any, Any], bool]] = {
 
 
 def operands(node: Node) -> tuple[int, ...]:
-    """Return the indices of the operands of a node."""
+    """Return the indices of the operands of an operation (node)."""
     kind = node[0]
     if kind in ("in", "const"):
         return ()
@@ -65,9 +65,7 @@ class Operations:
         functions: Mapping[str, Callable[..., Any]],
         number: Callable[[Fraction], Any],
     ) -> dict[str, Any]:
-        """Compute the outputs in the arithmetic of the given values (such as intervals).
-
-        Return them by name, such as ``"q[1]"``.
+        """Return the outputs by name, such as ``"q[1]"``, computed in the arithmetic of the inputs, such as intervals.
 
         Parameters
         ----------

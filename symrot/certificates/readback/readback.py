@@ -1,4 +1,4 @@
-"""Read emitted C back as the operations that it computes; refuse all C that symrot does not emit.
+"""Parse emitted C into the operations that it computes; refuse all C that symrot does not emit.
 
 The accepted subset of C: functions of ``double`` or ``float``; ``const`` temporaries that are assigned once;
 ``+ - * /``, unary minus, ``a < b ? x : y``; calls of the C library and of ``static inline`` functions of the same
@@ -104,10 +104,7 @@ class _BodyReader:
         scope.written[name, index] = value
 
     def _index(self, cursor: Cursor, scope: _Scope, array: Parameter) -> int:
-        """Read an array index and return the component i: ``[i]`` of one sample.
-
-        ``[k]``, ``[n + k]`` or ``[i*n + k]`` of sample k.
-        """
+        """Read an array index and return the component i: ``[i]`` for one sample, ``[i*n + k]`` for sample k of n."""
         cursor.expect("[")
         if array.size > 0:
             index = cursor.integer()
@@ -184,10 +181,7 @@ class _BodyReader:
         return scope.values[name]
 
     def _literal(self, cursor: Cursor) -> int:
-        """Read a floating-point number written in the kernel's type, such as 2.0 for double or 2.0f for float.
-
-        Return its node.
-        """
+        """Read a number in the kernel's type, such as 2.0 for double or 2.0f for float; return its node."""
         text = cursor.peek()
         is_float = text.endswith("f")  # a suffix in hexadecimal literals too: their exponent is decimal
         if is_float != (self.real == "float") or text.isdigit():
@@ -323,9 +317,7 @@ def read_kernel(text: str, name: str, where: str = "kernel") -> Operations:
 
 
 def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
-    """Read a batch function.
-
-    Return the operations for one sample, with inputs and outputs named as in the one-sample function.
+    """Return the operations of a batch function for one sample, with names as in the one-sample function.
 
     Raises
     ------
@@ -371,10 +363,7 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
 
 
 def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token, ...]:
-    """Read the head of a loop over samples from ``start`` to ``end``; return the tokens of the loop's body.
-
-    Return the tokens of the loop's body.
-    """
+    """Read the head of a loop over samples from ``start`` to ``end``; return the tokens of the loop's body."""
     if cursor.peek() == "SYMROT_INDEPENDENT":
         cursor.next()
     cursor.expect("for", "(", "size_t")
@@ -438,10 +427,7 @@ def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
 def _finished(
     reader: _BodyReader, scope: _Scope, function: CFunction, places: list[tuple[str, int]], where: str
 ) -> Operations:
-    """Return the operations of a C function after its body was read.
-
-    Raise CertificateError if an output is not assigned.
-    """
+    """Return the operations of a C function after its body was read; refuse an output that is not assigned."""
     missing = [f"{name}[{index}]" for name, index in places if (name, index) not in scope.written]
     if missing or not places:
         raise CertificateError(f"{where}: expected {function.name} to assign {', '.join(missing) or 'an output'}")

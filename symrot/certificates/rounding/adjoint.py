@@ -1,16 +1,16 @@
 """Bounds of the rounding error of one output on many boxes at once: the sum of local errors times derivatives.
 
 Let the operations 1 to k be computed with rounding and the others exactly. As k grows from 0 to the number of
-operations, the output moves from its exact to its computed value, by one operation's rounding error at a time. By the
-mean value theorem,
+operations, the output moves from its exact to its computed value, one rounding error at a time. By the mean value
+theorem,
 
     computed - exact = sum over operations of (derivative of the output by the result) * (rounding error of the result),
 
-where the derivatives are evaluated between exact and computed values, and the rounding errors are those of operations
-on computed operands. Interval arithmetic encloses all these values, one pass backwards through the graph encloses the
-derivatives, and half a unit in the last place bounds the rounding errors. No term of second order is neglected.
+where the derivatives are evaluated between exact and computed values, and each operation acts on computed operands.
+Interval arithmetic encloses all these values, one pass backwards through the graph of operations encloses the
+derivatives, and half a unit in the last place bounds each rounding error. No term of second order is neglected.
 
-Choices compare computed numbers: the condition of a branch narrows the rounding errors, not the derivatives.
+Conditionals compare computed numbers: the condition of a branch narrows the rounding errors, not the derivatives.
 """
 
 from collections.abc import Callable, Sequence
@@ -57,7 +57,7 @@ class Evaluation:
 
 @dataclass
 class _ErrorPass:
-    """The state of the computation of error bounds on many boxes, as it visits the nodes of a graph in order."""
+    """The error bounds computed so far, on many boxes, while the operations of a graph are visited in order."""
 
     graph: OutputGraph
     boxes: Array  # (2, inputs, n)
@@ -131,7 +131,7 @@ def _constant_error(written: Fraction, precision: str, use_intended: bool) -> fl
 
 
 def _grid_step(state: _ErrorPass, index: int) -> Array:
-    """Return a power of two of which all values of a node are multiples, so that some sums are known to be exact."""
+    """Return a power of two that divides all values of a node, by which some sums are known to be exact."""
     node, value = state.graph.nodes[index], state.values[index]
     if node[0] == "const":
         above, below = abs(node[1].numerator), node[1].denominator
@@ -255,7 +255,7 @@ GAP_CELLS = 8192
 
 @cache
 def _gap_errors(own: OutputGraph, libm_ulp: float) -> tuple[Array, ...]:
-    """Return error bounds of (x - sin x)/x^3, or a similar function, on 2^k equal parts of [0, GAP_END], for each k."""
+    """Return error bounds of (x - sin x)/x^3, or a similar function, on all runs of 2^k cells of [0, GAP_END], by k."""
     ends = np.linspace(0.0, GAP_END, GAP_CELLS + 1)
     boxes = np.stack([ends[:-1], ends[1:]])[:, None]
     sides = [evaluate(own, boxes, np.full((1, GAP_CELLS), side, np.int8), libm_ulp=libm_ulp).bound for side in (0, 1)]
@@ -299,10 +299,7 @@ def _choice(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[A
 
 
 def _truncation_error(precision: str) -> float:
-    """Return a bound of the truncation error of a series relative to its value.
-
-    The proof of the C text checks this bound.
-    """
+    """Return a bound of the relative truncation error of a series, which the proof of the C text checks."""
     return 2.0 ** -(DIGITS[precision] + 2) * (1 + 2.0**-20)
 
 
@@ -459,10 +456,7 @@ def evaluate(
 
 
 def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array | None:
-    """Enclose the exact and the computed values of a node in intervals.
-
-    Return a bound of the node's own rounding error.
-    """
+    """Enclose the exact and the computed values of a node in intervals; return a bound of its own rounding error."""
     value, error = FORWARD[node[0]](state, node, [state.values[i] for i in operand_places(node)])
     state.values.append(value)
     if state.centred is not None:
@@ -475,7 +469,7 @@ def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array 
 
 
 def _backward_pass(state: _ErrorPass) -> tuple[Array, NDArray[np.int64], NDArray[np.bool_]]:
-    """Return the sum of errors times derivatives, the node that makes it infinite (or -1), and jumps of angles.
+    """Return (sum of errors times derivatives, the node that makes it infinite or -1, where an angle may jump by 2 pi).
 
     An angle that may jump by 2 pi must enter the output with derivative 1 or -1; the error of the output is then
     meant modulo 2 pi. A node that no possible branch uses may have any value; every other node must be finite.

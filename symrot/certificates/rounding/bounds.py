@@ -1,8 +1,7 @@
 """Bounds of the rounding error of a kernel's outputs on a box of inputs: the ``rounding`` section of a certificate.
 
 :func:`rounding_section` returns the section as data that is the same, byte for byte, on every machine.
-:func:`check_section` checks at once what evaluations at single points can tell; with ``rerun``, all bounds are computed
-again.
+:func:`check_section` checks it quickly by evaluations at single points; with ``rerun``, it computes all bounds again.
 
 A bound limits the absolute error of an output against the exact formula at the same floating-point inputs. If a choice
 compares rounded numbers, the exact formula follows the branch that the kernel took; such choices are listed. An angle
@@ -54,9 +53,7 @@ STORE = Store()
 
 @dataclass(frozen=True)
 class OutputBound:
-    """The bound of one output: no error on the box is larger than ``bound``.
-
-    At the point ``at``, ``pointwise`` bounds the error.
+    """Bounds of the error of one output: ``bound`` on the whole box, and ``pointwise`` at the point ``at``.
 
     ``scale`` is a power of two that is at least the largest value of the output at the evaluated points (or 2^1023).
     ``turns`` says that the error is measured modulo 2 pi. ``choices`` are the comparisons of rounded numbers; the exact
@@ -163,7 +160,7 @@ def _check_box(operations: Operations, box: Box) -> None:
 
 
 def bound_task(task: BoundTask, fresh: bool = False) -> SearchResult:
-    """Return the bound of a task: from the store if it is there, or by a new search, always if ``fresh`` is true."""
+    """Return the error bound that a task asks for, from the store or by a search; always by a search if ``fresh``."""
     result = None if fresh else STORE.get(task.key)
     if result is None:
         with np.errstate(all="ignore"):  # a range may be a single point
@@ -338,9 +335,7 @@ def _units(value: Fraction) -> str:
 def check_section(
     section: Mapping[str, Any], operations_double: Operations, operations_float: Operations | None, rerun: bool = False
 ) -> None:
-    """Check a ``rounding`` section by evaluating the error at single points.
-
-    With ``rerun``, also compute every bound again.
+    """Check a ``rounding`` section by evaluating the error at single points; with ``rerun``, compute all bounds again.
 
     The section must be about these operations and all their outputs; its numbers must be finite, in order and in the
     printed form; no bound may be below the error bound at the stored point. :func:`check_bounds` proves that the bounds
@@ -349,7 +344,7 @@ def check_section(
     Raises
     ------
     CertificateError
-        Naming what is wrong.
+        If the section is wrong; the message names the part.
     """
     kernels = {kernel.precision: kernel for kernel in (operations_double, operations_float) if kernel is not None}
     try:
@@ -388,7 +383,7 @@ def check_bounds(
     Raises
     ------
     CertificateError
-        Naming the first bound that differs.
+        If a bound differs; the message names the first.
     """
     region = Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
     box = {

@@ -24,7 +24,7 @@ GAP = 1.02  # a bound within 2 % of the error at a point has converged
 BATCH = 256  # parts that are split at once
 CHUNK = 2048  # boxes that are evaluated at once
 MOST_CENTRED = 8  # largest number of inputs of a polynomial that is searched again with mean value forms
-SECOND = 0.25  # a second input is halved too if it lowers the bound by more than this fraction of what the first does
+SECOND = 0.25  # a second input is halved too if its gain (reduction of the bound) exceeds this fraction of the first's
 SHRUNK = 8.0  # a range is shrunk to an eighth to estimate the effect of halving it repeatedly
 NARROWEST = 2.0**-24  # relative to the box: a part this narrow without a bound is at a singular point
 
@@ -33,8 +33,8 @@ NARROWEST = 2.0**-24  # relative to the box: a part this narrow without a bound 
 class SearchResult:
     """The result of a search: no error on the box is larger than ``bound``; at ``worst`` the bound is ``pointwise``.
 
-    ``turns`` says that errors are meant modulo 2 pi. If no bound was found, ``bound`` is infinite and ``obstacle`` is
-    the node that prevents it, near the point ``worst``.
+    ``turns`` says that errors are measured modulo 2 pi. If no bound was found, ``bound`` is infinite and ``obstacle``
+    is the operation (node) that prevents it, near the point ``worst``.
     """
 
     bound: float
@@ -286,7 +286,7 @@ def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchR
 
 
 def _narrow(run: _BoundSearch, parts: _Parts) -> NDArray[np.bool_]:
-    """Tell which parts (sub-boxes) still have no error bound although they are almost as small as a point."""
+    """Tell which parts (sub-boxes) have no error bound although they are almost as small as a point."""
     stuck = np.isinf(parts.bound) & (parts.obstacle >= 0) & (parts.undecided < 0)
     return stuck & (_spread(run, parts) < NARROWEST)
 

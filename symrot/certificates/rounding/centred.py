@@ -35,10 +35,7 @@ def _scaled_gradient(gradient: Array, values: Array) -> Array:
 
 
 class CentredForms:
-    """The mean value forms of the nodes of a graph, in the order of the nodes.
-
-    None for a node that is not a polynomial.
-    """
+    """The mean value forms of the nodes of a graph, in their order; None for a node that is not a polynomial."""
 
     def __init__(self, boxes: Array) -> None:
         self.boxes = boxes

@@ -1,4 +1,4 @@
-"""Conditionals on boxes: the branches that are possible, and the ranges of the compared numbers in each branch.
+"""Conditionals on boxes of inputs: the possible branches, and the ranges of the compared numbers in each branch.
 
 A conditional compares computed numbers, so only ranges of computed numbers may be narrowed. If a >= b in a branch, the
 range of a starts no lower than the range of b. If b is computed as the larger of RN(p + q) and RN(p - q) (RN rounds to
@@ -36,8 +36,8 @@ def decide_branches(
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Decide a condition on the boxes where only one branch is possible; the array ``decision`` is changed in place.
 
-    Returns which boxes lie outside the branch that was decided for them before, and on which both branches are
-    possible.
+    Return two masks: the boxes that contradict the branch decided for them before, and the boxes on which both branches
+    are possible.
     """
     holds, fails = _POSSIBLE[relation](a, b)
     outside = ((decision == 1) & ~holds) | ((decision == 0) & ~fails)

@@ -21,17 +21,14 @@ SPARE = Fraction(1, 2**240)  # larger than the error of irrational numbers, whic
 
 @dataclass(frozen=True)
 class ExactRange:
-    """The range of numbers from ``low`` to ``high``; an operation returns a range that contains all results.
-
-    An operation on ranges returns a range that contains all results.
-    """
+    """The range of numbers from ``low`` to ``high``; an operation returns a range that contains all results."""
 
     low: Fraction
     high: Fraction
 
     @classmethod
     def about(cls, value: Fraction) -> "ExactRange":
-        """Return a range that contains the number of which ``value`` is a rounding to 2^-250."""
+        """Return a range that contains the exact number that ``value`` approximates to 2^-250."""
         spare = SPARE * max(abs(value), Fraction(1))
         return cls(value - spare, value + spare)
 

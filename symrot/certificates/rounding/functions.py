@@ -195,10 +195,7 @@ def arc_tangent(y: Array, x: Array) -> Array:
 
 
 def arc_slope(a: Array, b: Array) -> Array:
-    """Return the tightest intervals that contain a/(a^2 + b^2), a derivative of atan2.
-
-    They are infinite where both ``a`` and ``b`` contain zero.
-    """
+    """Return the tightest intervals of a/(a^2 + b^2), a derivative of atan2; infinite where both contain zero."""
     return np.stack([-_steepest(negative(a), b), _steepest(a, b)])
 
 

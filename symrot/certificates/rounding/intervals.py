@@ -121,10 +121,7 @@ def divide(a: Array, b: Array) -> Array:
 
 
 def square_root(a: Array) -> Array:
-    """Return intervals that contain the square roots of all numbers in ``a``.
-
-    They are infinite where ``a`` contains negative numbers.
-    """
+    """Return intervals that contain the square roots of all numbers in ``a``, infinite where ``a`` is negative."""
     roots = np.sqrt(np.maximum(a, 0.0))
     step = (roots * PHI + ETA) * ~(_short(roots) & (roots * roots == a))
     result = np.stack([np.maximum(roots[0] - step[0], 0.0), roots[1] + step[1]])
@@ -138,7 +135,7 @@ def binade(size: Array) -> Array:
 
 
 def half_ulp(size: Array, precision: str) -> Array:
-    """Return a bound of the error of rounding any number of at most this size: half a unit of the binade below it."""
+    """Return a bound of the rounding error of numbers up to ``size``: half a unit in the last place just below it."""
     below = ((size.view(np.int64) - 1) & _EXPONENT).view(np.float64)
     unit = np.maximum(below * 2.0 ** -DIGITS[precision], _LEAST[precision])
     return np.where(size > 0, unit, 0.0)

@@ -37,10 +37,7 @@ class RoundingProblem:
     symbols: Mapping[str, str]  # place -> component, such as "angles[1]" -> "theta"
 
     def place(self, name: str) -> str:
-        """Return the index text of an input, such as ``"q[1]"``, from this text or from its symbol.
-
-        Raise InputError for others.
-        """
+        """Return the index text of an input, such as ``"q[1]"``, from this text or its symbol; refuse other texts."""
         for place, symbol in self.symbols.items():
             if name in (place, symbol):
                 return place

@@ -88,7 +88,7 @@ class OutputGraph:
 
     @cached_property
     def exact(self) -> tuple[bool, ...]:
-        """Whether each node has no rounding error, as inputs, their signs and absolute values, short constants."""
+        """Whether each node has no rounding error: inputs, their signs and absolute values, short constants."""
         flags: list[bool] = []
         for node in self.nodes:
             kind = node[0]
@@ -125,15 +125,12 @@ class OutputGraph:
         return f"{node[0]}({', '.join(operands)})"
 
     def singular_operand(self, index: int) -> int:
-        """Return the operand that can make a node infinite, such as a divisor or radicand.
-
-        The node itself if there is none.
-        """
+        """Return the operand that can make a node infinite, such as a divisor or radicand, or the node itself."""
         node = self.nodes[index]
         return int({"div": node[-1], "sqrt": node[-1]}.get(node[0], index))
 
     def text(self, index: int) -> str:
-        """Return a node as a short formula for messages."""
+        """Return an operation (node) as a short formula for messages."""
         return self._text(index)
 
 
@@ -157,7 +154,7 @@ def is_short(value: Fraction) -> bool:
 
 
 def _modulo_two_pi(graph: OutputGraph, index: int, sign: int = 1) -> tuple[int, int]:
-    """Return a node and a sign whose product equals a node modulo 2 pi: constants near 2 pi are dropped from sums."""
+    """Return (node, sign) whose product equals a node modulo 2 pi: constants near 2 pi are dropped from sums."""
     node = graph.nodes[index]
     if node[0] == "neg":
         return _modulo_two_pi(graph, node[1], -sign)
@@ -232,10 +229,7 @@ class _GraphReader:
         return self.put(kind, *(self.read(i) for i in operands(node)))
 
     def squares(self, index: int, depth: int = 0) -> list[tuple[int, int]] | None:
-        """Return the squared terms of a sum of squares, each with its number of roundings.
-
-        None if the node is no such sum.
-        """
+        """Return the squared terms of a sum of squares, each with its number of roundings, or None for another node."""
         node = self.source[index]
         if node[0] == "mul" and node[1] == node[2]:
             return [(node[1], depth + 1)]
@@ -288,10 +282,7 @@ _GAPS = {"sine_gap": Fraction(1, 6), "tangent_gap": Fraction(1, 3)}  # function 
 
 
 def _at_origin(reader: _GraphReader, index: int, square: int) -> Fraction | None:
-    """Return the value of a polynomial in the node ``square`` where that node is 0.
-
-    None if the node is no such polynomial.
-    """
+    """Return the value at 0 of a polynomial in the node ``square``, or None if the node is no such polynomial."""
     node = reader.source[index]
     if index == square:
         return Fraction(0)

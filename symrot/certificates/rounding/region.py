@@ -20,7 +20,7 @@ UNIT_NORM = 2.0**-20  # tolerance of the squared norm of a unit quaternion; roun
 
 @dataclass(frozen=True)
 class Region:
-    """Restrictions of the inputs in a box.
+    """Restrictions of the inputs in a box, such as a quaternion of unit norm.
 
     ``unit`` are groups of places whose squares add up to 1, within 2^-20; ``clearance`` is the least length of the
     vector (y, x) of arguments of every atan2, so that the angle is defined.
@@ -52,10 +52,7 @@ def off_unit(boxes: Array, region: Region, places: Sequence[str]) -> NDArray[np.
 
 
 def narrowed(boxes: Array, region: Region, places: Sequence[str]) -> Array:
-    """Return boxes shrunk to the allowed inputs in them, such as unit quaternions; others are not changed.
-
-    Boxes without any are not changed.
-    """
+    """Return boxes shrunk to the allowed inputs in them, such as unit quaternions; without any, a box is unchanged."""
     shrunk = boxes
     for group, numbers in zip(region.unit, _numbers(region, places), strict=True):
         for number in numbers:

@@ -88,6 +88,6 @@ def header_lines(inputs: SceneInputs, section: Mapping[str, Any]) -> tuple[tuple
 
 
 def _range(low: float, high: float) -> str:
-    """Return a range of numbers as text, ``low .. high``."""
+    """Return a range of numbers as the text ``low .. high``."""
     low_text, high_text = (repr(value).removesuffix(".0") for value in (low, high))
     return f"= {low_text}" if low == high else f"in [{low_text}, {high_text}]"

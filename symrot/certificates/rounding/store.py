@@ -66,8 +66,6 @@ class Store:
         """Return the bound of a rounding error by its key, or None.
 
         With ``with_table=False`` the table of bounds that comes with symrot is not searched.
-
-        With ``with_table=False`` the table of symrot is not searched.
         """
         if with_table and key in table()["bounds"]:
             return _from_json(table()["bounds"][key])

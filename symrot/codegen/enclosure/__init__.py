@@ -1,1 +1,1 @@
-"""Enclosures of right-hand sides: the terms with features that a step could miss, and C text that bounds them."""
+"""Enclosures of right-hand sides: terms with features that a step could miss, such as pulses, and C code of bounds."""

@@ -1,7 +1,7 @@
-"""C text of the enclosure of a right-hand side: bounds of the deviation of its terms from constants on discs.
+"""C code that bounds how far the rates dy/dt deviate from constants near a step, so that no step misses a pulse.
 
-The discs are regions of complex times and states. The text is placed between :file:`propagation/enclosures/disc.h`,
-which has the rules of disc arithmetic, and a stepper. Standard library only.
+The bounds (enclosures) hold on discs of complex times and states. The code is placed between
+:file:`propagation/enclosures/disc.h`, which has the rules of disc arithmetic, and a stepper. Standard library only.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,9 +17,9 @@ __all__ = ["enclosure_definitions", "enclosure_source"]
 
 
 def enclosure_source(program: Program, order: int, edges: Sequence[int]) -> str:
-    """Return the C text of the enclosure of a right-hand side; arguments as for :func:`enclosure_definitions`.
+    """Return C code that bounds the rates of a program on complex discs; see :func:`enclosure_definitions`.
 
-    A right-hand side without Taylor series (one with abs) gets an empty enclosure.
+    Rates without a Taylor series, such as those with abs, get no bounds.
     """
     try:
         return enclosure_definitions(enclosure(recurrences(program)), order, edges)
@@ -28,18 +28,18 @@ def enclosure_source(program: Program, order: int, edges: Sequence[int]) -> str:
 
 
 def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequence[int]) -> str:
-    """Return the C text of an enclosure: the function ``symrot_deviations`` and its tables.
+    """Return the C code of an enclosure: the function ``symrot_deviations``, which bounds the rates, and its tables.
 
     Parameters
     ----------
     enclosure : Enclosure or None
-        None for a right-hand side that needs no enclosure.
+        The terms to bound; None for a right-hand side that needs no bounds.
     order : int
         Order N of the polynomials that approximate the states; the table of radii depends on it. If the rates
         deviate by at most D on a disc of ``reach`` steps, a step of size h has an error of at most ``h D
         reach^-N/((N + 1)(1 - 1/reach))``.
     edges : sequence of int
-        Edges of the blocks of states whose errors are judged separately, from 0 to the number of states.
+        State i is in block j if ``edges[j] <= i < edges[j + 1]``; each block of states has its own error.
     """
     if enclosure is None:
         return "#define SYMROT_ENCLOSED 0\n#define SYMROT_DEPENDS 0\n"
@@ -83,7 +83,7 @@ def _constant(node: Node, places: Mapping[str, str]) -> str:
 
 
 def _disc(system: Recurrences, number: int, places: Mapping[str, str]) -> str:
-    """Return the C expression for the disc around the values of series ``number``; ``places`` names its operands."""
+    """Return the C expression for a disc that contains all values of a series; ``places`` gives parameters in C."""
     series = system.series[number]
     own = [f"d{operand}" for operand in value_operands(series)]
     if series.rule == "state":

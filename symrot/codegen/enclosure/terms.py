@@ -1,4 +1,4 @@
-"""Selection of the terms of a right-hand side that must be bounded (enclosed) because a step may miss their features.
+"""Selection of the terms of a right-hand side that must be bounded (enclosed), because a step may miss a pulse in them.
 
 A stepper knows a right-hand side only at the points where it evaluates it. A pulse, a switch or a pole between two such
 points has no effect there, but evaluating the formula over complex discs (:file:`propagation/enclosures/disc.h`) shows
@@ -20,7 +20,7 @@ __all__ = ["LOW_ORDER", "REACHES", "Enclosure", "enclosure", "value_operands"]
 
 HIGHEST_DEGREE = 6  # degree of a polynomial without narrow features: cos(t)**6 is as broad as a pulse of 0.5 rad
 BEYOND = HIGHEST_DEGREE + 1
-REACHES = {  # radii of the discs, in steps, by whether the order is low: a disc must be larger for a low order
+REACHES = {  # whether the order is low -> radii of the discs, in steps: low orders need larger discs
     False: (1.3, 1.8, 2.6, 3.6, 5.0, 7.0, 10.0, 16.0),
     True: (1.5, 2.5, 4.0, 7.0, 12.0, 20.0, 40.0, 80.0),
 }
@@ -29,10 +29,11 @@ BOUNDED = ("sin", "cos")  # functions of a*t + b that are bounded at every time
 
 
 class Enclosure(NamedTuple):
-    """The terms of the rates of a system that must be enclosed, as series of :mod:`symrot.codegen.taylor.recurrences`.
+    """The terms of the rates dy/dt that must be bounded on complex discs, because a step may miss a pulse in them.
 
-    ``series`` lists the indices of all series needed, each after its operands; ``terms`` holds for each rate the pairs
-    (weight, series) of its enclosed terms; ``states`` holds the indices of the states on which they depend.
+    ``series`` lists the Taylor series to evaluate, each after its operands, as indices into ``system.series``.
+    ``terms`` holds for each rate the pairs (weight, series) of its bounded terms, and ``states`` the indices of the
+    states on which they depend.
     """
 
     system: Recurrences
@@ -42,13 +43,13 @@ class Enclosure(NamedTuple):
 
 
 def value_operands(series: Series) -> tuple[int, ...]:
-    """Return the operands that determine the value of a series, not those that affect only its later coefficients."""
+    """Return the operands that give coefficient 0 of a series, without those used for later coefficients only."""
     first = {"driven": 2, "primitive": 3}.get(series.rule, 0)
     return () if series.rule == "clock" else series.operands[first:]
 
 
 def enclosure(system: Recurrences) -> Enclosure | None:
-    """Return the enclosure of a system's rates, or None if no rate needs an enclosure."""
+    """Return the terms of a system's rates that must be bounded, or None if there are no such terms."""
     degrees: list[int] = []
     for series in system.series:
         degrees.append(min(_degree(series, degrees), BEYOND))
@@ -74,7 +75,7 @@ def enclosure(system: Recurrences) -> Enclosure | None:
 
 
 def _degree(series: Series, degrees: list[int]) -> int:
-    """Return the degree of a series as a polynomial in time; BEYOND if it is not a polynomial."""
+    """Return the degree of a series in states, time, sin and cos of ``a*t + b``; BEYOND if it is not a polynomial."""
     if series.rule in ("state", "time"):
         return 1
     if series.rule == "clock":

@@ -1,1 +1,1 @@
-"""Lowering: the translation of SymPy formulas into straight-line programs with few operations."""
+"""Lowering: translation of SymPy formulas into straight-line programs with few operations."""

@@ -11,9 +11,10 @@ __all__ = ["Share"]
 
 
 class Share:
-    """A collection of formula trees that finds common factors and sums: the most frequent pair becomes a shared node.
+    """Formula trees in which common factors and sums are found: the most frequent pair becomes a shared node.
 
-    Among equally frequent pairs the pair that appears first is chosen. Each distinct node has a number, its identity.
+    Among equally frequent pairs, the first to appear is chosen. Equal nodes are stored once, under a number: their
+    identity.
     """
 
     def __init__(self) -> None:
@@ -21,14 +22,14 @@ class Share:
         self.nodes: list[tuple[Any, ...]] = []  # nodes by identity; their operands are identities
 
     def intern(self, node: Tree) -> int:
-        """Return the identity of a node, which is the same for equal nodes; the node's operands are identities."""
+        """Return the number of a node, which equal nodes share; its operands are given by their numbers."""
         if node not in self.identity:
             self.identity[node] = len(self.nodes)
             self.nodes.append(node)
         return self.identity[node]
 
     def add(self, tree: Tree) -> int:
-        """Add a formula tree and all its parts to the collection, and return its identity."""
+        """Add a formula tree and all its parts to the collection, and return the number of its node."""
         kind = tree[0]
         if kind in ("sym", "num"):
             return self.intern(tree)
@@ -79,7 +80,7 @@ class Share:
         return pair[0] == "add" or not any(self.nodes[i][0] == "num" for part in pair[1:] for i in part)
 
     def _replace(self, kind: str, pair: tuple[Any, ...], swap: Callable[..., tuple[Any, ...]]) -> None:
-        """Replace a pair of operands in every node by the identity of the pair, which is created if necessary."""
+        """Replace a pair of factors or terms in every node by one node, which is created if necessary."""
         if pair not in self.nodes:
             self.nodes.append(pair)
         new = self.nodes.index(pair)

@@ -1,4 +1,4 @@
-"""Constants of expressions: a part that depends on no variable becomes a number that is computed only once."""
+"""Constant parts of expressions: a part without variables becomes a parameter, computed once before a motion."""
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
@@ -23,7 +23,7 @@ ONE: Tree = ("num", Fraction(1))
 
 
 class Gather:
-    """Splits expressions into a constant times a variable core; constants are computed once for given parameters.
+    """Splits expressions into a constant times a variable part, the core; constants are computed once per motion.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Gather:
         return bool(expr.free_symbols & self.variables)
 
     def constant(self, value: Expr) -> tuple[int, Tree | None]:
-        """Return a constant as its sign and a leaf of a formula tree; the leaf is None if the constant is 1 or -1."""
+        """Return (sign, number or symbol) for a constant; the second is None if the constant is 1 or -1."""
         sign, value = _oriented(value)
         if value == 1:
             return sign, None
@@ -53,7 +53,7 @@ class Gather:
         return sign, ("sym", name)
 
     def scaled(self, coefficient: Expr, core: Tree) -> tuple[int, Tree]:
-        """Return a constant coefficient times a variable core, as a sign and a formula tree."""
+        """Return (sign, formula tree) for a constant coefficient times a part with variables."""
         sign, atom = self.constant(coefficient)
         if atom is None:
             return sign, core
@@ -63,7 +63,7 @@ class Gather:
         return sign, ("mul", (atom, *factors), divisors)
 
     def split(self, expr: Expr) -> tuple[Expr, Tree]:
-        """Return (constant, core) with expr = constant * core; the core of a constant is ONE."""
+        """Return (constant, core) with ``expr = constant*core``; the core contains the variables, or is ONE."""
         if expr not in self.memo:
             self.memo[expr] = self._split(expr)
         return self.memo[expr]
@@ -173,7 +173,7 @@ class Gather:
 
 
 def _repeated(tree: Tree, count: int) -> Tree:
-    """Return a large power of a tree by repeated squaring; a product of all its factors would be nested too deeply."""
+    """Return a large power of a tree by repeated squaring, since a product of so many factors would be too long."""
     if count <= LARGEST_POWER:
         return ("mul", (tree,) * count, ())
     half = _repeated(tree, count // 2)
@@ -181,7 +181,7 @@ def _repeated(tree: Tree, count: int) -> Tree:
 
 
 def _oriented(value: Expr) -> tuple[int, Expr]:
-    """Return a constant as its sign and a magnitude that is the same for a and -a.
+    """Return (sign, magnitude) for a constant, with the same magnitude for a and -a, so that it is computed once.
 
     For example, (A - C)/A and (C - A)/A have the same magnitude.
     """
@@ -195,7 +195,7 @@ def _oriented(value: Expr) -> tuple[int, Expr]:
 
 
 def _signed_sum(terms: Sequence[tuple[int, Tree]]) -> tuple[int, Tree]:
-    """Return a signed sum as a sign and a sum whose first term is positive."""
+    """Return (sign, sum) for signed terms, with a positive first term in the sum."""
     if len(terms) == 1:
         return terms[0]
     sign = 1 if any(s > 0 for s, _ in terms) else -1

@@ -54,7 +54,7 @@ def to_node(expr: Expr) -> Node:
 
 
 def chain(mark: str, nodes: Sequence[Node]) -> Node:
-    """Return several nodes joined by one operator, from left to right."""
+    """Return ``a + b + c`` for nodes a, b, c, grouped from the left; ``mark`` is the operator."""
     result = nodes[0]
     for node in nodes[1:]:
         result = (mark, result, node)

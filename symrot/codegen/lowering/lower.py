@@ -31,14 +31,14 @@ ANONYMOUS = "#"
 
 @dataclass(frozen=True)
 class Lowered:
-    """A program with the formulas of its constants: ``parameters[k]`` is (name, formula of physical constants)."""
+    """A program, and the formulas of its parameters: ``parameters[k]`` is (name, formula of physical constants)."""
 
     program: Program
     parameters: tuple[tuple[str, Node], ...]
 
 
 class _Writer:
-    """Writes formulas in the order in which they are needed; a node that is used more than once becomes a temporary."""
+    """Writes formulas as statements in order of computation; a node that is used repeatedly becomes a temporary."""
 
     def __init__(self, share: Share, roots: Sequence[int], named: dict[int, str]) -> None:
         self.nodes, self.named = share.nodes, dict(named)
@@ -88,10 +88,7 @@ class _Writer:
         return bool(kind == "num" or (kind == "sym" and first.startswith(HOISTED)))
 
     def _is_sum(self, index: int) -> bool:
-        """Return whether a node is written as a sum in brackets.
-
-        Such a factor comes first in a product: (A - B) x y.
-        """
+        """Return whether a node is written as a sum in brackets, which comes first in a product: (A - B) x y."""
         return bool(self.nodes[index][0] == "add" and self.uses[index] < 2 and index not in self.named)
 
     def _formula(self, index: int) -> Node:
@@ -114,7 +111,7 @@ def lower(
     definitions: Sequence[tuple[Symbol, Expr]] = (),
     parameter_argument: str = "p",
 ) -> Lowered:
-    """Return the straight-line program of some expressions.
+    """Return a straight-line program with few operations that computes the given expressions.
 
     Parameters
     ----------
@@ -148,7 +145,7 @@ def _lowered(
     signature: Signature, outputs: Sequence[tuple[str, Expr]], definitions: Sequence[tuple[Symbol, Expr]],
     parameter_argument: str, flat: bool,
 ) -> tuple[Lowered, list[str]]:  # fmt: skip
-    """Return the lowered program, and the temporaries that have no name yet.
+    """Return the straight-line program, and the temporaries that have no descriptive name yet.
 
     If ``flat`` is true, nested sums are merged before common parts are shared.
     """
@@ -187,7 +184,7 @@ def _numbered(
     formulas: Sequence[Node],
     parameter_argument: str,
 ) -> Lowered:
-    """Return the program with its constants numbered in the order of their use and appended to the signature."""
+    """Return the program with its constants as parameters, numbered in order of use and added to the signature."""
     order: dict[str, str] = {}
     for node in [node for _, node in temporaries] + list(formulas):
         for name in _leaves(node):

@@ -1,6 +1,6 @@
-"""Sums of formulas with few minus signs: a minus sign is moved to a place where it costs no operation.
+"""Sums of formulas with few minus signs: a sign is moved into a difference or a number, where it costs no operation.
 
-Such a place is a difference, a number, or a product that contains one of these.
+The difference or number may also be a factor of a product.
 """
 
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ __all__ = ["negative", "summed"]
 
 
 def negative(node: Node) -> Node:
-    """Return minus a formula, with the sign moved into a number, a sum or a product where that costs no operation."""
+    """Return ``-node``, with the sign moved into a number, a difference or a factor, where it costs no operation."""
     if node[0] == "number":
         return ("number", -node[1])
     if node[0] == "neg":
@@ -56,7 +56,7 @@ def _terms(node: Node) -> list[tuple[int, Node]]:
 
 
 def summed(first: Node, terms: Sequence[tuple[int, Node]]) -> Node:
-    """Return the sum of ``first`` and signed terms, positive terms before negative ones."""
+    """Return the sum of ``first`` and signed terms; positive terms come before negative terms."""
     for sign, term in sorted((_turned(*each) for each in terms), key=lambda item: item[0] < 0):
         first = ("+" if sign > 0 else "-", first, term)
     return first

@@ -1,6 +1,6 @@
 """Tapes: straight-line programs as lists of single operations, in which equal operations occur only once.
 
-Text that is printed operation by operation is made from a tape: values as sums of two doubles with their gradients
+C code that treats each operation separately is made from a tape: double-double values with gradients
 (:mod:`symrot.codegen.taylor.invariant_source`), and values with bounds of their rounding errors
 (:mod:`symrot.codegen.printing.event_source`). Standard library only.
 """
@@ -16,7 +16,10 @@ __all__ = ["Operation", "Tape", "tape_of"]
 
 
 class Operation(NamedTuple):
-    """An operation of a tape: ``+ - * / neg``, a function of :mod:`symrot.formula.tree`, a number or a symbol."""
+    """One operation of a program: ``+ - * / neg``, a function of :mod:`symrot.formula.tree`, a number or a symbol.
+
+    ``operands`` are indices of earlier operations.
+    """
 
     kind: str
     operands: tuple[int, ...] = ()
@@ -30,7 +33,7 @@ class Tape(NamedTuple):
     outputs: tuple[int, ...]
 
     def of(self, output: int) -> list[int]:
-        """Return the operations that one output needs, in order."""
+        """Return the indices of the operations that one output needs, in order."""
         needed = {self.outputs[output]}
         for index in range(self.outputs[output], -1, -1):
             if index in needed:
@@ -70,7 +73,10 @@ class _Writer:
 
 
 def tape_of(program: Program, outputs: Sequence[str], more: Sequence[Node] = ()) -> Tape:
-    """Return the tape of some outputs of a program, and of additional formulas ``more`` of its inputs and outputs."""
+    """Return the single operations that compute some outputs of a program and additional formulas ``more``.
+
+    The additional formulas may use the inputs and outputs of the program.
+    """
     writer = _Writer()
     formulas = dict(program.outputs)
     for name, node in program.temporaries:

@@ -22,7 +22,7 @@ WORDS = {
     Fraction(1, 4): "quarter", Fraction(2, 3): "two_thirds", Fraction(3, 2): "three_halves",
 }  # fmt: skip
 POWERS = {1: "", 2: "_sq", 3: "_cubed"}
-NOUNS = {"atan2": "angle", "sqrt": "root", "select_ge": "choice"}  # last words of names of calls without a short name
+NOUNS = {"atan2": "angle", "sqrt": "root", "select_ge": "choice"}  # last word of a name, if the whole would be too long
 RESERVED = frozenset({"size_t", "ptrdiff_t", "wchar_t", "time_t", "and_eq", "or_eq", "not_eq", "xor_eq"})
 
 
@@ -126,7 +126,7 @@ def _first_outputs(program: Program) -> dict[str, str]:
 def _product_of(node: Node, products: Mapping[str, _Product]) -> _Product | None:
     """Return a formula as a product of powers of symbols, or None if it is not such a product.
 
-    Temporaries that are products themselves are replaced by their factors.
+    A temporary that is itself a product is replaced by its factors.
     """
     kind = node[0]
     if kind == "number":

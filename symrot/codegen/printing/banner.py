@@ -37,7 +37,7 @@ class Description:
 
 
 def _harmless(text: str) -> str:
-    """Return a text that can neither end the comment or docstring around it nor have a meaning for a compiler.
+    """Return a text that is safe in a comment or docstring: it cannot end it, nor mean anything to a compiler.
 
     Titles and names of scenes may contain any characters. Characters that are not printable ASCII are written as
     ``<U+00E9>``: readers of certified C accept only ASCII, and compilers warn about characters that reverse the
@@ -56,10 +56,10 @@ def cost(program: Program) -> str:
 
 
 def _rows(argument: Argument) -> list[tuple[str, str, str, str]]:
-    """Return the rows for an argument in the table of a head comment: components, unit and meaning.
+    """Return the rows for an argument in the table of a head comment: argument, components, unit and meaning.
 
-    Components with the same unit and meaning share a row. A constant of a scene has its own row, whose meaning is its
-    formula and value.
+    Components with the same unit and meaning share a row. A constant of a scene has its own row with its formula and
+    value.
     """
     size = "" if argument.is_scalar else f"[{argument.size}]"
     heads = chain([f"{argument.role:<4} {argument.name}{size}"], repeat(""))

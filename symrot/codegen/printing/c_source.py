@@ -1,4 +1,4 @@
-"""C99 text of programs, which is also valid C++: a function for one sample, and one for a batch of samples.
+"""C99 code of programs, which is also valid C++: a function for one sample, and one for a batch of samples.
 
 In a batch, component i of all n samples is stored in one row (structure of arrays).
 """
@@ -35,7 +35,7 @@ INDEPENDENT = "SYMROT_INDEPENDENT"  # precedes a loop over independent samples: 
 RELATIONS = {"==": "eq", "<": "lt"}
 STREAMS = 16  # largest number of arrays that processors prefetch in one loop
 REGISTERS = 16  # vector registers, from SSE2 to AVX2
-WAYS = 12  # arrays of which the first cache holds a line each if n is a multiple of 512 (8 to 12 by processor)
+WAYS = 12  # associativity of the first cache, 8 to 12: so many arrays fit in one set if n is a multiple of 512
 SPAN = "SYMROT_SPAN"  # samples in a block of a batch: data that one loop has read are in cache for the next loop
 
 
@@ -48,27 +48,27 @@ class Real:
     precision: str
 
     def literal(self, value: Fraction) -> str:
-        """Return the number of this type nearest to an exact number, as the shortest text that reads back to it."""
+        """Return the nearest number of this type as a C literal, the shortest that is read back as the same number."""
         digits = _shortest_float(value) if self.suffix else repr(float(value))
         return (digits if "." in digits or "e" in digits or "n" in digits else f"{digits}.0") + self.suffix
 
     @cached_property
     def functions(self) -> dict[str, str]:
-        """Return the C names of the functions that kernels call, for this type."""
+        """Return the C name, for this type, of each function that kernels call: ``sinf`` for sin in float."""
         own = {name: f"symrot_{name}" for name in OWN_FUNCTIONS}
         in_c = {name: name for name in FUNCTIONS} | own | {"abs": "fabs", "copysign": "copysign"}
         return {name: f"{called}{self.suffix}" for name, called in in_c.items()}
 
     @cached_property
     def near_functions(self) -> dict[str, str]:
-        """Return the C names of the functions for batches, whose angles are in the range of ``symrot_math.h``."""
+        """Return the C names of functions in batches, where ``symrot_math.h`` replaces <math.h> for moderate angles."""
         own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
         shared = {"sin": "sin", "cos": "cos", "atan2": "atan2", "select_ge": "choose_ge"}
         return self.functions | own | {name: f"symrot_{other}{self.suffix}" for name, other in shared.items()}
 
     @property
     def bits(self) -> str:
-        """Return the unsigned integer type of C with the same size."""
+        """Return the unsigned integer type of C with the same number of bits."""
         return "uint32_t" if self.suffix else "uint64_t"
 
 
@@ -91,13 +91,13 @@ def _as_float(value: float) -> float:
 def c_expression(node: Node, real: Real = DOUBLE, near: bool = False) -> str:
     """Return a formula as a C expression, with the brackets that its order of evaluation needs.
 
-    ``near`` selects the functions for batches, whose angles are in the range of ``symrot_math.h``.
+    ``near`` selects the functions of ``symrot_math.h`` for batches, which need moderate angles.
     """
     return text(rename(node, functions=real.near_functions if near else real.functions), 0, real.literal)
 
 
 def c_arguments(program: Program, real: Real = DOUBLE) -> str:
-    """Return the parameter list of the one-sample function."""
+    """Return the parameter list of the C function for one sample."""
     return ", ".join(_declared(argument, real) for argument in program.signature.arguments if argument.size)
 
 
@@ -144,9 +144,8 @@ def _body(
 ) -> list[str]:  # fmt: skip
     """Return the statements of a function; each value is computed just before the first output that needs it.
 
-    This keeps the number of values small that are needed at the same time. ``index_of`` returns the index of a
-    component in its array. With ``late``, all results are computed before the first one is stored; until then they are
-    temporaries, and the outputs are computed in another order.
+    So few values are needed at the same time. ``index_of`` returns the index of a component in its array. With
+    ``late``, all results are computed, in another order, and kept in temporaries before the first one is stored.
     """
     results = dict(program.outputs)
     lines: list[str] = []
@@ -181,10 +180,10 @@ def _body(
 
 
 def _computed_in_turn(program: Program) -> list[Argument]:
-    """Return the output arguments in the order in which a loop that stores last computes them: fewest inputs first.
+    """Return the output arguments in order of computation, for a loop that stores its results last.
 
-    If all inputs and results fit into registers, the outputs keep their order. With gcc 12 on Zen 3 (geometric mean
-    over n = 512, 1000, 1024, 4096, 10^6) the new order takes 0.88 of the time of the original order for
+    The output with fewest inputs comes first; if all inputs and results fit into registers, the order is unchanged.
+    With gcc 12 on Zen 3 (geometric mean over n = 512, 1000, 1024, 4096, 10^6) the new order takes 0.88 of the time for
     inertia_tetrahedron, 0.95 for heavy_top (1.03 at 1000, 0.97 at 10^6), and 0.98 for heavy_top_symmetric. Of the
     kernels with fewer values, inertia_triangular_prism and inertia_frustum would take 1.06.
     """
@@ -195,7 +194,7 @@ def _computed_in_turn(program: Program) -> list[Argument]:
 
 
 def _reserved(program: Program, real: Real) -> set[str]:
-    """Return the names that cannot be given to temporaries for results in a batch."""
+    """Return the names already in use in the C code of a batch, which new temporaries must not have."""
     arguments = program.signature.arguments
     inputs = {name for a in arguments if a.role == "in" for name, *_ in a.components}
     functions = {*real.functions.values(), *real.near_functions.values()}
@@ -204,7 +203,7 @@ def _reserved(program: Program, real: Real) -> set[str]:
 
 
 def _due(needed: set[str], waiting: dict[str, tuple[set[str], list[str]]]) -> list[str]:
-    """Remove from ``waiting`` the statements that the ``needed`` names depend on, and return them in order."""
+    """Remove from ``waiting`` all statements that the values ``needed`` depend on, and return them in order."""
     for name, (of, _) in reversed(waiting.items()):
         if name in needed:
             needed = needed | of
@@ -245,7 +244,7 @@ def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> st
 
 
 def _own_function(name: str, real: Real) -> list[str]:
-    """Return the C definition of a function that kernels call and <math.h> does not have."""
+    """Return the C definition of a function, such as sinc, that kernels call and <math.h> does not have."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
     lines = [_head(real.functions[name], arguments, "static inline ", real.type), "{"]
@@ -256,7 +255,7 @@ def _own_function(name: str, real: Real) -> list[str]:
 
 
 def _near_function(name: str, real: Real) -> list[str]:
-    """Return the C definition, without a branch, of a function for batches that <math.h> does not have."""
+    """Return the branch-free C definition for batches of a function, such as sinc, that <math.h> does not have."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
     lines = [_head(real.near_functions[name], arguments, "static inline ", real.type), "{"]
@@ -278,7 +277,7 @@ def _batch_arguments(program: Program, real: Real) -> str:
 
 
 def _batch(program: Program, real: Real, near: bool) -> list[str]:
-    """Return the C function that computes n samples.
+    """Return the C text of the batch function, which computes n samples.
 
     With ``near``, a block that contains an angle out of range is computed again with the functions of <math.h>.
     """
@@ -318,7 +317,7 @@ def _batch(program: Program, real: Real, near: bool) -> list[str]:
 
 
 def _blocks(size: str) -> list[str]:
-    """Return the first lines of a loop over blocks of samples."""
+    """Return the first C lines of a loop over blocks of ``size`` samples."""
     return [
         f"    for (size_t start = 0; start < n; start += {size}) {{",
         f"        const size_t end = n - start < {size} ? n : start + {size};",
@@ -326,11 +325,11 @@ def _blocks(size: str) -> list[str]:
 
 
 def _split(program: Program) -> list[Program]:
-    """Return a program as one part for each output argument if separate loops are faster, else as a whole.
+    """Return one program for each output argument if separate loops are faster, else the whole program.
 
     Separate loops are faster if the whole program accesses more arrays than processors prefetch and each part does not,
-    provided that no operation is done twice and at most a fifth more is read. Programs with sines stay whole, because
-    sines take longer than memory access.
+    provided that no operation is done twice and the number of arrays read or written grows by at most a fifth. Programs
+    with sines are not split, because sines take longer than memory access.
     """
     whole = _streams(program)
     scalars = any(a.is_scalar for a in program.signature.arguments if a.role == "in")
@@ -364,13 +363,13 @@ def _streams(program: Program) -> int:
 
 
 def _stores_last(program: Program) -> bool:
-    """Return whether the loops of a batch store all results only after computing them.
+    """Return whether the loop of a batch computes all results before it stores the first.
 
-    They do if the loops, or a part of them, access more arrays than share a set of the first cache: compilers read
-    values again after a store, and these values are then no longer in the cache. With gcc 12 on Zen 3, the kernels of
-    the library that store last take 0.9 of the time of stores in between at n = 512 m (heavy_top 0.7, but
-    heavy_top_symmetric 1.1) and the same time at other n. quaternion_product, with 12 arrays, would take 1.15 at n =
-    1000 with gcc tuned for Zen 3: it needs 26 loads per iteration instead of 22.
+    It does if it accesses more arrays than fit in one set of the first cache: compilers read values again after a
+    store, and these values are then no longer in the cache. With gcc 12 on Zen 3, the kernels of the library that store
+    last take 0.9 of the time of immediate stores if n is a multiple of 512 (heavy_top 0.7, but heavy_top_symmetric 1.1)
+    and the same time at other n. quaternion_product, with 12 arrays, would take 1.15 at n = 1000 with gcc tuned for Zen
+    3: it needs 26 loads per iteration instead of 22.
     """
     return _streams(program) > WAYS
 
@@ -420,7 +419,7 @@ _SPAN = (f"#ifndef {SPAN} /* samples that the loops of a batch take in turn */",
 
 
 def c_header(program: Program, description: Description, reals: Sequence[Real] = (DOUBLE,)) -> str:
-    """Return the text of the header file of a kernel, for C and C++: contract, include guard, prototypes."""
+    """Return the text of the header file of a kernel, for C and C++: head comment, include guard, prototypes."""
     guard = f"SYMROT_{program.signature.name.upper()}_H"
     ones, batches = zip(*(_prototypes(program, real) for real in reals), strict=True)
     shapes = ["/* one sample */", *ones, "", "/* n samples; component i of sample k is at [i*n + k] */", *batches]

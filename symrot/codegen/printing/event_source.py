@@ -1,12 +1,12 @@
-"""C text of formulas whose zeros are located: values with bounds of their rounding errors, and enclosures.
+"""C code of event functions, whose zeros are located: values with bounds of their rounding errors, and enclosures.
 
-The bound is computed along the tape together with the value, operation by operation, to first order. It distinguishes a
-curve that touches zero from a curve that only comes close to zero, and the sign of a smaller value is meaningless.
+The bound is computed together with the value, operation by operation, to first order. A value smaller than its bound
+has no reliable sign; so the bound distinguishes a curve that touches zero from one that only comes close to zero.
 
-Enclosures, by real intervals and by complex discs, contain all values of the formula over an interval of time. They
-show where there is no zero, and bound features that samples of the formula cannot show.
+Enclosures (real intervals and complex discs) contain all values of the formula over an interval of time. They show
+where there is no zero, and bound features that samples of the formula cannot show.
 
-The text is placed between :file:`event_enclosures.h` and :file:`events.c`.
+The code is placed between :file:`event_enclosures.h` and :file:`events.c`.
 """
 
 from collections.abc import Sequence
@@ -25,7 +25,7 @@ SLOPES = {  # function -> a bound of its slope, given its argument a and its val
     "acos": "1.0/sqrt(1.0 - {a}*{a})", "atan": "1.0/(1.0 + {a}*{a})", "atan2": "1.0/sqrt({a}*{a} + {b}*{b})",
 }  # fmt: skip
 assert set(SLOPES) == set(FUNCTIONS)
-ENCLOSURES = {  # kind -> how to enclose a number with an error, and the result that contains no information
+ENCLOSURES = {  # kind -> the C call that encloses a number with an error, and the enclosure of all numbers
     "range": ("symrot_range_around", "symrot_nowhere()"), "disc": ("symrot_disc_of", "symrot_disc_unknown()"),
 }  # fmt: skip
 OPERATIONS = {"+": "add", "-": "sub", "*": "mul", "/": "div", "neg": "neg"}
@@ -34,7 +34,7 @@ OPERATIONS = {"+": "add", "-": "sub", "*": "mul", "/": "div", "neg": "neg"}
 def event_definitions(
     program: Program, formulas: Sequence[Node], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
 ) -> str:
-    """Return the C function ``symrot_event``, which evaluates some formulas along a motion.
+    """Return the C functions that evaluate event functions along a motion: values, error bounds and enclosures.
 
     Parameters
     ----------
@@ -99,10 +99,7 @@ def _switch(
     ends: Sequence[str],
     kind: str = "double",
 ) -> list[str]:
-    """Return the body of a function with one case per event.
-
-    The return statement for an unknown event is not included.
-    """
+    """Return the body of a C function with one case per event, without the return statement for an unknown event."""
     lines = ["{", "    (void)t;", "    (void)y;", "    (void)p;", *head, "    switch (which) {"]
     for number, (tape, statements) in enumerate(zip(tapes, texts, strict=True)):
         lines += [f"    case {number}: {{", *(f"        const {kind} {text};" for text in statements)]

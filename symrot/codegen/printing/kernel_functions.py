@@ -1,4 +1,6 @@
-"""Formulas of functions that kernels call and <math.h> does not have (:mod:`symrot.kernels.removable`)."""
+"""Formulas of functions, such as sinc, that kernels call and <math.h> does not have.
+
+See :mod:`symrot.kernels.removable`."""
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
@@ -48,7 +50,7 @@ def without_branches(program: Program) -> bool:
 
 
 def called(program: Program) -> list[str]:
-    """Return the functions that a program calls and C does not have, in the order of the table."""
+    """Return the functions, such as sinc, that a program calls and C does not have, in the order of their table."""
     used = {name for name, _ in _calls(program)}
     return [name for name in FUNCTIONS if name in used and (name in _CHOICES or name in REMOVABLE)]
 
@@ -63,9 +65,9 @@ def series(coefficients: Iterable[Fraction], variable: str) -> Node:
 
 
 def own_function(name: str, precision: str) -> tuple[tuple[str, ...], list[Statement], Choice]:
-    """Return the parameters, temporaries and result of a function that C does not have.
+    """Return the parameters, temporaries and result of a function, such as sinc, that C does not have.
 
-    The result is a choice (relation, left, right, then, else).
+    The result is a choice between two formulas: (relation, left, right, then, else).
     """
     if name in _CHOICES:
         parameters, choice = _CHOICES[name]

@@ -24,10 +24,10 @@ __all__ = ["FAR", "math_header", "quarter_turn_parts", "tail_coefficients"]
 FAR = {"binary64": 2**17, "binary32": 2**12}  # rad; for larger angles a batch computes its block with the C library
 _DIGITS = {"binary64": 53, "binary32": 24}
 _PARTS = {"binary64": (36, 36), "binary32": (12, 12, 12)}  # bits of each part; its product with a count is exact
-_COUNT = {"binary64": (6, 6), "binary32": (4, 4)}  # coefficients of sine and cosine
+_COUNT = {"binary64": (6, 6), "binary32": (4, 4)}  # numbers of coefficients of sine and cosine
 _SQUARE = Fraction(617, 1000)  # largest square of the remainder, slightly above (pi/4)^2
 _TERMS = 20  # terms of the exact series
-_ARC_COUNT = {"binary64": 13, "binary32": 6}  # coefficients of the arc tangent
+_ARC_COUNT = {"binary64": 13, "binary32": 6}  # number of coefficients of the arc tangent
 _ARC_SQUARE = Fraction(1, 4)  # largest square of the quotient
 _ARC_TERMS = 60  # terms of the exact series
 _HALF = {"binary64": 27, "binary32": 12}  # bits of the lower half of a fraction
@@ -36,10 +36,10 @@ _RAISED = {"binary64": (900, 200), "binary32": (90, 40)}  # a quotient below 2^-
 
 @cache
 def tail_coefficients(first: int, count: int) -> tuple[Fraction, ...]:
-    """Return the polynomial in t = x^2 nearest to the remainder of a series, lowest power first.
+    """Return the coefficients of the polynomial in t = x^2 nearest to the tail of sine or cosine, lowest power first.
 
-    The remainder is ``sum of (-1)^k t^(k - m)/first!..``, the terms of sine (``first = 3``) or cosine (``first = 4``)
-    from ``x^first/first!`` on, divided by that power of x.
+    The tail is the series of sine (``first = 3``) or cosine (``first = 4``) from the term ``x^first/first!`` on,
+    divided by ``x^first``.
     """
     sign = -1 if first == 3 else 1
     return _nearest([Fraction(sign * (-1) ** k, factorial(first + 2 * k)) for k in range(_TERMS)], _SQUARE, count)
@@ -47,14 +47,14 @@ def tail_coefficients(first: int, count: int) -> tuple[Fraction, ...]:
 
 @cache
 def _arc_coefficients(count: int) -> tuple[Fraction, ...]:
-    """Return the polynomial in t = z^2 nearest to (atan(z)/z - 1)/t, lowest power first."""
+    """Return the coefficients of the polynomial in t = z^2 nearest to (atan(z)/z - 1)/t, lowest power first."""
     return _nearest([Fraction((-1) ** (k + 1), 2 * k + 3) for k in range(_ARC_TERMS)], _ARC_SQUARE, count)
 
 
 def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fraction, ...]:
-    """Return the polynomial p(t) with ``count`` coefficients for which t p(t) is nearest to t times a series.
+    """Return the coefficients of the polynomial p(t) for which t p(t) is nearest to t times a series.
 
-    The range is 0 <= t <= ``largest``.
+    The range is 0 <= t <= ``largest``; p has ``count`` coefficients.
     """
     # zeros of a Chebyshev polynomial whose last zero is moved to t = 0, because the error is weighted with t
     zeros = [Fraction(round(cos(pi * (2 * k + 1) / (2 * count + 2)) * 2**20), 2**20) for k in range(count + 1)]
@@ -72,7 +72,7 @@ def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fra
 
 
 def quarter_turn_parts(precision: str) -> list[Fraction]:
-    """Return pi/2 as a sum of some parts with few bits and a last part with full precision."""
+    """Return pi/2 as a list of parts to add: several with few bits, and a last part with full precision."""
     rest, parts = PI / 2, []
     for bits in _PARTS[precision]:
         parts.append(_leading(rest, bits))
@@ -81,7 +81,7 @@ def quarter_turn_parts(precision: str) -> list[Fraction]:
 
 
 def _leading(value: Fraction, bits: int) -> Fraction:
-    """Return a positive number truncated to its leading bits."""
+    """Return a positive number truncated to its first ``bits`` significant bits."""
     shift = bits
     while value * Fraction(2) ** shift >= 2**bits:
         shift -= 1

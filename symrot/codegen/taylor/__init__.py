@@ -1,1 +1,1 @@
-"""Recurrences of Taylor coefficients, and C text that computes them for one motion or for many in SIMD lanes."""
+"""Recurrences of Taylor coefficients, and C code that computes them, for one motion or for many motions at once."""

@@ -27,7 +27,7 @@ ONE: Node = ("number", Fraction(1))
 
 
 class _Open(Exception):
-    """The signal that the equations of auxiliary states do not close, or not soon enough."""
+    """Raised if the rates of the auxiliary states contain ever more new quantities, or are not of the right form."""
 
 
 class _Term(NamedTuple):
@@ -40,11 +40,11 @@ class _Term(NamedTuple):
 
 
 def with_companions(system: Recurrences) -> Recurrences:
-    """Return a system in which quantities of the attitude alone are replaced by auxiliary states.
+    """Return a Taylor system in which functions of the attitude alone, such as R(q)^T e, are additional states.
 
-    Auxiliary states are appended to the states of the program: ``rates`` of the result contains their rates, and
-    ``seeds`` a formula of states and t for coefficient 0 of each. A system without such quantities is returned
-    unchanged.
+    These auxiliary states ("companions") follow the states of the program: ``rates`` of the result contains their
+    rates, and ``seeds`` a formula of states and t for coefficient 0 of each. A system without such functions is
+    returned unchanged.
     """
     if not set(QUATERNION) <= set(system.states):
         return system
@@ -62,6 +62,8 @@ def _times(a: Polynomial, b: Polynomial) -> Polynomial:
 
 
 class _Closure:
+    """A system, and the auxiliary states that its rates and the rates of these states need."""
+
     def __init__(self, system: Recurrences) -> None:
         self.system, self.series = system, system.series
         self.variables: list[tuple[str, Any]] = []  # state and number, clock and series, constant and formula
@@ -155,7 +157,7 @@ class _Closure:
         return variable in self.attitude or self.variables[variable][0] == "clock"
 
     def of_attitude(self, form: Polynomial | None) -> bool:
-        """Return whether a polynomial has only attitude, functions of time and constants, but is not a single state."""
+        """Return whether a polynomial has degree 2 or more in the attitude and contains no other state."""
         if form is None:
             return False
         free = [v for monomial in form.terms for v, _ in monomial if self.variables[v][0] != "constant"]
@@ -166,7 +168,7 @@ class _Closure:
         return sum(power for variable, power in monomial if variable in self.attitude)
 
     def split(self, form: Polynomial) -> list[tuple[Node, int | None, Polynomial]]:
-        """Return a polynomial as a sum of products (constant, state or None, polynomial in attitude and time)."""
+        """Return the terms of a polynomial, each as (constant, state or None, polynomial in attitude and time)."""
         groups: dict[Monomial, dict[Monomial, Fraction]] = {}
         for monomial, x in form.terms.items():
             outer = tuple((v, p) for v, p in monomial if not self.is_inner(v))
@@ -188,10 +190,10 @@ class _Closure:
     # -------------------------------------------------------------------------------------------- closing
 
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
-        """Return an auxiliary state, a factor and a number with ``polynomial = factor*state + number``.
+        """Return (state, factor, number) with ``inner = factor*state + number`` for an auxiliary state.
 
-        A new auxiliary state is added if necessary. For a unit quaternion all terms of the polynomial can be given the
-        same degree; terms of degree two are then determined only up to a multiple of the squared norm.
+        The state is added if it is new. To recognise equal states, all terms are brought to one degree by powers of
+        the squared norm, which is 1; from a form of degree 2 a multiple of the squared norm is moved to ``number``.
         """
         degrees = {self.degree(monomial) for monomial in inner.terms}
         top = max(degrees)
@@ -228,7 +230,7 @@ class _Closure:
         return result
 
     def seek(self, i: int) -> None:
-        """Search a series and its operands for polynomials of the attitude, and replace these by auxiliary states."""
+        """Replace every polynomial of the attitude in a series and its operands by auxiliary states."""
         s = self.series[i]
         if i in self.replaced or s.rule not in ("sum", "product"):
             return
@@ -241,9 +243,9 @@ class _Closure:
                 self.seek(operand)
 
     def seek_in(self, s: Series) -> None:
-        """Replace the products of the attitude in a sum by auxiliary states, all together.
+        """Replace the polynomials of the attitude in a sum of series by auxiliary states.
 
-        The other operands of the sum are then searched too.
+        Products that are operands of the sum itself are replaced together; then the other operands are searched.
         """
         alone = {
             i for i in s.operands if self.series[i].rule == "product" and self.of_attitude(self.polynomial(i))
@@ -271,7 +273,7 @@ class _Closure:
         return _rebuilt(self, rates)
 
     def seed(self, form: Polynomial) -> Node:
-        """Return a polynomial as a formula of states and time; terms with the same function of time are grouped."""
+        """Return the formula of an auxiliary state at the start of a step, with terms grouped by functions of time."""
         groups: dict[Monomial, dict[Fraction, list[Node]]] = {}
         for monomial, x in sorted(form.terms.items()):
             clocks = tuple((v, p) for v, p in monomial if v not in self.attitude)
@@ -312,7 +314,7 @@ def _total(terms: list[Node]) -> Node:
 
 
 def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
-    """Return the system with auxiliary states as additional states, without the series that are no longer needed."""
+    """Return the system that computes the auxiliary states as states, without the series that these replace."""
     system, old = closure.system, closure.series
     count = len(system.states)
     alias = {

@@ -15,7 +15,7 @@ __all__ = ["coefficients"]
 
 
 class _Run(NamedTuple):
-    """Data that the rules use: constants as numbers, functions, and all series computed so far."""
+    """State of one computation: constants as numbers, functions, and the coefficients computed so far."""
 
     constant: Callable[[Node], Any]
     functions: Mapping[str, Callable[..., Any]]

@@ -1,12 +1,12 @@
-"""C text of the recurrences of a system with one trajectory in each SIMD lane, for ensembles of motions.
+"""C code of the Taylor coefficients of an ensemble: each SIMD lane (element of a vector) holds one trajectory.
 
-It computes the jet, the list of all Taylor coefficients at one time. No value moves between lanes: a series is an array
-of vectors, and each operation is done for all trajectories at once. Convolutions that occur with the same weight in the
-same sums share an accumulator. Two orders are computed together: loops over known coefficients serve both orders and
-read each number once; then the terms with the newest coefficients complete order n and order n + 1. No loop over the
+The code computes the jet, which is the list of all Taylor coefficients at one time. Lanes never exchange values: a
+series is an array of vectors, and each operation is done for all trajectories at once. Convolutions that occur with the
+same weight in the same sums share an accumulator. Orders n and n + 1 are computed together: loops over the known
+coefficients read each number once for both; then the terms with the newest coefficients are added. No loop over the
 order is unrolled.
 
-The text is placed between :file:`lanes.h` and :file:`lanes.c` of :mod:`symrot.ensemble`.
+The code is placed between :file:`lanes.h` and :file:`lanes.c` of :mod:`symrot.ensemble`.
 """
 
 from collections.abc import Iterable, Sequence
@@ -27,9 +27,9 @@ LOAD_OF_LOOP = 24  # accumulators and factors of a loop: by measurement, half mo
 
 
 class Convolution(NamedTuple):
-    """A convolution ``sum(a[k] b[n-k])``, and which of its two end terms it includes.
+    """A convolution ``sum(a[k] b[n-k])`` of series a and b, and which of the terms k = 0 and k = n it includes.
 
-    ``ends`` is both end terms, only the term with the newest coefficient of a (last), or none.
+    ``ends`` is ``both``, ``last`` (only k = n, with the newest coefficient of a) or ``none``.
     """
 
     a: int
@@ -42,7 +42,7 @@ class Convolution(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """An accumulator: a sum of convolutions, each with a sign."""
+    """The convolutions that are added up in one C variable, each with its sign."""
 
     terms: tuple[tuple[int, Convolution], ...]
 
@@ -61,9 +61,10 @@ CONVOLUTIONS = {  # rule -> operands a and b of its convolution (-1 is the serie
 
 
 def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> str:
-    """Return the C text of a system for :file:`lanes.c`: sizes, blocks, constants and the function for the jet.
+    """Return the C code of one right-hand side that :file:`lanes.c`, the Taylor stepper of ensembles, includes.
 
-    The arguments are those of :func:`symrot.codegen.taylor.source.taylor_definitions`.
+    It defines sizes, blocks of states, constants and the function for the Taylor coefficients. The arguments are
+    described in :func:`symrot.codegen.taylor.source.taylor_definitions`.
 
     Raises
     ------
@@ -89,16 +90,17 @@ def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[fl
 
 
 def multiplications(program: Program, order: int) -> int:
-    """Return the number of multiplications in the loops of one jet, for one trajectory."""
+    """Return the number of multiplications in the convolutions of one Taylor step of one trajectory."""
     jet = _Jet(recurrences(program))
     shares = [(0.5 if slot.square else 1.0) * len(slot.terms) for slot in jet.slots]
     return int(sum(shares) * order * (order + 1) / 2)
 
 
 class _Jet:
-    """The writer of the C text of one system's jet.
+    """Writes the C function that computes the jet (all Taylor coefficients) of one system.
 
-    In C ``v{i}`` is the newest coefficient of series i; ``u{i}`` (or ``x[i]``) is the array of all its coefficients.
+    In C, ``v{i}`` is the newest coefficient of series i, and ``u{i}``, or ``x[..]`` for a state, the array of all of
+    its coefficients.
     """
 
     def __init__(self, system: Recurrences) -> None:
@@ -115,7 +117,7 @@ class _Jet:
         self.divided = [i for i, s in enumerate(self.series) if s.rule in ("quotient", "root", "primitive")]
 
     def _make_slots(self) -> None:
-        """Give each convolution an accumulator; products with the same weights in the same sums share one."""
+        """Give each convolution a C variable that adds it up; products with equal weights in the same sums share it."""
         uses: dict[int, list[tuple[int, Node, int]]] = {}
         own: set[int] = set()
         for place, s in enumerate((*self.series, *self.system.rates)):
@@ -159,14 +161,14 @@ class _Jet:
         return f"c[{self.constants.setdefault(node, len(self.constants))}]"
 
     def signed(self, node: Node | None) -> str:
-        """Return a constant of either sign as C; None is zero."""
+        """Return the C expression of a constant of either sign; None is written as zero."""
         sign, size = split_sign(node or ("number", 0))
         return self.weight(size) if sign > 0 else f"V_SUB(V_ALL(0.0), {self.weight(size)})"
 
     def slot(self, number: int, phase: str, sums: str) -> str:
-        """Return the C expression for coefficient n of an accumulator.
+        """Return the C expression for coefficient n of a sum of convolutions that share an accumulator.
 
-        It is the sum of two chains, so that neither chain waits for all of the newest coefficients.
+        It adds two independent chains of operations, so that neither waits for all of the newest coefficients.
         """
         older = f"{sums}{number}" if phase == "later" else ""
         newer = ""
@@ -257,9 +259,9 @@ class _Jet:
         return [f"{name} = V_DIV({upper}, V_MUL(d{i}, V_ALL((double)({n}))));"]
 
     def _clock(self, s: Series, name: str, n: str) -> list[str]:
-        """Return the C statement for coefficient n of a function of ``a t + b``, from coefficient n - 1 of its partner.
+        """Return the C statement for coefficient n of a function of ``a t + b``.
 
-        The partner of sine is cosine, for example.
+        It uses coefficient n - 1 of the function's derivative, for example of cosine if the function is sine.
         """
         rate, _ = s.weights
         assert rate is not None
@@ -291,7 +293,7 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, phase: str, sums: str) -> list[str]:
-        """Return the C statements of one order: all series in order, then the next coefficients of states."""
+        """Return the C statements for coefficient n of all series and coefficient n + 1 of the states."""
         lines: list[str] = []
         made: set[int] = set()
 
@@ -321,18 +323,21 @@ class _Jet:
         return lines
 
     def _partners(self) -> list[int]:
-        """Return the series whose coefficient of the previous order is needed."""
+        """Return the series whose coefficient n - 1 gives coefficient n of another, as cosine does for sine."""
         return sorted({s.operands[0] for s in self.series if s.rule == "clock"})
 
     def loops(self) -> list[str]:
-        """Return the C loops over known coefficients for the orders n (even) and m = n + 1.
+        """Return the C loops that sum products of known coefficients, for the orders n (even) and m = n + 1.
 
-        The sums named ``a`` collect the products with k + j = n, those named ``b`` the products with k + j = m.
+        The C variables ``a{i}`` sum the products u[k] v[n-k] of order n, and ``b{i}`` the products of order m.
         """
         return [line for group in self._groups() for line in self._loop(group)]
 
     def _groups(self) -> list[list[int]]:
-        """Return the accumulators of each loop; those with common factors share a loop as long as registers suffice."""
+        """Return, for each C loop, the numbers of the convolution sums (slots) that it computes.
+
+        Sums with common factors share a loop as long as registers suffice.
+        """
         left = list(range(len(self.slots)))
         groups: list[list[int]] = []
         while left:
@@ -349,7 +354,7 @@ class _Jet:
         return groups
 
     def _load(self, group: Sequence[int]) -> int:
-        """Return how many registers a loop would use: two accumulators for each slot, and its factors at two orders."""
+        """Return how many registers a loop over a group of slots needs: two sums for each slot, and the factors."""
         terms = [c for i in group for _, c in self.slots[i].terms]
         return 2 * len(group) + 2 * len({c.a for c in terms}) + len({c.b for c in terms})
 
@@ -374,7 +379,7 @@ class _Jet:
     def _products(
         self, terms: Sequence[tuple[int, int, Convolution]], left: Sequence[int], right: Sequence[int]
     ) -> list[str]:
-        """Return the C loop that adds products of coefficients to the accumulators, for two values of k per pass."""
+        """Return the C loop over k that adds the products u[k] v[n-k] to the accumulators, two values of k per pass."""
         lines = ["{", *(f"    symrot_v f{i} = {self.at(i, '1')};" for i in left)]
         lines.append("    for (int64_t k = 1; k < n - 1; k += 2) {")
         for new, old, ahead, behind in (("g", "f", "k + 1", "n - k"), ("f", "g", "k + 2", "n - k - 1")):
@@ -392,7 +397,7 @@ class _Jet:
         return [*lines, "}"]
 
     def between(self) -> list[str]:
-        """Return the C terms of order n + 1 that contain coefficient n, which has just been computed."""
+        """Return the C statements that add the terms with coefficient n, just computed, to the sums of order n + 1."""
         lines: list[str] = []
         for i, slot in enumerate(self.slots):
             for sign, (a, b, _) in slot.terms:
@@ -454,7 +459,7 @@ def _add(name: str, sign: int, factors: str) -> str:
 
 
 def _called(s: Series, first: int) -> str:
-    """Return the C call for coefficient 0 of a function of series."""
+    """Return the C call of a function, such as exp, with coefficient 0 of its arguments."""
     arguments = [f"v{operand}" for operand in s.operands[first:]]
     return f"V_CALL{'' if len(arguments) == 1 else len(arguments)}({s.function}, {', '.join(arguments)})"
 

@@ -1,10 +1,10 @@
-"""C text of the conserved quantities of a motion: values in double-double arithmetic, gradients in doubles.
+"""C code of the conserved quantities of a motion: values in double-double arithmetic, gradients in doubles.
 
-A value is a sum of two doubles with about 32 digits, so it shows how far a motion has left its invariants long before a
-double could. The gradients give the smallest change of the states that takes the motion back; they are accumulated
-backwards along the tape, in one pass for each invariant.
+A value is a sum of two doubles with about 32 digits. It shows a drift of the invariants long before a double could. The
+gradients give the smallest change of the states that restores the invariants. They are computed by reverse
+differentiation, in one pass over the list of operations for each invariant.
 
-The text is placed between :file:`taylor.h` and :file:`taylor.c`; :file:`projection.c` uses it.
+The code is placed between :file:`taylor.h` and :file:`taylor.c`; :file:`projection.c` uses it.
 """
 
 from collections.abc import Sequence
@@ -27,14 +27,14 @@ IN_PAIRS = {*_OPERATIONS, "number", "symbol"}
 
 
 def projectable(program: Program, outputs: Sequence[str]) -> list[str]:
-    """Return the outputs that double-double arithmetic can compute: those without sin, exp and similar functions."""
+    """Return the outputs that double-double arithmetic can compute: those made of + - * / and square roots only."""
     return [name for name in outputs if {op.kind for op in tape_of(program, [name]).operations} <= IN_PAIRS]
 
 
 def invariant_definitions(
     program: Program, outputs: Sequence[str], states: Sequence[str], parameters: Sequence[str]
 ) -> str:
-    """Return the C text of the conserved quantities of a motion.
+    """Return the C code that evaluates the conserved quantities of a motion and their gradients.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def _in_pairs(op: Operation, places: dict[str, str]) -> str:
 
 
 def _gradient(tape: Tape, output: int, states: Sequence[str]) -> list[str]:
-    """Return the C statements that fill the gradient of one output, by reverse differentiation along the tape."""
+    """Return the C statements that compute the gradient of one output by reverse differentiation."""
     needed = tape.of(output)
     varying = _varying(tape, needed, set(states))
     terms: dict[int, list[str]] = {tape.outputs[output]: ["1.0"]}

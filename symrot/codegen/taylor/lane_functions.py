@@ -1,7 +1,7 @@
-"""C functions for the jets of ensembles, lane by lane: phases ``a t + b`` as sums of two doubles, sine and cosine.
+"""C functions of SIMD vectors for ensembles: phases ``a t + b`` as sums of two doubles, their sine and cosine.
 
-They use the argument reduction and polynomials of :mod:`symrot.codegen.printing.math_header`. A lane with a larger
-angle calls the C library, so that its bits depend only on its own angle.
+They use the argument reduction and polynomials of :mod:`symrot.codegen.printing.math_header`. A trajectory whose angle
+is too large for these calls the C library, so that its result does not depend on the other angles of the vector.
 """
 
 from fractions import Fraction
@@ -67,7 +67,7 @@ static inline void symrot_circle(symrot_v high, symrot_v low, symrot_v *sine, sy
 
 
 def _horner(name: str, coefficients: tuple[Fraction, ...]) -> str:
-    """Return C statements for a polynomial in ``square`` by Horner's rule; ``name`` starts as its last coefficient."""
+    """Return C statements of Horner's rule in ``square``; the C variable ``name`` must hold the last coefficient."""
     return "\n".join(
         f"    {name} = V_FMA(square, {name}, V_ALL({DOUBLE.literal(each)}));" for each in coefficients[-2::-1]
     )
@@ -75,7 +75,7 @@ def _horner(name: str, coefficients: tuple[Fraction, ...]) -> str:
 
 @cache
 def lane_functions() -> str:
-    """Return the C text of ``symrot_turn`` (a phase) and ``symrot_circle`` (sine and cosine), for :file:`lanes.h`."""
+    """Return the C functions ``symrot_turn`` (a phase a t + b) and ``symrot_circle`` (its sine and cosine)."""
     sine, cosine = tail_coefficients(3, 6), tail_coefficients(4, 6)
     first, second, third = map(DOUBLE.literal, quarter_turn_parts(DOUBLE.precision))
     numbers = {

@@ -1,10 +1,10 @@
-"""Arrangement of the Taylor series of one motion in rows: SIMD vectors of four lanes.
+"""Arrangement of the Taylor series of one motion in SIMD vectors of four elements, called lanes.
 
-A row holds up to four series of one rule that can be computed together; the states have rows of their own. Convolutions
-are grouped into columns of the same shape. A column is the lane-by-lane convolution of two packs of four series, and a
-slot of a row is a sum of columns. Each lane of a row of sums takes its products with one constant from one slot. A pack
-whose four lanes are the same series is broadcast and needs no storage; so ``dq/dt = 1/2 q*(0, omega)`` becomes three
-broadcasts times a permuted quaternion.
+A row is a vector of up to four series that one rule computes together; states have their own rows. A pack is a vector
+of any four series, and a column the element-wise convolution of two packs. A slot is a weighted sum of columns; each
+lane of a row that is a sum takes its products with one constant from one slot. A pack whose four lanes are the same
+series is broadcast and needs no storage. So ``dq/dt = 1/2 q*(0, omega)`` becomes three broadcasts times a permuted
+quaternion.
 """
 
 from collections.abc import Iterable, Sequence
@@ -18,25 +18,25 @@ from symrot.formula.tree import Node
 __all__ = ["LANES", "Address", "Column", "Layout", "Pack", "Row", "Slot", "Term", "cost", "lay_out"]
 
 LANES = 4
-MOST_USES = (1, 2)  # tried values of the largest number of sums in which a product needs no row of its own
+MOST_USES = (1, 2)  # a product in at most so many sums is computed in each; the faster of both layouts is used
 ZERO: Node = ("number", Fraction(0))
 ONE: Node = ("number", Fraction(1))
 
 
 class Address(NamedTuple):
-    """The place of a value: a lane of a row, and a sign; the sign 0 means the value zero."""
+    """The position of a series in a row (a vector of four series), with a sign to apply; sign 0 means the value 0."""
 
     sign: int
     row: int
     lane: int
 
 
-Pack = tuple[Address, ...]  # the addresses of four lanes
-_Pair = tuple[tuple[int, int], tuple[int, int]]  # two factors, each a sign and a series
+Pack = tuple[Address, ...]  # a vector of four series, each given by its address
+_Pair = tuple[tuple[int, int], tuple[int, int]]  # two factors, each given by its sign and the index of its series
 
 
 class Column(NamedTuple):
-    """A convolution ``sum(a[k] b[n-k])``, lane by lane; ``ends`` tells whether it includes the terms k = 0 and k = n.
+    """An element-wise convolution ``sum(a[k] b[n-k])`` of two vectors of series; ``ends`` gives the range of k.
 
     ``both``: k = 0 to n; ``last``: k = 1 to n, without b[n]; ``none``: k = 1 to n - 1, without a[n] and b[n].
     """
@@ -47,24 +47,24 @@ class Column(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """A weighted sum of columns: the indices of the columns, and one constant per lane."""
+    """A sum of columns (convolutions of four series at once), times one constant per lane."""
 
     columns: tuple[int, ...]
     weights: tuple[Node, ...]
 
 
 class Term(NamedTuple):
-    """A weighted row: addresses of four lanes, and one constant per lane."""
+    """Four series times one constant each, as one addend of a vector sum."""
 
     pack: Pack
     weights: tuple[Node, ...]
 
 
 class Row(NamedTuple):
-    """Four lanes that are computed by one rule.
+    """Up to four series that one rule computes together, one in each lane of a SIMD vector.
 
-    ``lanes`` holds the indices of the series, or None for an unused lane, which holds zero; ``slots`` holds the
-    convolutions; ``terms`` the addends of the rule ``sum``, or the operands of another rule in their order;
+    ``lanes`` holds the indices of the series, or None for an unused lane, which holds zero. ``slots`` holds the
+    convolutions, ``terms`` the addends of the rule ``sum`` or the operands of another rule in their order, and
     ``constant`` the number that is added to coefficient 0.
     """
 
@@ -76,10 +76,10 @@ class Row(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """All rows in order of computation: first the states, then their auxiliary states, then the other series.
+    """The series of a system in rows of four, in order of computation: states, auxiliary states, other series.
 
-    For auxiliary states see :mod:`symrot.codegen.taylor.auxiliary_states`. ``rates`` has one row per row of states and
-    of auxiliary states; ``seeds`` has the formulas for coefficient 0 of auxiliary states.
+    For auxiliary states see :mod:`symrot.codegen.taylor.auxiliary_states`. ``rates`` holds the time derivative of each
+    row of states and of auxiliary states, and ``seeds`` the formulas for coefficient 0 of auxiliary states.
     """
 
     series: tuple[Series, ...]
@@ -88,26 +88,26 @@ class Layout(NamedTuple):
     columns: tuple[Column, ...]
     states: tuple[tuple[int, ...], ...]  # the indices of the states in each row of states
     names: tuple[str, ...]  # names of the states
-    seeds: tuple[tuple[Node, ...], ...] = ()  # one per row of companions
+    seeds: tuple[tuple[Node, ...], ...] = ()  # one tuple per row of auxiliary states
 
 
 def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
-    """Return the layout of a system in rows of four lanes.
+    """Return the arrangement of a system's Taylor series in SIMD vectors of four.
 
-    ``edges`` are the edges of the blocks of states; two blocks never share a row. A product that occurs in two sums is
-    computed once or in each sum, whichever layout costs less.
+    State i is in block j if ``edges[j] <= i < edges[j + 1]``; two blocks never share a vector. A product that occurs in
+    two sums is computed once or in each sum, whichever costs less.
     """
     bundled = _with_bundles(system)
     return min((_Placer(bundled, edges, uses).layout() for uses in MOST_USES), key=cost)
 
 
 def cost(layout: Layout) -> int:
-    """Return an estimate of the time for one order: convolutions, and rows that wait for each other."""
+    """Return an estimate of the time to compute one order of the series: the number of convolutions and of rows."""
     return len(layout.columns) + len(layout.rows)
 
 
 def _with_bundles(system: Recurrences) -> Recurrences:
-    """Return the system with products that occur together in several sums collected into one sum, computed once."""
+    """Return the system in which products that occur together in several sums are added up once."""
     series = list(system.series)
     sums = [(i, s) for i, s in enumerate(series) if s.rule == "sum"]
     sums += [(-1 - i, rate) for i, rate in enumerate(system.rates)]
@@ -123,7 +123,7 @@ def _with_bundles(system: Recurrences) -> Recurrences:
             turn = used[0][1]
             key = tuple((name, sign * turn, weight) for name, sign, weight in used)
             bundles.setdefault(key, []).append((operand, turn))
-    swap: dict[int, tuple[int, int]] = {}  # product -> bundle, sign of its first product
+    swap: dict[int, tuple[int, int]] = {}  # product -> the sum that replaces it, and its sign (0: without replacement)
     for members in bundles.values():
         if len(members) > 1:
             signs = [ONE if sign > 0 else ("neg", ONE) for _, sign in members]
@@ -146,6 +146,8 @@ def _with_bundles(system: Recurrences) -> Recurrences:
 
 
 class _Placer:
+    """Assigns the series of a system to lanes of rows, and their products to columns."""
+
     def __init__(self, system: Recurrences, edges: Sequence[int], most_uses: int) -> None:
         self.system, self.series = system, system.series
         self.rows: list[Row] = []
@@ -172,7 +174,7 @@ class _Placer:
         self.rows.append(row._replace(lanes=lanes))
 
     def _inlined(self, most_uses: int) -> set[int]:
-        """Return the products that occur in at most ``most_uses`` sums; they are computed there and not stored."""
+        """Return the products that occur only in sums, in at most ``most_uses``; each sum computes them itself."""
         count: dict[int, int] = {}
         for s in (*self.series, *self.system.rates):
             for operand in s.operands:
@@ -181,13 +183,10 @@ class _Placer:
         return {operand for operand, uses in count.items() if uses <= most_uses}
 
     def level(self, i: int) -> int:
-        """Return the round, within one order of the Taylor series, in which a series can be computed.
-
-        Round 0 contains the states, which are known before.
-        """
+        """Return how many steps one after another coefficient n of a series needs: 0 for states, which are known."""
         if i not in self.levels:
             s = self.series[i]
-            older = {"driven": (1,), "primitive": (1,), "clock": (0,)}.get(s.rule, ())  # used below n only
+            older = {"driven": (1,), "primitive": (1,), "clock": (0,)}.get(s.rule, ())  # operands used up to n - 1 only
             waits = [operand for k, operand in enumerate(s.operands) if k not in older]
             deepest = max((self.level(operand) for operand in waits), default=0)
             self.levels[i] = 0 if s.rule == "state" else deepest if i in self.inlined else 1 + deepest
@@ -218,7 +217,7 @@ class _Placer:
         return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds)
 
     def _shape(self, i: int) -> tuple[int, ...]:
-        """Return the sorting key of a series within a round: pairs first, then sums with many products."""
+        """Return the sorting key of a series among those of its rule: exp after pairs, sums of many products first."""
         s = self.series[i]
         products = sum(operand in self.inlined for operand in s.operands)
         return (s.function == "exp", -products)
@@ -226,7 +225,7 @@ class _Placer:
     # -------------------------------------------------------------------------------------------- packs
 
     def pack(self, items: Sequence[tuple[int, int] | None]) -> Pack:
-        """Return the addresses of signed series; an unused lane gets the address that costs least."""
+        """Return a vector of series with signs; an unused lane (None) gets the series that costs no instruction."""
         addresses = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
         first = next(address for address in addresses if address is not None)
         if (
@@ -237,14 +236,14 @@ class _Placer:
         return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(addresses))
 
     def address(self, sign: int, series: int, lane: int) -> Address:
-        """Return the address of a signed series, in the preferred lane if a copy of the series is there."""
+        """Return the position of a series in its row, in the given lane if a copy of the series is there."""
         first = self.place[series]
         return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
 
     def column(self, pairs: Sequence[_Pair | None], ends: str, needed: Sequence[bool] = ()) -> int:
-        """Make a column from pairs of series and return its index.
+        """Add a column, the convolutions of up to four pairs of series, and return its index.
 
-        A lane without a pair holds zero if its value is needed, else the series that costs least.
+        A lane without a pair holds zero if its value is needed, else any product that costs no instruction.
         """
         a = self.pack([None if pair is None else pair[0] for pair in pairs])
         b = self.pack([None if pair is None else pair[1] for pair in pairs])
@@ -321,7 +320,7 @@ class _Placer:
         return Row("sum", lanes, tuple(made), tuple(terms), None if set(constants) == {ZERO} else constants)
 
     def _columns(self, lanes: list[list[tuple[int, int]]]) -> Iterable[int]:
-        """Yield columns that contain all products of the lanes: broadcasts if possible, else one product per lane."""
+        """Yield columns that together contain all products of each lane, with a factor common to all lanes if any."""
         rest = [[(sign, self.series[p].operands[0], self.series[p].operands[1]) for sign, p in lane] for lane in lanes]
         needed = [bool(lane) for lane in lanes]
         while any(rest):
@@ -341,14 +340,20 @@ class _Placer:
             yield self.column(picked, "both", needed)
 
     def _shared(self, lanes: list[list[tuple[int, int, int]]]) -> int | None:
-        """Return the first series that is a factor in every lane, or None; a single lane has no such series."""
+        """Return the first series that is a factor in every lane, or None if there is no such series or one lane only.
+
+        It can be broadcast to all lanes.
+        """
         if len(lanes) < 2:
             return None
         common = set.intersection(*({u for _, *pair in lane for u in pair} for lane in lanes))
         return min(common, default=None)
 
     def _mixed(self, terms: list[tuple[int, int, int] | None], needed: Sequence[bool]) -> int:
-        """Make a column of one product per lane; the factors are placed left or right so that packs repeat."""
+        """Add a column of one product per lane, and return its index.
+
+        Each product is written as u v or v u so that the column reuses vectors of series that already exist.
+        """
         known = {pack for column in self.columns for pack in (column.a, column.b)}
         whole = {tuple(Address(1, row, lane) for lane in range(LANES)) for row in range(len(self.rows))}
         best: tuple[int, list[_Pair | None]] | None = None
@@ -371,6 +376,6 @@ class _Placer:
 
 
 def _first_positive(item: tuple[Node, list[tuple[int, int]]]) -> tuple[Node, list[tuple[int, int]]]:
-    """Return a weighted sum of products with the sign of its first product moved into the weight."""
+    """Return (weight, products), with both signs changed if the first product is negative."""
     weight, terms = item
     return item if terms[0][0] > 0 else (("neg", weight), [(-sign, operand) for sign, operand in terms])

@@ -1,4 +1,4 @@
-"""Recurrences of Taylor coefficients, built from a right-hand side with one rule for each operation.
+"""Recurrences for the Taylor coefficients of a motion, built from its rates dy/dt with one rule for each operation.
 
 A series is the list of coefficients ``u[0], u[1], ...`` of one quantity along the motion. Every operation of a program
 becomes a rule that gives coefficient n of its result from coefficients up to n of its operands; the states follow by
@@ -43,11 +43,12 @@ class Series(NamedTuple):
     """One series of Taylor coefficients: its rule, its operands, and the constants of the rule.
 
     ``weights`` holds the constants of a sum, one per operand, followed by the constant that is added to coefficient 0
-    (or None); for a clock, it holds a and b. ``function`` gives coefficient 0, from coefficient 0 of the last operands,
-    if the rule does not. ``sign`` is the s of the rule. ``number`` is the index of a state.
+    (or None); for a function of ``a t + b`` (a clock), it holds a and b. ``function`` gives coefficient 0, from
+    coefficient 0 of the last operands, if the rule does not. ``sign`` is the s of the rule, ``number`` the index of a
+    state.
     """
 
-    rule: str  # state time sum product quotient root theta driven primitive clock
+    rule: str  # state time sum product quotient root driven primitive clock, or theta (t u')
     operands: tuple[int, ...] = ()
     weights: tuple[Node | None, ...] = ()
     function: str = ""
@@ -58,8 +59,8 @@ class Series(NamedTuple):
 class Recurrences(NamedTuple):
     """The recurrences of a program: all series, in an order in which each coefficient can be computed.
 
-    ``rates`` holds the series of the rate of each state. Auxiliary states, if any, come after those of the program;
-    ``seeds`` holds formulas of the states and t for their coefficient 0, see
+    ``rates`` holds the series of the rate of each state. Auxiliary states, if any, come after the states of the
+    program; ``seeds`` holds formulas of the states and t for their coefficient 0, see
     :mod:`symrot.codegen.taylor.auxiliary_states`.
     """
 
@@ -70,7 +71,7 @@ class Recurrences(NamedTuple):
     seeds: tuple[Node, ...] = ()
 
 
-POLYNOMIAL = {"state", "time", "sum", "product"}  # rules of series that do not tend to a constant, as tanh does
+POLYNOMIAL = {"state", "time", "sum", "product"}  # rules of polynomials; other functions, as tanh, may tend to -1
 
 
 class _Linear(NamedTuple):
@@ -124,7 +125,7 @@ class _Builder:
         return self.known[series]
 
     def read(self, node: Node) -> _Linear:
-        """Return a formula as a linear form (a constant plus weighted series); series are added as needed."""
+        """Return a formula as a constant plus weighted series; series that are missing are added."""
         kind = node[0]
         if kind == "number":
             return _Linear(node, {})
@@ -136,7 +137,7 @@ class _Builder:
         return _READERS[kind](self, node, parts)
 
     def series_of(self, form: _Linear) -> int:
-        """Return the index of the Taylor series that equals a linear form; it is added if it is new."""
+        """Return the index of the series that equals a constant plus weighted series; it is added if it is new."""
         if form.constant is None and list(form.terms.values()) == [ONE]:
             return next(iter(form.terms))
         return self.add(self.sum_of(form))
@@ -147,7 +148,7 @@ class _Builder:
         return Series("sum", tuple(i for i, _ in terms), (*(weight for _, weight in terms), form.constant))
 
     def factored(self, form: _Linear) -> tuple[Node, int]:
-        """Return a constant and a series whose product is a linear form; proportional forms share their series."""
+        """Return (constant, series) whose product equals a sum of series; proportional sums share their series."""
         if form.constant is None and len(form.terms) == 1:
             ((series, weight),) = form.terms.items()
             return weight, series
@@ -170,7 +171,7 @@ class _Builder:
         return _folded(("*", ("number", lead), rest)), whole
 
     def sum(self, left: _Linear, right: _Linear, sign: int) -> _Linear:
-        """Return the sum or difference of two linear forms.
+        """Return the sum or difference of two linear forms (a constant plus weighted series).
 
         A bracket that may become zero during the motion is not expanded; see :meth:`bracket`.
         """
@@ -179,9 +180,9 @@ class _Builder:
         return _sum(left, right, sign)
 
     def bracket(self, form: _Linear) -> _Linear:
-        """Return a multiple of a sum with functions, such as ``m*(1 + tanh(u))``, as a multiple of one series.
+        """Return a multiple of a sum with functions, such as ``m*(1 + tanh(u))``, as m times one series.
 
-        If it were expanded, ``m + m*tanh(u)`` would have the rounding error of m where the bracket is zero.
+        The expanded form ``m + m*tanh(u)`` would have the rounding error of m where the bracket tends to zero.
         """
         parts = [*form.terms.values(), *([] if form.constant is None else [form.constant])]
         factors = [_number_and_rest(part) for part in parts]
@@ -215,7 +216,7 @@ class _Builder:
         return _Linear(None, {self.add(Series("quotient", (v,))): _folded(("/", _value(left), b))})
 
     def reciprocal(self, number: int) -> _Linear | None:
-        """Return 1/v as a separate series if v is a product of hyperbolic cosines, which overflow; else None."""
+        """Return 1/v by sech if v is a product of hyperbolic cosines, which would overflow; else None."""
         series = self.series[number]
         if series.rule == "product":
             left, right = map(self.reciprocal, series.operands)
@@ -225,7 +226,7 @@ class _Builder:
         return self.secant(self.cosh_arguments[number])
 
     def secant(self, argument: _Linear) -> _Linear:
-        """Return the hyperbolic secant w = sech(u) as a linear form, by t w' = -tanh(u) w t u'."""
+        """Return the hyperbolic secant w = sech(u) as a series, by its equation t w' = -tanh(u) w t u'."""
         u = self.series_of(argument)
         if ("sech", u) not in self.known:
             ((tangent, _),) = self.tangent("tanh", argument).terms.items()
@@ -260,15 +261,15 @@ class _Builder:
         return self.add(Series("theta", (series,)))
 
     def clock(self, form: _Linear) -> tuple[Node, Node | None] | None:
-        """Return (a, b) if a linear form equals a t + b, else None."""
+        """Return (a, b) if a sum of series equals a t + b, else None."""
         ((series, weight),) = form.terms.items() if len(form.terms) == 1 else ((-1, ONE),)
         return (weight, form.constant) if series >= 0 and self.series[series].rule == "time" else None
 
     def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: _Linear) -> int:
-        """Add several functions of one argument whose derivatives contain each other; return the index of the first.
+        """Add functions of one argument whose derivatives contain each other; return the index of the first.
 
-        Each function is given by its name and sign, and by its partner in the derivative: the partner of sine is
-        cosine.
+        Each function is given by its name and the sign of its derivative; ``partners`` are the positions of the
+        functions that their derivatives contain: cosine for sine.
         """
         clock = self.clock(argument)
         seed = () if clock else (self.series_of(argument),)
@@ -282,7 +283,7 @@ class _Builder:
         return self.known[key]
 
     def half_turn(self, name: str, argument: _Linear) -> _Linear:
-        """Return sin, cos, sinh or cosh of a linear form; the other function of the pair is added too."""
+        """Return the series of sin, cos, sinh or cosh of an argument; the other function of the pair is added too."""
         sine, cosine, *signs = HALF_TURNS[name]
         first = self.driven(((sine, signs[0]), (cosine, signs[1])), (1, 0), argument)
         if cosine == "cosh":
@@ -313,7 +314,7 @@ class _Builder:
         return _alone(own)
 
     def one_and_square(self, series: int, sign: int) -> _Linear:
-        """Return 1 + u^2 or 1 - u^2, depending on ``sign``, as a linear form."""
+        """Return ``1 + sign*u^2`` for a series u, as a constant plus a weighted series."""
         return _sum(_Linear(ONE, {}), _scaled(self.product(_alone(series), _alone(series)), sign), 1)
 
     def root(self, name: str, argument: _Linear) -> _Linear:
@@ -336,7 +337,7 @@ class _Builder:
         return self.primitive(name, self.theta(u), self.series_of(self.one_and_square(u, 1)), (u,))
 
     def angle(self, name: str, y: _Linear, x: _Linear) -> _Linear:
-        """Return w = atan2(y, x) as a linear form, by (x^2 + y^2) t w' = x t y' - y t x'."""
+        """Return w = atan2(y, x) as a series, by its equation (x^2 + y^2) t w' = x t y' - y t x'."""
         turning = _sum(self.product(x, self.theta_form(y)), self.product(y, self.theta_form(x)), -1)
         square = _sum(self.product(x, x), self.product(y, y), 1)
         return self.primitive(
@@ -348,7 +349,7 @@ class _Builder:
 
 
 def _without_unused(system: Recurrences) -> Recurrences:
-    """Return the system without series that neither a rate nor another series needs; states stay."""
+    """Return the system without the series that no rate needs; the series of states remain."""
     needed = {i for i, series in enumerate(system.series) if series.rule == "state"}
     waiting = [operand for rate in system.rates for operand in rate.operands]
     while waiting:
@@ -377,7 +378,7 @@ def _value(form: _Linear) -> Node:
 
 
 def _folded(node: Node) -> Node:
-    """Return a constant formula simplified: numbers combined, sign in front, factors of one removed."""
+    """Return a constant formula simplified: numbers combined, the sign in front, factors of 1 removed."""
     kind, parts = node[0], children(node)
     if kind == "neg":
         sign, inner = split_sign(parts[0])
@@ -409,7 +410,7 @@ def split_sign(node: Node) -> tuple[int, Node]:
 
 
 def _number_and_rest(weight: Node) -> tuple[Fraction, Node]:
-    """Return a constant formula as a number times its other factors."""
+    """Return a constant formula as (number, formula), whose product it is."""
     sign, size = split_sign(weight)
     if size[0] == "number":
         return (sign * size[1], ONE) if size[1] else (Fraction(1), size)

@@ -1,10 +1,10 @@
-"""C text of the recurrences of a system: one function computes the jet, all Taylor coefficients of all states.
+"""C code of the Taylor series of one motion: one function computes the jet, all Taylor coefficients of all states.
 
-Two orders are computed together. First come the sums over known coefficients, in loops that read each number once for
-both orders; then the terms with the newest coefficients complete order n and order n + 1. No loop over the order is
-unrolled, so the code stays small for any order.
+Orders n and n + 1 are computed together. Loops over the known coefficients read each number once for both orders; then
+the terms with the newest coefficients are added. No loop over the order is unrolled, so the code stays small for any
+order.
 
-The text is placed between :file:`taylor.h`, which has the operations on four lanes, and :file:`taylor.c`, the stepper.
+The code is placed between :file:`taylor.h`, the operations on SIMD vectors of four, and :file:`taylor.c`, the stepper.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -24,14 +24,16 @@ COLUMNS_PER_LOOP = 4  # each with two sums, so that sums and factors fit into 16
 
 
 def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[float], order: int = ORDER) -> str:
-    """Return the C text of a system for :file:`taylor.c`: sizes, tables, constants and the function for the jet.
+    """Return the C code of one right-hand side that the Taylor stepper :file:`taylor.c` needs.
+
+    It defines sizes, tables, constants and the function that computes all Taylor coefficients.
 
     Parameters
     ----------
     program : Program
         The right-hand side ``dy = f(t, y, p)``.
     edges : sequence of int
-        Edges of the blocks of states whose errors are judged separately, from 0 to the number of states.
+        State i is in block j if ``edges[j] <= i < edges[j + 1]``; each block of states has its own error.
     scales : sequence of float
         One per block: with 0 its error is relative to the block's own size, otherwise relative to this positive
         number.
@@ -65,7 +67,7 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
 
 
 def checked_system(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> Recurrences:
-    """Return the recurrences of a program; raise InputError for arguments that :func:`taylor_definitions` excludes."""
+    """Return the Taylor recurrences of a right-hand side; raise InputError for an order or blocks out of range."""
     if order < 4 or order % 2:
         raise InputError(f"order of the Taylor method: expected an even number, at least 4, got {order}")
     system = recurrences(program)
@@ -83,18 +85,18 @@ def _table(items: Iterable[str]) -> str:
 
 
 def jet_source(layout: Layout, parameters: Sequence[str]) -> str:
-    """Return the C functions ``symrot_constants`` and ``symrot_jet`` for a layout of series in lanes."""
+    """Return the C functions ``symrot_constants`` and ``symrot_jet`` (all Taylor coefficients) for a layout."""
     return _Jet(layout, parameters).text()
 
 
 class _Jet:
-    """The writer of the C text of the jet for one layout; each pack and each vector of constants has one name in C."""
+    """Writes the C function that computes the jet, all Taylor coefficients, for one layout of series in vectors."""
 
     def __init__(self, layout: Layout, parameters: Sequence[str]) -> None:
         self.layout, self.rows, self.parameters = layout, layout.rows, parameters
         self.state_rows, self.own_rows = len(layout.rates), len(layout.states)
         self.constants: dict[tuple[Node, ...], int] = {}
-        self.packs: dict[Pack, int] = {}  # packs whose coefficients are stored
+        self.packs: dict[Pack, int] = {}  # vectors of series whose coefficients are stored -> number in their C name
         self.stored: set[int] = set()  # rows, other than states, whose coefficients are stored
         for column in layout.columns:
             for pack in (column.a, column.b):
@@ -109,7 +111,7 @@ class _Jet:
         return f"c[{self.constants.setdefault(weights, len(self.constants))}]"
 
     def at(self, pack: Pack, n: str) -> str:
-        """Return the C expression for coefficient n of a pack of lanes, read from memory."""
+        """Return the C expression that reads coefficient n of a vector of four series from memory."""
         if pack in self.packs:
             return f"k{self.packs[pack]}[{n}]"
         row = f"{self._array(pack[0].row)}[{n}]"
@@ -119,11 +121,11 @@ class _Jet:
         return f"x[{row}]" if row < self.own_rows else f"u{row}"
 
     def newest(self, pack: Pack) -> str:
-        """Return the C expression for the newest coefficient of a pack: of the series in one SIMD register."""
+        """Return the C expression for the newest coefficients of a vector of four series, in one SIMD register."""
         return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
 
     def picked(self, pack: Pack) -> str:
-        """Return the C expression that collects the newest coefficients of several lanes in one vector."""
+        """Return the C expression that collects the newest coefficients of four series from their rows."""
         rows = sorted({address.row for address in pack})
         if _is_row(pack):
             return f"r{rows[0]}"
@@ -138,9 +140,9 @@ class _Jet:
         return f"V_FLIP({value}, {', '.join('-1' if sign < 0 else '1' for sign in signs)})" if -1 in signs else value
 
     def column(self, index: int, phase: str, sums: str) -> str:
-        """Return the C expression for coefficient n of a column, a lane-by-lane convolution; empty if it is zero.
+        """Return the C expression for coefficient n of a column: four convolutions in a vector; empty if it is zero.
 
-        It is the sum over known coefficients plus the end terms.
+        It is the sum over known coefficients plus the terms k = 0 and k = n.
         """
         a, b, ends = self.layout.columns[index]
         known = f"{sums}{index}" if phase == "later" else ""
@@ -162,9 +164,9 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- rows
 
     def sum(self, row: Row, phase: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
-        """Return the C expression for four weighted sums of series, one per lane of a row, times a factor.
+        """Return the C expression for a vector of four weighted sums of series, times a factor.
 
-        Terms that are computed last are added last.
+        Terms that are computed last are added last, so that the sum does not wait for them.
         """
         value = ""
         parts = [(self.picked(term.pack), term.weights) for term in row.terms]
@@ -181,9 +183,9 @@ class _Jet:
         return value or "V_ALL(0.0)"
 
     def _rest_of_time(self, row: Row) -> str:
-        """Return the C weights of ``t_low``, the low part of the time, in a row of sums.
+        """Return the C constants that multiply ``t_low``, the low part of the time, in four sums.
 
-        The text is empty if the row does not contain the time.
+        The text is empty if the sums do not contain the time.
         """
         weights: list[Node] = []
         for number in row.lanes:
@@ -194,7 +196,7 @@ class _Jet:
         return self.constant(tuple(weights)) if any(weight != ("number", 0) for weight in weights) else ""
 
     def _weighted(self, weights: tuple[Node, ...], factor: str) -> str:
-        """Return the C expression of a vector of constants times a factor; empty if both are one."""
+        """Return the C expression of a vector of constants times a factor; empty if all of these are 1."""
         ones = all(weight == ("number", 1) for weight in weights)
         if ones:
             return factor
@@ -202,7 +204,7 @@ class _Jet:
         return f"V_MUL({constant}, {factor})" if factor else constant
 
     def row(self, number: int, n: str, phase: str, sums: str) -> list[str]:
-        """Return the C statements that set ``r{number}`` to coefficient n of a row of four lanes."""
+        """Return the C statements that set ``r{number}`` to coefficient n of the four series in a row."""
         row, name = self.rows[number], f"r{number}"
         terms = [self.picked(term.pack) for term in row.terms]
         total = self.slot(row.slots[0].columns, phase, sums) if row.slots else ""
@@ -242,7 +244,7 @@ class _Jet:
         return [f"{name} = V_DIV({upper}, {lower});"]
 
     def _quotient(self, row: Row, name: str, phase: str, terms: list[str], total: str) -> list[str]:
-        """Return the C statements of ``(u - sum)/v``; a numerator of one contributes only to coefficient 0."""
+        """Return the C statements for coefficient n of ``u/v``, which is ``(u[n] - total)/v[0]``; u may be 1."""
         divisor, upper = f"d{name[1:]}", "V_ALL(0.0)"
         if len(terms) > 1:
             weights = self._weighted(row.terms[1].weights, "")
@@ -254,7 +256,7 @@ class _Jet:
         return [f"{divisor} = {terms[0]};", f"{name} = V_DIV({upper}, {divisor});"]
 
     def _seed(self, row: Row) -> str:
-        """Return the C expression for coefficient 0 of a row of functions."""
+        """Return the C expression, with calls of the C library, for coefficient 0 of four functions such as exp."""
         first = {"driven": 2, "primitive": 3, "root": 0}[row.rule]
         lanes = []
         for series in row.lanes:
@@ -274,7 +276,7 @@ class _Jet:
         series = [self.layout.series[i] for i in row.lanes if i is not None]
         rates = self.constant(tuple(s.weights[0] for s in series))  # type: ignore[misc]
         offsets = self.constant(row.constant) if row.constant and set(row.constant) != {("number", 0)} else ""
-        lines, turns = [], {}  # equal lanes share one call
+        lines, turns = [], {}  # series with equal phases share one call
         for lane, s in enumerate(series):
             if s.weights not in turns:
                 turn = turns[s.weights] = f"turn_{name}_{lane}"
@@ -321,7 +323,7 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, phase: str, sums: str) -> list[str]:
-        """Return the C statements of one order: packs and rows in order, then the next coefficients of states."""
+        """Return the C statements for coefficient n of all series and coefficient n + 1 of the states."""
         lines: list[str] = []
         done, packed = set(range(self.state_rows)), set[Pack]()
 
@@ -350,21 +352,21 @@ class _Jet:
         return lines
 
     def loops(self) -> list[str]:
-        """Return the C loops over known coefficients for the orders n and m = n + 1.
+        """Return the C loops that sum products of known coefficients, for the orders n (even) and m = n + 1.
 
-        The sums a run over k + j = n, the sums b over k + j = m.
+        The C variables ``a{i}`` sum the products u[k] v[n-k] of order n, and ``b{i}`` the products of order m.
         """
         lines: list[str] = []
         columns = self.layout.columns
         loops = -(-len(columns) // COLUMNS_PER_LOOP)
-        for loop in range(loops):  # groups of similar size, because a single column would wait for its own sums
+        for loop in range(loops):  # groups of similar size: a loop over one column waits for its own last addition
             group = range(loop * len(columns) // loops, (loop + 1) * len(columns) // loops)
             for i in group:
                 a, b, _ = columns[i]
                 lines.append(f"symrot_v4 h{i} = {self.at(b, 'n - 1')};")
                 lines.append(f"symrot_v4 a{i} = V_MUL({self.at(a, '1')}, h{i}), b{i} = V_ALL(0.0);")
             lines.append("for (int64_t k = 2; k < n; k += 2) {")
-            for i in group:  # processing columns one after the other needs only three registers besides the sums
+            for i in group:  # column by column, because this needs only three registers besides those of the sums
                 a, b, _ = columns[i]
                 lines += [
                     f"    const symrot_v4 f{i} = {self.at(a, 'k')}, j{i} = {self.at(b, 'n - k')};",
@@ -379,7 +381,7 @@ class _Jet:
         return lines
 
     def between(self) -> list[str]:
-        """Return the C terms of order n + 1 that contain coefficient n, which has just been computed."""
+        """Return the C statements that add the terms with coefficient n, just computed, to the sums of order n + 1."""
         lines: list[str] = []
         for i, (a, b, _) in enumerate(self.layout.columns):
             one, two = (self.at(a, "1"), self.at(b, "n")), (self.at(a, "n"), self.at(b, "1"))
@@ -434,7 +436,7 @@ class _Jet:
 
 
 def _of(function: str, turn: str) -> str:
-    """Return the C name for the value of a function at a phase."""
+    """Return the C name for the value of a function at a phase ``a t + b``, given the C name of the phase."""
     return f"{function}_{turn}"
 
 

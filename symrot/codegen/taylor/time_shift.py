@@ -1,4 +1,4 @@
-"""Right-hand sides with time counted from an epoch, for motions that start far from t = 0.
+"""Rates dy/dt with time counted from an epoch, for motions that start far from t = 0.
 
 A double holds 53 bits of ``a*t + b``: at t = 1e9 s the error of a phase is 1e-7 rad, however short the steps are. With
 ``t = epoch + tau`` every polynomial of t, inside sine, cosine, exp or elsewhere, becomes a polynomial of tau whose
@@ -29,9 +29,9 @@ HIGHEST = 12  # largest degree of a polynomial of t that is shifted as a whole
 
 
 def from_epoch(kernel: SceneKernel) -> SceneKernel:
-    """Return the kernel of a scene with rates in which t counts from an epoch, a new constant of the scene.
+    """Return a scene's kernel whose time t is counted from the epoch, which becomes a constant of the scene.
 
-    Conserved quantities that depend on the time are left out, because they use another time than the rates.
+    Conserved quantities that depend on time are marked as not conserved, because they still use the original time.
     """
     rates, parameters = moved(kernel.rates, kernel.rate_parameters)
     timeless = [
@@ -43,20 +43,20 @@ def from_epoch(kernel: SceneKernel) -> SceneKernel:
 
 
 def moved(program: Program, parameters: Parameters) -> tuple[Program, Parameters]:
-    """Return a right-hand side in which t counts from the epoch, and all its parameters as formulas.
+    """Return a right-hand side whose time is counted from the epoch, and the formulas of all its parameters.
 
     Parameters
     ----------
     program : Program
         ``dy = f(t, y, p)``, with the arguments t, y, p (optional) and dy; the time occurs in it.
     parameters : tuple of (name, Node)
-        The components of p as formulas of constants. Those of the result also contain the symbol ``epoch``, in s.
+        The components of p as formulas of constants. The formulas in the result may contain ``epoch`` too, in s.
     """
     return _Mover(program, parameters).result()
 
 
 def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tuple[tuple[Node, ...], Parameters]:
-    """Return formulas in which t counts from the epoch, and the parameters in them as formulas of constants and epoch.
+    """Return formulas whose time t is counted from the epoch, and the formulas of the parameters in them.
 
     Parameters
     ----------
@@ -76,11 +76,11 @@ def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tupl
 
 
 class _Form(NamedTuple):
-    """A rewritten formula, with its coefficients if it is a polynomial of t with constant coefficients."""
+    """A formula with shifted time, and its coefficients if it is a polynomial of t with constant coefficients."""
 
     node: Node | None  # None for a polynomial of degree one, whose formula is made from the terms when it is used
     terms: tuple[Node, ...] | None = None
-    centred: bool = False  # whether it is a product of factors such as t - c, each small near its own time
+    centred: bool = False  # whether it is a product with a factor a t + b, which is small near its zero -b/a
 
 
 class _Mover:
@@ -133,10 +133,10 @@ class _Mover:
         return _Form((kind, *written, *node[2:]) if kind == "**" else (kind, *written), terms, centred)
 
     def gathered(self, node: Node) -> _Form | None:
-        """Return a sum in which all terms of the form a t + b are combined, or None if there is nothing to combine.
+        """Return a sum with all its terms a t + b combined into one, or None if there is nothing to combine.
 
-        Far from t = 0 the constants of such terms may nearly cancel. There is nothing to combine if the sum has only
-        such terms, has fewer than two of them, or does not contain the time.
+        Far from t = 0 the constants b may nearly cancel. There is nothing to combine if the sum has only such terms,
+        has fewer than two of them, or does not contain the time.
         """
         lines: list[tuple[Node, ...]] = []
         others: list[tuple[bool, _Form]] = []
@@ -164,9 +164,9 @@ class _Mover:
             yield negative, self.read(node)
 
     def written(self, form: _Form, turns: bool = False) -> Node:
-        """Return a rewritten formula as a formula tree; a polynomial of t is written by Horner's rule.
+        """Return the formula tree of a formula with shifted time; a polynomial of t is written by Horner's rule.
 
-        Its coefficients become parameters. ``turns`` means that the value matters only modulo 2 pi.
+        The polynomial's coefficients become parameters. ``turns`` means that the value matters only modulo 2 pi.
         """
         whole = turns and form.terms is not None and len(form.terms) > 1 and not form.centred
         if form.node is not None and not whole:
@@ -200,7 +200,7 @@ class _Mover:
         return ("symbol", self.added[-1][0])
 
     def resolved(self, node: Node) -> Node:
-        """Return a formula of parameters as a formula of the constants from which the parameters are computed."""
+        """Return a formula with its parameters replaced by their formulas in terms of physical constants."""
         if node[0] == "symbol":
             return self.formulas[node[1]]
         if node[0] == "number":
@@ -211,12 +211,15 @@ class _Mover:
 
 
 def _is_shifted(form: _Form) -> bool:
-    """Return whether a rewritten formula equals a t + b with b other than zero."""
+    """Return whether a formula equals a t + b with b other than zero."""
     return form.terms is not None and len(form.terms) == 2 and form.terms[0] != ZERO
 
 
 def _terms(node: Node, parts: list[tuple[Node, ...] | None]) -> tuple[Node, ...] | None:
-    """Return the coefficients of a polynomial in t from those of its operands, or None if it is not a polynomial."""
+    """Return the coefficients of t^0, t^1, .. in an operation, or None if its result is not a polynomial in t.
+
+    ``parts`` are the coefficients of its operands.
+    """
     if any(part is None for part in parts):
         return None
     kind, polynomials = node[0], [part for part in parts if part is not None]
