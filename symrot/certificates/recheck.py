@@ -1160,9 +1160,10 @@ def check_series(series, functions, real):
         x = numbers.number(split).sqrt() * randbelow(2**64) / 2**64
         return abs(polynomial.value(numbers, {"x": x}) / exact.call(numbers, [x]) - 1)
 
+    largest = min(rest, LEAST[real])
     for _ in range(64):
         error = at_a_point(left_out)
-        need(error <= min(rest, LEAST[real]), f"the {place} leaves out {error:.3}: expected at most {float(rest):.3}")
+        need(error <= largest, f"{place}: expected an error of at most {float(largest):.3}, got {error:.3}")
     square = Chain(Variable("x"), [("*", Variable("x"))])
     choice = Choice("<", square, Number(split), polynomial, exact.result)
     return functions | {name: exact._replace(result=choice)}

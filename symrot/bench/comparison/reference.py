@@ -132,8 +132,8 @@ def reference(problem: Problem, say: Progress = lambda text: None, seconds: floa
     if others and not result.doubt <= CONTRADICTION:
         apart = "; ".join(f"{other} by {difference:.1e}" for other, difference in others)
         raise SymrotError(
-            f"{problem.scene.name}: expected references that agree within {CONTRADICTION:g}, got {name} contradicted "
-            f"({apart}): one of them is wrong, or the motion is too unstable to be judged over this span"
+            f"{problem.scene.name}: expected references that agree within {CONTRADICTION:g}, but they differ from "
+            f"{name} ({apart}): one of them is wrong, or the motion is too unstable for a reference over this span"
         )
     return result
 

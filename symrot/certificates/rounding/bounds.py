@@ -408,8 +408,8 @@ def check_bounds(
                 raise CertificateError(str(reason)) from None
             if not _alike(item, recomputed):
                 raise CertificateError(
-                    f"{operations.name}: expected the bound of {place} that searching again finds on the box of the "
-                    f"certificate, {recomputed['units']} units, got something else ({item['units']} units)"
+                    f"{operations.name}: expected the bound of {place} that a new search finds on the box of the "
+                    f"certificate, {recomputed['units']} units, got another ({item['units']} units)"
                 )
 
 
