@@ -55,7 +55,7 @@ static const double symrot_scales[] = SYMROT_SCALES;
 enum { SYMROT_LEAST_CHECKED = SYMROT_ORDER - 8 > SYMROT_ORDER/2 ? SYMROT_ORDER - 8 : SYMROT_ORDER/2 };
 static const double SYMROT_GAP_SLACK = 1e4;     /* see taylor.c */
 static const double SYMROT_LEAST_TAIL = 1e-18;  /* below round-off a smaller tail gains nothing */
-static const double SYMROT_RATE_FLOOR = 1e-3;   /* rad: smaller rotations of a step are ignored */
+static const double SYMROT_RATE_FLOOR = 1e-3;   /* rad: errors of rates are relative to at least this per step */
 
 #if defined(__GNUC__)
 #define SYMROT_UNROLLED _Pragma("GCC unroll 8")
