@@ -2,11 +2,10 @@
  * Projection of the states onto the conserved quantities: included by taylor.c when the system has invariants.
  *
  * The states are y + carry, with about 32 digits. Every few steps, and at the end of a span, the invariants are
- * computed
- * in pairs of doubles. The smallest change of the states that restores them is added to the carry, and the part of the
- * carry that y can represent is added to y. In a conservative motion, errors that change the invariants grow: the
- * motion then runs ahead or behind at an increasing rate. If they are corrected at once, only their direct part
- * remains.
+ * computed in pairs of doubles. The smallest change of the states that restores them is added to the carry, and the
+ * part of the carry that y can represent is added to y. In a conservative motion, errors that change the invariants
+ * grow: the motion then runs ahead or behind at an increasing rate. If they are corrected at once, only their direct
+ * part remains.
  *
  * The size of a change is measured in units of the likely error of each block: see symrot_weigh. In units of the size
  * of the block, a body in nearly steady rotation, whose rates hardly change, would receive wrong rates that compensate
