@@ -1,7 +1,7 @@
 /*
  * Many motions of one closed form, one after the other: constants and samples of each in one call.
  *
- * The functions are those of name.c and name_at.c, by their addresses: every motion comes out as it does alone.
+ * The functions of name.c and name_at.c are called by their addresses: every motion is computed as a single motion is.
  */
 #include "many.h"
 
@@ -11,7 +11,7 @@ typedef int (*of_six)(numbers, numbers, numbers, numbers, numbers, numbers, void
 typedef void (*samples_of)(const void *, ptrdiff_t, const double *, double *, double *);
 typedef int (*axial_samples_of)(const void *, ptrdiff_t, const double *, double *, double *);
 
-/* Write the samples of the motions first to last - 1; return the first that prepare refuses, or last. */
+/* Write the samples of the motions first to last - 1; return the first motion that prepare rejects, or last. */
 ptrdiff_t symrot_many(const symrot_many_motions *m, ptrdiff_t first, ptrdiff_t last)
 {
     for (ptrdiff_t i = first; i < last; ++i) {
@@ -30,7 +30,7 @@ ptrdiff_t symrot_many(const symrot_many_motions *m, ptrdiff_t first, ptrdiff_t l
     return last;
 }
 
-/* The same of rotations about one axis, whose constants are given: the first whose samples lack something, or last. */
+/* The same for rotations about one axis with given constants: return the first with invalid samples, or last. */
 ptrdiff_t symrot_many_axial(const symrot_many_motions *m, ptrdiff_t first, ptrdiff_t last)
 {
     for (ptrdiff_t i = first; i < last; ++i)

@@ -1,16 +1,17 @@
 /*
- * Many motions by Taylor series, one in each lane, each with a step of its own; a lane whose motion ends takes the next.
+ * Many motions by Taylor series, one in each SIMD lane, each with its own step; a lane whose motion ends takes the
+ * next.
  *
  * Included after lanes.h, an emitted system and series.h, in one translation unit. The system defines
  *     SYMROT_STATES, SYMROT_PARAMETERS   numbers of states N and parameters
  *     SYMROT_ORDER                       order of the series, even
- *     SYMROT_BLOCKS, SYMROT_EDGES, SYMROT_SCALES   blocks of states whose errors are judged apart, as in taylor.c
+ *     SYMROT_BLOCKS, SYMROT_EDGES, SYMROT_SCALES   blocks of states with separate error norms, as in taylor.c
  *     SYMROT_CONSTANTS, symrot_constants, symrot_jet           constants from parameters; coefficients of the states
  * C99; no malloc, no globals, no input or output, reentrant.
  *
- * The method is that of taylor.c: coefficients in units of time near the last step, the step from the last two terms,
- * compensated states, time as a sum of two doubles. Nothing crosses lanes, so that a motion comes out bit by bit the
- * same whatever stands beside it and in whatever lane, and one that breaks off disturbs no other.
+ * The method is the same as in taylor.c: coefficients in units of time near the last step, the step from the last two
+ * terms, compensated states, time as a sum of two doubles. No operation mixes lanes, so that the bits of a motion do
+ * not depend on its lane or the other motions, and a motion that stops early does not affect the others.
  */
 #ifdef __cplusplus
 extern "C" {
@@ -27,13 +28,13 @@ extern "C" {
 
 enum { SYMROT_DONE = 0, SYMROT_PAUSED = 1, SYMROT_NOT_FINITE = 3, SYMROT_UNDERFLOW = 4, SYMROT_TOO_MANY = 5 };
 
-/* What is asked for: `legs` motions, each away from t0 on one side of it. */
+/* The task of a thread: `legs` parts of motions, each from t0 to one side of it. */
 typedef struct {
     int64_t legs;
     double t0, tail, pace;       /* as in taylor.c; pace is a fraction of the span */
     double max_steps;
     const int64_t *motion;       /* of each leg: row of y and p */
-    const int64_t *first, *count;/* of each leg: its sample times, count >= 1 of them, sorted away from t0 */
+    const int64_t *first, *count;/* of each leg: first sample time, and number >= 1, sorted by distance from t0 */
     const int64_t *row;          /* of each leg: row of its first sample in states */
     const double *y, *p, *times; /* rows of N and SYMROT_PARAMETERS numbers; times */
     double *states;              /* rows of N */
@@ -42,7 +43,7 @@ typedef struct {
     int64_t next;                /* leg that the next free lane takes */
 } symrot_job;
 
-/* What stands in the lanes. */
+/* The state of all lanes. */
 typedef struct {
     int64_t leg[L], at[L];  /* leg or -1; samples written */
     double t[L], low[L], unit[L], stop[L], side[L], pace[L], due[L], steps[L], jets[L], halvings[L];
@@ -53,8 +54,8 @@ static const int symrot_edges[] = SYMROT_EDGES;
 static const double symrot_scales[] = SYMROT_SCALES;
 enum { SYMROT_LEAST_CHECKED = SYMROT_ORDER - 8 > SYMROT_ORDER/2 ? SYMROT_ORDER - 8 : SYMROT_ORDER/2 };
 static const double SYMROT_GAP_SLACK = 1e4;     /* see taylor.c */
-static const double SYMROT_LEAST_TAIL = 1e-18;  /* below round-off nothing is gained */
-static const double SYMROT_RATE_FLOOR = 1e-3;   /* a rate turns the body by less than this in a step: no need to see it */
+static const double SYMROT_LEAST_TAIL = 1e-18;  /* below round-off a smaller tail gains nothing */
+static const double SYMROT_RATE_FLOOR = 1e-3;   /* rad: errors of rates are relative to at least this per step */
 
 #if defined(__GNUC__)
 #define SYMROT_UNROLLED _Pragma("GCC unroll 8")
@@ -111,7 +112,7 @@ static inline symrot_v symrot_block(symrot_v (*x)[SYMROT_ORDER + 1], int n, int 
     return size;
 }
 
-/* Return the logarithm of the step in units: the shortest at which a last term reaches the accepted tail of its block. */
+/* Return log2 of the shortest step, in units, at which a last term reaches the accepted tail of its block. */
 static inline symrot_v symrot_step_log(symrot_v (*x)[SYMROT_ORDER + 1], symrot_v tail, symrot_v unit)
 {
     symrot_v shortest = V_ALL(60.0);  /* the series of a motion that is a polynomial in time ends early */
@@ -144,7 +145,7 @@ static inline symrot_v symrot_allowed(double tail, symrot_v pace, symrot_v unit)
     return symrot_larger(V_MUL(V_ALL(tail), power), V_ALL(SYMROT_LEAST_TAIL));
 }
 
-/* Return a mask of the lanes whose last two coefficients are finite: nothing times zero is zero but a finite number. */
+/* Return a mask of the lanes whose last two coefficients are finite: only a finite number times zero is zero. */
 static inline symrot_bits symrot_finite(symrot_v (*x)[SYMROT_ORDER + 1], int order)
 {
     symrot_v sum = V_ALL(0.0);
@@ -152,7 +153,7 @@ static inline symrot_bits symrot_finite(symrot_v (*x)[SYMROT_ORDER + 1], int ord
     return V_EQUAL(sum, V_ALL(0.0));
 }
 
-/* Return the time of a lane's next sample, endlessly far where there is none. */
+/* Return the time of a lane's next sample, or infinity if there is no further sample. */
 static inline double symrot_due(const symrot_job *job, const symrot_lanes *lanes, int l)
 {
     const int64_t leg = lanes->leg[l], k = lanes->at[l];
@@ -211,7 +212,7 @@ static int symrot_enter(symrot_job *job, symrot_lanes *lanes, int *entered)
     return any;
 }
 
-/* Set a first unit of time from the size of coefficients 1 and 2; where they are not finite in any, end the motion. */
+/* Set a first unit of time from the size of coefficients 1 and 2; end motions in which they are finite in no unit. */
 static SYMROT_APART void symrot_first_units(symrot_job *job, symrot_lanes *lanes, const int *entered,
     symrot_v (*x)[SYMROT_ORDER + 1])
 {
@@ -247,7 +248,7 @@ static SYMROT_APART void symrot_first_units(symrot_job *job, symrot_lanes *lanes
     }
 }
 
-/* Tell the caller the sizes that this library was built for: states, parameters, order, lanes, bytes of what lies in them. */
+/* Return the sizes for which this library was built: states, parameters, order, lanes, bytes of their state. */
 SYMROT_EXPORT void symrot_lanes_sizes(int64_t sizes[5])
 {
     sizes[0] = SYMROT_STATES;
@@ -257,7 +258,7 @@ SYMROT_EXPORT void symrot_lanes_sizes(int64_t sizes[5])
     sizes[4] = (int64_t)sizeof(symrot_lanes);
 }
 
-/* Return what rounding takes from a + b as the steps of this library keep it: b for a big a, unless it was compiled away. */
+/* Return the rounding error of a + b, as computed in steps: b for a large a, unless the compiler removed it. */
 SYMROT_EXPORT double symrot_lanes_carry(double a, double b)
 {
     const symrot_v y = V_ALL(a), d = V_ALL(b), y1 = V_ADD(y, d), rise = V_SUB(y1, y);
@@ -288,8 +289,8 @@ SYMROT_EXPORT void symrot_lanes_clear(symrot_lanes *lanes)
 /*
  * Step the lanes, at most `attempts` times, all of them at once.
  *
- * Returns SYMROT_DONE when every leg has its status; SYMROT_PAUSED otherwise: call again to continue from where it
- * stands. Samples that a leg never reaches are not written.
+ * Returns SYMROT_DONE when every leg has its status; SYMROT_PAUSED otherwise: call again to continue. Samples that a
+ * leg does not reach are not written.
  */
 SYMROT_EXPORT int symrot_lanes_run(symrot_lanes *lanes, symrot_job *job, int64_t attempts)
 {
@@ -299,7 +300,7 @@ SYMROT_EXPORT int symrot_lanes_run(symrot_lanes *lanes, symrot_job *job, int64_t
     int changed = 1, entered[L], busy[L];
 
     while (attempts-- > 0) {
-        if (changed) {  /* motions have come or gone: lanes live in memory */
+        if (changed) {  /* motions have begun or ended: the lanes are in memory */
             while (symrot_enter(job, lanes, entered)) symrot_first_units(job, lanes, entered, x);
             int any = 0;
             EACH_LANE(l) any |= busy[l] = lanes->leg[l] >= 0;
@@ -341,7 +342,7 @@ SYMROT_EXPORT int symrot_lanes_run(symrot_lanes *lanes, symrot_job *job, int64_t
         low1 = V_SELECT(at_stop, V_ALL(0.0), V_ADD(V_SUB(t1, sum), low1));
         t1 = V_SELECT(at_stop, stop, sum);
 
-        for (;;) {  /* samples inside the step, one of each lane at a time */
+        for (;;) {  /* samples inside the step, one per lane at a time */
             const symrot_v due = symrot_load(lanes->due);
             const symrot_bits inside = stepping & V_LESS(V_MUL(V_SUB(due, t1), side), V_ALL(0.0));
             if (!V_ANY(inside)) break;
@@ -368,7 +369,7 @@ SYMROT_EXPORT int symrot_lanes_run(symrot_lanes *lanes, symrot_job *job, int64_t
         const symrot_bits far = stepping & V_LESS(V_ALL(0.6), symrot_size_of(logarithm));
         const symrot_bits broken = active & ~finite;
         if (V_ANY(far | broken)) {
-            const symrot_v magic = V_ALL(6755399441055744.0);  /* added and taken away again, it rounds */
+            const symrot_v magic = V_ALL(6755399441055744.0);  /* added and subtracted again, it rounds to an integer */
             const symrot_v nearest = symrot_exp2(V_SUB(V_ADD(logarithm, magic), magic));
             unit = V_SELECT(far, V_MUL(unit, nearest), unit);
             unit = V_SELECT(broken, V_MUL(unit, V_ALL(1.0/256)), unit);

@@ -1,8 +1,8 @@
 /*
- * SYMROT_LANES numbers at once: GNU vectors where the compiler has them, else one number and plain C.
+ * SYMROT_LANES numbers at once: GNU vectors if the compiler has them, otherwise one number in plain C.
  *
- * Included before an emitted jet and lanes.c. Every operation acts on each lane for itself and rounds it alike, so a
- * lane's bits depend on nothing beside it. Define SYMROT_LANES to choose their number, SYMROT_PLAIN for plain C.
+ * Included before an emitted jet and lanes.c. Every operation acts on each lane separately, with the same rounding, so
+ * that the bits of a lane do not depend on the others. Define SYMROT_LANES as their number, SYMROT_PLAIN for plain C.
  */
 #include <float.h>
 #include <math.h>
@@ -18,17 +18,17 @@
 #else
 #define SYMROT_RESTRICT restrict
 #endif
-/* The hyperbolic secant, which is 0 where the cosine overflows. */
+/* The hyperbolic secant, which is 0 if the cosine overflows. */
 static inline double sech(double x) { return 1.0/cosh(x); }
 #if defined(__GNUC__) && !defined(SYMROT_PLAIN)
-#define SYMROT_APART __attribute__((noinline))  /* code of its own: registers are given out for its loops alone */
+#define SYMROT_APART __attribute__((noinline))  /* not inlined: its loops then have all registers */
 #if !defined(SYMROT_LANES)
 #if defined(__AVX512F__)
 #define SYMROT_LANES 8
 #elif defined(__AVX__)
 #define SYMROT_LANES 4
 #else
-#define SYMROT_LANES 2  /* no wider than a register: what lives on the stack waits for it */
+#define SYMROT_LANES 2  /* no wider than a register: vectors on the stack are slow */
 #endif
 #endif
 #else
@@ -93,7 +93,7 @@ static inline double symrot_from_bits(symrot_bits b)
 #define V_CALL(function, v) symrot_call(function, v)
 #define V_CALL2(function, v, u) symrot_call2(function, v, u)
 
-/* Return a function of each lane, one after the other. */
+/* Return the values of a function for all lanes, computed one after the other. */
 static inline symrot_v symrot_call(double (*function)(double), symrot_v v)
 {
     EACH_LANE(l) V_LANE(v, l) = function(V_LANE(v, l));

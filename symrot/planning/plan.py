@@ -266,7 +266,7 @@ def switched(scene: Scene) -> bool:
 
 
 def _switching_function(scene: Scene) -> str:
-    """Return the name of a function with a jump or kink in the torques of a scene; an empty text if there is none."""
+    """Return the name of a function with a jump or kink in the torques of a scene, or an empty text."""
     calls = {
         name
         for torque in scene.torques

@@ -99,7 +99,7 @@ def compiled(plan: Plan) -> tuple[SceneKernel, Path]:
     Raises
     ------
     CompilerError
-        If the compiler refuses the source.
+        If the compiler rejects the source.
     """
     started: list[library.Building] = []
 

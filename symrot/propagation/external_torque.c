@@ -1,15 +1,16 @@
 /*
- * A torque from outside, added to the emitted rates: a function of time, angular velocity and attitude, or a table.
+ * A torque without a formula, added to the emitted rates: a function of time, angular velocity and attitude, or a
+ * table.
  *
- * Included after the emitted kernel symrot_rates of omega_1..3, q0..q3, with SYMROT_OWN parameters; those of the torque
- * follow, see enum below. Pointers come as the bits of doubles, so that nothing is global and all is reentrant.
- * C99 that is also valid C++.
+ * Included after the emitted kernel symrot_rates of omega_1..3, q0..q3, with SYMROT_OWN parameters. The parameters of
+ * the torque follow, see the enum below. Pointers are passed as the bits of doubles, so that there are no globals. C99
+ * that is also valid C++.
  */
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
-/* Write the torque in N m; return 0, or anything else to give up. */
+/* Write the torque in N m; return 0, or another number to stop the motion. */
 typedef int (*symrot_torque)(double t, const double omega[3], const double quaternion[4], double torque[3], void *user);
 
 enum { SYMROT_FUNCTION = SYMROT_OWN, SYMROT_USER, SYMROT_IN_SPACE, SYMROT_INVERSE, SYMROT_ALL = SYMROT_INVERSE + 9 };
@@ -21,7 +22,7 @@ int symrot_table_torque(double t, const double *omega, const double *quaternion,
 
 /*
  * Evaluate piecewise cubics. user: number of pieces m, m + 1 edges, then for each piece four coefficients of each
- * component, the highest power first, in the time since its first edge. The first and the last piece go on outside.
+ * component, the highest power first, in the time since its first edge. Outside, the first or the last piece continues.
  */
 int symrot_table_torque(double t, const double *omega, const double *quaternion, double *torque, void *user)
 {

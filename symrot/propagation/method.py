@@ -58,7 +58,7 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
     InputError
         If there is no such method.
     CompilerError
-        If the method needs a compiler and there is none.
+        If the method needs a compiler and no compiler is installed.
     """
     if plan.scene.table is not None:
         if method not in ("auto", "dop853"):

@@ -70,7 +70,7 @@ def propagator(
     InputError
         For a scene or an option that cannot be used.
     CompilerError
-        If the method needs a compiler and there is none, or the compiler refuses the kernel.
+        If the method needs a compiler and no compiler is installed, or if the compiler rejects the kernel.
 
     Notes
     -----
@@ -166,7 +166,7 @@ def propagate(
     PropagationError
         If the motion cannot be propagated to its last time; its ``trajectory`` holds the samples before.
     CompilerError
-        If the method needs a compiler and there is none.
+        If the method needs a compiler and no compiler is installed.
 
     Notes
     -----

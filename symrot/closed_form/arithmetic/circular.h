@@ -1,12 +1,12 @@
 /*
- * Phases in turns, and the functions of a phase, for loops over samples that a compiler turns into SIMD code: no calls
- * (rint is one instruction from SSE4.1 on), no branches, no tables. Series: Taylor's in turns, below 1e-17 on their
- * range.
+ * Phases in revolutions and functions of a phase, for loops over samples that a compiler converts to SIMD code: no
+ * calls (rint is one instruction from SSE4.1 on), no branches, no tables. Functions are Taylor series of the phase,
+ * with errors below 1e-17 on their range.
  */
 #ifndef SYMROT_CIRCULAR_H
 #define SYMROT_CIRCULAR_H
 
-/* At -O2 gcc compiles half as long as at -O3; of what -O3 adds, the loops over samples need this alone. */
+/* At -O2 gcc compiles in half the time of -O3. This is the only option of -O3 that the loops over samples need. */
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("tree-loop-vectorize", "vect-cost-model=dynamic")
 #endif
@@ -15,14 +15,14 @@
 
 #include "error_free.h"
 
-/* One rounding where the processor does it in one instruction; for series, where either result will do. */
+/* a*b + c, rounded once if the processor has such an instruction; for series, in which either result is accurate. */
 #ifdef FP_FAST_FMA
 #define MUL_ADD(a, b, c) fma((a), (b), (c))
 #else
 #define MUL_ADD(a, b, c) ((a)*(b) + (c))
 #endif
 
-/* A phase that grows evenly with time, in turns, to 31 digits: its rate and its start, each as hi, lo. */
+/* A phase that is linear in time, in revolutions, to 31 digits: its rate and its value at the start, each as hi, lo. */
 typedef struct {
     double rate[2], start[2];
 } phase;
@@ -34,8 +34,9 @@ ALWAYS_INLINE phase phase_of(const double v[4])
 }
 
 /*
- * start + rate*t + more, less whole parts: `rest`, at most half a part, and how many of them were taken off, -7 to 7 of
- * 4. It carries one rounding of its own size however many turns have passed. |start| <= 1/2, |more| <= 1/8.
+ * Return start + rate*t + more modulo 1/`parts` of a revolution, between -1/2 and 1/2 part. `taken` receives the number
+ * of parts subtracted, -7 to 7 if `parts` is 4. The error is one rounding of the result for any number of revolutions.
+ * |start| <= 1/2, |more| <= 1/8.
  */
 ALWAYS_INLINE double phase_rest(const phase *p, double t, double parts, double more, double *taken)
 {
@@ -47,7 +48,7 @@ ALWAYS_INLINE double phase_rest(const phase *p, double t, double parts, double m
     return (sum.hi - *taken*(1.0/parts)) + (sum.lo + small);
 }
 
-/* The same of what is not periodic: start + rate*t to one rounding. */
+/* start + rate*t, rounded once, for a phase that is not periodic. */
 ALWAYS_INLINE double phase_whole(const phase *p, double t)
 {
     const double turns = t*p->rate[0];
@@ -55,7 +56,7 @@ ALWAYS_INLINE double phase_whole(const phase *p, double t)
     return sum.hi + (sum.lo + (product_error(t, p->rate[0], turns) + t*p->rate[1] + p->start[1]));
 }
 
-/* The sine and cosine of rest + taken/4 turns, |rest| <= 1/8. */
+/* Sine and cosine of rest + taken/4 revolutions, |rest| <= 1/8. */
 ALWAYS_INLINE void sincos_quarters(double rest, double taken, double *sine, double *cosine)
 {
     const double x = rest*rest;
@@ -79,8 +80,8 @@ ALWAYS_INLINE void sincos_quarters(double rest, double taken, double *sine, doub
     c = MUL_ADD(c, x, 0x1.0000000000000p+0);
     s *= rest;
     const double half = rint(0.5*taken), fourth = half - 2.0*rint(0.5*half);
-    const double odd = taken - 2.0*half;                             /* 1, -1: a quarter turn on, back */
-    const double even = (1.0 - odd*odd)*(1.0 - 2.0*fourth*fourth);   /* 1, -1: none, half a turn */
+    const double odd = taken - 2.0*half;                             /* 1 or -1: a quarter forward or back */
+    const double even = (1.0 - odd*odd)*(1.0 - 2.0*fourth*fourth);   /* 1 or -1: no or half a revolution */
     *sine = even*s + odd*c;
     *cosine = even*c - odd*s;
 }

@@ -1,4 +1,4 @@
-/* Complex numbers of two double-doubles. */
+/* Complex numbers whose real and imaginary parts are double-double numbers. */
 #ifndef SYMROT_COMPLEX_DD_H
 #define SYMROT_COMPLEX_DD_H
 

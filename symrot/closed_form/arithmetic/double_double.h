@@ -1,20 +1,20 @@
 /*
  * Arithmetic to about 31 digits: a number is the unevaluated sum of two doubles, |lo| <= ulp(hi)/2.
  *
- * Every operation rests on error-free transformations (Dekker 1971; Ogita, Rump & Oishi 2005). They hold only where the
- * compiler keeps each rounding as written: compile with -ffp-contract=off, never with -ffast-math. `dd_sound` tells
- * whether it did. Relative errors, in u^2 = 2^-106 = 1.2e-32: + - below 3.1, * below 5.1, / below 13, sqrt below 3.2
- * (Joldes, Muller & Popescu, ACM Trans. Math. Softw. 44 (2017) 15; Muller & Rideau, 48 (2022) 9; Lefevre, Louvet, Muller,
- * Picot & Rideau, 49 (2023) 1); as measured, exp(a) below 8 + 2 |a|, the mean and R_F below 16, sine and cosine below 8 of
- * the largest value. Every processor returns the same bits, with or without a fused instruction. No overflow or underflow
- * is handled: scale by powers of two first.
+ * Every operation rests on error-free transformations (Dekker 1971; Ogita, Rump & Oishi 2005). They hold only if the
+ * compiler rounds every operation separately: compile with -ffp-contract=off, never with -ffast-math. `dd_sound` tests
+ * the compiled code for it. Relative errors, in u^2 = 2^-106 = 1.2e-32: + - below 3.1, * below 5.1, / below 13, sqrt
+ * below 3.2 (Joldes, Muller & Popescu, ACM Trans. Math. Softw. 44 (2017) 15; Muller & Rideau, 48 (2022) 9; Lefevre,
+ * Louvet, Muller, Picot & Rideau, 49 (2023) 1); as measured, exp(a) below 8 + 2 |a|, the mean and R_F below 16, sine
+ * and cosine below 8 of the largest value. Every processor returns the same bits, with or without a fused instruction.
+ * No overflow or underflow is handled: scale by powers of two first.
  */
 #ifndef SYMROT_DOUBLE_DOUBLE_H
 #define SYMROT_DOUBLE_DOUBLE_H
 
 #include "error_free.h"
 
-/* What is long and used often while constants are found: one copy each, or compiling takes several times as long. */
+/* Long functions that the constants use often: not inlined, because compilation would take several times as long. */
 #if defined(__GNUC__)
 #define ONE_COPY static __attribute__((noinline, unused))
 #else
@@ -68,7 +68,7 @@ ONE_COPY dd dd_div(dd a, dd b)
     return quick_two_sum(first, rest/b.hi);
 }
 
-/* The square root; of what is not positive, zero. */
+/* The square root; zero for arguments that are not positive. */
 ONE_COPY dd dd_sqrt(dd a)
 {
     if (!(a.hi > 0.0))
@@ -120,7 +120,7 @@ static const dd DD_INVERSE_FACTORIALS[] = {
     {0x1.d1ab1c2dccea3p-94, 0x1.054d0c78aea14p-149}, /* 1/27! */
 };
 
-/* exp(a): 2^k times the 64th power of exp of what is left; 0 below the smallest double. */
+/* exp(a) as 2^k times the 64th power of exp(rest), rest = (a - k ln 2)/64; 0 below the smallest double. */
 ONE_COPY dd dd_exp(dd a)
 {
     static const dd ln2 = DD_LN2;
@@ -134,14 +134,14 @@ ONE_COPY dd dd_exp(dd a)
     dd sum = dd_of(tail);
     for (int n = 6; n >= 1; --n)
         sum = dd_add(dd_mul(sum, rest), DD_INVERSE_FACTORIALS[n]);
-    sum = dd_mul(sum, rest); /* exp(rest) - 1, squared up without loss */
+    sum = dd_mul(sum, rest); /* exp(rest) - 1, then repeatedly squared without cancellation */
     for (int n = 0; n < 6; ++n)
         sum = dd_add(dd_scale(sum, 2.0), dd_square(sum));
     sum = dd_add(sum, dd_of(1.0));
     return dd_pair(ldexp(sum.hi, (int)k), ldexp(sum.lo, (int)k));
 }
 
-/* Sine and cosine of an angle given in turns. */
+/* Sine and cosine of an angle in revolutions. */
 ONE_COPY void dd_sincos_turns(dd turns, dd *sine, dd *cosine)
 {
     static const dd pi = DD_PI;
@@ -171,7 +171,7 @@ ONE_COPY void dd_sincos_turns(dd turns, dd *sine, dd *cosine)
 
 /*
  * The arithmetic-geometric mean of 1 and a, 0 < a <= 1: steps until the two agree to 1e-4, then, with h = gap/(2 mean),
- * mean/F(1/2, 1/2; 1; h^2) = mean (1 - h^2/4 - 5 h^4/64 - 11 h^6/256 - ...), what is left out below 1e-35.
+ * mean/F(1/2, 1/2; 1; h^2) = mean (1 - h^2/4 - 5 h^4/64 - 11 h^6/256 - ...); omitted terms are below 1e-35.
  */
 ONE_COPY dd dd_agm(dd a)
 {
@@ -191,8 +191,8 @@ ONE_COPY dd dd_agm(dd a)
 }
 
 /*
- * Carlson's R_F(x, y, z), not negative, at most one of them zero: duplication until the arguments agree to 1/400, then the
- * series to the eleventh order, what is left out below 1e-33 (Carlson 1995; DLMF 19.19.7, 19.36.1).
+ * Carlson's R_F(x, y, z) for arguments >= 0, at most one of them zero: duplication until they agree to 1/400, then the
+ * series to the eleventh order; omitted terms are below 1e-33 (Carlson 1995; DLMF 19.19.7, 19.36.1).
  */
 ONE_COPY dd dd_rf(dd x, dd y, dd z)
 {
@@ -221,10 +221,10 @@ ONE_COPY dd dd_rf(dd x, dd y, dd z)
     return dd_of(NAN);
 }
 
-/* Whether the compiler kept every rounding: an error-free sum and product, and one quotient to the last bits. */
+/* Whether every operation is rounded separately: tests an error-free sum and product, and a quotient. */
 static inline int dd_sound(void)
 {
-    volatile double large = 1.0, small = 0x1p-60, factor = 1.0 + 0x1p-30; /* volatile: found when run, not when compiled */
+    volatile double large = 1.0, small = 0x1p-60, factor = 1.0 + 0x1p-30; /* volatile: not computed by the compiler */
     const dd sum = two_sum(large, small), product = two_product(factor, factor);
     const dd third = dd_div(dd_of(large), dd_of(3.0*large));
     const dd back = dd_sub(dd_mul(third, dd_of(3.0)), dd_of(1.0));

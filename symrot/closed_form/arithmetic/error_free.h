@@ -1,8 +1,9 @@
 /*
- * Sums and products without an error: what rounding takes off is kept (Dekker 1971; Ogita, Rump & Oishi 2005).
+ * Sums and products together with their rounding errors (Dekker 1971; Ogita, Rump & Oishi 2005).
  *
- * They hold only where the compiler keeps each rounding as written: never compile with -ffast-math, and products only with
- * -ffp-contract=off. Sums hold with -ffp-contract=fast too, because there is no product in them to fuse.
+ * They are exact only if the compiler rounds every operation separately: never compile with -ffast-math, and products
+ * only with -ffp-contract=off. Sums are exact with -ffp-contract=fast too, because they contain no product that could
+ * be fused.
  */
 #ifndef SYMROT_ERROR_FREE_H
 #define SYMROT_ERROR_FREE_H
@@ -13,7 +14,7 @@
 #error "error-free arithmetic is compiled without -ffast-math"
 #endif
 
-/* In loops over samples, which turn into SIMD code only so, and in each operation of several roundings. */
+/* For operations in loops over samples, which become SIMD code only if everything is inlined. */
 #if defined(__GNUC__)
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
 #else
@@ -31,7 +32,7 @@ ALWAYS_INLINE dd dd_pair(double hi, double lo)
     return r;
 }
 
-/* a + b exactly. */
+/* a + b, exactly. */
 ALWAYS_INLINE dd two_sum(double a, double b)
 {
     const double s = a + b;
@@ -39,7 +40,7 @@ ALWAYS_INLINE dd two_sum(double a, double b)
     return dd_pair(s, (a - (s - t)) + (b - t));
 }
 
-/* a + b exactly, for |a| >= |b| or a = 0. */
+/* a + b, exactly, for |a| >= |b| or a = 0. */
 ALWAYS_INLINE dd quick_two_sum(double a, double b)
 {
     const double s = a + b;
@@ -70,7 +71,7 @@ ALWAYS_INLINE dd dd_negative(dd a)
     return dd_pair(-a.hi, -a.lo);
 }
 
-/* a + b, to 2^-104 of the larger of them: in half the operations of dd_add. */
+/* a + b with an error of 2^-104 of the larger of the two, in half the operations of dd_add. */
 ALWAYS_INLINE dd dd_add_fast(dd a, dd b)
 {
     const dd s = two_sum(a.hi, b.hi);

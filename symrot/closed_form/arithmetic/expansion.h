@@ -1,6 +1,6 @@
 /*
- * Sums of doubles held exactly, for the few numbers that must not be rounded at all (Shewchuk, Discrete Comput. Geom. 18
- * (1997) 305): the defect |L|^2 - 2 T I_mid of a rotation near the separatrix, all of whose digits may cancel.
+ * Exact sums of doubles (Shewchuk, Discrete Comput. Geom. 18 (1997) 305), for the defect |L|^2 - 2 T I_mid of a free
+ * body: near the separatrix all its digits may cancel, so that it must not be rounded before the end.
  */
 #ifndef SYMROT_EXPANSION_H
 #define SYMROT_EXPANSION_H
@@ -29,7 +29,7 @@ static inline void expansion_add(expansion *e, double x)
     e->length = kept;
 }
 
-/* to = from times x, for x as two doubles. */
+/* to = from*x, for x as a sum of two doubles. */
 static inline void expansion_times(const expansion *from, dd x, expansion *to)
 {
     to->length = 0;
@@ -45,11 +45,11 @@ static inline void expansion_times(const expansion *from, dd x, expansion *to)
     }
 }
 
-/* to = I w^2 (I - other), added to what `to` holds, exactly. */
+/* Add I w^2 (I - other) to `to`, exactly. */
 static inline void add_share(dd moment, dd omega, dd other, expansion *to)
 {
     expansion first, second;
-    first.length = 1; /* what lies beyond the length is left alone: 4 kB */
+    first.length = 1; /* numbers beyond the length are not initialised: 4 kB */
     first.part[0] = 1.0;
     expansion_times(&first, moment, &second);
     expansion_times(&second, omega, &first);

@@ -1,8 +1,9 @@
 /*
- * Numbers between -128 and 128 as integers of 256 bits, in units of 2^-248: for the few that must not be rounded to 31
- * digits, and whose pairs of doubles must be those that exact fractions give.
+ * Numbers between -128 and 128 as integers of 256 bits, in units of 2^-248: for numbers that need more than 31 digits,
+ * because they must be rounded to the same pairs of doubles as exact fractions.
  *
- * A sum is exact; a product errs by less than one unit, a reciprocal or a root by a few units for arguments near 1.
+ * Sums are exact. The error of a product is less than one unit, of a reciprocal or root a few units for arguments near
+ * 1.
  */
 #ifndef SYMROT_FIXED_POINT_H
 #define SYMROT_FIXED_POINT_H
@@ -13,7 +14,7 @@
 
 enum { LIMBS = 4, FRACTION = 248 };
 
-/* In two's complement, the lowest limb first. */
+/* In two's complement, the lowest 64 bits first. */
 typedef struct {
     uint64_t limb[LIMBS];
 } fixed;
@@ -126,8 +127,8 @@ ALWAYS_INLINE int fixed_less(fixed a, fixed b)
 #define UNROLLED _Pragma("GCC unroll 8")
 
 /*
- * As if both were without a sign, and what that adds taken off again. The lowest products, which the rest of the digits
- * hide, are left out.
+ * Multiply as unsigned numbers, then subtract the excess for negative factors. The lowest products, which are below the
+ * last digit, are omitted.
  */
 static fixed fixed_mul(fixed a, fixed b)
 {
@@ -160,7 +161,7 @@ ALWAYS_INLINE fixed fixed_half(fixed a)
     return a;
 }
 
-/* A power of two of any size that doubles have. */
+/* A power of two, of any exponent that a double can have. */
 ALWAYS_INLINE double power_of_two(int exponent)
 {
     if (exponent < -1022 || exponent > 1023)
@@ -172,7 +173,7 @@ ALWAYS_INLINE double power_of_two(int exponent)
     return power.value;
 }
 
-/* A double, |x| < 128, cut off below 2^-248. */
+/* A double, |x| < 128, truncated to a multiple of 2^-248. */
 static fixed fixed_of(double x)
 {
     int exponent;
@@ -193,7 +194,7 @@ static fixed fixed_of(double x)
     return x < 0.0 ? fixed_negative(r) : r;
 }
 
-/* Whether that cuts nothing off. */
+/* Whether that conversion is exact. */
 static inline int fixed_holds(double x)
 {
     return x == 0.0 || (fabs(x) >= 0x1p-190 && fabs(x) < 0x1p6);
@@ -211,7 +212,7 @@ static inline int leading_zeros(uint64_t x)
 #endif
 }
 
-/* The nearest double, of two as near the even one. */
+/* The nearest double; the even one if two are equally near. */
 static double fixed_value(fixed a)
 {
     const fixed x = fixed_abs(a);
@@ -244,8 +245,9 @@ ALWAYS_INLINE dd rounded_pair(fixed a)
 }
 
 /*
- * A number known to within `error` as the pair of doubles of its exact value, times a power of two; returns 0 where the
- * error leaves that pair in doubt. Rounding keeps the order of numbers: what both ends of an interval become, all do.
+ * Write a number with an error of at most `error`, times a power of two, as the pair of doubles of its exact value.
+ * Return 0 if the error leaves that pair in doubt. Rounding is monotonic: if both ends of an interval are rounded to
+ * the same pair, every number in it is.
  */
 static int fixed_pair(fixed a, fixed error, double scale, double *pair)
 {
@@ -258,7 +260,7 @@ static int fixed_pair(fixed a, fixed error, double scale, double *pair)
     return high.hi == low.hi && high.lo == low.lo;
 }
 
-/* 1/a of what is between 1/64 and 64: Newton's steps from a double. */
+/* 1/a for a between 1/64 and 64, by Newton's method from a double. */
 static fixed fixed_inverse(fixed a)
 {
     fixed r = fixed_of(1.0/fixed_value(a));
@@ -267,7 +269,7 @@ static fixed fixed_inverse(fixed a)
     return r;
 }
 
-/* 1/sqrt(a) of what is between 1/64 and 64. */
+/* 1/sqrt(a) for a between 1/64 and 64. */
 static fixed fixed_inverse_root(fixed a)
 {
     fixed r = fixed_of(1.0/sqrt(fixed_value(a)));

@@ -1,4 +1,4 @@
-/* What a motion's constants and the loops over its samples agree on. */
+/* Definitions that the constants of a motion and the loops over its samples share. */
 #ifndef SYMROT_REGIMES_H
 #define SYMROT_REGIMES_H
 
@@ -6,7 +6,7 @@
 
 enum { SERIES = 5 }; /* coefficients of a polynomial */
 
-/* Which series a motion takes: none; the elliptic functions' own; their imaginary transforms; those without a period. */
+/* The series of a motion: none; theta series; their imaginary transforms; hyperbolic functions of a separatrix. */
 enum { STEADY, CIRCULAR, HYPERBOLIC, SEPARATRIX };
 
 #endif

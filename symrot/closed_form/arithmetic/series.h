@@ -1,5 +1,5 @@
 /*
- * What the constants of all exact motions take: how they are kept, theta series as polynomials, quaternions to 31 digits.
+ * Functions for the constants of all exact motions: phases, theta series as polynomials, quaternions to 31 digits.
  */
 #ifndef SYMROT_SERIES_H
 #define SYMROT_SERIES_H
@@ -10,7 +10,7 @@
 static const int QUATERNION_OTHER[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
 static const double QUATERNION_SIGN[4][4] = {{1, -1, -1, -1}, {1, 1, -1, 1}, {1, 1, 1, -1}, {1, -1, 1, 1}};
 
-/* c = a b; zeros of b, as changes of axes have them, cost nothing. */
+/* c = a b; zero components of b, which are common in changes of axes, are skipped. */
 ONE_COPY void quaternion_product(const dd a[4], const dd b[4], dd c[4])
 {
     for (int i = 0; i < 4; ++i) {
@@ -21,7 +21,7 @@ ONE_COPY void quaternion_product(const dd a[4], const dd b[4], dd c[4])
     }
 }
 
-/* c = a e, with e the quaternion unit 1, i, j or k: 0 to 3. */
+/* c = a e, where e is the quaternion unit 1, i, j or k, numbered 0 to 3. */
 static inline void quaternion_times_unit(const dd a[4], int unit, dd c[4])
 {
     for (int i = 0; i < 4; ++i)
@@ -34,7 +34,7 @@ static inline void quaternion_conjugate(const dd a[4], dd c[4])
         c[i] = i ? dd_negative(a[i]) : a[i];
 }
 
-/* Divide by the norm; a norm of 1 to the last bit is left alone. */
+/* Divide by the norm, unless it is exactly 1. */
 ONE_COPY void normalise(dd q[4])
 {
     dd square = dd_of(0.0);
@@ -45,7 +45,7 @@ ONE_COPY void normalise(dd q[4])
         q[i] = dd_div(q[i], norm);
 }
 
-/* From the principal axes to those in which omega and the attitude are given: v_given = matrix*v_principal. */
+/* The rotation from the principal axes to the axes of omega and the attitude: v_given = matrix*v_principal. */
 typedef struct {
     dd matrix[3][3], quaternion[4];
 } body_axes;
@@ -67,7 +67,7 @@ static inline void store(dd x, double to[2])
     to[1] = x.lo;
 }
 
-/* A phase from its rate and start, both in turns; the start is taken between -1/2 and 1/2. */
+/* A phase from its rate and start, in revolutions; the start is reduced to -1/2 .. 1/2. */
 static inline void store_phase(dd rate, dd start, double to[4])
 {
     start = dd_sub(start, dd_of(rint(start.hi)));
@@ -75,7 +75,7 @@ static inline void store_phase(dd rate, dd start, double to[4])
     store(start, to + 2);
 }
 
-/* sum of c[n] T_n(x) as a polynomial in x, for n < SERIES (T: Chebyshev's, cos n z = T_n(cos z)). */
+/* sum of c[n] T_n(x) as a polynomial in x, for n < SERIES, with Chebyshev's T_n: cos n z = T_n(cos z). */
 ONE_COPY void even_series(const dd c[SERIES], double to[SERIES])
 {
     to[0] = dd_add(dd_sub(c[0], c[2]), c[4]).hi;
@@ -86,7 +86,7 @@ ONE_COPY void even_series(const dd c[SERIES], double to[SERIES])
 }
 
 /*
- * sum of c[n] cos((2n+1)z)/cos z as a polynomial in x = cos 2z, n < SERIES; with sin for cos where sign is -1:
+ * sum of c[n] cos((2n+1)z)/cos z as a polynomial in x = cos 2z, n < SERIES; with sin instead of cos if sign is -1:
  * cos((2n+1)z)/cos z = 2 cos 2nz - cos((2n-1)z)/cos z, sin((2n+1)z)/sin z = 2 cos 2nz + sin((2n-1)z)/sin z.
  */
 ONE_COPY void odd_series(const dd c[SERIES], double sign, double to[SERIES])
@@ -99,7 +99,7 @@ ONE_COPY void odd_series(const dd c[SERIES], double sign, double to[SERIES])
     even_series(even, to);
 }
 
-/* A power of two near the largest of some pairs hi, lo; 1 where they are zero. */
+/* A power of two near the largest of some pairs hi, lo; 1 if all are zero. */
 static inline double near_power(const double *values, int count)
 {
     int exponent = 0;

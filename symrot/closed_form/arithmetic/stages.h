@@ -1,9 +1,10 @@
 /*
- * Loops over samples, in blocks that stay in the nearest cache and stages that each take one array to the next.
+ * Loops over samples in blocks that fit into the first-level cache. Each stage is a loop that computes one array from
+ * the previous ones.
  *
- * One long loop from times to results would be compiled once for each regime and each thing asked for, and would keep
- * more numbers at once than a processor has registers. Stages are compiled once and shared. They work on whole groups of
- * samples, so that SIMD code needs no loop for what is left over; arrays are padded to that.
+ * One long loop from times to results would be compiled for each regime and each requested quantity, and would need
+ * more registers than a processor has. Stages are compiled once and shared. They process whole groups of samples, so
+ * that SIMD code needs no loop for the remainder; arrays are padded to whole groups.
  */
 #ifndef SYMROT_STAGES_H
 #define SYMROT_STAGES_H
@@ -16,7 +17,7 @@
 
 enum { BLOCK = 64, GROUP = 8 };
 
-/* One copy each: inlined into their callers they would take several times as long to compile. */
+/* Not inlined, because compilation would take several times as long. */
 #if defined(__GNUC__)
 #define STAGE static __attribute__((noinline, unused)) void
 #else
@@ -42,7 +43,7 @@ ALWAYS_INLINE double clamped(double x, double limit)
     return x < -limit ? -limit : x;
 }
 
-/* Times in the unit of a motion, padded to whole groups; returns how many. */
+/* Times in the unit of a motion, padded to whole groups; returns their number. */
 static inline ptrdiff_t take_times(const double *times, ptrdiff_t count, double scale, double *t)
 {
     for (ptrdiff_t i = 0; i < count; ++i)
@@ -53,7 +54,7 @@ static inline ptrdiff_t take_times(const double *times, ptrdiff_t count, double 
     return padded;
 }
 
-/* Sine and cosine of a phase, with slope*whole turns more. */
+/* Sine and cosine of a phase plus slope*whole revolutions. */
 STAGE turn(const double v[4], double slope, ptrdiff_t n, const double *restrict t, const double *restrict whole,
     double *restrict sine, double *restrict cosine)
 {
@@ -66,8 +67,8 @@ STAGE turn(const double v[4], double slope, ptrdiff_t n, const double *restrict 
 }
 
 /*
- * The argument of hyperbolic functions that repeat after 2K, a phase in turns of 4K: `whole` in 2K, from -1/2 to 1/2, and
- * the sign that changes with every 2K.
+ * The argument of hyperbolic functions with the period 2K, from a phase in units of 4K: `whole` in units of 2K, reduced
+ * to -1/2 .. 1/2, and a sign that changes with every 2K.
  */
 STAGE argument(const double v[4], double stretch, ptrdiff_t n, const double *restrict t, double *restrict whole,
     double *restrict flip, double *restrict value)
@@ -82,7 +83,7 @@ STAGE argument(const double v[4], double stretch, ptrdiff_t n, const double *res
     }
 }
 
-/* The same on a separatrix, which takes for ever. */
+/* The same on a separatrix, where the motion is not periodic. */
 STAGE argument_once(const double v[4], ptrdiff_t n, const double *restrict t, double *restrict whole,
     double *restrict flip, double *restrict value)
 {
@@ -105,7 +106,7 @@ STAGE put_omega(const double map[3][3], ptrdiff_t n, const double *restrict x, c
     }
 }
 
-/* q = map*x, a sample at a time: four components fill a SIMD register without being interleaved. */
+/* q = map*x, one sample at a time: its four components fill a SIMD register without interleaving. */
 STAGE put_quaternion(const double map[4][4], ptrdiff_t n, const double *restrict x0, const double *restrict x1,
     const double *restrict x2, const double *restrict x3, double *restrict q)
 {
@@ -122,8 +123,8 @@ STAGE put_quaternion(const double map[4][4], ptrdiff_t n, const double *restrict
 }
 
 /*
- * What every motion is asked for: in blocks, each through `stages`, which gets room for whole groups of results.
- * `block` holds an array t.
+ * Compute the requested quantities at all times, block by block, by calling `stages`, whose arrays hold whole groups.
+ * `block` contains an array t.
  */
 #define IN_BLOCKS(block, stages) \
     for (ptrdiff_t start = 0; start < count; start += BLOCK) { \

@@ -1,23 +1,23 @@
-/* Rotation about one axis at any time, from its constants. The formulas: axial.h. */
+/* Rotation about one axis at any time, from its constants. The formulas are in axial.h. */
 #include "axial.h"
 #include "double_double.h"
 #include "stages.h"
 
-/* exp(x) = power (1 + small), small from r = x - n ln 2, |r| <= ln(2)/2, kept as hi, lo; near where n = 0. */
+/* exp(x) = power (1 + small), power = 2^n, small from r = x - n ln 2 as hi, lo, |r| <= ln(2)/2; near if n = 0. */
 typedef struct {
     double t[BLOCK], power[BLOCK], r[BLOCK], r_low[BLOCK], second[BLOCK], second_low[BLOCK];
     double sine[BLOCK], cosine[BLOCK], rate[BLOCK], none[BLOCK], known[BLOCK];
-    int64_t lost; /* not 0 where a sample was not known */
+    int64_t lost; /* not 0 if a sample cannot be computed */
 } block;
 
-/* To 2^-102; hi and lo overlap by a few bits, which what follows allows for. */
+/* With an error of 2^-102; hi and lo overlap by a few bits, which the functions below allow. */
 ALWAYS_INLINE dd multiplied(dd a, dd b)
 {
     const double p = a.hi*b.hi;
     return dd_pair(p, MUL_ADD(a.hi, b.lo, MUL_ADD(a.lo, b.hi, product_error(a.hi, b.hi, p))));
 }
 
-/* x = slowing*t to its octave and what is left. Where exp(x) is no double any more it is zero. */
+/* Split x = slowing*t into a multiple of ln 2 and a rest. exp(x) is zero if it is below the smallest double. */
 STAGE reduced(const double slowing[2], ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
@@ -25,7 +25,7 @@ STAGE reduced(const double slowing[2], ptrdiff_t n, block *restrict b)
         const double error = product_error(t, slowing[0], product) + t*slowing[1];
         const double x = product < -708.0 ? -708.0 : product, low = product < -708.0 ? 0.0 : error;
         const double octaves = rint(x*0x1.71547652b82fep+0);
-        const double first = x - octaves*0x1.62e42fefa38p-1; /* exact: ln 2 is taken in parts of 42 bits */
+        const double first = x - octaves*0x1.62e42fefa38p-1; /* exact: ln 2 is split into parts of 42 bits */
         const dd rest = two_sum(first, -octaves*0x1.ef35793c76p-45);
         const dd r = quick_two_sum(rest.hi, rest.lo + (low - octaves*0x1.cc01f97b57a08p-87));
         union {
@@ -40,7 +40,7 @@ STAGE reduced(const double slowing[2], ptrdiff_t n, block *restrict b)
     }
 }
 
-/* The terms from the 9th on of (exp(r) - 1 - r)/r^2, over r^9: below 2^-38 of the sum. */
+/* The terms of (exp(r) - 1 - r)/r^2 from the 9th on, divided by r^9: below 2^-38 of the sum. */
 ALWAYS_INLINE double last_terms(double r)
 {
     double sum = DD_INVERSE_FACTORIALS[22].hi;
@@ -57,7 +57,7 @@ ALWAYS_INLINE double last_terms(double r)
     return MUL_ADD(sum, r, DD_INVERSE_FACTORIALS[11].hi);
 }
 
-/* sum*r + 1/n!: the coefficient is the larger. */
+/* sum*r + 1/n!, where the coefficient is the larger summand. */
 ALWAYS_INLINE dd next_term(dd sum, dd r, int n)
 {
     const dd c = DD_INVERSE_FACTORIALS[n];
@@ -67,7 +67,7 @@ ALWAYS_INLINE dd next_term(dd sum, dd r, int n)
     return dd_pair(total, lost + (product - (total - c.hi)));
 }
 
-/* E2 of r, to 2^-91. */
+/* E2(r), with an error of 2^-91. */
 STAGE second(ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
@@ -87,7 +87,7 @@ STAGE second(ptrdiff_t n, block *restrict b)
     }
 }
 
-/* E2 of r in doubles. */
+/* E2(r) in doubles. */
 STAGE second_in_doubles(ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
@@ -109,14 +109,14 @@ STAGE second_in_doubles(ptrdiff_t n, block *restrict b)
     }
 }
 
-/* exp(x), from E2 of r. */
+/* exp(x) from E2(r). */
 ALWAYS_INLINE double exponential(const block *b, ptrdiff_t i)
 {
     const double r = b->r[i], small = r + MUL_ADD(r*r, b->second[i], b->r_low[i]);
     return MUL_ADD(b->power[i], small, b->power[i]);
 }
 
-/* Within an octave or so of the start the change since then is smaller than the last rate and what is left to it. */
+/* Near the start, the change of the rate is smaller than the final rate and the distance from it: use the change. */
 STAGE damped_rate(const double axial[4], ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
@@ -136,19 +136,19 @@ STAGE plain_rate(const double axial[4], ptrdiff_t n, block *restrict b)
         b->rate[i] = MUL_ADD(axial[1], b->t[i], axial[0]);
 }
 
-/* x less its whole turns. */
+/* x without whole revolutions. */
 ALWAYS_INLINE double part(double x)
 {
     return x - rint(x);
 }
 
-/* 1 or 0; of NaN too. */
+/* 1 if |x| <= limit, else 0, also for NaN. */
 ALWAYS_INLINE double within(double x, double limit)
 {
     return fabs(x) <= limit ? 1.0 : 0.0;
 }
 
-/* Sine and cosine of a sum of parts of a turn and of something small; NaN where it is not known. */
+/* Sine and cosine of a sum of parts of a revolution and a small angle; NaN if the angle is not known. */
 ALWAYS_INLINE void put_circle(double sum, double small, double known, double *sine, double *cosine)
 {
     const double turns = part(sum), quarters = rint(4.0*(turns + small));
@@ -186,7 +186,7 @@ STAGE damped_angle(const turning *restrict a, ptrdiff_t n, block *restrict b)
     }
 }
 
-/* The angle without damping, rate*t + gain*t^2: the square of time is a pair of doubles, exactly. */
+/* The angle without damping, rate*t + gain*t^2; the square of time is exactly a pair of doubles. */
 STAGE plain_angle(const turning *restrict a, ptrdiff_t n, block *restrict b)
 {
     const double v0 = a->rate[0], v1 = a->rate[1], v2 = a->rate[2];
@@ -211,7 +211,7 @@ STAGE plain_angle(const turning *restrict a, ptrdiff_t n, block *restrict b)
     }
 }
 
-/* Whether a sample was not known. */
+/* Whether a sample could not be computed. */
 STAGE take_loss(ptrdiff_t n, block *restrict b)
 {
     int64_t any = 0;
@@ -220,7 +220,7 @@ STAGE take_loss(ptrdiff_t n, block *restrict b)
     b->lost |= any;
 }
 
-/* What is left of the transverse angular velocity times the sine and cosine of its lag. */
+/* The damped transverse angular velocity times sine and cosine of its lag. */
 STAGE shrunk(ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
@@ -264,9 +264,9 @@ static void stages(const axial *f, ptrdiff_t n, block *b, double *omega, double 
 }
 
 /*
- * The motion at times counted from that of the initial state; arguments as symrot_free_body_at.
+ * The motion at times counted from the initial state; arguments as for symrot_free_body_at.
  *
- * Returns 0; 1 where some samples have too many turns for pairs of doubles, and are NaN; 2, with nothing written, where
+ * Returns 0; 1 if some samples have too many revolutions for pairs of doubles, and are NaN; 2, with nothing written, if
  * a time lies before `first`.
  */
 int symrot_axial_at(const axial *f, ptrdiff_t count, const double *times, double *omega, double *quaternion)
@@ -282,7 +282,7 @@ int symrot_axial_at(const axial *f, ptrdiff_t count, const double *times, double
     return (int)b.lost;
 }
 
-/* Whether the compiler kept every rounding as written. */
+/* Whether the compiled code rounds every operation separately. */
 int symrot_axial_sound(void)
 {
     return dd_sound();

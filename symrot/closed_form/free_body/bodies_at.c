@@ -1,11 +1,11 @@
 /*
- * What the constants of free bodies are made of, of many at once: principal moments and axes, angular velocity along them,
- * and the defect |L|^2 - 2 T I_mid, of which all digits may cancel. Each number comes out as the pair of doubles that exact
- * fractions give; where 248 bits leave that in doubt, the body is marked, and fractions are to settle it.
+ * Numbers from which the constants of many free bodies are computed: principal moments and axes, angular velocity along
+ * them, and the defect |L|^2 - 2 T I_mid, in which all digits may cancel. Each number is rounded to the same pair of
+ * doubles as by exact fractions. If 248 bits leave that in doubt, the body is marked, and the caller uses fractions.
  *
  * Principal axes: Jacobi's rotations (Golub & Van Loan, Matrix Computations, section 8.5). The tangent of half of each
- * angle is a double, so that the rotation is a quotient of exact numbers; it misses its angle by 2^-50, which the next
- * one makes good.
+ * angle is a double, so that the rotation is a quotient of exact numbers. Its angle has an error of 2^-50, which the
+ * next rotation corrects.
  */
 #include <stddef.h>
 
@@ -13,12 +13,12 @@
 
 enum { SWEEPS = 60 };
 
-/* Errors, in bits after the point: of a moment, of the axes where moments differ by 1, of rates, of the defect. */
+/* Errors as bits after the point: of moments, of axes if moments differ by 1, of rates, of the defect. */
 enum { OF_MOMENTS = 238, OF_AXES = 234, OF_RATES = 242, OF_DEFECT = 234 };
 
-#define OFF_DIAGONAL 0x1p-242 /* products of inertia that are not worth another rotation */
-#define TIE 1e-9              /* by which a choice must be clear */
-#define NEAREST 0x1p-80       /* moments closer than that are left to fractions */
+#define OFF_DIAGONAL 0x1p-242 /* smaller products of inertia need no further rotation */
+#define TIE 1e-9              /* smallest difference by which a choice is certain */
+#define NEAREST 0x1p-80       /* closer moments are marked for fractions */
 
 static fixed power(int bits)
 {
@@ -28,7 +28,7 @@ static fixed power(int bits)
     return r;
 }
 
-/* The power of two that takes the largest of three numbers to [1/2, 1); 0 where it is far from 1, as rest is. */
+/* The power of two that scales the largest of three numbers to [1/2, 1); 0 if that is far from 1, as at rest. */
 static double scale_of(const double x[3])
 {
     double largest = 0.0;
@@ -42,9 +42,9 @@ static double scale_of(const double x[3])
 }
 
 /*
- * The defect over the square of the largest moment times the largest rate, as a pair; 0 where it is in doubt. The moments
- * may be in any unit that makes the largest 1/2 to 2, the rates in any that makes the largest 1/2 to 2; `bits` after the
- * point of the defect are right.
+ * Write the defect, divided by the square of the largest moment times the largest rate, as a pair; return 0 if it is in
+ * doubt. The units of moments and rates make the largest of each 1/2 to 2. The defect has `bits` correct bits after the
+ * point.
  */
 static int defect_of(const fixed moments[3], const fixed rates[3], int bits, double pair[2])
 {
@@ -79,7 +79,7 @@ static int is_one(fixed a)
     return fixed_sign(fixed_sub(fixed_abs(a), FIXED_ONE)) == 0;
 }
 
-/* Rates along principal axes, the columns of a matrix in which `error` is, and their pairs; 0 where one is in doubt. */
+/* Rates along principal axes, the columns of a matrix with the error `error`, as pairs; 0 if one is in doubt. */
 static int turned_rates(fixed axes[3][3], fixed error, const double omega[3], fixed rates[3], double pairs[6])
 {
     const double scale = scale_of(omega);
@@ -111,9 +111,9 @@ static int at_rest(const double omega[3])
 }
 
 /*
- * Many motions of one body: rates[6 n] along its principal axes, and the defect in exact[8 n], from its sixth number
- * on; doubtful[n] is 1 where they are not settled. `body`: three moments, the largest 1/2 to 1 in their unit, and the
- * matrix of the axes, row by row.
+ * Many motions of one body: rates[6 n] along its principal axes, and the defect in exact[8 n], from the sixth number of
+ * each motion on; doubtful[n] is 1 if their rounding is in doubt. `body` holds three moments, the largest 1/2 to 1, and
+ * the matrix of the axes, row by row.
  */
 void symrot_rates_of_body(ptrdiff_t n, const fixed body[12], const double *omega, double *rates, double *exact,
     unsigned char *doubtful)
@@ -150,7 +150,7 @@ void symrot_defects(ptrdiff_t n, const double *moments, const double *omega, dou
     }
 }
 
-/* Turn axes p and q of a tensor so that its product between them becomes small; q is the turn of all axes so far. */
+/* Rotate the axes p and q of a tensor so that their product of inertia becomes small; update the matrix of all axes. */
 static void rotate(fixed a[3][3], int p, int q, fixed turn[4])
 {
     const int r = 3 - p - q;
@@ -170,7 +170,7 @@ static void rotate(fixed a[3][3], int p, int q, fixed turn[4])
     const fixed to_p = a[r][p], to_q = a[r][q];
     a[r][p] = a[p][r] = fixed_sub(fixed_mul(cosine, to_p), fixed_mul(sine, to_q));
     a[r][q] = a[q][r] = fixed_add(fixed_mul(sine, to_p), fixed_mul(cosine, to_q));
-    /* the axes turn about axis r, from q to p where r, p, q are cyclic: times (1, -half r) */
+    /* the axes rotate about axis r, from q to p if r, p, q are cyclic: multiply by (1, -half r) */
     const fixed by = (r + 1)%3 == p ? fixed_negative(half) : half;
     const int i = r + 1, j = (r + 1)%3 + 1, k = (r + 2)%3 + 1;
     const fixed w = turn[0], u = turn[i], v = turn[j], z = turn[k];
@@ -180,7 +180,7 @@ static void rotate(fixed a[3][3], int p, int q, fixed turn[4])
     turn[k] = fixed_sub(z, fixed_mul(by, v));
 }
 
-/* The matrix of a turn of any size near 1. */
+/* The rotation matrix of a quaternion whose norm is near 1. */
 static void matrix_of(const fixed q[4], fixed m[3][3])
 {
     fixed squares[4], sum = FIXED_ZERO;
@@ -199,7 +199,7 @@ static void matrix_of(const fixed q[4], fixed m[3][3])
     }
 }
 
-/* Which column of a matrix each given axis is closest to, all three together; 0 where that is not clear. */
+/* Assign the columns of a matrix to the body axes to which they are closest, all three together; 0 if in doubt. */
 static int closest(fixed m[3][3], int order[3])
 {
     static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
@@ -219,7 +219,7 @@ static int closest(fixed m[3][3], int order[3])
     return best - next > TIE;
 }
 
-/* Number and direct principal axes as principal.py does: `m` becomes their matrix. Returns 0 where that is not clear. */
+/* Order and orient the principal axes as principal.py does: `m` becomes their matrix. Returns 0 if in doubt. */
 static int directed(fixed m[3][3], fixed moments[3], int known[3])
 {
     int order[3], exact[3], clear = closest(m, order), loosest = 0, odd = 0;
@@ -247,7 +247,7 @@ static int directed(fixed m[3][3], fixed moments[3], int known[3])
     return clear;
 }
 
-/* The unit quaternion of a rotation matrix, its largest component positive (Shepperd); 0 where that is not clear. */
+/* The unit quaternion of a rotation matrix, its largest component positive (Shepperd); 0 if in doubt. */
 static int quaternion_of(fixed m[3][3], fixed q[4])
 {
     fixed square[4]; /* of each component, four times */
@@ -277,14 +277,14 @@ static int quaternion_of(fixed m[3][3], fixed q[4])
     return clear;
 }
 
-/* A tensor: of each body its entries xx, yy, zz, xy, xz, yz, kg m^2, by place, stride 1; or of all, as sums of `terms`. */
+/* The entries xx, yy, zz, xy, xz, yz of tensors, kg m^2: one double per body, or one sum of `terms` for all bodies. */
 typedef struct {
     const double *entries[6];
     ptrdiff_t strides[6], terms;
     int32_t exact[6]; /* whether a sum is the number itself */
 } tensors;
 
-/* The principal moments and axes of one of them; 0 where they are in doubt. `known`: moments without an error. */
+/* The principal moments and axes of one body; 0 if they are in doubt. `known` marks moments without an error. */
 static int principal(const tensors *t, ptrdiff_t n, fixed moments[3], int known[3], fixed axes[3][3], double *scale)
 {
     static const int rows[6] = {0, 1, 2, 0, 0, 1}, columns[6] = {0, 1, 2, 1, 2, 2};
@@ -309,7 +309,7 @@ static int principal(const tensors *t, ptrdiff_t n, fixed moments[3], int known[
         if (k < 3)
             known[k] = held;
         else if (!held && fixed_sign(sum) == 0)
-            return 0; /* too small a product to be seen */
+            return 0; /* a product of inertia too small for these bits */
     }
     for (int k = 0; k < 3; ++k)
         known[k] = known[k] && fixed_sign(a[k][(k + 1)%3]) == 0 && fixed_sign(a[k][(k + 2)%3]) == 0;
@@ -333,9 +333,9 @@ static int principal(const tensors *t, ptrdiff_t n, fixed moments[3], int known[
 }
 
 /*
- * Principal bodies of tensors, the motions of which start from omega[3 n], rad/s in the given axes: what
- * symrot_free_body_prepare takes of each: inertia[6 n], rates[6 n], exact[8 n] and axes[26 n], each as hi, lo.
- * doubtful[n] is 1 where they are not settled.
+ * The arguments of symrot_free_body_prepare for many bodies, from their tensors and from omega[3 n], rad/s, in the
+ * given axes: inertia[6 n], rates[6 n], exact[8 n] and axes[26 n], each number as hi, lo. doubtful[n] is 1 if the
+ * rounding of some number is in doubt.
  */
 void symrot_principal_bodies(ptrdiff_t n, const tensors *t, const double *omega, double *inertia, double *rates,
     double *exact, double *axes, unsigned char *doubtful)
@@ -363,11 +363,11 @@ void symrot_principal_bodies(ptrdiff_t n, const tensors *t, const double *omega,
         }
         if (!clear || nearest < NEAREST)
             continue;
-        int lost = 0; /* bits of the axes, where moments are close */
+        int lost = 0; /* bits that the axes lose if moments are close */
         frexp(1.0/nearest, &lost);
         lost = lost > 0 ? lost : 0;
         const fixed error = power(OF_AXES - lost);
-        const int alone = known[0] ? 0 : known[1] ? 1 : known[2] ? 2 : -1; /* an axis that stays, without an error */
+        const int alone = known[0] ? 0 : known[1] ? 1 : known[2] ? 2 : -1; /* an exactly principal axis */
         for (int k = 0; k < 9 && clear; ++k) {
             const int exactly = alone >= 0 && (k/3 == alone || k%3 == alone);
             clear = fixed_pair(m[k/3][k%3], exactly ? FIXED_ZERO : error, 1.0, all + 2*k);

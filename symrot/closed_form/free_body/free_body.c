@@ -1,21 +1,21 @@
-/* The constants of a free body's motion, once: everything in double-double arithmetic. The formulas: free_body.h. */
+/* The constants of a free body's motion, in double-double arithmetic. The formulas are in free_body.h. */
 #include "expansion.h"
 #include "free_body.h"
 #include "series.h"
 
-/* Terms of a series below this part of the first are left out: 2^-110. */
+/* Terms of a series are omitted if they are below this part of the first term: 2^-110. */
 #define NEGLIGIBLE 0x1p-110
 
-/* The body in its own renamed axes, everything to 31 digits. */
+/* The body in the axes e1, e2, e3 of the formulas, to 31 digits. */
 typedef struct {
-    int axis[3];        /* which given axis e1, e2, e3 is */
+    int axis[3];        /* the principal axis that is e1, e2, e3 */
     double direction[3]; /* along it (1) or against it (-1) */
     double s;
     dd moments[3], momenta[3], amplitudes[3], total, twice_energy; /* I, L, A, |L|, 2T */
     dd modulus, complement, rate, u, eta;                         /* m, 1 - m, lambda, u0, eta */
 } canonical_motion;
 
-/* The quaternion of the change of axes from the given ones to e1, e2, e3 (Shepperd's choice of the largest). */
+/* The quaternion of the change from the given axes to e1, e2, e3, by its largest component (Shepperd). */
 static void renaming(const canonical_motion *c, dd q[4])
 {
     double r[3][3] = {{0.0}};
@@ -56,7 +56,7 @@ static void store_omega(const body_axes *axes, int axis, dd amplitude, double sc
         f->omega[i][n] = dd_mul(axes->matrix[i][axis], amplitude).hi*scale;
 }
 
-/* Steady rotation about n: X = (cos, n sin) of half the angle; the map of X is that of (cos, sin, 0, 0). */
+/* Steady rotation about n: X = (cos, n sin) of half the angle; the map is applied to (cos, sin, 0, 0). */
 static void prepare_steady(const dd omega[3], const dd q0[4], const body_axes *axes, double scale, free_body *f)
 {
     static const dd pi = DD_PI;
@@ -78,12 +78,12 @@ static void prepare_steady(const dd omega[3], const dd q0[4], const body_axes *a
 }
 
 /*
- * The body in the axes that suit its motion. `differences[i]` is I_j - I_k for (i, j, k) cyclic; `defect` is
- * |L|^2 - 2 T I_mid.
+ * Describe the body in the axes e1, e2, e3 of its motion. `differences[i]` is I_j - I_k for (i, j, k) cyclic; `defect`
+ * is |L|^2 - 2 T I_mid.
  */
 static void canonical(const dd inertia[3], const dd omega[3], const dd differences[3], dd defect, canonical_motion *c)
 {
-    int outer[2] = {0, 0}, middle; /* the axes of the largest and the smallest moment, and the third */
+    int outer[2] = {0, 0}, middle; /* axes of the largest and the smallest moment; remaining axis */
     const int above[3] = {differences[2].hi >= 0.0, differences[0].hi >= 0.0, differences[1].hi >= 0.0};
     /* above[i]: I_i >= I_(i+1) */
     if (above[0] && !above[2])
@@ -144,7 +144,7 @@ static dd half_turning(const canonical_motion *c)
 /* The nome is at most 0.075 (where m = 0.7): nome^(n^2) is below 1e-40 from n = 6 on. */
 enum { TERMS = 6 };
 
-/* nome^(n(n+1)) and nome^(n^2), the latter twice but for n = 0; the sums at 0, theta2 over 2 nome^(1/4). */
+/* nome^(n(n+1)) and nome^(n^2), the latter doubled for n > 0; the sums at 0, with theta2 divided by 2 nome^(1/4). */
 typedef struct {
     dd odd[TERMS], even[TERMS], theta2, theta3, theta4;
 } theta_terms;
@@ -169,7 +169,7 @@ static void theta_terms_of(dd nome, theta_terms *t)
     t->theta4 = dd_sub(sums[0], sums[1]);
 }
 
-/* to = factor*from, with alternating signs where `sign` is -1. */
+/* to = factor*from, with alternating signs if `sign` is -1. */
 static void scaled(const dd from[TERMS], dd factor, double sign, dd to[SERIES])
 {
     for (int n = 0; n < SERIES; ++n, factor = dd_scale(factor, sign))
@@ -185,7 +185,7 @@ static dd prepare_circular(const canonical_motion *c, dd k, dd k_prime, free_bod
     static const dd pi = DD_PI;
     const int round = !(c->modulus.hi > 0.0);
     const dd per = dd_div(pi, k);
-    /* q = shift*close; q e^(eta pi/K) = exp(-(K' - eta) pi/K), without a product of something huge and something tiny */
+    /* q = shift*close; q e^(eta pi/K) = exp(-(K' - eta) pi/K) avoids the product of a huge and a tiny number */
     const dd shift = dd_exp(dd_negative(dd_mul(per, c->eta)));
     const dd close = round ? dd_of(0.0) : dd_exp(dd_negative(dd_mul(per, dd_sub(k_prime, c->eta))));
     const dd nome = dd_mul(shift, close);
@@ -246,9 +246,9 @@ static dd prepare_circular(const canonical_motion *c, dd k, dd k_prime, free_bod
 }
 
 /*
- * m >= 0.7, nome q' = exp(-pi K/K'), v = pi u/2K' with u taken between -K and K:
+ * m >= 0.7, nome q' = exp(-pi K/K'), v = pi u/2K' with u reduced to -K .. K:
  * N = sum q'^(n(n+1)/2) [cos((2n+1)x) cosh((2n+1)v/2) - i sin((2n+1)x) sinh((2n+1)v/2)], x = s pi (K' - eta)/4K',
- * and an even part of psi per u that goes into kappa. On the separatrix K is infinite and q' = 0.
+ * and a part of psi linear in u that is added to kappa. On the separatrix K is infinite and q' = 0.
  */
 static dd prepare_hyperbolic(const canonical_motion *c, dd k, dd k_prime, free_body *f, dd *real, dd *imag)
 {
@@ -306,13 +306,13 @@ static dd prepare_hyperbolic(const canonical_motion *c, dd k, dd k_prime, free_b
         store(v, f->axial + 2);
         return kappa;
     }
-    const dd slope = dd_scale(turns, 2.0); /* s (K' - eta)/4K' turns per 2K */
+    const dd slope = dd_scale(turns, 2.0); /* s (K' - eta)/4K' revolutions per 2K */
     f->regime = HYPERBOLIC;
     f->slope = slope.hi;
     f->stretch = dd_mul(per, k).hi;
     store_phase(dd_scale(dd_div(c->rate, k), 0.25), dd_scale(dd_div(c->u, k), 0.25), f->axial);
     const dd even = dd_mul(dd_div(dd_mul(slope, pi), k), c->rate); /* slope * 2 pi * lambda/2K, rad */
-    /* at the start the whole phase is that of u between -K and K, as u0 is */
+    /* at the start the phase belongs to u0, which lies between -K and K */
     return dd_sub(kappa, even);
 }
 
@@ -344,22 +344,22 @@ static void prepare_attitude(const canonical_motion *c, dd real, dd imag, dd lea
 }
 
 /*
- * Find the constants of a motion.
+ * Compute the constants of a motion.
  *
  * in   inertia[6]     kg m^2  principal moments, each as hi, lo
  * in   omega[6]       rad/s   angular velocity along the principal axes at time 0, each as hi, lo
  * in   quaternion[8]  1       attitude at time 0, body to space, scalar first, each as hi, lo; any norm but zero
- * in   exact[8]               for numbers that two doubles do not hold exactly, each as hi, lo: I2 - I3, I3 - I1, I1 - I2
- *                             and |L|^2 - 2 T I_mid over the square of the largest moment times the largest |omega_i|;
- *                             else NULL
- * in   axes[26]       1       NULL where the axes of the body are principal; else each as hi, lo the matrix, row by row,
- *                             and the unit quaternion that take principal components to the body's own:
- *                             quaternion[] is then the attitude of the body's own axes, omega[] still along principal
- *                             ones, and the motion is returned in the body's own
+ * in   exact[8]               NULL if pairs of doubles represent all inputs exactly; otherwise, each as hi, lo:
+ *                             I2 - I3, I3 - I1, I1 - I2 and |L|^2 - 2 T I_mid, the latter divided by the square of the
+ *                             largest moment times the largest |omega_i|
+ * in   axes[26]       1       NULL if the axes of the body are principal; otherwise, each as hi, lo, the matrix, row by
+ *                             row, and the unit quaternion that convert principal components to components in the axes
+ *                             of the body: quaternion[] is then the attitude of the axes of the body, omega[] is still
+ *                             along the principal axes, and the motion is returned in the axes of the body
  * out  f                      the constants
  *
  * Domain: moments positive and finite, |omega| finite. Components of omega below 1e-150 of the largest count as zero.
- * Returns 0, or 1 where the numbers are not of this domain, or 2 where the compiler has broken error-free arithmetic.
+ * Returns 0; 1 if the numbers are outside this domain; 2 if the compiler has broken error-free arithmetic.
  */
 int symrot_free_body_prepare(
     const double inertia[6], const double omega[6], const double quaternion[8], const double *exact,
@@ -438,7 +438,7 @@ int symrot_free_body_prepare(
     return 0;
 }
 
-/* The length of the constants in doubles, for callers that lay them out themselves. */
+/* The length of the constants in doubles, for callers that allocate them. */
 ptrdiff_t symrot_free_body_length(void)
 {
     return (ptrdiff_t)(sizeof(free_body)/sizeof(double));

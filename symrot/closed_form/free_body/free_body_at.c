@@ -1,4 +1,4 @@
-/* A free body at any time, from its constants. The formulas: free_body.h. */
+/* A free body at any time, from its constants. The formulas are in free_body.h. */
 #include "free_body.h"
 #include "stages.h"
 
@@ -23,7 +23,7 @@ STAGE circular(const free_body *restrict f, ptrdiff_t n, block *restrict b)
     }
 }
 
-/* From v in `odd` and the sign of cn and sn in `even`. */
+/* From v in `odd`, and the sign of cn and sn in `even`. */
 STAGE hyperbolic(const free_body *restrict f, ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
@@ -41,7 +41,7 @@ STAGE hyperbolic(const free_body *restrict f, ptrdiff_t n, block *restrict b)
     }
 }
 
-/* X = exp(k psi/2) P, from N and the sine and cosine of the even part of psi/2. */
+/* X = exp(k psi/2) P, from N and from sine and cosine of the linear part of psi/2. */
 STAGE turned(const free_body *restrict f, ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
@@ -66,7 +66,7 @@ STAGE steady_omega(const free_body *restrict f, ptrdiff_t n, double *restrict om
     }
 }
 
-/* X of a steady rotation, of which the map takes two components. */
+/* X of a steady rotation, of which the map uses two components. */
 STAGE steady_turned(ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
@@ -85,7 +85,7 @@ static void elliptic(const free_body *f, ptrdiff_t n, block *b, double *omega, d
 {
     const double *whole = b->whole;
     if (f->regime == CIRCULAR) {
-        whole = b->t; /* any: the slope is zero */
+        whole = b->t; /* any array, since the slope is zero */
         turn(f->axial, 0.0, n, b->t, whole, b->sine, b->cosine);
         circular(f, n, b);
     } else {
@@ -116,11 +116,11 @@ static void steady(const free_body *f, ptrdiff_t n, block *b, double *omega, dou
 }
 
 /*
- * The motion at times counted from that of the initial state, s, in any order, before it too.
+ * The motion at times counted from the initial state, in any order; they may be negative.
  *
  * in   times[count]        s
- * out  omega[3 count]      rad/s, along the principal axes; NULL where it is not wanted
- * out  quaternion[4 count] body to space, scalar first, of unit norm and continuous in time; NULL where not wanted
+ * out  omega[3 count]      rad/s, along the principal axes; NULL if not requested
+ * out  quaternion[4 count] body to space, scalar first, of unit norm and continuous in time; NULL if not requested
  */
 void symrot_free_body_at(
     const free_body *f, ptrdiff_t count, const double *times, double *omega, double *quaternion)

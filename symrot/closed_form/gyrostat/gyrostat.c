@@ -1,17 +1,17 @@
-/* The constants of a gyrostat's motion, once: everything in double-double arithmetic. The formulas: gyrostat.h. */
+/* The constants of a gyrostat's motion, in double-double arithmetic. The formulas are in gyrostat.h. */
 #include "gyrostat.h"
 #include "series.h"
 
 /*
- * Find the constants of a motion.
+ * Compute the constants of a motion.
  *
  * in   moments[4]     kg m^2    A > 0, C, each as hi, lo
  * in   rotor[2]       kg m^2/s  h, along e3
  * in   omega[6]       rad/s     along e1, e2, e3 at time 0, each as hi, lo
  * in   quaternion[8]  1         attitude of e1, e2, e3 at time 0, scalar first
- * in   axis           1         3 numbers: which axes of the body e1, e2, e3 are
+ * in   axis           1         the numbers of the body axes that are e1, e2, e3
  * out  g                        the constants
- * Returns 0; 1 where the numbers are not of this domain; 2 where the compiler has broken error-free arithmetic.
+ * Returns 0; 1 if the numbers are outside this domain; 2 if the compiler has broken error-free arithmetic.
  */
 int symrot_gyrostat_prepare(
     const double moments[4], const double rotor[2], const double omega[6], const double quaternion[8],
@@ -61,7 +61,7 @@ int symrot_gyrostat_prepare(
     g->omega[name[1]][1] = -w[0].hi*scale;
     g->omega[name[2]][2] = w[2].hi*scale;
 
-    /* the cyclic renaming of the axes, as a quaternion: e_k = axis name[k] */
+    /* the cyclic permutation of the axes, as a quaternion: e_k = axis name[k] */
     dd renaming[4];
     const double trace = rows[0][0] + rows[1][1] + rows[2][2];
     renaming[0] = dd_of(1.0 + trace);
@@ -96,7 +96,7 @@ int symrot_gyrostat_prepare(
     return 0;
 }
 
-/* The length of the constants in doubles, for callers that lay them out themselves. */
+/* The length of the constants in doubles, for callers that allocate them. */
 ptrdiff_t symrot_gyrostat_length(void)
 {
     return (ptrdiff_t)(sizeof(gyrostat)/sizeof(double));

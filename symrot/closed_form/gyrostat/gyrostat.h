@@ -3,8 +3,8 @@
  *
  * With L = (A w1, A w2, C w3 + h), of constant length, omega = L/A + e3 (w3 - (C w3 + h)/A), so
  *     q(t) = exp(n |L| t/2A) q(0) exp(e3 sigma t/2),  n = L in space/|L|,  sigma = w3 - (C w3 + h)/A,
- * and the transverse part of omega turns at -sigma in the body. Landau & Lifshitz, Mechanics, 3rd ed., section 33, for
- * h = 0. Compile with -ffp-contract=off.
+ * and the transverse part of omega rotates at -sigma in the body. Landau & Lifshitz, Mechanics, 3rd ed., section 33,
+ * for h = 0. Compile with -ffp-contract=off.
  */
 #ifndef SYMROT_GYROSTAT_H
 #define SYMROT_GYROSTAT_H
@@ -16,8 +16,8 @@ typedef struct {
     double time_scale;     /* a power of two; times are multiplied by it */
     double precession[4];  /* the phase |L| t/2A */
     double spin[4];        /* the phase sigma t/2 */
-    double omega[3][3];    /* from cos sigma t, sin sigma t, 1 to omega, rad/s */
-    double attitude[4][4]; /* from the products of cosines and sines of both phases to q */
+    double omega[3][3];    /* maps cos sigma t, sin sigma t, 1 to omega, rad/s */
+    double attitude[4][4]; /* maps the products of cosines and sines of both phases to q */
 } gyrostat;
 
 #endif

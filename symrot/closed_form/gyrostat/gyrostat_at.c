@@ -1,4 +1,4 @@
-/* A gyrostat at any time, from its constants. The formulas: gyrostat.h. */
+/* A gyrostat at any time, from its constants. The formulas are in gyrostat.h. */
 #include "gyrostat.h"
 #include "stages.h"
 
@@ -43,7 +43,7 @@ static void stages(const gyrostat *f, ptrdiff_t n, block *b, double *omega, doub
     }
 }
 
-/* The motion at times counted from that of the initial state; arguments as symrot_free_body_at. */
+/* The motion at times counted from the initial state; arguments as for symrot_free_body_at. */
 void symrot_gyrostat_at(const gyrostat *f, ptrdiff_t count, const double *times, double *omega, double *quaternion)
 {
     block b;

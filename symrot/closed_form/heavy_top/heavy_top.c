@@ -1,4 +1,4 @@
-/* The constants of a symmetric heavy top's motion, once: everything in double-double arithmetic. The formulas: heavy_top.h. */
+/* The constants of a symmetric heavy top's motion, in double-double arithmetic. The formulas are in heavy_top.h. */
 #include "heavy_top.h"
 #include "complex_dd.h"
 #include "nutation.h"
@@ -8,15 +8,15 @@
 enum { TERMS = 6 };
 
 /*
- * One of the two numerators as series. Real part: sum re[n] * even function, imaginary: sum im[n] * odd function, or the
- * reverse; `order` is what each term's derivative is multiplied by.
+ * One of the two numerators as series. Real part: sum re[n] * even function, imaginary part: sum im[n] * odd function,
+ * or the reverse. The derivative of each term is multiplied by `order`.
  */
 typedef struct {
     dd re[TERMS], im[TERMS];
-    int odd, sine_first; /* terms of odd or even multiples; whether re goes with sines */
+    int odd, sine_first; /* odd or even multiples; whether re belongs to sines */
 } numerator;
 
-/* A value and its derivative to z or v at one place, from the functions cos, sin (or cosh, sinh) of it. */
+/* A value and its derivative with respect to z or v, from cos and sin (or cosh and sinh) of the argument. */
 static void value_at(const numerator *f, double sign, const dd c[TERMS], const dd s[TERMS], complex_dd *value, complex_dd *slope)
 {
     *value = *slope = complex_of(dd_of(0.0), dd_of(0.0));
@@ -46,7 +46,7 @@ static void polynomial_of(const dd terms[TERMS], int odd, int sine, double to[SE
     }
 }
 
-/* The polynomials of a numerator and of i kappa times it plus its rate, all times `size`. */
+/* The polynomials of a numerator N and of i kappa N + dN/dt, all times `size`. */
 static void store_numerator(const numerator *f, double sign, dd kappa, dd rate, dd size, int which, heavy_top *t)
 {
     dd re[TERMS], im[TERMS], re_rate[TERMS], im_rate[TERMS];
@@ -130,7 +130,7 @@ static void hyperbolic_terms(dd nome, dd chi, double sign, int first, numerator 
     *drift = quotient(slope, value).im; /* d arg/dv of theta1 at u = K, of theta2 at u = 0 */
 }
 
-/* cos, sin (or cosh, sinh) of the multiples of an angle that a numerator takes, from those of the angle itself. */
+/* cos, sin (or cosh, sinh) of the multiples of an angle in a numerator, from cos, sin of the angle. */
 static void multiples(int odd, double sign, dd c1, dd s1, dd c[TERMS], dd s[TERMS])
 {
     const dd c2 = dd_add(dd_square(c1), dd_scale(dd_square(s1), sign)), s2 = dd_scale(dd_mul(c1, s1), 2.0);
@@ -139,7 +139,7 @@ static void multiples(int odd, double sign, dd c1, dd s1, dd c[TERMS], dd s[TERM
     for (int n = 1; n < TERMS; ++n) {
         c[n] = dd_add(dd_mul(c[n - 1], c2), dd_scale(dd_mul(s[n - 1], s2), sign));
         s[n] = dd_add(dd_mul(s[n - 1], c2), dd_mul(c[n - 1], s2));
-        if (sign > 0.0 && c[n].hi > 1e60) { /* its weight is far below what counts, and powers would overflow */
+        if (sign > 0.0 && c[n].hi > 1e60) { /* its weight is negligible, and powers would overflow */
             for (; n < TERMS; ++n)
                 c[n] = s[n] = dd_of(0.0);
         }
@@ -157,7 +157,7 @@ static void store_column(const dd space[4], const dd x[4], const body_axes *axes
         t->attitude[i][j] = column[i].hi;
 }
 
-/* The maps from alpha, beta as evaluated to q, and from omega_1, omega_2 so turned to omega; a, b: unit constants. */
+/* The maps from alpha, beta without their unit factors a, b to q, and from rotated omega_1, omega_2 to omega. */
 static void store_maps(
     complex_dd a, complex_dd b, dd axial_rate, const dd space[4], const body_axes *axes, double scale, heavy_top *t)
 {
@@ -177,7 +177,7 @@ static void store_maps(
     }
 }
 
-/* The phase of beta against alpha, from the phases of both, which start at zero. */
+/* The phase of beta relative to alpha, from the phases of both, which start at zero. */
 static void store_between(heavy_top *t)
 {
     const dd a = dd_pair(t->turning[0][0], t->turning[0][1]), b = dd_pair(t->turning[1][0], t->turning[1][1]);
@@ -191,16 +191,16 @@ static dd in_turns(dd rate)
 }
 
 /*
- * Find the constants of a motion.
+ * Compute the constants of a motion.
  *
  * in   moments[4]     kg m^2  A, C about the fixed point, each as hi, lo; C may be zero with omega_3 zero
  * in   pull[2]        N m     weight times the distance of the centre of mass from the fixed point, positive
  * in   omega[6]       rad/s   along e1, e2, e3 at time 0; e3 points from the fixed point to the centre of mass
- * in   quaternion[8]  1       attitude of e1, e2, e3 at time 0, to axes whose third points up
+ * in   quaternion[8]  1       attitude of e1, e2, e3 at time 0, relative to axes whose third points up
  * in   space[8]       1       unit quaternion from those axes to the space axes in which the motion is returned
- * in   axes[26]       1       NULL, or the matrix, row by row, and the unit quaternion from e1, e2, e3 to the body's own
+ * in   axes[26]       1       NULL, or the matrix, row by row, and the unit quaternion from e1, e2, e3 to body axes
  * out  t                      the constants
- * Returns 0; 1 where the numbers are not of this domain; 2 where the compiler has broken error-free arithmetic.
+ * Returns 0; 1 if the numbers are outside this domain; 2 if the compiler has broken error-free arithmetic.
  */
 int symrot_heavy_top_prepare(
     const double moments[4], const double pull[2], const double omega[6], const double quaternion[8],
@@ -256,7 +256,7 @@ int symrot_heavy_top_prepare(
     n.d = dd_sub(motion.im, dd_mul(n.spin, n.s));
     n.sigma = dd_add(motion.im, dd_mul(n.spin, n.c));
     const complex_dd unit = complex_of(dd_of(1.0), dd_of(0.0));
-    if (w2.hi == 0.0 && (n.s.hi == 0.0 || n.c.hi == 0.0)) { /* upright or hanging, spinning or not */
+    if (w2.hi == 0.0 && (n.s.hi == 0.0 || n.c.hi == 0.0)) { /* upright or hanging, with or without spin */
         const dd half = dd_scale(w[2], 0.5);
         const int upright = n.s.hi == 0.0;
         t->regime = STEADY;
@@ -347,7 +347,7 @@ int symrot_heavy_top_prepare(
         }
     }
 
-    /* What multiplies the series: from the initial value, or where that is small, from its rate. */
+    /* The factors of the series: from the initial values or, if these are small, from their rates. */
     const complex_dd back = complex_of(across.re, dd_negative(across.im));
     const complex_dd fall_a = times(beta, back), climb_b = times(alpha, across);
     const dd half_spin = dd_scale(w[2], 0.5);
@@ -385,7 +385,7 @@ int symrot_heavy_top_prepare(
     return 0;
 }
 
-/* The length of the constants in doubles, for callers that lay them out themselves. */
+/* The length of the constants in doubles, for callers that allocate them. */
 ptrdiff_t symrot_heavy_top_length(void)
 {
     return (ptrdiff_t)(sizeof(heavy_top)/sizeof(double));

@@ -1,16 +1,16 @@
-/* A symmetric heavy top at any time, from its constants. The formulas: heavy_top.h. */
+/* A symmetric heavy top at any time, from its constants. The formulas are in heavy_top.h. */
 #include "heavy_top.h"
 #include "stages.h"
 
 /*
- * alpha = even[0]*P(x) + i odd[0]*Q(x), beta = even[1]*R(x) + i odd[1]*S(x) but for a common factor, with the polynomials
- * of the motion; the derivative of each function is the other's. Arrays of pairs are of alpha and of beta.
+ * alpha = even[0]*P(x) + i odd[0]*Q(x), beta = even[1]*R(x) + i odd[1]*S(x) up to a common factor, with the polynomials
+ * of the motion. Arrays of two belong to alpha and to beta.
  */
 typedef struct {
     double t[BLOCK], whole[BLOCK], sine[2][BLOCK], cosine[2][BLOCK], between_sine[BLOCK], between_cosine[BLOCK];
     double x[BLOCK], even[2][BLOCK], odd[2][BLOCK];
     double re[2][BLOCK], im[2][BLOCK], inverse_square[BLOCK];
-    double across[3][BLOCK]; /* omega_1, omega_2 in turning axes, 1 */
+    double across[3][BLOCK]; /* omega_1, omega_2 in rotating axes, 1 */
     double turned[4][BLOCK]; /* alpha, beta */
 } block;
 
@@ -25,7 +25,7 @@ STAGE circular(ptrdiff_t n, block *restrict b)
     }
 }
 
-/* From v in `x` and the sign of alpha and beta in even[1]. */
+/* From v in `x`, and the sign of alpha and beta in even[1]. */
 STAGE hyperbolic(ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
@@ -61,7 +61,7 @@ STAGE difference(ptrdiff_t n, block *restrict b)
     }
 }
 
-/* omega_1 + i omega_2 = 2 (conj(alpha) beta' - beta conj(alpha')), in axes that turn with the phases. */
+/* omega_1 + i omega_2 = 2 (conj(alpha) beta' - beta conj(alpha')), in axes that rotate with the phases. */
 STAGE rates(const heavy_top *restrict f, ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
@@ -77,7 +77,7 @@ STAGE rates(const heavy_top *restrict f, ptrdiff_t n, block *restrict b)
     }
 }
 
-/* alpha and beta, of norm 1 together. */
+/* alpha and beta, normalised: |alpha|^2 + |beta|^2 = 1. */
 STAGE parameters(ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
@@ -90,7 +90,7 @@ STAGE parameters(ptrdiff_t n, block *restrict b)
     }
 }
 
-/* Upright or hanging: even[] is 1, odd[] whatever the zero polynomials make nothing of. */
+/* Upright or hanging: even[] is 1, and odd[] is any number, since its polynomials are zero. */
 STAGE steady(ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
@@ -101,7 +101,7 @@ STAGE steady(ptrdiff_t n, block *restrict b)
 
 static void stages(const heavy_top *f, ptrdiff_t n, block *b, double *omega, double *q)
 {
-    const double *whole = b->t; /* any where slopes are zero */
+    const double *whole = b->t; /* any array if slopes are zero */
     switch ((int)f->regime) {
     case STEADY:
         steady(n, b);
@@ -137,7 +137,7 @@ static void stages(const heavy_top *f, ptrdiff_t n, block *b, double *omega, dou
     }
 }
 
-/* The motion at times counted from that of the initial state; arguments as symrot_free_body_at. */
+/* The motion at times counted from the initial state; arguments as for symrot_free_body_at. */
 void symrot_heavy_top_at(const heavy_top *f, ptrdiff_t count, const double *times, double *omega, double *quaternion)
 {
     block b;

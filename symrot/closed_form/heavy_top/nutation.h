@@ -1,15 +1,15 @@
-/* The nutation of a symmetric heavy top, from the roots of its cubic, to 31 digits. The formulas: heavy_top.h. */
+/* The nutation of a symmetric heavy top, from the roots of its cubic, to 31 digits. The formulas are in heavy_top.h. */
 #ifndef SYMROT_NUTATION_H
 #define SYMROT_NUTATION_H
 
 #include "double_double.h"
 
-/* The nutation to 31 digits. Gaps are between roots; `low` = 2 - S1, `below` = -S3. */
+/* The nutation to 31 digits. Gaps are differences of roots; `low` = 2 - S1, `below` = -S3. */
 typedef struct {
     dd s, c, pull, spin, axial_rate, d, sigma, speed; /* s0, 2 - s0, M, l, omega_3, D, D + 2 l, ds/dt */
     dd s1, s2, below, low;                            /* S1, S2, -S3, 2 - S1 */
     dd gap12, gap23, gap13, modulus, complement, rate, u;
-    dd ya, yb; /* where theta1 and theta2 vanish */
+    dd ya, yb; /* zeros of theta1 and theta2 */
 } nutation;
 
 static double outer_root(double b, double c, double d, double x)
@@ -37,7 +37,7 @@ static dd polished(dd b, dd c, dd d, double x)
             break;
         const dd change = dd_div(value, slope);
         root = dd_sub(root, change);
-        if (fabs(change.hi) <= 0x1p-80*fabs(root.hi)) /* the next change would be about its square */
+        if (fabs(change.hi) <= 0x1p-80*fabs(root.hi)) /* the next change would be about the square of this one */
             break;
     }
     return root;

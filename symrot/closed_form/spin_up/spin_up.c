@@ -1,4 +1,4 @@
-/* The constants of a symmetric body's motion under a constant torque about its axis, once. The formulas: spin_up.h. */
+/* The constants of a symmetric body's motion under a constant torque about its axis. The formulas are in spin_up.h. */
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("O3") /* the table takes most of the time */
 #endif
@@ -10,14 +10,14 @@
 
 enum {
     TERMS = 26, /* of a series near resonance, for a step of 1/4: (r/8)^26/26! < 1e-20 for r < 13.5 */
-    FINE = 10,  /* of them in double-double arithmetic: the 10th is below 1e-4 */
+    FINE = 10,  /* terms in double-double arithmetic: the 10th is below 1e-4 */
     LARGEST = 900
 };
 
 /* The body in e1, e2, e3, scaled. */
 typedef struct {
     dd ratio, start, s, across, root; /* C/A, Omega at time 0, s, W, sqrt(s) */
-    dd axes[4], given[4];             /* the turn from e1, e2, e3 to the body's axes; their attitude at time 0 */
+    dd axes[4], given[4];             /* rotation from e1, e2, e3 to the body's axes; their attitude at time 0 */
 } body;
 
 static int exponent_of(double x)
@@ -44,7 +44,7 @@ static void conjugated(const dd q[4], dd to[4])
         to[i] = i ? dd_negative(q[i]) : q[i];
 }
 
-/* The turn from e1, e2, e3 to the body's axes, e1 along (first, second): Shepperd's choice of the largest component. */
+/* The rotation from e1, e2, e3 to the body's axes, e1 along (first, second), by the largest component (Shepperd). */
 static void body_axes_of(int axis, double sign, dd first, dd second, dd q[4])
 {
     static const dd zero;
@@ -80,7 +80,7 @@ static void body_axes_of(int axis, double sign, dd first, dd second, dd q[4])
     normalise(q);
 }
 
-/* Far from resonance: q0, q1, q2, q3 of the turning axes, spin_up.h, but for the phase P/(4 pi) given. */
+/* Far from resonance: q0, q1, q2, q3 of the rotating axes (spin_up.h), for a given phase P/(4 pi). */
 static void far_attitude(const spin_up *f, dd omega, dd turns, dd q[4])
 {
     const dd w = dd_pair(f->across[0], f->across[1]), speed = dd_sqrt(dd_add(dd_square(omega), dd_square(w)));
@@ -103,7 +103,7 @@ static void far_attitude(const spin_up *f, dd omega, dd turns, dd q[4])
     q[2] = dd_add(dd_mul(even, b1), dd_mul(plus, b0));
 }
 
-/* The same with its phase. */
+/* The same, with its phase computed. */
 static void swept_attitude(const spin_up *f, dd omega, dd q[4])
 {
     const dd w = dd_pair(f->across[0], f->across[1]), speed = dd_sqrt(dd_add(dd_square(omega), dd_square(w)));
@@ -111,9 +111,9 @@ static void swept_attitude(const spin_up *f, dd omega, dd q[4])
     far_attitude(f, omega, f->phase.way == SPIN_UP_WEAK ? dd_of(0.0) : turns, q);
 }
 
-enum { LANES = 8 }; /* motions at once, in SIMD code: each step waits for the one before */
+enum { LANES = 8 }; /* motions at once, in SIMD code, since each step depends on the previous one */
 
-/* Quaternions in pairs of doubles of `lanes` motions: component by component, each of all motions. */
+/* Quaternions of `lanes` motions in pairs of doubles: the first component of all motions, then the second, .. */
 typedef struct {
     double hi[4*LANES], lo[4*LANES];
 } quaternions;
@@ -135,7 +135,7 @@ ALWAYS_INLINE void beside(int lanes, const double *from, double *to)
         memcpy(to + k*lanes, from + (k^1)*lanes, (size_t)lanes*sizeof *to);
 }
 
-/* The series of q0, q1, q2, q3 about a place from its first terms, the last in doubles; halves: 1/(2 n). */
+/* The series of q0, q1, q2, q3 about a point from its first terms, with the last terms in doubles; halves: 1/(2 n). */
 ALWAYS_INLINE void grow(
     int lanes, const numbers_of_lanes *kappa, const quaternions signs[2], double place, const dd halves[FINE],
     quaternions q[TERMS])
@@ -171,7 +171,7 @@ ALWAYS_INLINE void grow(
     }
 }
 
-/* The sum of a series at a power of two, of which products are exact. */
+/* The sum of a series at a power of two, by which products are exact. */
 ALWAYS_INLINE void sum_at_power(int lanes, const quaternions q[TERMS], double x, quaternions *total)
 {
     quaternions sum;
@@ -191,7 +191,7 @@ ALWAYS_INLINE void sum_at_power(int lanes, const quaternions q[TERMS], double x,
     *total = sum;
 }
 
-/* The same of one motion anywhere. */
+/* The same for one motion at any point. */
 static void sum_at(int lanes, int lane, const quaternions q[TERMS], dd x, dd total[4])
 {
     for (int k = 0; k < 4; ++k) {
@@ -205,21 +205,21 @@ static void sum_at(int lanes, int lane, const quaternions q[TERMS], dd x, dd tot
     }
 }
 
-/* The attitude at -x from that at x, which begins from 1 at x = 0. */
+/* The attitude at -x from the attitude at x, if it is 1 at x = 0. */
 static void mirrored(double sign, dd q[4])
 {
     for (int k = 1; k < 3; ++k)
         q[k] = dd_scale(q[k], sign);
 }
 
-/* What Taylor's polynomials of a motion need, and give. */
+/* Input and results of the Taylor polynomials of a motion. */
 typedef struct {
     dd kappa, there;      /* the distance of the start from resonance, in x */
     double *table;
-    dd last[4], start[4]; /* the attitude at the last place, and at `there` if it is among them */
+    dd last[4], start[4]; /* the attitude at the last point, and at `there` if it is in the range */
 } near_motion;
 
-/* Taylor's polynomials of attitudes that are 1 at x = 0, about the middles of pieces from x = 0 on. */
+/* Taylor polynomials, about the middles of intervals from x = 0 on, of attitudes that are 1 at x = 0. */
 ALWAYS_INLINE void near_tables(int lanes, int pieces, near_motion *motions)
 {
     static const double swept_sign[4] = {-1.0, 1.0, -1.0, 1.0}, turned_sign[4] = {-1.0, 1.0, 1.0, -1.0};
@@ -263,10 +263,10 @@ static void near_table(int pieces, near_motion *motion)
     near_tables(1, pieces, motion);
 }
 
-/* f->attitude of one place: q -> given conj(here) q conj(axes). */
+/* f->attitude before, near or after resonance: q -> given conj(here) q conj(axes). */
 static void store_attitude(const body *own, const dd given[4], const dd here[4], double to[4][4])
 {
-    /* unit j times q: component k is the one of q at [j][k], with a sign */
+    /* unit j times q: component k is component [j][k] of q, with a sign */
     static const double signs[4][4] = {
         {1.0, 1.0, 1.0, 1.0}, {-1.0, 1.0, -1.0, 1.0}, {-1.0, 1.0, 1.0, -1.0}, {-1.0, -1.0, 1.0, 1.0}
     };
@@ -283,7 +283,7 @@ static void store_attitude(const body *own, const dd given[4], const dd here[4],
     }
 }
 
-/* given conj(from) to, where `from` and `to` are the same attitude in two places' own terms. */
+/* given conj(from) to, where `from` and `to` are the same attitude by the formulas of two sides. */
 static void handed_on(const dd given[4], const dd from[4], const dd to[4], dd found[4])
 {
     dd inverse[4], left[4];
@@ -369,7 +369,7 @@ static void prepare_body(int axis, const double numbers[20], body *own, spin_up 
     store(dd_scale(shifted(dd_scale(growth, 2.0), scale), sign), f->spin + 2);
 }
 
-/* Until when neither phase can have so many rad. */
+/* The time until which neither phase can have so many rad. */
 static double longest_of(const spin_up *f, double most)
 {
     const double rad = 1.0/SPIN_UP_QUARTER.hi;
@@ -378,14 +378,14 @@ static double longest_of(const spin_up *f, double most)
     return 2.0*most/(even + sqrt(even*even + 4.0*growing*most));
 }
 
-/* What the constants that need no polynomials leave to those that do. */
+/* Intermediate results for the constants that need Taylor polynomials. */
 typedef struct {
     body own;
-    dd edge, here[4]; /* the attitude of the start in its own place */
+    dd edge, here[4]; /* the attitude at the start, by the formulas there */
     int side;
 } half_way;
 
-/* The constants that need no polynomials; whether others do. */
+/* Compute the constants that need no Taylor polynomials; return whether polynomials are needed. */
 static int prepare_first(int axis, const double numbers[20], const double limits[3], half_way *h, spin_up *f)
 {
     static const spin_up blank;
@@ -423,7 +423,7 @@ static near_motion near_motion_of(const half_way *h, double *table)
     return motion;
 }
 
-/* The constants of the other places. */
+/* Compute the constants that need Taylor polynomials. */
 static void prepare_rest(const half_way *h, near_motion *near, spin_up *f)
 {
     const body *own = &h->own;
@@ -461,20 +461,20 @@ static void prepare_rest(const half_way *h, near_motion *near, spin_up *f)
 }
 
 /*
- * Find the constants of a motion.
+ * Compute the constants of a motion.
  *
  * in   axis        0, 1, 2   of symmetry; the torque is about it
  * in   numbers[20]           each as hi, lo: moments across the axis and about it, kg m^2, the torque, N m, angular
  *                            velocity at time 0 along the axes axis + 1, axis + 2 (modulo 3) and axis, rad/s, not
  *                            both of the first zero, and the attitude at time 0, body to space, scalar first, of any
  *                            norm
- * in   limits[3]             |x| from which the series hold, kappa from which they hold everywhere, and the rad that
- *                            pairs of doubles count
- * out  table[]               4*limits[0] times 20 times 4 numbers: Taylor's polynomials; NULL where no sample is near
+ * in   limits[3]             smallest |x| for which the series are valid, smallest kappa for which they are valid
+ *                            everywhere, and largest phase, rad, for pairs of doubles
+ * out  table[]               4*limits[0] times 20 times 4 numbers: Taylor polynomials; NULL if no sample is near
  *                            resonance or beyond it
  * out  f                     the constants
  *
- * Returns 0, or 2 where the compiler has broken error-free arithmetic.
+ * Returns 0, or 2 if the compiler has broken error-free arithmetic.
  */
 int symrot_spin_up_prepare(int axis, const double numbers[20], const double limits[3], double *table, spin_up *f)
 {
@@ -489,7 +489,7 @@ int symrot_spin_up_prepare(int axis, const double numbers[20], const double limi
     return 0;
 }
 
-/* The length of the constants in doubles, for callers that lay them out themselves. */
+/* The length of the constants in doubles, for callers that allocate them. */
 ptrdiff_t symrot_spin_up_length(void)
 {
     return (ptrdiff_t)(sizeof(spin_up)/sizeof(double));

@@ -1,20 +1,20 @@
-/* A symmetric body under a constant torque about its axis at any time, from its constants. The formulas: spin_up.h. */
+/* A symmetric body under a constant torque about its axis at any time. The formulas are in spin_up.h. */
 #include "spin_up.h"
 #include "spin_up_phase.h"
 #include "stages.h"
 
 typedef struct {
     const double *table;
-    int lacking;  /* a table */
-    int found[3]; /* places of samples */
-    int64_t lost; /* not 0 where a time is too long */
+    int lacking;  /* whether a needed table is missing */
+    int found[3]; /* which sides have samples */
+    int64_t lost; /* not 0 if a time is too long */
     double t[BLOCK], sine[BLOCK], cosine[BLOCK];  /* of chi/2 */
     double omega[BLOCK], omega_low[BLOCK], speed[BLOCK], speed_low[BLOCK];
-    double turns[BLOCK], turns_low[BLOCK], delta[BLOCK], slow[4][BLOCK]; /* turns of half the phase */
+    double turns[BLOCK], turns_low[BLOCK], delta[BLOCK], slow[4][BLOCK]; /* half the phase, in revolutions */
     double far[4][BLOCK], near[4][BLOCK];
 } block;
 
-/* A phase in turns, less whole ones and with something small more: its sine and cosine. */
+/* Sine and cosine of a phase in revolutions plus a small angle; whole revolutions are subtracted first. */
 ALWAYS_INLINE void circle(dd turns, double more, double *sine, double *cosine)
 {
     const double whole = turns.hi - rint(turns.hi), small = (turns.lo - rint(turns.lo)) + more;
@@ -50,7 +50,7 @@ STAGE rates(const spin_up *restrict f, ptrdiff_t n, const block *restrict b, dou
     }
 }
 
-/* Omega in double-double arithmetic, and which places there are. */
+/* Omega in double-double arithmetic, and the sides on which there are samples. */
 STAGE places(const spin_up *restrict f, ptrdiff_t n, block *restrict b)
 {
     const dd start = dd_pair(f->sweep[0], f->sweep[1]), s = dd_pair(f->sweep[2], f->sweep[3]);
@@ -112,7 +112,7 @@ STAGE swept(const spin_up_phase *restrict p, ptrdiff_t n, block *restrict b)
     }
 }
 
-/* The same from the start on, under a weak torque. */
+/* The same, counted from the start, under a weak torque. */
 STAGE weakly_swept(const spin_up_phase *restrict p, ptrdiff_t n, block *restrict b)
 {
     const dd zero = dd_of(0.0), relative = dd_pair(p->product[0], p->product[1]);
@@ -142,7 +142,7 @@ STAGE weakly_swept(const spin_up_phase *restrict p, ptrdiff_t n, block *restrict
     }
 }
 
-/* Far from resonance: the slow part of the attitude of the turning axes, and delta in turns of half of it. */
+/* Far from resonance: the slow part of the attitude in the rotating axes, and half of delta in revolutions. */
 STAGE followed(const spin_up *restrict f, ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
@@ -160,7 +160,7 @@ STAGE followed(const spin_up *restrict f, ptrdiff_t n, block *restrict b)
     }
 }
 
-/* The attitude of the body in e1, e2, e3: a turns by half of P + delta less chi/2, b by their sum. */
+/* The attitude of e1, e2, e3: a rotates by (P + delta)/2 - chi/2, b by (P + delta)/2 + chi/2. */
 STAGE turned(ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
@@ -177,14 +177,14 @@ STAGE turned(ptrdiff_t n, block *restrict b)
     }
 }
 
-/* Four components in one register, or two: vectors of GNU C, which every compiler that takes our flags has. */
+/* Four components in one register, or two: vectors of GNU C, which every compiler with these flags has. */
 typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
 
-/* Near resonance: the same from x = 0, by Taylor's polynomials, even and odd powers apart, a sample at a time. */
+/* Near resonance: the same from x = 0, by Taylor polynomials with even and odd powers apart, sample by sample. */
 STAGE near(const spin_up *restrict f, ptrdiff_t n, block *restrict b)
 {
     const dd inverse = dd_pair(f->inverse[0], f->inverse[1]);
-    const double last = f->inverse[0]*f->edge*SPIN_UP_PIECES - 0.5; /* the middle of the last piece */
+    const double last = f->inverse[0]*f->edge*SPIN_UP_PIECES - 0.5; /* the middle of the last interval */
     double rests[BLOCK], pieces[BLOCK];
     EACH (i, n) {
         const double sign = b->omega[i] < 0.0 ? -1.0 : 1.0;
@@ -238,7 +238,7 @@ static int place_of(const spin_up *f, const block *b, ptrdiff_t i)
     return b->omega[i] <= -f->edge ? SPIN_UP_BEFORE : SPIN_UP_NEAR;
 }
 
-/* Runs of samples in one place, each through its own map. */
+/* Apply the attitude map of each side to consecutive samples on that side. */
 static void attitudes(const spin_up *f, ptrdiff_t n, block *b, double *q)
 {
     const int *found = b->found, places = found[SPIN_UP_BEFORE] + found[SPIN_UP_NEAR] + found[SPIN_UP_BEYOND];
@@ -271,17 +271,17 @@ static void motion(const spin_up *f, ptrdiff_t n, block *b, double *omega, doubl
 }
 
 /*
- * The motion at times counted from that of the initial state.
+ * The motion at times counted from the initial state.
  *
  * in   f           the constants
- * in   table       Taylor's polynomials, 40 times 20 times 4 numbers; NULL where all samples are far, on the side of
- *                  the start
+ * in   table       Taylor polynomials, 40 times 20 times 4 numbers; NULL if all samples are far from resonance on the
+ *                  side of the start
  * in   times       s
  * out  omega       rad/s, 3 of each sample, or NULL
  * out  quaternion  1, 4 of each sample, or NULL
  *
- * Returns 0, or SPIN_UP_LACKING where the table is needed and NULL, plus SPIN_UP_LOST where some samples have too many
- * turns: what they are is not right.
+ * Returns 0, or SPIN_UP_LACKING if the table is needed and NULL, plus SPIN_UP_LOST if some samples have too many
+ * revolutions: these samples are not valid.
  */
 int symrot_spin_up_at(
     const spin_up *f, const double *table, ptrdiff_t count, const double *times, double *omega, double *quaternion)

@@ -1,8 +1,8 @@
 /*
- * Many spin-ups, one after the other: constants and samples of each, bit by bit as alone.
+ * Many spin-ups, one after the other: constants and samples of each, with the same bits as for a single motion.
  *
- * The polynomials near resonance take most of the time, each of their steps waiting for the one before: those of eight
- * motions are found at once, in SIMD code.
+ * The polynomials near resonance take most of the time, because each step depends on the previous one. The polynomials
+ * of eight motions are therefore computed together, in SIMD code.
  */
 #include "spin_up.c"
 #include "many.h"
@@ -21,7 +21,7 @@ static const double *times_of(const symrot_many_motions *m, ptrdiff_t i)
     return m->times + i*m->times_stride;
 }
 
-/* Write the samples of a motion; return what they lack. A motion that has too many turns gets NaN: it is made alone. */
+/* Write the samples of a motion; return why some are missing. A motion with too many revolutions gets NaN. */
 static int sampled(const symrot_many_motions *m, ptrdiff_t i, const spin_up *f, const double *table)
 {
     double *omega = m->omega + 3*i*m->samples;
@@ -35,7 +35,7 @@ static int sampled(const symrot_many_motions *m, ptrdiff_t i, const spin_up *f, 
     return status & SPIN_UP_LOST ? 0 : status;
 }
 
-/* Whether some samples are surely near resonance or beyond it, seen from the start. */
+/* Whether some samples are certainly near resonance or beyond it, as seen from the start. */
 static int passes(const spin_up *f, double first, double last)
 {
     if (f->whole != 0.0)
@@ -45,7 +45,7 @@ static int passes(const spin_up *f, double first, double last)
     return f->start == SPIN_UP_NEAR || (f->start == SPIN_UP_BEYOND ? one < f->edge : other > -f->edge);
 }
 
-/* Find the polynomials of up to eight motions, the rest of their constants, and their samples. */
+/* Compute the polynomials of up to eight motions, the rest of their constants, and their samples. */
 static void follow_together(const symrot_many_motions *m, int count, const ptrdiff_t which[LANES], const half_way h[LANES],
     spin_up records[LANES])
 {
@@ -65,8 +65,9 @@ static void follow_together(const symrot_many_motions *m, int count, const ptrdi
 }
 
 /*
- * Write the samples of the motions first to last - 1. Given are their numbers and, of all, the axis and the limits that
- * symrot_spin_up_prepare takes. Returns the first motion if the compiler has broken error-free arithmetic, else last.
+ * Write the samples of the motions first to last - 1. The arguments of symrot_spin_up_prepare are given: the numbers of
+ * each motion, and the common axis and limits. Returns the first motion if the compiler has broken error-free
+ * arithmetic, else last.
  */
 ptrdiff_t symrot_many_spin_ups(const symrot_many_motions *m, ptrdiff_t first, ptrdiff_t last)
 {
@@ -75,7 +76,7 @@ ptrdiff_t symrot_many_spin_ups(const symrot_many_motions *m, ptrdiff_t first, pt
     spin_up *records = m->record;
     half_way h[LANES];
     ptrdiff_t waiting[LANES];
-    int count = 0; /* of them */
+    int count = 0; /* of the motions in `which` */
     double earliest = 0.0, latest = 0.0;
     for (ptrdiff_t i = first; i < last; ++i) {
         if (m->quaternion != NULL && (i == first || m->times_stride))
@@ -99,7 +100,7 @@ ptrdiff_t symrot_many_spin_ups(const symrot_many_motions *m, ptrdiff_t first, pt
     return last;
 }
 
-/* How many records and tables there is to be room for. */
+/* The number of records and tables for which the caller provides memory. */
 ptrdiff_t symrot_many_spin_ups_at_once(void)
 {
     return LANES;

@@ -1,4 +1,4 @@
-/* The phase of a body far from resonance, for its constants and for its samples. The formulas: spin_up.h. */
+/* The phase of a body far from resonance, for its constants and for its samples. The formulas are in spin_up.h. */
 #ifndef SYMROT_SPIN_UP_PHASE_H
 #define SYMROT_SPIN_UP_PHASE_H
 
@@ -35,7 +35,7 @@ static const dd THIRD = {0x1.5555555555555p-2, 0x1.5555555555555p-56},
 /* 1/(4 pi) */
 static const dd SPIN_UP_QUARTER = {0x1.45f306dc9c883p-4, -0x1.6b01ec5417056p-58};
 
-/* a + b as dd_add_fast, for |a| >= |b|. */
+/* a + b with the error of dd_add_fast, for |a| >= |b|. */
 ALWAYS_INLINE dd added_less(dd a, dd b)
 {
     const dd s = quick_two_sum(a.hi, b.hi);
@@ -49,7 +49,7 @@ ALWAYS_INLINE dd linear(dd a, dd b, double t)
     return dd_add_fast(a, dd_pair(p, MUL_ADD(b.lo, t, product_error(b.hi, t, p))));
 }
 
-/* The square root of what is positive, to 2^-104. */
+/* The square root of a positive number, with an error of 2^-104. */
 ALWAYS_INLINE dd rooted(dd a)
 {
     const double root = sqrt(a.hi), square = root*root;
@@ -57,7 +57,7 @@ ALWAYS_INLINE dd rooted(dd a)
     return quick_two_sum(root, rest/(2.0*root));
 }
 
-/* atanh(r) - r for |r| <= 1/128: to 2^-74, or finely to 2^-102 of r. */
+/* atanh(r) - r for |r| <= 1/128, with an error of 2^-74 of r, or of 2^-102 if `fine`. */
 ALWAYS_INLINE dd atanh_rest(dd r, int fine)
 {
     const dd square = dd_square(r);
@@ -77,7 +77,7 @@ ALWAYS_INLINE dd atanh_rest(dd r, int fine)
     return dd_mul(dd_mul(sum, square), r);
 }
 
-/* log(a) of a normal number, to 2^-74, or finely to 2^-102 of the larger of 1 and it: log(2^n c) + 2 atanh(r). */
+/* log(a) = log(2^n c) + 2 atanh(r) of a normal number, with an error of 2^-74, or of 2^-102 max(1, log) if `fine`. */
 ALWAYS_INLINE dd logarithm(dd a, int fine)
 {
     static const dd ln2 = DD_LN2;
@@ -106,13 +106,13 @@ ALWAYS_INLINE dd logarithm(dd a, int fine)
     return dd_add_fast(dd_add_fast(known, two_sum(lost, LOG_LOW[i])), atanh2);
 }
 
-/* log(|Omega| + S); finely where kappa is large. */
+/* log(|Omega| + S), with more digits if kappa is large. */
 ALWAYS_INLINE dd swept_logarithm(dd omega, dd speed, int fine)
 {
     return logarithm(dd_add_fast(dd_scale(omega, omega.hi < 0.0 ? -1.0 : 1.0), speed), fine);
 }
 
-/* P/(4 pi) from Omega, S and that, but for a constant. */
+/* P/(4 pi) from Omega, S and that logarithm, up to a constant. */
 ALWAYS_INLINE dd swept_turns(const spin_up_phase *p, dd omega, dd speed, dd log)
 {
     const double sign = omega.hi < 0.0 ? -1.0 : 1.0;
@@ -121,7 +121,7 @@ ALWAYS_INLINE dd swept_turns(const spin_up_phase *p, dd omega, dd speed, dd log)
     return dd_add_fast(even, dd_mul(asinh, dd_pair(sign*p->share[0], sign*p->share[1])));
 }
 
-/* c[0] + c[1] x + .. + c[12] x^12: even and odd powers apart, which a processor does side by side. */
+/* c[0] + c[1] x + .. + c[12] x^12, with even and odd powers apart, which a processor computes in parallel. */
 ALWAYS_INLINE double series_of(const double c[SPIN_UP_SERIES], double x)
 {
     const double square = x*x;

@@ -1,5 +1,5 @@
 /*
- * The asymptotic series of spin_up_series.py, where they are explained: m and delta as polynomials in y = Y/S^2.
+ * The asymptotic series that spin_up/series.py explains: m and delta as polynomials in y = Y/S^2.
  */
 #ifndef SYMROT_SPIN_UP_SERIES_H
 #define SYMROT_SPIN_UP_SERIES_H
@@ -33,7 +33,7 @@ static void through(const double y[NODES], double values[NODES])
             values[i] -= values[i + 1]*y[k];
 }
 
-/* A polynomial at all nodes at once, which do not wait for one another. */
+/* A polynomial at all nodes at once; these computations are independent. */
 static void polynomial_at(const double *c, int count, const double y[NODES], double values[NODES])
 {
     for (int i = 0; i < NODES; ++i)
@@ -43,7 +43,7 @@ static void polynomial_at(const double *c, int count, const double y[NODES], dou
             values[i] = values[i]*y[i] + c[n];
 }
 
-/* The coefficients of a by the power of y; share is kappa^2 over the squared radius at y = 1, v one over that. */
+/* The coefficients of a by the power of y; share is kappa^2/radius^2 and v is 1/radius^2, for the radius at y = 1. */
 static void first_series(double share, double v, double a[POWERS])
 {
     double order[POWERS + 1] = {1.0}, next[POWERS + 1];

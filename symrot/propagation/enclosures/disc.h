@@ -1,14 +1,14 @@
 /*
- * Discs with a real centre in the complex plane: where a formula can lie when its variables lie in such discs.
+ * Discs with a real centre in the complex plane: the range of a formula whose variables lie in such discs.
  *
  * A formula that is analytic on the disc |s| <= rho around a time and deviates there from a constant by at most D has
- * Taylor coefficients |f_n| <= D/rho^n (Cauchy). So one evaluation over discs bounds what no coefficient shows: a pulse
- * ahead, a switch, a pole. Each rule holds the image of the disc; a rule that cannot be met (a pole or a branch point
- * in the disc) gives an infinite radius. Rounding is not bounded: it is 1e-16 of the radius.
+ * Taylor coefficients |f_n| <= D/rho^n (Cauchy). One evaluation over discs therefore bounds features that no
+ * coefficient shows: a pulse ahead, a switch, a pole. The result of each rule contains the image of the disc; with a
+ * pole or a branch point in the disc the radius is infinite. Rounding errors, 1e-16 of the radius, are not included.
  */
 #include <math.h>
 
-/* |z - c| <= r. Where numbers over- or underflow, log|z| <= g says more; g is NAN where it says no more. */
+/* |z - c| <= r. If these numbers over- or underflow, log|z| <= g is the better bound; otherwise g is NAN. */
 typedef struct { double c, r, g; } symrot_disc;
 
 static inline symrot_disc symrot_disc_of(double c, double r)
@@ -27,14 +27,14 @@ static inline symrot_disc symrot_disc_up_to(double c, double r, double g)
     return d;
 }
 
-/* What underflowed to zero need not be zero. */
+/* A number that underflowed to zero need not be zero. */
 static inline double symrot_disc_log(symrot_disc a)
 {
     const double size = fabs(a.c) + a.r;
     return a.g == a.g ? a.g : size == 0.0 ? -745.0 : log(size);
 }
 
-/* A vanishing pulse times a wave whose bound overflows is as small as their logarithms say. */
+/* The logarithms bound the product of a pulse that underflows and a wave whose bound overflows. */
 static inline symrot_disc symrot_disc_product(symrot_disc a, symrot_disc b)
 {
     symrot_disc d = symrot_disc_of(a.c*b.c, fabs(a.c)*b.r + fabs(b.c)*a.r + a.r*b.r);
@@ -55,9 +55,9 @@ static inline symrot_disc symrot_disc_inverse(symrot_disc a)
 }
 
 /*
- * Where a disc meets the branch point the root has a corner. No series goes past it, and Cauchy's bound does not hold. A
- * step of size h past it misses at most h times the size of the root: `whole`, one over the share of a deviation that a
- * step misses, makes up for that share.
+ * If a disc contains the branch point, the root has a corner there: a Taylor series does not continue past it, and
+ * Cauchy's bound does not hold. A step h past it misses at most h times the size of the root. The radius is therefore
+ * that size times `whole`, one over the share of a deviation that a step misses.
  */
 static inline symrot_disc symrot_disc_sqrt(symrot_disc a, double whole)
 {
@@ -119,7 +119,7 @@ static inline symrot_disc symrot_disc_tan(symrot_disc a)
     return symrot_disc_of(value, rest > 0.0 ? (1.0 + value*value)*most/rest : INFINITY);
 }
 
-/* As for the tangent; far from zero |tanh(z) - 1| = |2 e/(1 + e)| with |e| <= exp(-2 (c - r)). */
+/* As for the tangent, but far from zero |tanh(z) - 1| = |2 e/(1 + e)| with |e| <= exp(-2 (c - r)). */
 static inline symrot_disc symrot_disc_tanh(symrot_disc a)
 {
     const double value = tanh(a.c), tail = exp(-2.0*fabs(a.c)), slope = 4.0*tail/((1.0 + tail)*(1.0 + tail));
@@ -148,7 +148,7 @@ static inline symrot_disc symrot_disc_atan(symrot_disc a)
     return symrot_disc_of(atan(a.c), a.r < rest ? atanh(a.r/rest) : INFINITY);
 }
 
-/* atan2(y, x) = (log(x + i y) - log(x - i y))/(2 i), continued where it is cut. */
+/* atan2(y, x) = (log(x + i y) - log(x - i y))/(2 i), continued across its branch cut. */
 static inline symrot_disc symrot_disc_atan2(symrot_disc y, symrot_disc x)
 {
     const double size = hypot(x.c, y.c), off = x.r + y.r;

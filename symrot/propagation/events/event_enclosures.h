@@ -3,11 +3,11 @@
  *
  * Included before emitted functions symrot_event_range and symrot_event_disc, see symrot.codegen.printing.event_source.
  *
- * An interval holds all values of a formula for real arguments inside theirs; NaN ends mean that it has no value
- * anywhere there, infinite ones that nothing is known. A disc holds all values for complex arguments inside theirs, and
- * is only given where the formula is analytic there; an infinite radius means that nothing is known.
+ * An interval contains all values of a formula for real arguments in their intervals; NaN ends mean that the formula
+ * has no value there, infinite ends that nothing is known. A disc contains all values for complex arguments in their
+ * discs, if the formula is analytic there; an infinite radius means that nothing is known.
  *
- * Ends and radii are widened by more than the rounding errors of what computes them. C99 that is also valid C++.
+ * Ends and radii are widened by more than their own rounding errors. C99 that is also valid C++.
  *
  * Source: R. E. Moore, R. B. Kearfott, M. J. Cloud, Introduction to Interval Analysis, chapters 2 to 5; M. S. Petkovic,
  * L. D. Petkovic, Complex Interval Arithmetic and Its Applications, chapter 1.
@@ -113,7 +113,7 @@ static inline symrot_range symrot_range_sqrt(symrot_range a)
     return x;
 }
 
-/* Return exp, which is positive, without underflow: no flat zero where there is none. */
+/* Return exp without underflow to zero, since exp is positive. */
 static inline double symrot_exp(double x)
 {
     const double value = exp(x);
@@ -128,7 +128,7 @@ static inline symrot_range symrot_range_log(symrot_range a)
     return symrot_outward(a.lo > 0.0 ? log(a.lo) : -INFINITY, log(a.hi));
 }
 
-/* Return a function between -1 and 1 whose slope is no larger: from its value at the middle of an interval. */
+/* Return the range of a function with values and slopes between -1 and 1, from its value at the middle. */
 static inline symrot_range symrot_range_wave(symrot_range a, double (*wave)(double))
 {
     if (symrot_empty(a)) return a;
@@ -173,7 +173,7 @@ static inline symrot_range symrot_range_acos(symrot_range a)
     return symrot_outward(acos(fmin(a.hi, 1.0)), acos(fmax(a.lo, -1.0)));
 }
 
-/* The angle of points of a box without the origin is extreme at corners, unless the box lies across the cut. */
+/* The angle of points in a box without the origin is extreme at corners, unless the box crosses the branch cut. */
 static inline symrot_range symrot_range_atan2(symrot_range y, symrot_range x)
 {
     if (symrot_empty(y) || symrot_empty(x)) return symrot_nowhere();
@@ -246,7 +246,7 @@ static inline symrot_disc symrot_disc_log(symrot_disc a)
     return symrot_disc_of(log(a.c), -log1p(-a.r/a.c));
 }
 
-/* Return the disc of a value f whose conjugate function is g: |g| sinh r + |f| (cosh r - 1) is the radius. */
+/* Return the disc of sin, cos, sinh or cosh: radius |g| sinh r + |f| (cosh r - 1), with value f and derivative +-g. */
 static inline symrot_disc symrot_disc_wave(double f, double g, double r)
 {
     const double e = expm1(r), back = e/(1.0 + e);
@@ -258,7 +258,7 @@ static inline symrot_disc symrot_disc_cos(symrot_disc a) { return symrot_disc_wa
 static inline symrot_disc symrot_disc_sinh(symrot_disc a) { return symrot_disc_wave(sinh(a.c), cosh(a.c), a.r); }
 static inline symrot_disc symrot_disc_cosh(symrot_disc a) { return symrot_disc_wave(cosh(a.c), sinh(a.c), a.r); }
 
-/* Return the disc of tan or tanh, both of which add as tangents do: from the value and the slope at the centre. */
+/* Return the disc of tan or tanh from value and slope at the centre, by the addition theorem of tangents. */
 static inline symrot_disc symrot_disc_tangent(double value, double slope, double r)
 {
     if (!(r < 1.57)) return symrot_disc_unknown();

@@ -1,25 +1,26 @@
 /*
- * Zeros of functions along a motion that is known as polynomials in time: all of them, each to the last bits.
+ * All zeros of functions along a motion given as polynomials in time, each located to the last bits.
  *
  * Included after event_enclosures.h and the emitted functions symrot_event, symrot_event_range and symrot_event_disc,
  * see symrot.codegen.printing.event_source. The motion comes in rows, one polynomial per state each, in the layout of the steps
  * of taylor.c:
  *     t, h, low part of t, unit, then coefficient 0 of all states, coefficient 1, ...; powers of (time - t)/unit
  *
- * No zero can hide between samples: every interval is judged by enclosures of the function on all of it.
+ * No zero is missed between samples: the search uses enclosures (bounds) of the function on whole intervals.
  *
- * An interval whose enclosure leaves out zero has no zero. On others the function is sampled at Chebyshev points, which
- * gives it and its derivatives as Chebyshev series; what samples cannot see is bounded by an enclosure on a disc around
- * the interval, by Cauchy's estimate on the largest ellipse inside. Where the constant term outweighs all others
+ * An interval whose enclosure does not contain zero has no zero. On other intervals the function is sampled at
+ * Chebyshev points, which gives it and its derivatives as Chebyshev series. The error of the series is bounded by an
+ * enclosure on a disc around the interval, with Cauchy's estimate on the largest ellipse inside. If the constant term
+ * exceeds the sum of all others
  *     of the series,               there is no zero;
- *     of the first derivative,     there is at most one: the signs at the ends tell;
- *     of the second derivative,    there is one extremum, which is located: it parts the zeros, or touches zero itself.
- * Otherwise the interval is cut in two. A value is compared with the bound of its own rounding errors, and at an extremum
- * also with its change over the rounding of the time, nothing else, so no tolerance decides what a touch is. Zeros are
- * closed in until no double is left between the ends.
+ *     of the first derivative,     there is at most one: the signs at the ends decide;
+ *     of the second derivative,    there is one extremum, which is located: it separates two zeros or touches zero.
+ * Otherwise the interval is halved. A value is compared only with the bound of its own rounding errors, and at an
+ * extremum also with its change over the rounding of the time: no tolerance decides what a touch is. The ends around a
+ * zero approach each other until no double lies between them.
  *
- * A change of sign is a zero where the function is bounded, or where it falls towards the place from both sides: poles
- * and jumps past zero are none.
+ * A change of sign is a zero if the function is bounded there, or decreases in size towards it from both sides: poles
+ * and jumps past zero are not zeros.
  *
  * C99 that is also valid C++; no malloc, no globals, no input or output, reentrant.
  *
@@ -37,25 +38,25 @@ extern "C" {
 #endif
 
 enum { SYMROT_POINTS = 21, SYMROT_DEGREE = SYMROT_POINTS - 1, SYMROT_DEPTH = 128, SYMROT_FOUND = 6, SYMROT_DISCS = 2 };
-static const double SYMROT_TOUCHING = 4.0;  /* rounding errors: an extremum so near zero touches it */
+static const double SYMROT_TOUCHING = 4.0;  /* rounding errors: a nearer extremum touches zero */
 enum { SYMROT_TOUCHES = 129 };  /* samples of an interval of 64 units in the last place: all numbers in it */
 
 static const double SYMROT_DISC_SIZE[SYMROT_DISCS] = {4.0, 2.0};  /* radii of discs, in halves of the interval */
-static const double SYMROT_LEBESGUE = 3.0;  /* what errors of samples grow to in the polynomial through them */
+static const double SYMROT_LEBESGUE = 3.0;  /* factor by which errors of samples grow in the polynomial */
 
 typedef struct {
     const double *rows, *edges, *p;  /* edges: pieces + 1 times, in the order of the motion */
     int64_t pieces, terms;           /* terms: of each polynomial */
     double *found;                   /* rows of SYMROT_FOUND numbers: event, from, to, sign before, sign after, doubt */
     int64_t count, room;
-    int64_t piece, event, depth;     /* where the search stands */
-    double work, most;               /* operations spent, and after how many a call returns */
+    int64_t piece, event, depth;     /* position of the search */
+    double work, most;               /* operations so far, and limit of one call */
     double doubt;                    /* error of the motion, in rounding errors of its states */
     const double *row;               /* of this piece */
     double cosine[2*SYMROT_DEGREE];  /* of multiples of pi/SYMROT_DEGREE */
-    double missing[SYMROT_DISCS][3]; /* what samples miss of the function and of two derivatives, per bound on a disc */
+    double missing[SYMROT_DISCS][3]; /* errors of the series and two derivatives, per bound on a disc */
     double from[SYMROT_DEPTH + 2], to[SYMROT_DEPTH + 2];
-    int before[SYMROT_EVENTS + 1];   /* signs at the end of the piece before */
+    int before[SYMROT_EVENTS + 1];   /* signs at the end of the previous piece */
 } symrot_search;
 
 static void symrot_states(const symrot_search *search, int event, double t, double *y)
@@ -67,7 +68,7 @@ static void symrot_states(const symrot_search *search, int event, double t, doub
         for (int i = first; i < end; ++i) y[i] = y[i]*s + x[n*SYMROT_STATES + i];
 }
 
-/* Fill in the states at a time, and what they differ by at most within a distance h of it, complex times too. */
+/* Compute the states at a time, and their largest change at real or complex times within a distance h of it. */
 static void symrot_path(const symrot_search *search, int event, double t, double h, double *y, double *r)
 {
     const double *row = search->row, *x = row + 4, s = ((t - row[0]) - row[2])/row[3];
@@ -107,7 +108,7 @@ static int symrot_sign(double value, double noise) { return value > noise ? 1 : 
 
 static int symrot_bounded(symrot_range x) { return x.lo >= -DBL_MAX && x.hi <= DBL_MAX; }
 
-/* Count operations: some evaluations of an event. */
+/* Add some evaluations of an event to the count of operations. */
 static void symrot_spend(symrot_search *search, int evaluations)
 {
     const int *span = symrot_spans[search->event];
@@ -140,10 +141,10 @@ static void symrot_add_doubt(symrot_search *search, int event, double t, double 
     if (span[1] > span[0] && fabs(value) <= search->doubt*noise) symrot_append(search, event, t, t, sign, sign, 1);
 }
 
-/* Close in on a change of sign between a and b, until they are neighbours; return the end with the smaller value. */
+/* Locate a change of sign between a and b, to neighbouring doubles; return the end with the smaller value. */
 static double symrot_close_in(const symrot_search *search, int event, double a, double fa, double b, double fb)
 {
-    double c = a, fc = fa, share = 0.5, noise;  /* a is the latest end, b the other side, c the end before */
+    double c = a, fc = fa, share = 0.5, noise;  /* a is the latest end, b the other side, c the previous end */
     for (int tries = 0; tries < 200; ++tries) {
         const double middle = a + share*(b - a);
         double t = middle;
@@ -195,7 +196,7 @@ static double symrot_clenshaw(const double *c, int terms, double x)
     return x*u - v + c[0];
 }
 
-/* Fill d with the series of the derivative of c, both with halves already taken in the constant term. */
+/* Compute d, the series of the derivative of c; in both the constant term is already halved. */
 static void symrot_derivative(const double *c, double *d)
 {
     double before = 0.0, last = 0.0;  /* d[k + 2] and d[k + 1] */
@@ -208,7 +209,7 @@ static void symrot_derivative(const double *c, double *d)
     d[0] *= 0.5;
 }
 
-/* Return what all terms but the constant one add up to at most. */
+/* Return a bound of the sum of all terms but the constant one. */
 static double symrot_rest(const double *c)
 {
     double rest = 0.0;
@@ -217,8 +218,8 @@ static double symrot_rest(const double *c)
 }
 
 /*
- * Return whether a function that is not bounded by its enclosure falls towards an interval from both sides: it is much
- * smaller at the ends than farther off. Poles rise and jumps stay.
+ * Return whether a function without a finite enclosure decreases in size towards an interval from both sides: it is
+ * much smaller at the ends than farther away. At a pole it increases, at a jump it does not change.
  */
 static int symrot_falls(const symrot_search *search, int event, double a, double fa, double b, double fb)
 {
@@ -244,15 +245,15 @@ static int symrot_touches(symrot_search *search, int event, double t, double val
     return fabs(value) <= SYMROT_TOUCHING*noise + change;
 }
 
-/* Find the zeros in an interval too short to be cut. */
+/* Find the zeros in an interval too short to be halved. */
 static void symrot_shortest(symrot_search *search, int event, double a, double b, symrot_range all)
 {
     double na, nb, least = INFINITY, place = a, lowest = 0.0, noise = 0.0, own;
     const double fa = symrot_value(search, event, a, &na), fb = symrot_value(search, event, b, &nb);
     const int from = symrot_sign(fa, na), to = symrot_sign(fb, nb);
     symrot_spend(search, 2);
-    if (!(fabs(fa) <= DBL_MAX && fabs(fb) <= DBL_MAX)) return;  /* no value there */
-    if ((fa != 0.0 && !(na <= DBL_MAX)) || (fb != 0.0 && !(nb <= DBL_MAX))) return;  /* nor one that means anything */
+    if (!(fabs(fa) <= DBL_MAX && fabs(fb) <= DBL_MAX)) return;  /* no value at an end */
+    if ((fa != 0.0 && !(na <= DBL_MAX)) || (fb != 0.0 && !(nb <= DBL_MAX))) return;  /* or infinite rounding errors */
     if (from == 0 && to == 0) {
         symrot_add(search, event, a, b, 0, 0);
         return;
@@ -274,13 +275,13 @@ static void symrot_shortest(symrot_search *search, int event, double a, double b
         }
     }
     if (least <= 0.0 || symrot_touches(search, event, place, lowest, noise))
-        symrot_add(search, event, place, place, 0, 0);  /* or the rounding of a zero beside it */
+        symrot_add(search, event, place, place, 0, 0);  /* or a rounded zero next to the interval */
     else if (fabs(symrot_value(search, event, place - (b - a), &own)) >= fabs(lowest)
         && fabs(symrot_value(search, event, place + (b - a), &own)) >= fabs(lowest))
-        symrot_add_doubt(search, event, place, lowest, noise);  /* smallest not only in this interval */
+        symrot_add_doubt(search, event, place, lowest, noise);  /* smallest beyond this interval, too */
 }
 
-/* Return the time of an extremum within a distance of t, by parabolas through ever closer values. */
+/* Return the time of an extremum within a distance of t, by parabolas through closer and closer values. */
 static double symrot_extremum(symrot_search *search, int event, double t, double distance)
 {
     double noise;
@@ -295,7 +296,7 @@ static double symrot_extremum(symrot_search *search, int event, double t, double
     return t;
 }
 
-/* Find the zeros in one interval, or return 0 if it must be cut. */
+/* Find the zeros in one interval, or return 0 if it must be halved. */
 static int symrot_settle(symrot_search *search, int event, double a, double b, int smallest)
 {
     double times[SYMROT_POINTS], y[SYMROT_STATES] = {0.0}, r[SYMROT_STATES] = {0.0}, f[SYMROT_POINTS];
@@ -324,7 +325,7 @@ static int symrot_settle(symrot_search *search, int event, double a, double b, i
     }
     if (disc == SYMROT_DISCS) return 0;
     const double *missing = search->missing[disc];
-    if (bound*missing[0] > all.hi - all.lo) return 0;  /* samples would tell nothing */
+    if (bound*missing[0] > all.hi - all.lo) return 0;  /* samples would decide nothing */
     symrot_spend(search, SYMROT_POINTS);
     for (int i = 0; i < SYMROT_POINTS; ++i) {
         times[i] = i == 0 ? a : i == SYMROT_DEGREE ? b : 0.5*(a + b) - 0.5*(b - a)*search->cosine[i];
@@ -334,7 +335,7 @@ static int symrot_settle(symrot_search *search, int event, double a, double b, i
         if (i == SYMROT_DEGREE) n1 = own;
         noise = fmax(noise, own);
     }
-    for (int k = 0; k <= SYMROT_DEGREE; ++k) {  /* x = -cos(i pi/n) rises with i */
+    for (int k = 0; k <= SYMROT_DEGREE; ++k) {  /* x = -cos(i pi/n) increases with i */
         double sum = 0.5*(f[SYMROT_DEGREE] + (k%2 ? -f[0] : f[0]));
         for (int i = 1; i < SYMROT_DEGREE; ++i)
             sum += f[SYMROT_DEGREE - i]*search->cosine[i*k%(2*SYMROT_DEGREE)];
@@ -342,7 +343,7 @@ static int symrot_settle(symrot_search *search, int event, double a, double b, i
     }
     c[0] *= 0.5;
     c[SYMROT_DEGREE] *= 0.5;
-    /* Markov: derivatives of what rounding adds to the polynomial */
+    /* Markov: derivatives of the rounding errors in the polynomial */
     const double squared = (double)SYMROT_DEGREE*SYMROT_DEGREE, rounding = SYMROT_LEBESGUE*noise;
     const double miss0 = bound*missing[0] + rounding, miss1 = bound*missing[1] + rounding*squared;
     const double miss2 = bound*missing[2] + rounding*squared*(squared - 1.0)*(1.0/3.0);
@@ -360,7 +361,7 @@ static int symrot_settle(symrot_search *search, int event, double a, double b, i
     symrot_derivative(d, e);
     const double rest2 = symrot_rest(e) + miss2;
     if (!(fabs(e[0]) > rest2)) return 0;
-    double low = -1.0, high = 1.0;  /* the slope, which is monotonous, changes its sign between */
+    double low = -1.0, high = 1.0;  /* the slope, which is monotonic, changes its sign between */
     const double turn = e[0] > 0.0 ? 1.0 : -1.0;
     if (symrot_clenshaw(d, SYMROT_POINTS, -1.0)*turn >= 0.0) high = -1.0;
     else if (symrot_clenshaw(d, SYMROT_POINTS, 1.0)*turn <= 0.0) low = 1.0;
@@ -381,9 +382,9 @@ static int symrot_settle(symrot_search *search, int event, double a, double b, i
             if (!(0.5*(low + high) > low && 0.5*(low + high) < high)) break;
         }
     const double x = high == -1.0 ? -1.0 : low == 1.0 ? 1.0 : 0.5*(low + high);
-    const double off = miss1/(fabs(e[0]) - rest2);  /* how far the extremum may lie from x: that changes its value */
+    const double off = miss1/(fabs(e[0]) - rest2);  /* largest distance of the extremum from x: changes its value */
     const double slack = (fabs(e[0]) + rest2)*off*off;
-    if (1.0 - fabs(x) <= off) {  /* at an end, or beyond it */
+    if (1.0 - fabs(x) <= off) {  /* at or beyond an end */
         if (slack > noise) return 0;
         const double end = x < 0.0 ? a : b, place = symrot_extremum(search, event, end, 0.5*fabs(b - a)*off);
         const double extreme = symrot_value(search, event, place, &own);
@@ -397,7 +398,7 @@ static int symrot_settle(symrot_search *search, int event, double a, double b, i
     }
     double t = 0.5*(a + b) + 0.5*(b - a)*x, value = symrot_value(search, event, t, &own);
     int sign = symrot_sign(value, own + slack);
-    if (sign == 0 && slack > own) {  /* rounding hides the extremum from the series, but may not from values */
+    if (sign == 0 && slack > own) {  /* values may resolve an extremum that rounding hides in the series */
         if (slack > noise) return 0;
         t = symrot_extremum(search, event, t, fmin(0.5*fabs(b - a)*off, fmin(fabs(t - a), fabs(b - t))));
         value = symrot_value(search, event, t, &own);
@@ -413,7 +414,7 @@ static int symrot_settle(symrot_search *search, int event, double a, double b, i
     return 1;
 }
 
-/* Enter a piece for one event: its interval, and a change of sign between the last piece and this one. */
+/* Start a piece for one event: set its interval, and report a change of sign since the previous piece. */
 static void symrot_enter(symrot_search *search)
 {
     const int event = (int)search->event;
@@ -435,7 +436,7 @@ static void symrot_enter(symrot_search *search)
     symrot_spend(search, 4);
 }
 
-/* Tell the caller the numbers of states and of events, and the bytes of a search. */
+/* Return the numbers of states and of events, and the bytes of a search. */
 SYMROT_EXPORT void symrot_events_sizes(int64_t sizes[3])
 {
     sizes[0] = SYMROT_STATES;
@@ -443,7 +444,7 @@ SYMROT_EXPORT void symrot_events_sizes(int64_t sizes[3])
     sizes[2] = (int64_t)sizeof(symrot_search);
 }
 
-/* Return the sign of an event at a time inside a row, 0 within its rounding errors. */
+/* Return the sign of an event at a time inside a row; 0 if the value is within its rounding error. */
 SYMROT_EXPORT int symrot_events_sign(int event, double t, const double *row, int64_t terms, const double *p)
 {
     symrot_search search;
@@ -456,10 +457,10 @@ SYMROT_EXPORT int symrot_events_sign(int event, double t, const double *row, int
 }
 
 /*
- * Set a search out along `pieces` rows; `again` if it goes on from the rows before.
+ * Start a search along `pieces` rows; `again` if it continues from the previous rows.
  *
  * in    rows, terms   polynomials, see above
- * in    edges         pieces + 1 times, in the order of the motion, rising or falling: row i holds from edge i to i + 1
+ * in    edges         pieces + 1 times, in the order of the motion, forward or backward: row i is valid from edge i to i + 1
  * in    doubt         error of the motion, in multiples of the rounding errors of its states; 0 for no doubts
  */
 SYMROT_EXPORT void symrot_events_begin(symrot_search *search, const double *rows, int64_t terms, const double *edges,
@@ -476,7 +477,7 @@ SYMROT_EXPORT void symrot_events_begin(symrot_search *search, const double *rows
     for (int event = 0; event <= SYMROT_EVENTS; ++event) search->before[event] = 0;
     for (int i = 0; i < 2*SYMROT_DEGREE; ++i) search->cosine[i] = cos(i*(3.14159265358979323846/SYMROT_DEGREE));
     for (int disc = 0; disc < SYMROT_DISCS; ++disc) {
-        /* coefficient k is below 2/rho^k, on the ellipse with semi-axis SIZE; it is missing, and mistaken for another */
+        /* coefficient k is below 2/rho^k on the ellipse with semi-axis SIZE; it is missing, and aliased to another */
         const double size = SYMROT_DISC_SIZE[disc], rho = size + sqrt(size*size - 1.0);
         double *missing = search->missing[disc], power = 4.0*pow(rho, -SYMROT_POINTS);
         missing[0] = missing[1] = missing[2] = 0.0;
@@ -489,14 +490,14 @@ SYMROT_EXPORT void symrot_events_begin(symrot_search *search, const double *rows
 }
 
 /*
- * Go on with a search until all rows are searched, the room is used up, or about `most` operations are spent.
+ * Continue a search until all rows are searched, `found` is full, or about `most` operations are used.
  *
- * out   found      room rows: event, from, to, sign before, sign after, as the motion goes; from = to but where the
- *                  event keeps within its rounding errors of zero; a sign is 0 where the zero lies on an edge; doubt is
- *                  1 for an extremum that is not zero, but nearer to it than the motion is accurate
- * out   state[3]   rows written; whether the search is over; the number of the piece it stands at
+ * out   found      `room` rows: event, from, to, sign before, sign after, doubt, in the order of the motion; from = to
+ *                  unless the event stays within its rounding errors of zero; a sign is 0 if the zero lies on an edge;
+ *                  doubt is 1 for an extremum that is not zero, but nearer to it than the error of the motion
+ * out   state[3]   rows written; whether the search is complete; the number of the present piece
  *
- * Returns the operations spent. There must be room for at least 4 rows.
+ * Returns the number of operations. There must be room for at least 4 rows.
  */
 SYMROT_EXPORT double symrot_events_next(symrot_search *search, double *found, int64_t room, double most,
     int64_t state[3])
@@ -516,7 +517,7 @@ SYMROT_EXPORT double symrot_events_next(symrot_search *search, double *found, in
         while (search->depth > 0 && search->work < most && search->count + 4 <= room) {
             const int depth = (int)--search->depth;
             const double a = search->from[depth], b = search->to[depth];
-            const double middle = a + 0.4871*(b - a);  /* seldom a zero itself */
+            const double middle = a + 0.4871*(b - a);  /* rarely itself a zero */
             const int smallest = depth + 3 > SYMROT_DEPTH
                 || fabs(b - a) <= 64.0*DBL_EPSILON*fmax(fabs(a), fabs(b));
             if (a == b || symrot_settle(search, event, a, b, smallest)) continue;

@@ -5,16 +5,16 @@
  *     SYMROT_STATES       number of states N
  *     SYMROT_PARAMETERS   number of parameters
  *     SYMROT_RHS          the kernel: void name(double t, const double y[N], const double p[], double dy[N])
- *     SYMROT_BLOCKS       edges of the blocks of states whose errors are judged apart, e.g. {0, 3, 7}
- *     SYMROT_SCALES       per block: 0 judges the error against the block's own size (a rate),
- *                         a positive number against that number (an attitude of unit norm: 1)
- *     SYMROT_DEFECT       if defined, how many times the error allowed its dense output may fail the equations inside
- *     SYMROT_ENCLOSED     whether some terms of the rates may hide a feature: enclosure.h is put in here then
+ *     SYMROT_BLOCKS       edges of the blocks of states with separate error norms, e.g. {0, 3, 7}
+ *     SYMROT_SCALES       per block: with 0, errors are relative to the block's own size (a rate),
+ *                         otherwise to this number (an attitude of unit norm: 1)
+ *     SYMROT_DEFECT       if defined, limit of the defect of the dense output inside a step, in allowed errors
+ *     SYMROT_ENCLOSED     whether some terms of the rates may hide a feature: then enclosure.h is inserted here
  * and included dop853_tableau.h. C99 that is also valid C++; no malloc, no globals, no input or output, reentrant.
  *
- * States are padded to a multiple of 4 so that every sum over stages is a few full vectors. A stage's own sum is taken
- * in two parts: all earlier stages first, while the kernel is still busy, then the newest one, element by element,
- * because a vector load of what was just stored in single numbers would wait for the stores to retire.
+ * States are padded to a multiple of 4 so that every sum over stages is a few full vectors. The sum for a stage has two
+ * parts: first all earlier stages, while the kernel is still running, then the newest stage, element by element,
+ * because a vector load of numbers that were just stored one by one would wait for the stores.
  *
  * Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.4 to 6.
  */
@@ -33,7 +33,7 @@ extern "C" {
 #define SYMROT_EXPORT
 #endif
 #if defined(__GNUC__)
-#define SYMROT_APART __attribute__((noinline))  /* rarely run: keep it out of the loop of steps */
+#define SYMROT_APART __attribute__((noinline))  /* rarely called: not inlined into the loop of steps */
 #define SYMROT_ALIGNED __attribute__((aligned(32)))
 #else
 #define SYMROT_APART
@@ -50,25 +50,25 @@ enum {
 enum { SYMROT_DONE = 0, SYMROT_PAUSED = 1, SYMROT_FULL = 2, SYMROT_NOT_FINITE = 3, SYMROT_UNDERFLOW = 4 };
 
 typedef struct {
-    double t;            /* reached so far */
+    double t;            /* time reached so far */
     double h;            /* next step, signed; 0 before the first one */
-    double growth;       /* most that the step after the next one may grow: 1 after a rejected one */
+    double growth;       /* largest growth of the step after the next: 1 after a rejected step */
     double stop;         /* end of the span, on either side of t */
-    double first, last;  /* times given to the kernel at the two ends: just inside the span where it switches there */
-    double tolerance;    /* of one step of length `pace` or more; a shorter one is allowed its share of it */
+    double first, last;  /* times passed to the kernel at the two ends: just inside the span at a switching time */
+    double tolerance;    /* of one step of length `pace` or more; a shorter step is allowed its share */
     double pace;
     double max_step;     /* positive */
     double proven;       /* the last step, if the enclosure held it back, or 0 */
-    double epoch;        /* the kernel counts its time from here */
-    double far;          /* pause where the epoch is so many steps away, for it to be moved; 0: never */
-    int64_t reach;       /* number of the disc that proved most in the last step */
+    double epoch;        /* time from which the kernel counts its time */
+    double far;          /* pause if the epoch is so many steps away, so that it can be moved; 0: never */
+    int64_t reach;       /* number of the disc with the best bound in the last step */
     int64_t next;        /* first sample not yet written */
     int64_t accepted, rejected, evaluations, recorded;
     double y[SYMROT_STATES], carry[SYMROT_STATES], dy[SYMROT_STATES];
 } symrot_run;
 
 #if defined(SYMROT_DEFECT) || SYMROT_DEPENDS
-#define SYMROT_KNOWN 1  /* the dense output of a step is made before it is accepted */
+#define SYMROT_KNOWN 1  /* the dense output of a step is computed before its acceptance */
 #else
 #define SYMROT_KNOWN 0
 #endif
@@ -105,12 +105,12 @@ enum { SYMROT_COUNT = (int)(sizeof(symrot_scales)/sizeof(symrot_scales[0])) };
 static const double SYMROT_SAFETY = 0.9, SYMROT_GROWTH = 6.0;           /* factors on the step when it is accepted, */
 static const double SYMROT_SHRINK = 1.0/3.0, SYMROT_COLLAPSE = 0.1;      /* rejected, not finite; after dop853.f */
 #if SYMROT_ENCLOSED
-static const double SYMROT_SLACK = 1e4;   /* what enclosures exceed errors by, and less: see docs/step_control.md */
-static const double SYMROT_REGAIN = 1.5;  /* most that a step grows after one that was held back */
+static const double SYMROT_SLACK = 1e4;   /* enclosures exceed errors by this or less: see docs/step_control.md */
+static const double SYMROT_REGAIN = 1.5;  /* largest growth of a step after an enclosure shortened one */
 #endif
-static const double SYMROT_LARGE = 1e80;  /* of a square: products of two such squares of errors stay finite up to it */
-static const double SYMROT_ROUND_OFF = 2.0*DBL_EPSILON;  /* no step can be asked to be better than that */
-static const double SYMROT_RATE_FLOOR = 1e-3;  /* a rate below this over h turns the body by less than this in a step */
+static const double SYMROT_LARGE = 1e80;  /* limit of squares of errors: products of two are finite */
+static const double SYMROT_ROUND_OFF = 2.0*DBL_EPSILON;  /* smallest error that a step can have */
+static const double SYMROT_RATE_FLOOR = 1e-3;  /* rad: errors of rates are relative to at least this per step */
 
 /* Return x^(-1/16) to 4 %, which is enough for a step size: the bits of a number are nearly its logarithm. */
 static inline double symrot_inverse_root_16(double x)
@@ -147,10 +147,10 @@ static inline double symrot_scale_squared(const double *y, const double *y1, dou
     const double before = symrot_square_sum(y, block), after = symrot_square_sum(y1, block);
     const double larger = before > after ? before : after, least = SYMROT_RATE_FLOOR/h*(SYMROT_RATE_FLOOR/h);
     const double size = larger > least ? larger : least;
-    return size < DBL_MAX ? size : DBL_MAX;  /* finite in the shortest of steps, too */
+    return size < DBL_MAX ? size : DBL_MAX;  /* finite even for the shortest step */
 }
 
-/* Return the size of a block at the start: of a rate no less than it has when it has turned the body from rest. */
+/* Return the size of a block at the start; of a rate from rest, at least its size once the body has rotated. */
 static inline double symrot_first_size(const symrot_run *run, int block)
 {
     const double fixed = symrot_scales[block];
@@ -178,12 +178,12 @@ static SYMROT_APART double symrot_first_step(const symrot_run *run, const double
         if (size > 0.0 && block > bend) bend = block;
     }
     const double fastest = rate > bend ? rate : bend;
-    const double least = 64.0*DBL_EPSILON*fabs(run->t);  /* rates near zero ask for less than the clock has */
+    const double least = 64.0*DBL_EPSILON*fabs(run->t);  /* rates near zero would require less than the rounding of t */
     const double h = fmax(pow(run->tolerance, 0.125)/fastest, least);
-    return side*fmin(fmin(h, run->max_step), span);  /* fmin passes over the NaN and infinity of a motion at rest */
+    return side*fmin(fmin(h, run->max_step), span);  /* fmin ignores the NaN or infinity of a motion at rest */
 }
 
-/* Fill the coefficients of the dense output of the step from y to y1, which begins at the kernel's time `at`; k has
+/* Compute the coefficients of the dense output of the step from y to y1, which begins at the kernel's time `at`; k has
  * stages 1 to 13 and receives 14 to 16. */
 static SYMROT_APART void symrot_dense_coefficients(double at, double h, const double *y, const double *step,
     const double *p, double (*k)[SYMROT_WIDTH], double (*term)[SYMROT_WIDTH])
@@ -236,7 +236,7 @@ static void symrot_radii(symrot_path term, double part, double *radius)
 #endif
 
 #if defined(SYMROT_DEFECT)
-/* Return by how much the dense output of a step fails the equations inside it, per step and relative to its blocks. */
+/* Return the defect of the dense output inside a step: its error in the equations, per step and relative to blocks. */
 static SYMROT_APART double symrot_defect(double at, double h, const double *y, const double *y1, const double *p,
     double (*term)[SYMROT_WIDTH])
 {
@@ -245,7 +245,7 @@ static SYMROT_APART double symrot_defect(double at, double h, const double *y, c
     for (int n = 0; n < 2; ++n) {
         const double s = places[n], r = 1.0 - s;
         double here[SYMROT_STATES], slope[SYMROT_STATES], rate[SYMROT_STATES];
-        EACH_STATE(i) {  /* value and slope of the dense output, from its innermost bracket on */
+        EACH_STATE(i) {  /* value and slope of the dense output, from the innermost bracket outwards */
             double value = term[7][i], rise = 0.0;
             for (int k = 6; k >= 0; --k) {
                 rise = k%2 ? r*rise - value : s*rise + value;
@@ -258,21 +258,21 @@ static SYMROT_APART double symrot_defect(double at, double h, const double *y, c
         EACH_STATE(i) slope[i] -= h*rate[i];
         for (int b = 0; b < SYMROT_COUNT; ++b) {
             const double defect = sqrt(symrot_square_sum(slope, b)/symrot_scale_squared(y, y1, h, b));
-            if (worst == worst && !(defect <= worst)) worst = defect;  /* a NaN stays one */
+            if (worst == worst && !(defect <= worst)) worst = defect;  /* NaN remains NaN */
         }
     }
     return worst;
 }
 #endif
 
-/* Tell the caller the numbers of states and parameters that this library was built for. */
+/* Return the numbers of states and parameters for which this library was built. */
 SYMROT_EXPORT void symrot_dop853_sizes(int64_t sizes[2])
 {
     sizes[0] = SYMROT_STATES;
     sizes[1] = SYMROT_PARAMETERS;
 }
 
-/* Evaluate a record of `steps` rows, all in one direction, at `count` times in any order; the ends extrapolate. */
+/* Evaluate a record of `steps` rows, all in one direction, at `count` times in any order; extrapolate at the ends. */
 SYMROT_EXPORT void symrot_dop853_dense(const double *record, int64_t steps, const double *times, int64_t count,
     double *states)
 {
@@ -299,7 +299,7 @@ SYMROT_EXPORT void symrot_dop853_dense(const double *record, int64_t steps, cons
  * in    attempts   most steps to try in this call
  *
  * Returns SYMROT_DONE; SYMROT_PAUSED after `attempts` steps or SYMROT_FULL when the record has no room (call again to
- * continue from where it stands); SYMROT_NOT_FINITE or SYMROT_UNDERFLOW when the motion cannot be followed further.
+ * continue); SYMROT_NOT_FINITE or SYMROT_UNDERFLOW when the motion cannot be followed further.
  */
 SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *times, int64_t count, double *states,
     double *record, int64_t room, int64_t attempts)
@@ -382,7 +382,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
                 size = 1.0;
             }
             const double error = e5*e5/((e5 + 0.01*e3)*size + DBL_MIN)*weight;
-            if (worst == worst && !(error <= worst)) worst = error;  /* a NaN stays one, whatever other blocks say */
+            if (worst == worst && !(error <= worst)) worst = error;  /* NaN remains NaN for any other block */
         }
         const double factor = SYMROT_SAFETY*symrot_inverse_root_16(worst);
 
@@ -391,7 +391,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             double bars[SYMROT_COUNT];
             for (int b = 0; b < SYMROT_COUNT; ++b)
                 bars[b] = SYMROT_SLACK*allowed*sqrt(symrot_scale_squared(y, y1, h, b));
-            if (SYMROT_DEPENDS) {  /* on the states, whose path must be known */
+            if (SYMROT_DEPENDS) {  /* enclosures that depend on the states need their path */
                 symrot_rate(last, y1, p, k[13]);
                 symrot_dense_coefficients(at, h, y, step, p, k, term);
                 ++dense;
@@ -454,7 +454,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             }
 
         EACH(i) {
-            const double rise = y1[i] - y[i];  /* Knuth's sum: what rounding took from y1 goes into the next step */
+            const double rise = y1[i] - y[i];  /* Knuth's sum: the rounding error of y1 is added in the next step */
             carry[i] = (y[i] - (y1[i] - rise)) + (step[i] - rise);
             y[i] = y1[i];
             k[1][i] = k[13][i];

@@ -1,9 +1,9 @@
 /*
- * Operations on pairs of doubles for invariants and phases, on top of the error-free sums of error_free.h. Errors are a
+ * Operations on pairs of doubles for invariants and phases, based on the error-free sums of error_free.h. Errors are a
  * few units of 2^-104 of the operands.
  *
- * Products name the fused instruction: steppers are compiled with -ffp-contract=fast, where a compiler without
- * FP_FAST_FMA may fuse the product inside two_product with a later sum.
+ * Products call fma explicitly: steppers are compiled with -ffp-contract=fast, so that a compiler without FP_FAST_FMA
+ * may fuse the product inside two_product with a later sum.
  * Source: T. J. Dekker, Numerische Mathematik 18 (1971) 224-242; D. E. Knuth, The Art of Computer Programming, 4.2.2.
  */
 static inline dd symrot_pair_subtract(dd a, dd b) { return dd_add_fast(a, dd_negative(b)); }

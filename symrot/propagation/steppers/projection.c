@@ -1,34 +1,35 @@
 /*
- * Projection of the carry onto what a motion keeps: included by taylor.c when the system has invariants.
+ * Projection of the states onto the conserved quantities: included by taylor.c when the system has invariants.
  *
- * The states are known as y + carry, to about 32 digits. Every few steps, and at the end of a span, the invariants
- * are computed there in pairs of doubles, and the smallest change of the states that restores them goes into the
- * carry, which hands on to y what y can hold. Of the errors of a conservative motion those that leave its invariants
- * are the ones that grow: it then runs ahead or behind ever faster. Given back at once, tail or rounding, they leave
- * only their direct part.
+ * The states are y + carry, with about 32 digits. Every few steps, and at the end of a span, the invariants are
+ * computed in pairs of doubles. The smallest change of the states that restores them is added to the carry, and the
+ * part of the carry that y can represent is added to y. In a conservative motion, errors that change the invariants
+ * grow: the motion then runs ahead or behind at an increasing rate. If they are corrected at once, only their direct
+ * part remains.
  *
- * The smallest change is measured in units of what each block is likely to be off by: see symrot_weigh. In units of
- * its size a body about to rotate steadily, whose rates hardly change, would be given rates that make up for the
- * rounding of its attitude, and follow them.
+ * The size of a change is measured in units of the likely error of each block: see symrot_weigh. In units of the size
+ * of the block, a body in nearly steady rotation, whose rates hardly change, would receive wrong rates that compensate
+ * for the rounding of its attitude.
  *
- * It can only help: nothing is changed where the change would be longer than SYMROT_FAR of a state's size (nothing is
- * known of the motion any more), or where it leaves a larger residual than it found; after a refusal it is tried half
- * as often. An invariant whose gradient depends on those of the others to SYMROT_INDEPENDENT, as those of energy and
- * momentum do in steady rotation, is left alone there: what is left of its gradient is rounding.
+ * The projection cannot do harm: nothing is changed if the change would exceed SYMROT_FAR of the size of a state (then
+ * the states are no longer accurate), or if it would increase the residual. After such a refusal the projection is
+ * tried half as often. If the gradient of an invariant depends on the gradients of others to SYMROT_INDEPENDENT, as for
+ * energy and momentum in steady rotation, this invariant is ignored, because the rest of its gradient is rounding
+ * error.
  *
  * Source: E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed., section IV.4 (projection).
  */
 
 static const double SYMROT_FAR = 0.1;
 static const double SYMROT_LOOSE = 1e-11;
-static const double SYMROT_UNIT_NORM = 1e-12;  /* a norm within this of one is meant to be one */
-static const double SYMROT_INDEPENDENT = 1e-12;  /* least square of the sine between a gradient and those before it */
+static const double SYMROT_UNIT_NORM = 1e-12;  /* a norm this close to 1 is taken as 1 */
+static const double SYMROT_INDEPENDENT = 1e-12;  /* least squared sine of the angle to earlier gradients */
 static const double SYMROT_LEAST_SHARE = 1e-3;  /* of the fastest block's likely errors: sums of cancelling terms */
 
 /*
- * Write what the size of a state is measured with, that of its block, and how far its errors may reach in comparison
- * with those of the others: rounding and the tail take their share of what a step adds, so that a block that hardly
- * moves is hardly wrong.
+ * Write the size of each state, which is the size of its block, and a weight: its likely error relative to other
+ * states. Rounding and the tail of the series are parts of the change in a step, so that a block that hardly moves has
+ * a small error.
  */
 static inline void symrot_weigh(symrot_v4 (*x)[SYMROT_ORDER + 1], double *size, double *weight)
 {
@@ -64,7 +65,7 @@ static void symrot_solve(double (*j)[SYMROT_STATES], double *r)
             a[m][n] = a[n][m] = sum;
         }
     }
-    for (; count < SYMROT_INVARIANTS; ++count) {  /* a becomes the rest of J J^T, and below it the factors */
+    for (; count < SYMROT_INVARIANTS; ++count) {  /* a becomes the rest of J J^T, with the factors below it */
         int next = -1;
         for (int m = 0; m < SYMROT_INVARIANTS; ++m)
             if (!used[m] && a[m][m] > SYMROT_INDEPENDENT && (next < 0 || a[m][m] > a[next][next])) next = m;
@@ -112,8 +113,9 @@ static double symrot_residuals(const symrot_run *run, const double *p, dd t, con
 }
 
 /*
- * Remember what the motion keeps, from its first state; a quaternion of unit norm gets it in the carry too. Where that
- * norm is all, a loose motion is not projected: what its attitude loses in length is no part of its error.
+ * Store the values of the invariants at the first state; the norm of a unit quaternion is set to 1 in the carry too. If
+ * that norm is the only invariant, a motion with a large tolerance is not projected: the length of the quaternion does
+ * not count as error.
  */
 static SYMROT_APART void symrot_remember(symrot_run *run, const double *p)
 {
@@ -136,7 +138,7 @@ static SYMROT_APART void symrot_remember(symrot_run *run, const double *p)
     }
 }
 
-/* Give back to the carry what the invariants have lost; return whether it was done. */
+/* Restore the invariants by a change of the carry; return whether it was applied. */
 static SYMROT_APART int symrot_project(const symrot_run *run, const double *p, dd t, const double *y,
     double *carry, const double *size, const double *weight)
 {
@@ -154,7 +156,7 @@ static SYMROT_APART int symrot_project(const symrot_run *run, const double *p, d
     return 1;
 }
 
-/* Project after a step, whose states and carry stand in rows; ever more seldom where it was refused. */
+/* Project after a step, with states and carry in rows; less often after each refusal. */
 static SYMROT_APART void symrot_keep(symrot_run *run, const double *p, double t, double t_low,
     symrot_v4 (*x)[SYMROT_ORDER + 1], symrot_v4 *carry)
 {
@@ -167,7 +169,7 @@ static SYMROT_APART void symrot_keep(symrot_run *run, const double *p, double t,
     run->since = 0;
     if (symrot_project(run, p, dd_pair(t, t_low), y, low, size, weight)) ++run->projected;
     else run->every *= 2;
-    for (int i = 0; i < SYMROT_STATES; ++i) {  /* the series sees y alone: leave no more in the carry than it must */
+    for (int i = 0; i < SYMROT_STATES; ++i) {  /* the series uses y alone: keep the carry as small as possible */
         const dd sum = two_sum(y[i], low[i]);
         y[i] = sum.hi;
         low[i] = sum.lo;

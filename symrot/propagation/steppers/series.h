@@ -3,13 +3,13 @@
  *
  * Included after the system, which defines SYMROT_ORDER, and after taylor.h or lanes.h, which define
  *     symrot_v              numbers at once, one in each lane
- *     V_ALL, V_ADD, V_SUB, V_MUL, V_FMA   what is done with them
+ *     V_ALL, V_ADD, V_SUB, V_MUL, V_FMA   operations on them
  * A series is an array of its coefficients from 0 on; s is the time since its start in the unit of its coefficients.
  */
 
 /*
- * A third is larger than its double by 2^-54 of it, and so are, nearly, all terms of a series from the third on, to the
- * same side at every step: over 1e5 revolutions that is a turn of 1e-13 rad. What the terms lack goes into the carry.
+ * 1/3 exceeds its double by 2^-54 of its size. Nearly all terms of a series from the third on have this error, of the
+ * same sign in every step: over 1e5 revolutions it adds up to 1e-13 rad. The carry therefore receives this correction.
  */
 static const double SYMROT_THIRD = 1.0/18014398509481984.0;
 
@@ -25,7 +25,7 @@ static inline symrot_v symrot_sum(const symrot_v *x, symrot_v s)
         d = V_FMA(d, fourth, x[n + 3]);
     }
     const symrot_v sum = V_FMA(V_FMA(d, s, c), second, V_FMA(b, s, a));
-    return SYMROT_ORDER%4 ? V_FMA(sum, second, V_FMA(x[2], s, x[1])) : sum;  /* two are left of an order 4 k + 2 */
+    return SYMROT_ORDER%4 ? V_FMA(sum, second, V_FMA(x[2], s, x[1])) : sum;  /* two terms remain for an order 4 k + 2 */
 }
 
 /* Return the states inside a step, s units after its start. */
@@ -34,7 +34,7 @@ static inline symrot_v symrot_inside(const symrot_v *x, symrot_v s, symrot_v car
     return V_ADD(x[0], V_FMA(symrot_sum(x, s), s, carry));
 }
 
-/* Return the states at the end of a step of s units; what rounding takes goes into the carry (Knuth's sum). */
+/* Return the states at the end of a step of s units; rounding errors are added to the carry (Knuth's sum). */
 static inline symrot_v symrot_end(const symrot_v *x, symrot_v s, symrot_v *carry)
 {
     const symrot_v sum = symrot_sum(x, s), after = V_SUB(sum, V_FMA(x[2], s, x[1]));

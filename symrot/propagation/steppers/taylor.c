@@ -6,20 +6,20 @@
  *     SYMROT_ORDER                       order of the series, even
  *     SYMROT_ROWS                        rows of four lanes that hold the states,
  *     SYMROT_ROW_STARTS, SYMROT_ROW_SIZES, SYMROT_ROW_BLOCKS   the first state, the states and the block of each
- *     SYMROT_SCALES                      per block: 0 judges its error against the block's own size (a rate),
- *                                        a positive number against that number (an attitude of unit norm: 1)
+ *     SYMROT_SCALES                      per block: with 0, errors are relative to the block's own size (a rate),
+ *                                        otherwise to this number (an attitude of unit norm: 1)
  *     SYMROT_CONSTANTS, symrot_constants, symrot_jet           constants from parameters; coefficients of the states
- *     SYMROT_INVARIANTS                  number of invariants; if not 0, their text comes before, see projection.c,
+ *     SYMROT_INVARIANTS                  number of invariants; if not 0, their C text precedes, see projection.c,
  *     SYMROT_INVARIANT_PARAMETERS        and the numbers of their parameters, which follow those of the system
- *     SYMROT_ENCLOSED                    whether some terms may hide a feature: see enclosure.h, which is put in here then
+ *     SYMROT_ENCLOSED                    whether some terms may hide a feature: then enclosure.h is inserted here
  * C99 that is also valid C++; no malloc, no globals, no input or output, reentrant.
  *
- * Coefficients are those of the series in (time)/(unit), where the unit is a power of two near the last step: nothing
- * over- or underflows whatever the unit of time of the problem is, and no bit depends on it.
+ * Coefficients belong to the series in time/unit, where the unit is a power of two near the last step. No number over-
+ * or underflows for any unit of time of the problem, and no bit depends on it.
  *
- * The step is the longest at which the last two terms of the series are below the accepted tail of each block; where
- * terms are enclosed, it is shortened until the enclosure proves that their series goes on as its coefficients show.
- * No jet is computed again. Source: A. Jorba, M. Zou, Experimental Mathematics 14 (2005) 99-117, with the order fixed.
+ * The step is the longest at which the last two terms of the series are below the accepted tail of each block. If terms
+ * are enclosed (bounded on discs), it is shortened until the enclosure proves that the omitted terms are small too.
+ * No jet is computed twice. Source: A. Jorba, M. Zou, Experimental Mathematics 14 (2005) 99-117, with the order fixed.
  */
 #ifdef __cplusplus
 extern "C" {
@@ -35,17 +35,17 @@ enum { SYMROT_ROW = 4 + (SYMROT_ORDER + 1)*SYMROT_STATES };  /* one recorded ste
 enum { SYMROT_DONE = 0, SYMROT_PAUSED = 1, SYMROT_FULL = 2, SYMROT_NOT_FINITE = 3, SYMROT_UNDERFLOW = 4 };
 
 typedef struct {
-    double t, t_low;     /* reached so far: the time is their sum */
+    double t, t_low;     /* time reached so far, as their sum */
     double unit;         /* of time, a power of two near the next step; 0 before the first one */
     double stop;         /* end of the span, on either side of t */
-    double tail;         /* of one step of length `pace` or more, relative; a shorter one is allowed less of it */
+    double tail;         /* relative, of one step of length `pace` or more; a shorter step is allowed less */
     double pace;
     double max_step;     /* positive */
     double proven;       /* the last step, if the enclosure held it back, or 0 */
     int64_t next;        /* first sample not yet written */
     int64_t accepted, jets, recorded;
-    int64_t reach;       /* number of the disc that proved most in the last step */
-    int64_t every, since, projected;  /* steps from one projection to the next or 0 for none, since the last; how many */
+    int64_t reach;       /* number of the disc with the best bound in the last step */
+    int64_t every, since, projected;  /* steps between projections, or 0; steps since the last; count */
     double y[SYMROT_STATES], carry[SYMROT_STATES];
     double kept[2*SYMROT_INVARIANTS + 1];  /* the invariants, in pairs, and whether they are known */
 } symrot_run;
@@ -64,18 +64,18 @@ enum { SYMROT_BLOCK_COUNT = (int)(sizeof(symrot_scales)/sizeof(symrot_scales[0])
 #define EACH_BLOCK(b) SYMROT_UNROLLED for (int b = 0; b < SYMROT_BLOCK_COUNT; ++b)
 
 enum { SYMROT_LEAST_CHECKED = SYMROT_ORDER - 8 > SYMROT_ORDER/2 ? SYMROT_ORDER - 8 : SYMROT_ORDER/2 };
-static const double SYMROT_GAP_SLACK = 1e4;      /* earlier terms of smooth motions exceed the geometric series less */
-static const double SYMROT_RISE = 0.4;           /* log2 of a step over the last one whose earlier terms are looked at */
-static const double SYMROT_LEAP = 3.0;           /* log2 of a step over the last one that is checked */
-static const double SYMROT_DEFECT = 1e4;         /* times the tail: how far a first step may fail the equations */
-static const double SYMROT_LEAST_TAIL = 1e-18;   /* below round-off nothing is gained */
+static const double SYMROT_GAP_SLACK = 1e4;      /* smooth motions exceed the geometric series by less */
+static const double SYMROT_RISE = 0.4;           /* log2 of step over last step above which earlier terms count */
+static const double SYMROT_LEAP = 3.0;           /* log2 of the ratio to the last step above which a step is checked */
+static const double SYMROT_DEFECT = 1e4;         /* limit of the defect of a first step, in tails */
+static const double SYMROT_LEAST_TAIL = 1e-18;   /* below round-off a smaller tail gains nothing */
 #if SYMROT_ENCLOSED
-static const double SYMROT_SLACK = 30.0;        /* what enclosures exceed errors by, and less: see docs/step_control.md */
-static const double SYMROT_GROWTH = 1.5;         /* most that a step grows after one that was held back */
+static const double SYMROT_SLACK = 30.0;        /* enclosures exceed errors by this or less: see docs/step_control.md */
+static const double SYMROT_GROWTH = 1.5;         /* largest growth of a step after an enclosure shortened one */
 #endif
-static const double SYMROT_RATE_FLOOR = 1e-3;    /* a rate turns the body by less than this in a step: no need to see it */
+static const double SYMROT_RATE_FLOOR = 1e-3;    /* rad: errors of rates are relative to at least this per step */
 
-/* Return log2(a/b) to 0.09, for a, b >= 0: the bits of a number are nearly its logarithm, and no unit matters. */
+/* Return log2(a/b) to 0.09, for a, b >= 0: the bits of a number are nearly its logarithm; units cancel. */
 static inline double symrot_log2(double a, double b)
 {
     int64_t upper, lower;
@@ -110,7 +110,7 @@ static inline double symrot_size(symrot_v4 (*x)[SYMROT_ORDER + 1], int n, int bl
     return size;
 }
 
-/* Return what the error of a block is compared with: a rate with its largest size about now, if it turns the body. */
+/* Return the size to which errors of a block are relative; for a rate, its size in this step with a lower limit. */
 static inline double symrot_reference(symrot_v4 (*x)[SYMROT_ORDER + 1], double unit, int block)
 {
     const double fixed = symrot_scales[block];
@@ -120,7 +120,7 @@ static inline double symrot_reference(symrot_v4 (*x)[SYMROT_ORDER + 1], double u
 }
 
 /*
- * Return the logarithm of the step in units: the shortest at which a last term reaches the accepted tail of its block.
+ * Return log2 of the shortest step, in units, at which a last term reaches the accepted tail of its block.
  */
 static inline double symrot_step_log(symrot_v4 (*x)[SYMROT_ORDER + 1], double tail, double unit)
 {
@@ -159,7 +159,7 @@ static inline void symrot_set_unit(double unit, double *step)
 
 /*
  * Return the tail allowed to a step of about one unit. Errors of single steps add up about as (number of steps)^(7/4),
- * because an error of the rates turns the body ever further; the tail of a step is its share of the span to that power.
+ * because an error of the rates causes a growing error of the attitude; the tail of a step is its share to that power.
  */
 static inline double symrot_allowed(const symrot_run *run, double unit)
 {
@@ -167,7 +167,7 @@ static inline double symrot_allowed(const symrot_run *run, double unit)
     return tail > SYMROT_LEAST_TAIL ? tail : SYMROT_LEAST_TAIL;
 }
 
-/* Return whether the last two coefficients are all finite: nothing times zero is zero but a finite number. */
+/* Return whether the last two coefficients are all finite: only a finite number times zero is zero. */
 static inline int symrot_finite(symrot_v4 (*x)[SYMROT_ORDER + 1], int order)
 {
     symrot_v4 sum = V_ALL(0.0);
@@ -176,9 +176,9 @@ static inline int symrot_finite(symrot_v4 (*x)[SYMROT_ORDER + 1], int order)
 }
 
 /*
- * Return the logarithm of a step that is longer than the last one, or less where its last terms happen to vanish, as those
- * of a body do that a torque t moves from rest: its attitude has every third coefficient alone. So earlier terms count
- * too, where they are far above a geometric series from 1 to the tail.
+ * Return log2 of a step that is longer than the last one, shortened if its last terms happen to be zero. Example: a
+ * torque t moves a body from rest, and only every third coefficient of the attitude is not zero. Earlier terms
+ * therefore count too, if they are far above a geometric series from 1 to the tail.
  */
 static SYMROT_APART double symrot_without_gap(symrot_v4 (*x)[SYMROT_ORDER + 1], double tail, double unit, double longest)
 {
@@ -206,7 +206,7 @@ static SYMROT_APART double symrot_first_unit(const symrot_v4 *c, double t, doubl
     }
     if (tries == 64) return 0.0;
     EACH_BLOCK(b) {
-        const double fixed = symrot_scales[b], rest = sqrt(symrot_size(x, 1, b)/unit);  /* as it turns from rest */
+        const double fixed = symrot_scales[b], rest = sqrt(symrot_size(x, 1, b)/unit);  /* as from rest */
         const double size = fixed > 0.0 ? fixed : symrot_larger(symrot_size(x, 0, b), rest);
         if (size > 0.0) {
             fastest = symrot_larger(fastest, symrot_size(x, 1, b)/size/unit);
@@ -219,9 +219,9 @@ static SYMROT_APART double symrot_first_unit(const symrot_v4 *c, double t, doubl
 }
 
 /*
- * Return the longest part of a step of s units at whose end, and at whose middle, the series obeys the equations.
+ * Return the longest part of a step of s units at whose end and middle the series satisfies the equations.
  *
- * No coefficient shows a power beyond the last one: omega_2 that grows as t^43 from rest has none.
+ * The coefficients do not show powers beyond the last one, for example if omega_2 grows as t^43 from rest.
  */
 static SYMROT_APART double symrot_checked(const symrot_v4 *c, symrot_v4 (*x)[SYMROT_ORDER + 1], const symrot_v4 *carry,
     double t, double s, const double *step, double tail, double unit)
@@ -250,7 +250,7 @@ static SYMROT_APART double symrot_checked(const symrot_v4 *c, symrot_v4 (*x)[SYM
     return s;
 }
 
-/* Write the lanes of all rows as one vector of states. What a row has too many, the next one writes over. */
+/* Write the lanes of all rows as one vector of states. The next row overwrites the surplus lanes of a row. */
 static inline void symrot_write(const symrot_v4 *rows, double *out)
 {
     EACH_ROW(r) {
@@ -259,7 +259,7 @@ static inline void symrot_write(const symrot_v4 *rows, double *out)
     }
 }
 
-/* Tell the caller the numbers of states and parameters, the order, and the numbers in run->kept. */
+/* Return the numbers of states and parameters, the order, and the length of run->kept. */
 SYMROT_EXPORT void symrot_taylor_sizes(int64_t sizes[4])
 {
     sizes[0] = SYMROT_STATES;
@@ -268,7 +268,7 @@ SYMROT_EXPORT void symrot_taylor_sizes(int64_t sizes[4])
     sizes[3] = 2*SYMROT_INVARIANTS + 1;
 }
 
-/* Return what rounding takes from a + b as the steps of this library keep it: b for a big a, unless it was compiled away. */
+/* Return the rounding error of a + b, as computed in steps: b for a large a, unless the compiler removed it. */
 SYMROT_EXPORT double symrot_taylor_carry(double a, double b)
 {
     const symrot_v4 y = V_ALL(a), d = V_ALL(b), y1 = V_ADD(y, d), rise = V_SUB(y1, y);
@@ -291,7 +291,7 @@ SYMROT_EXPORT void symrot_taylor_jet(double t, const double *y, const double *p,
         EACH_ROW(r) memcpy(out + n*SYMROT_STATES + symrot_starts[r], &x[r][n], (size_t)symrot_sizes[r]*sizeof(double));
 }
 
-/* Evaluate a record of `steps` rows, all in one direction, at `count` times in any order; the ends extrapolate. */
+/* Evaluate a record of `steps` rows, all in one direction, at `count` times in any order; extrapolate at the ends. */
 SYMROT_EXPORT void symrot_taylor_dense(const double *record, int64_t steps, const double *times, int64_t count,
     double *states)
 {
@@ -337,7 +337,7 @@ static SYMROT_APART void symrot_record(double *row, double t, double h, double t
  * in    attempts   most steps to take in this call
  *
  * Returns SYMROT_DONE; SYMROT_PAUSED after `attempts` steps or SYMROT_FULL when the record has no room (call again to
- * continue from where it stands); SYMROT_NOT_FINITE or SYMROT_UNDERFLOW when the motion cannot be followed further.
+ * continue); SYMROT_NOT_FINITE or SYMROT_UNDERFLOW when the motion cannot be followed further.
  */
 SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *times, int64_t count, double *states,
     double *record, int64_t room, int64_t attempts)
@@ -396,7 +396,7 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
             s = h/unit;
         }
 #if SYMROT_ENCLOSED
-        const double most = SYMROT_GROWTH*run->proven;  /* after a step that was held back */
+        const double most = SYMROT_GROWTH*run->proven;  /* after an enclosure shortened a step */
         const int longer = most > 0.0 && fabs(h) > most;
         h = longer ? side*most : h;
         double y[SYMROT_STATES], bars[SYMROT_BLOCK_COUNT];
@@ -411,7 +411,7 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
             logarithm = symrot_log2(s, 1.0);
         }
 #endif
-        if (fresh || logarithm > SYMROT_LEAP) {  /* many coefficients may vanish at a start, and far beyond the last step */
+        if (fresh || logarithm > SYMROT_LEAP) {  /* many coefficients may be zero at a start and far beyond the last step */
             const double held = symrot_checked(c, x, carry, t, s, step, allowed, fabs(unit));
             if (held != s) {
                 s = held;

@@ -1,11 +1,11 @@
 /*
- * Four numbers at once: GNU vectors where the compiler has them, else plain C of the same meaning.
+ * Four numbers at once: GNU vectors if the compiler has them, otherwise plain C with the same meaning.
  *
- * Vectors are no wider than those of the processor they are compiled for: wider ones would live on the stack, written
- * in halves and read whole, for which the processor waits.
+ * Vectors are no wider than the vectors of the processor: wider vectors would be on the stack, written in halves and
+ * read as a whole, which is slow.
  *
- * Included before an emitted jet and taylor.c. Define SYMROT_PAIRS to take two vectors of two, SYMROT_PLAIN to take
- * plain C in any case.
+ * Included before an emitted jet and taylor.c. Define SYMROT_PAIRS to use two vectors of two, SYMROT_PLAIN to use plain
+ * C.
  */
 #include <float.h>
 #include <math.h>
@@ -22,11 +22,11 @@
 #define SYMROT_RESTRICT restrict
 #endif
 
-/* The hyperbolic secant, which is 0 where the cosine overflows. */
+/* The hyperbolic secant, which is 0 if the cosine overflows. */
 static inline double sech(double x) { return 1.0/cosh(x); }
 
 #if defined(__GNUC__)
-#define SYMROT_APART __attribute__((noinline))  /* code of its own: registers are given out for its loops alone */
+#define SYMROT_APART __attribute__((noinline))  /* not inlined: its loops then have all registers */
 #define SYMROT_ALIGNED __attribute__((aligned(32)))
 #else
 #define SYMROT_APART
@@ -147,9 +147,9 @@ static inline symrot_v4 symrot_pick(symrot_v4 v, symrot_v4 u, int i, int j, int 
         k < 4 ? v.lane[k & 3] : u.lane[k & 3], l < 4 ? v.lane[l & 3] : u.lane[l & 3]);
 }
 #endif
-typedef symrot_v4 symrot_v;  /* as series.h calls it */
+typedef symrot_v4 symrot_v;  /* its name in series.h */
 
-/* a b + c with one rounding, whatever the compiler makes of V_FMA: the difference a t - b of large numbers is exact */
+/* a b + c with one rounding, unlike V_FMA in some builds: the difference a t - b of large numbers is exact */
 static inline symrot_v4 symrot_fused(symrot_v4 a, symrot_v4 b, symrot_v4 c)
 {
 #define SYMROT_FUSED(i) fma(V_LANE(a, i), V_LANE(b, i), V_LANE(c, i))

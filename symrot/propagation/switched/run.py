@@ -428,7 +428,7 @@ class SwitchedRun(RunState):
             self.order += changed
             self.settled += 1
             if self.settled > MOST_SWITCHES:
-                raise IntegrationStopped(self.t, "its switches settle endlessly", self.end)
+                raise IntegrationStopped(self.t, "its switches change endlessly at this time", self.end)
         self.modes = settled
         return bool(changed)
 
@@ -595,7 +595,7 @@ class SwitchedRun(RunState):
             return self.system.regime(self.held, modes)
         except InputError:
             raise IntegrationStopped(
-                self.t, f"the motion would slide along {self._names_of_held()}, in no single way", self.end
+                self.t, f"the motion would slide along {self._names_of_held()}, but not in exactly one way", self.end
             ) from None
 
     def _names_of_held(self) -> str:
@@ -639,7 +639,7 @@ class SwitchedRun(RunState):
             if float(np.abs(rest).max()) <= PARALLEL * size:
                 functions = f"{self._names_of_held()} and {self._name(mode)} at once"
                 raise IntegrationStopped(
-                    self.t, f"the motion would slide along {functions}, in no single way", self.end
+                    self.t, f"the motion would slide along {functions}, but not in exactly one way", self.end
                 )
 
     def _count(self) -> None:
