@@ -169,6 +169,7 @@ def _explain(options: Namespace) -> int:
 
 def _emit(options: Namespace) -> int:
     from symrot.workshop import kernel_files as kernels
+    from symrot.workshop.kernel_text import kernel_text
 
     if sum(map(bool, (options.kernel, options.all, options.check, options.list))) != 1:
         raise InputError("emit: expected exactly one of a KERNEL or SCENE, --all, --check and --list "
@@ -185,13 +186,14 @@ def _emit(options: Namespace) -> int:
     if options.all:
         written = kernels.write_all(options.directory or Path("generated"), targets, progress)
     else:
-        bounds = kernels.stored_bounds(options.kernel, options.directory) if options.target != "numpy" else None
-        texts = kernels.kernel_files(options.kernel, options.target or "c", bounds)
+        kernel = kernel_text(options.kernel)
+        bounds = kernels.stored_bounds(kernel, options.directory) if options.target != "numpy" else None
+        texts = kernels.kernel_files(kernel, options.target or "c", bounds)
         if options.directory is None:
             sys.stdout.write("\n".join(texts.values()))
             return OK
         if options.target != "numpy":
-            texts |= kernels.certificate_files(options.kernel, options.directory, bounds)
+            texts |= kernels.certificate_files(kernel, options.directory, bounds)
         written = kernels.write_files(options.directory, texts)
     progress("")
     say(str(path) for path in written)

@@ -15,14 +15,14 @@ from symrot.certificates.rounding.bounds_text import region_phrases
 from symrot.certificates.rounding.intervals import DIGITS
 from symrot.certificates.rounding.library import RoundingProblem, largest_box, library_problem
 from symrot.certificates.rounding.region import UNIT_NORM, Region
-from symrot.certificates.rounding.scenes import ANY, SceneInputs, scene_problem
+from symrot.certificates.rounding.scenes import ANY, scene_problem
 from symrot.errors import InputError
 from symrot.kernels.library import definition, kernel_names
 from symrot.report.layout import apart, columns
 from symrot.scene.file import shipped_names
 from symrot.scene.reader import nearest
-from symrot.workshop.emit import Emitted, emit, scene_inputs
 from symrot.workshop.input_ranges import input_box
+from symrot.workshop.kernel_text import KernelText, LibraryText, SceneText, kernel_text
 
 __all__ = ["facts", "lines", "require_known", "rounding_problem", "section", "target_facts", "target_lines"]
 
@@ -31,14 +31,14 @@ PRECISIONS = {"double": "", "float": "f"}
 
 
 def rounding_problem(
-    kernel: str, ranges: Sequence[str], precision: str
+    kernel: KernelText, ranges: Sequence[str], precision: str
 ) -> tuple[Operations, RoundingProblem, dict[str, Any]]:
     """Return the operations of a kernel, the problem of bounding their rounding errors, and the box of its inputs.
 
     Parameters
     ----------
-    kernel : str
-        A kernel of the library, the name of a shipped scene or the path of a scene file.
+    kernel : KernelText
+        A kernel of the library or the kernel of a scene.
     ranges : sequence of str
         ``NAME=LOW:HIGH``, in place of the kernel's own range of an input. NAME is a component ("theta"), an index
         ("angles[1]") or a physical constant of a scene ("A"); the range of a constant determines the ranges of the
@@ -49,9 +49,14 @@ def rounding_problem(
     Raises
     ------
     InputError
-        For an unknown kernel, a malformed range, or an input without a range.
+        For a malformed range, or an input without a range.
     """
-    operations, kernel_problem, inputs = (_of_library if kernel in kernel_names() else _of_scene)(kernel, precision)
+    operations, inputs = _operations(kernel, precision), None
+    if isinstance(kernel, SceneText):
+        inputs = kernel.inputs
+        kernel_problem = scene_problem(inputs, operations)
+    else:
+        kernel_problem = library_problem(definition(kernel.name), operations)
     box = input_box(kernel_problem, inputs, ranges)
     lacking = [f"--box {symbol}=LOW:HIGH" for place, symbol in kernel_problem.symbols.items() if place not in box]
     if lacking:
@@ -74,15 +79,12 @@ def _check_unit(
         raise InputError(f"--box: expected a box that contains a unit quaternion, got {ranges}")
 
 
-def _operations(emitted: Emitted, suffix: str = "") -> Operations:
-    """Return the operations of an emitted kernel, under the kernel's name without the prefix ``symrot_``."""
-    operations = read_kernel(emitted.source, f"{emitted.function}{suffix}", f"{emitted.name}.c")
-    return replace(operations, name=f"{emitted.name}{suffix}")
-
-
-def _of_library(kernel: str, precision: str) -> tuple[Operations, RoundingProblem, None]:
-    operations = _operations(emit(kernel), PRECISIONS[precision])
-    return operations, library_problem(definition(kernel), operations), None
+def _operations(kernel: KernelText, precision: str) -> Operations:
+    """Return the operations of a kernel, under the kernel's name without the prefix ``symrot_``."""
+    if precision != "double" and isinstance(kernel, SceneText):
+        raise InputError(f"--precision: expected double for a scene, whose kernel is in double only, got {precision}")
+    name = f"{kernel.name}{PRECISIONS[precision]}"
+    return replace(read_kernel(kernel.c()[0], f"symrot_{name}", f"{kernel.name}.c"), name=name)
 
 
 def require_known(kernel: str) -> None:
@@ -98,29 +100,25 @@ def require_known(kernel: str) -> None:
     raise InputError(f"{message} ({hint})" if hint else message)
 
 
-def _of_scene(scene: str, precision: str) -> tuple[Operations, RoundingProblem, SceneInputs]:
-    require_known(scene)
-    if precision != "double":
-        raise InputError(f"--precision: expected double for a scene, whose kernel is in double only, got {precision}")
-    emitted = emit(scene)
-    operations = _operations(emitted)
-    inputs = scene_inputs(scene)
-    return operations, scene_problem(inputs, operations), inputs
+def _known_text(kernel: str) -> KernelText:
+    """Return the texts of a kernel of the library or of a scene, after :func:`require_known`."""
+    require_known(kernel)
+    return kernel_text(kernel)
 
 
-def section(kernel: str, ranges: Sequence[str]) -> dict[str, Any]:
+def section(kernel: KernelText, ranges: Sequence[str]) -> dict[str, Any]:
     """Return the section of a kernel's certificate about rounding errors, in all precisions.
 
-    The parameters are as for :func:`facts`.
+    The parameters are as for :func:`rounding_problem`.
     """
     operations, kernel_problem, box = rounding_problem(kernel, ranges, "double")
-    single = rounding_problem(kernel, ranges, "float")[0] if kernel in kernel_names() else None
+    single = rounding_problem(kernel, ranges, "float")[0] if isinstance(kernel, LibraryText) else None
     with _in_scene_names(kernel):
         return rounding_section(operations, single, box, kernel_problem.region)
 
 
 @contextmanager
-def _in_scene_names(kernel: str) -> Iterator[None]:
+def _in_scene_names(kernel: KernelText) -> Iterator[None]:
     """Replace the index texts of states in error messages, such as "y[2]", by the names that the scene gives them."""
     try:
         yield
@@ -134,25 +132,28 @@ def facts(kernel: str, ranges: Sequence[str], precision: str) -> dict[str, Any]:
 
     Parameters
     ----------
-    kernel, ranges, precision
+    kernel : str
+        A kernel of the library, the name of a shipped scene or the path of a scene file.
+    ranges, precision
         As for :func:`rounding_problem`.
 
     Raises
     ------
     InputError
-        As :func:`rounding_problem`, and for a box on which an output has no bound.
+        As :func:`rounding_problem`, and for an unknown kernel or a box on which an output has no bound.
     """
-    operations, kernel_problem, box = rounding_problem(kernel, ranges, precision)
-    own = {"kernel": operations.name, "names": _names(kernel)}
-    with _in_scene_names(kernel):
+    text = _known_text(kernel)
+    operations, kernel_problem, box = rounding_problem(text, ranges, precision)
+    own = {"kernel": operations.name, "names": _names(text)}
+    with _in_scene_names(text):
         return own | rounding_section(operations, None, box, kernel_problem.region)
 
 
-def _names(kernel: str) -> dict[str, str]:
+def _names(kernel: KernelText) -> dict[str, str]:
     """Return the scene's names of a kernel's inputs and outputs by index text, such as "y[2]"."""
-    if kernel in kernel_names():
+    if not isinstance(kernel, SceneText):
         return {}
-    return {place: symbol for place, (symbol, _) in scene_inputs(kernel).components.items()}
+    return {place: symbol for place, (symbol, _) in kernel.inputs.components.items()}
 
 
 def _box_text(box: Mapping[str, Any], names: Mapping[str, str]) -> str:
@@ -211,9 +212,10 @@ def target_facts(
         Inputs whose ranges are resized. If it is empty: all inputs of a kernel of the library; of a scene, all inputs
         with a range of nonzero finite width that are not components of its quaternion.
     """
-    operations, kernel_problem, box = rounding_problem(kernel, ranges, precision)
+    text = _known_text(kernel)
+    operations, kernel_problem, box = rounding_problem(text, ranges, precision)
     places = [kernel_problem.place(name) for name in variables] or (
-        None if kernel in kernel_names() else _free(kernel_problem, box)
+        None if isinstance(text, LibraryText) else _free(kernel_problem, box)
     )
     for place in places or ():
         if box[place] == ANY:
@@ -221,11 +223,11 @@ def target_facts(
             raise InputError(
                 f"--variable {name}: expected an input that {operations.name} uses; it does not use {name}"
             )
-    with _in_scene_names(kernel):
+    with _in_scene_names(text):
         size, largest = largest_box(operations, box, target, places, kernel_problem.region)
         bounds = bound_outputs(operations, largest, kernel_problem.region)
     return {
-        "kernel": operations.name, "names": _names(kernel), "target": target, "size": size,
+        "kernel": operations.name, "names": _names(text), "target": target, "size": size,
         "box": {place: [float(low).hex(), float(high).hex()] for place, (low, high) in largest.items()},
         "largest_error": max(each.bound for each in bounds).hex(),
         "unit_groups": [list(group) for group in kernel_problem.region.unit],

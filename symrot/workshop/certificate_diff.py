@@ -13,8 +13,9 @@ from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.scene.file import shipped_names
-from symrot.workshop.emit import kernel_names, scene_kernel_name, subject
+from symrot.workshop.emit import kernel_names
 from symrot.workshop.kernel_files import stored_bounds
+from symrot.workshop.kernel_text import kernel_text, scene_kernel_name
 
 __all__ = ["difference", "kernel_of"]
 
@@ -37,7 +38,8 @@ def difference(certificate: Path) -> str:
     kernel = kernel_of(name)
     if kernel is None:
         return ""
-    emitted = subject(kernel, stored_bounds(kernel, certificate.parent))
+    printed = kernel_text(kernel)
+    emitted = printed.under_test(stored_bounds(printed, certificate.parent))
     for file, expected in emitted.files.items():
         try:
             text = read_input(certificate.parent / file, LARGEST).decode(errors="replace")

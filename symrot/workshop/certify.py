@@ -18,8 +18,9 @@ from symrot.scene.file import names_with_kernels
 from symrot.scene.reader import nearest
 from symrot.workshop import object_code
 from symrot.workshop.certificate_diff import difference, kernel_of
-from symrot.workshop.emit import emit, kernel_names, scene_kernel_name, subject
+from symrot.workshop.emit import kernel_names
 from symrot.workshop.kernel_files import SCENES, certificate_files, kernel_files, stored_bounds, write_files
+from symrot.workshop.kernel_text import kernel_text, scene_kernel_name
 from symrot.workshop.workers import workers
 
 __all__ = [
@@ -58,7 +59,7 @@ def _proven_statement(data: Data) -> Data | None:
     key = f"statement about {name} with {json.dumps(bounds)} by {_programs()}"
     stored = build_cache.fetch(key)
     if stored is None:
-        stored = json.dumps(proven_statement(subject(name, bounds)))
+        stored = json.dumps(proven_statement(kernel_text(name).under_test(bounds)))
         build_cache.store(key, stored)
     statement: Data = json.loads(stored)
     return statement
@@ -210,14 +211,14 @@ def certify(
         object_code.require_compiler()
     if ranges and not bounds:
         raise InputError(f"--box: expected --box or --no-bounds, got both ({ranges[0]!r}); leave out one of them")
-    rounding = None
+    printed, rounding = kernel_text(name), None
     if bounds and (ranges or name in kernel_names()):
         progress("bounding ..")
-        rounding = section(name, ranges)
-    scene_bounds = None if name in kernel_names() else rounding or stored_bounds(name, directory)
+        rounding = section(printed, ranges)
+    scene_bounds = None if name in kernel_names() else rounding or stored_bounds(printed, directory)
     progress("proving ..")
-    texts = kernel_files(name, "c", scene_bounds)
-    (file, text), = certificate_files(name, directory or Path(), scene_bounds).items()  # fmt: skip
+    texts = kernel_files(printed, "c", scene_bounds)
+    (file, text), = certificate_files(printed, directory or Path(), scene_bounds).items()  # fmt: skip
     slots: Data = {key: value for key, value in json.loads(text).items() if key in ("rounding", "objects")}
     slots |= {"rounding": rounding} if rounding else {}
     if objects:
@@ -315,7 +316,7 @@ def _emitted(path: str) -> str:
         raise InputError(f"{path}: expected a readable file of at most {LARGEST // 1_000_000} MB, got {why}") from None
     if file.name.endswith(".cert.json"):
         audit_file(file)
-    elif text != emit(kernel, "c", stored_bounds(kernel, file.parent)).source:
+    elif text != (printed := kernel_text(kernel)).c(stored_bounds(printed, file.parent))[0]:
         why = difference(file.with_name(f"{name}.cert.json"))
         raise CertificateError(
             f"{path}: expected the text that symrot emits for {kernel}, but the file was edited{why}"

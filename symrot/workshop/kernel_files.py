@@ -20,7 +20,7 @@ from symrot.files.reading import read_input
 from symrot.files.writing import write
 from symrot.kernels.library import definition, kernel_names
 from symrot.scene.file import names_with_kernels
-from symrot.workshop.emit import emit
+from symrot.workshop.kernel_text import KernelText, SceneText, kernel_text
 from symrot.workshop.workers import workers
 
 __all__ = ["certificate_files", "kernel_files", "kernel_lines", "stale", "stored_bounds", "write_all", "write_files"]
@@ -36,50 +36,40 @@ def kernel_lines() -> list[str]:
     return [f"{name:<{width}}  {definition(name).title}" for name in kernel_names()]
 
 
-def kernel_files(kernel: str | Path, target: str, bounds: Mapping[str, Any] | None = None) -> dict[str, str]:
+def kernel_files(kernel: KernelText, target: str, bounds: Mapping[str, Any] | None = None) -> dict[str, str]:
     """Return the files of a kernel of the library or of a scene, as a mapping from file name to text.
 
     In C the header comes first. ``bounds`` are the rounding bounds for the comment at the head of a scene's C file (see
     :func:`symrot.emit`).
     """
-    emitted = emit(kernel, target, bounds)
-    if target == "numpy":
-        return {f"{emitted.name}.py": emitted.source}
-    from symrot.codegen.printing.c_source import MATH_HEADER
-    from symrot.codegen.printing.math_header import math_header
-
-    shared = {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in emitted.source else {}
-    return {f"{emitted.name}.h": emitted.header, f"{emitted.name}.c": emitted.source} | shared
+    return {f"{kernel.name}.py": kernel.numpy} if target == "numpy" else kernel.c_files(bounds)
 
 
 def certificate_files(
-    kernel: str | Path, directory: Path, bounds: Mapping[str, Any] | None = None
+    kernel: KernelText, directory: Path, bounds: Mapping[str, Any] | None = None
 ) -> dict[str, str]:  # fmt: skip
     """Return the certificate file of a kernel, as a mapping from file name to text.
 
     Verdicts on object code from the certificate on disk are kept if they still hold. Bounds of rounding errors are on
     the kernel's own box; for a scene, they are ``bounds``.
     """
-    emitted = emit(kernel, "c", bounds)
-    name = f"{emitted.name}.cert.json"
-    own = json.loads(emitted.certificate).get("rounding")
-    return {name: with_sections(emitted.certificate, _slots(directory / name) | {"rounding": own})}
+    name, certificate = f"{kernel.name}.cert.json", kernel.certificate(bounds)
+    own = json.loads(certificate).get("rounding")
+    return {name: with_sections(certificate, _slots(directory / name) | {"rounding": own})}
 
 
-def stored_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, Any] | None:
+def stored_bounds(kernel: KernelText, directory: Path | None) -> Mapping[str, Any] | None:
     """Return the rounding bounds of a scene's kernel from its certificate in a folder, after an audit of them.
 
     The result is None for a kernel of the library, which has its own bounds. It is also None if there is no
     certificate, or if its bounds are missing, belong to other operations, or fail the check.
     """
-    if directory is None or kernel in kernel_names():
+    if directory is None or not isinstance(kernel, SceneText):
         return None
-    emitted = emit(kernel)
-    name, source = emitted.name, emitted.source
-    section = _slots(directory / f"{name}.cert.json").get("rounding")
+    section = _slots(directory / f"{kernel.name}.cert.json").get("rounding")
     if not isinstance(section, dict):
         return None
-    operations = read_kernel(source, emitted.function, f"{name}.c")
+    operations = read_kernel(kernel.c()[0], f"symrot_{kernel.name}", f"{kernel.name}.c")
     try:
         check_section(section, operations, None)
         check_bounds(section, operations, None)
@@ -99,12 +89,12 @@ def _slots(path: Path) -> dict[str, Any]:
 
 def _files_of(name: str, subfolder: str, targets: Sequence[str], directory: Path) -> dict[str, str]:
     """Return all files of one kernel, its certificate included, as a mapping from path to text."""
-    files: dict[str, str] = {}
+    kernel, files = kernel_text(name), dict[str, str]()
     for target in targets:
-        bounds = stored_bounds(name, directory / target / subfolder) if target == "c" else None
-        texts = kernel_files(name, target, bounds)
+        bounds = stored_bounds(kernel, directory / target / subfolder) if target == "c" else None
+        texts = kernel_files(kernel, target, bounds)
         if target == "c":
-            texts |= certificate_files(name, directory / target / subfolder, bounds)
+            texts |= certificate_files(kernel, directory / target / subfolder, bounds)
         files |= {f"{target}/{subfolder}{file}": text for file, text in texts.items()}
     return files
 

@@ -28,7 +28,8 @@ from symrot.kernels.library import definition, kernel_names
 from symrot.scene.file import names_with_kernels
 from symrot.symbols import constant
 from symrot.workshop import certify as certificates
-from symrot.workshop.emit import emit, subject
+from symrot.workshop.emit import emit
+from symrot.workshop.kernel_text import kernel_text
 from tests.campaigns.certificates.claims import is_weaker_or_equal, same_but_for_bounds
 from tests.campaigns.certificates.mutations import Files, corrupted_c, tampered_certificates
 
@@ -42,7 +43,7 @@ RECHECK = Path(recheck.__file__)
 def kernels(tmp_path_factory):
     """Some kernels in a folder, as they are emitted."""
     directory = tmp_path_factory.mktemp("kernels")
-    return {name: Files(directory, subject(name), emit(name).certificate) for name in SLICE}
+    return {name: Files(directory, kernel_text(name).under_test(), emit(name).certificate) for name in SLICE}
 
 
 def resealed(files, **changes):
@@ -99,7 +100,11 @@ def test_recheck_imports_nothing_of_symrot(kernels, tmp_path):
 @pytest.mark.campaign
 @pytest.mark.parametrize("name", (*kernel_names(), *names_with_kernels()))
 def test_every_certificate_holds(name, tmp_path):
-    assert Files(tmp_path, subject(name), emit(name).certificate).accepted() == ["recheck", "exact", "audit"]
+    assert Files(tmp_path, kernel_text(name).under_test(), emit(name).certificate).accepted() == [
+        "recheck",
+        "exact",
+        "audit",
+    ]
 
 
 # --- laws -------------------------------------------------------------------------------------------------------------
@@ -314,7 +319,7 @@ def test_arguments_that_a_kernel_does_not_take_are_refused(kernels):
 ])  # fmt: skip
 def test_recheck_refuses_a_text_that_rounds_more_than_it_says(name, term, huge, tmp_path):
     """``(x + 1e20) - 1e20`` is x in exact arithmetic, and nearly always 0 in C."""
-    files = Files(tmp_path, subject(name), emit(name).certificate)
+    files = Files(tmp_path, kernel_text(name).under_test(), emit(name).certificate)
     head = files.source.index("{\n", files.source.index(f"void symrot_{name}("))
     place = re.compile(term).search(files.source, head)
     text = f"{files.source[: place.start()]}(({place[0]} + {huge}) - {huge}){files.source[place.end() :]}"
@@ -331,7 +336,7 @@ def test_recheck_refuses_a_text_that_rounds_more_than_it_says(name, term, huge, 
 def test_recheck_refuses_functions_without_the_prefix_of_symrot(tmp_path):
     """A kernel that is consistent under other names is no kernel of symrot."""
     name = "quaternion_dcm"
-    files = Files(tmp_path, subject(name), emit(name).certificate)
+    files = Files(tmp_path, kernel_text(name).under_test(), emit(name).certificate)
     texts = {
         file: (files.directory / file).read_text(encoding="utf-8").replace(f"symrot_{name}", name)
         for file in (f"{name}.c", f"{name}.h")

@@ -15,7 +15,8 @@ from symrot.certificates.audit import audit
 from symrot.certificates.certificate import certificate_json
 from symrot.codegen.printing.math_header import math_header
 from symrot.errors import CertificateError
-from symrot.workshop.emit import emit, subject
+from symrot.workshop.emit import emit
+from symrot.workshop.kernel_text import kernel_text
 from tests.campaigns.certificates.mutations import Files
 
 R, S, V = "euler_zyx_body_rates", "rotation_vector_of_quaternion", "rotation_vector_body_rates"
@@ -133,7 +134,9 @@ HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
 def kernels(tmp_path_factory):
     """Some kernels in a folder, as they are emitted."""
     directory = tmp_path_factory.mktemp("kernels")
-    return {name: Files(directory, subject(name), emit(name).certificate) for name in (R, S, V, T, Q, Z)}
+    return {
+        name: Files(directory, kernel_text(name).under_test(), emit(name).certificate) for name in (R, S, V, T, Q, Z)
+    }
 
 
 @pytest.fixture

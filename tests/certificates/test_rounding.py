@@ -375,7 +375,7 @@ def test_certificates_and_heads_say_the_bounds_of_the_text_under_them():
         section = library_section(name, text)
         assert json.loads((GENERATED / f"{name}.cert.json").read_text(encoding="utf-8"))["rounding"] == section
         head = " ".join(line.strip(" *") for line in text[: text.index("*/")].splitlines())
-        assert f"Errors: {bounds_sentence(name, text)}." in head
+        assert f"Errors: {bounds_sentence(name, section)}." in head
 
 
 @pytest.mark.parametrize("value", ["0", "1/3", "1", "999", "9991/10", "1/1000", "123456789", "1/99999"])

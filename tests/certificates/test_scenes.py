@@ -16,8 +16,9 @@ from symrot.errors import InputError
 from symrot.formula.tree import parse
 from symrot.planning.scene_kernel import bind
 from symrot.workshop.bounds import facts, rounding_problem, section
-from symrot.workshop.emit import emit, scene_inputs
+from symrot.workshop.emit import emit
 from symrot.workshop.kernel_files import stored_bounds
+from symrot.workshop.kernel_text import kernel_text, scene_text
 
 CUBE = ("omega_1=-1:1", "omega_2=-1:1", "omega_3=-1:1")
 PART = ("q0=1/2:1", "q1=0:1/2", "q2=0:1/2", "q3=0:1/2")
@@ -35,8 +36,8 @@ def _options(ranges):
 @pytest.mark.parametrize("scene", BOXES)
 def test_no_error_is_above_its_bound(scene):
     """In exact arithmetic, at the same floating-point inputs: polynomials, so that Fractions decide."""
-    operations, _, box = rounding_problem(scene, BOXES[scene], "double")
-    (part,) = section(scene, BOXES[scene])["precisions"]
+    operations, _, box = rounding_problem(kernel_text(scene), BOXES[scene], "double")
+    (part,) = section(kernel_text(scene), BOXES[scene])["precisions"]
     bounds = {each["output"]: Fraction(float.fromhex(each["absolute"])) for each in part["outputs"]}
     draw, worst = Random(5), dict.fromkeys(bounds, 0.0)
     for _ in range(150):
@@ -119,7 +120,7 @@ def test_a_forged_bound_is_not_printed_again(tmp_path, capsys, monkeypatch, part
     emitted = emit("t_handle")
     check_section(data["rounding"], read_kernel(emitted.source, emitted.function, "t_handle_rates.c"), None)
     path.write_text(json.dumps(data), encoding="utf-8")
-    assert stored_bounds("t_handle", Path("k")) is None
+    assert stored_bounds(kernel_text("t_handle"), Path("k")) is None
     assert main(["emit", "t_handle", "-o", "k"]) == 0
     assert "Errors:" not in Path("k/t_handle_rates.c").read_text(encoding="utf-8")
     assert json.loads(path.read_text(encoding="utf-8")).get("rounding") is None
@@ -142,11 +143,11 @@ def test_bounds_of_a_scene_file_and_without_any(tmp_path, capsys, monkeypatch):
 
 def test_time_is_the_span_of_the_scene_and_parameters_are_points():
     _, problem, box = rounding_problem(
-        "gravity_gradient_satellite", [f"omega_{i}=-0.01:0.01" for i in (1, 2, 3)], "double"
+        kernel_text("gravity_gradient_satellite"), [f"omega_{i}=-0.01:0.01" for i in (1, 2, 3)], "double"
     )
     assert box["t"] == (0, 28400) and problem.region.unit == (("y[3]", "y[4]", "y[5]", "y[6]"),)
     assert all(low == high for place, (low, high) in box.items() if place[0] == "p")
-    _, _, free = rounding_problem("t_handle", CUBE, "double")
+    _, _, free = rounding_problem(kernel_text("t_handle"), CUBE, "double")
     emitted = emit("t_handle")
     operations = read_kernel(emitted.source, emitted.function, "t_handle_rates.c")
     assert list(free) == list(operations.inputs) and free["t"][1] > 10**308  # not used: any
@@ -163,8 +164,8 @@ def test_time_is_the_span_of_the_scene_and_parameters_are_points():
 def test_parameters_of_constants_in_their_ranges_are_in_the_box(scene, ranges):
     """Drawn constants give parameters inside, and the ends are not far outside of what is met."""
     free = [f"{symbol}=-1/2:1/2" for symbol in ("omega_1", "omega_2", "omega_3") if symbol in _states(scene)]
-    _, _, box = rounding_problem(scene, [*free, *ranges], "double")
-    inputs, draw = scene_inputs(scene), Random(3)
+    _, _, box = rounding_problem(kernel_text(scene), [*free, *ranges], "double")
+    inputs, draw = scene_text(scene).inputs, Random(3)
     wide = {name: list(map(Fraction, ends.split(":"))) for name, ends in (text.split("=") for text in ranges)}
     for place, parameter in inputs.formulas.items():
         met = []
@@ -181,7 +182,7 @@ def test_parameters_of_constants_in_their_ranges_are_in_the_box(scene, ranges):
 
 
 def _states(scene):
-    return [symbol for symbol, _ in scene_inputs(scene).components.values()]
+    return [symbol for symbol, _ in scene_text(scene).inputs.components.values()]
 
 
 def test_a_range_of_a_constant_is_as_wide_as_the_parameters_it_makes():
@@ -197,10 +198,12 @@ def test_a_range_of_a_constant_is_as_wide_as_the_parameters_it_makes():
     for formula in ("1/a", "sqrt(a)", "a**-2"):
         with pytest.raises(InputError, match=r"is a finite number, got a -1 \.\. 2"):
             parameter_range("p", parse(formula), {}, {"a": ends})
-    _, _, points = rounding_problem("t_handle", CUBE, "double")
-    exact = scene_inputs("t_handle").constants["A"]
+    _, _, points = rounding_problem(kernel_text("t_handle"), CUBE, "double")
+    exact = scene_text("t_handle").inputs.constants["A"]
     _, _, same = rounding_problem(
-        "t_handle", (*CUBE, f"A={exact.limit_denominator(10**9)}:{exact.limit_denominator(10**9)}"), "double"
+        kernel_text("t_handle"),
+        (*CUBE, f"A={exact.limit_denominator(10**9)}:{exact.limit_denominator(10**9)}"),
+        "double",
     )
     assert all(abs(same[place][0] / points[place][0] - 1) < 1e-8 for place in ("p[0]", "p[1]", "p[2]"))
 

@@ -54,9 +54,11 @@ def library_region(name: str, source: str) -> Section:
     }  # fmt: skip
 
 
-def bounds_sentence(name: str, source: str) -> str:
-    """Return the bounds of a library kernel, the largest error of each output array, as text without a full stop."""
-    section = library_section(name, source)
+def bounds_sentence(name: str, section: Section | str) -> str:
+    """Return the bounds of a library kernel, the largest error of each output array, as text without a full stop.
+
+    ``section`` is the result of :func:`library_section`.
+    """
     if isinstance(section, str):
         return f"no bound; {section.partition(': ')[2]}"
     kernel = definition(name)

@@ -383,7 +383,7 @@ SAMPLE = (
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the campaigns and print what survived; exit 1 if anything did."""
-    from symrot.workshop.emit import emit, subject
+    from symrot.workshop.kernel_text import kernel_text
 
     parser = ArgumentParser(
         prog="python -m tests.campaigns.certificates.mutations", description="Corrupt kernels and certificates."
@@ -399,7 +399,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         for name in SAMPLE:
             folder = Path(directory) / name
             folder.mkdir()
-            kernels.append(Files(folder, subject(name), emit(name).certificate))
+            kernels.append(Files(folder, kernel_text(name).under_test(), kernel_text(name).certificate()))
         for title, run in (
             ("corrupted C files", partial(corrupted_c, kernels, options.c, random)),
             ("tampered certificates", partial(tampered_certificates, kernels, options.certificates, random, False)),

@@ -1,0 +1,204 @@
+"""The texts of one kernel of the library or of one scene: C, NumPy and certificate, all from one derivation.
+
+Each text is printed at its first use and at most once; only the comment at the head of a scene's C file depends on the
+rounding bounds that it states.
+"""
+
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from functools import cache, cached_property
+from pathlib import Path
+from typing import Any
+
+from symrot.certificates.certificate import KernelUnderTest, certificate_text, with_sections
+from symrot.certificates.kernel_under_test import library_kernel_under_test, scene_kernel_under_test
+from symrot.certificates.rounding.bounds_text import bounds_sentence, library_section
+from symrot.certificates.rounding.scenes import SceneInputs, header_lines
+from symrot.codegen.library_kernels import kernel_description, kernel_program
+from symrot.codegen.lowering.lower import Lowered
+from symrot.codegen.printing.banner import Description
+from symrot.codegen.printing.c_source import DOUBLE, FLOAT, MATH_HEADER, c_functions, c_header, with_head
+from symrot.codegen.printing.math_header import math_header
+from symrot.codegen.printing.numpy_source import numpy_source
+from symrot.codegen.scene_kernels import rates_program, scene_description, with_values
+from symrot.dynamics.equations import Equations, equations_of_motion
+from symrot.errors import InputError
+from symrot.formula.program import Program
+from symrot.kernels.library import definition, kernel_names
+from symrot.planning.plan import Plan, make_plan
+from symrot.planning.scene_kernel import bind
+from symrot.scene.scene import Scene, load_scene
+
+__all__ = ["KernelText", "SceneText", "kernel_text", "scene_kernel_name", "scene_text"]
+
+Bounds = Mapping[str, Any]
+
+
+class KernelText(ABC):
+    """The texts of one kernel; ``bounds``, where they are an argument, are those of :func:`symrot.emit`."""
+
+    name: str
+    numpy_folder: str  # relative to the folder of the certificate
+
+    @abstractmethod
+    def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
+        """Return the C source and its header."""
+
+    @property
+    @abstractmethod
+    def numpy(self) -> str:
+        """The NumPy source."""
+
+    @abstractmethod
+    def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
+        """Return the kernel with its texts, as the object that a certificate is made for."""
+
+    def rounding(self, bounds: Bounds | None) -> Bounds | None:
+        """Return the section ``rounding`` of the certificate, or None."""
+        return bounds
+
+    def certificate(self, bounds: Bounds | None = None) -> str:
+        """Return the text of the certificate; raise CertificateError if a proof fails."""
+        text, section = certificate_text(self.under_test(bounds)), self.rounding(bounds)
+        return with_sections(text, {"rounding": section}) if isinstance(section, dict) else text
+
+    def c_files(self, bounds: Bounds | None = None) -> dict[str, str]:
+        """Return the files in C as a mapping from name to text, the header first."""
+        source, header = self.c(bounds)
+        shared = {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in source else {}
+        return {f"{self.name}.h": header, f"{self.name}.c": source} | shared
+
+    def _certified_files(self, bounds: Bounds | None) -> dict[str, str]:
+        """Return the files that a certificate is about, in the order of its list: the C source comes first."""
+        files, source = self.c_files(bounds), f"{self.name}.c"
+        return {source: files[source]} | files | {f"{self.numpy_folder}/{self.name}.py": self.numpy}
+
+
+class LibraryText(KernelText):
+    """The texts of a kernel of the library, which has its own box and its own bounds."""
+
+    numpy_folder = "../numpy"
+
+    def __init__(self, name: str) -> None:
+        self.name, self._definition = name, definition(name)
+
+    def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
+        """Return the C source and its header; the kernel's own bounds replace ``bounds``."""
+        return self._c
+
+    @cached_property
+    def _functions(self) -> str:
+        return c_functions(kernel_program(self.name), (DOUBLE, FLOAT), near=True)
+
+    @cached_property
+    def _section(self) -> dict[str, Any] | str:
+        return library_section(self.name, self._functions)
+
+    @cached_property
+    def _c(self) -> tuple[str, str]:
+        """The head states the bounds of the operations below it, so the operations are printed and bounded first."""
+        program = kernel_program(self.name)
+        description = kernel_description(self._definition, "c", bounds_sentence(self.name, self._section))
+        return with_head(program, description, self._functions), c_header(program, description, (DOUBLE, FLOAT))
+
+    @cached_property
+    def numpy(self) -> str:
+        """The NumPy source."""
+        return numpy_source(kernel_program(self.name), kernel_description(self._definition, "numpy"))
+
+    def rounding(self, bounds: Bounds | None) -> Bounds | None:
+        """Return the kernel's own bounds, or None if it has none."""
+        return self._section if isinstance(self._section, dict) else None
+
+    def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
+        """Return the kernel with its texts, formulas and laws."""
+        description = kernel_description(self._definition, "c")
+        return library_kernel_under_test(self._definition, description, self._certified_files(bounds))
+
+
+class SceneText(KernelText):
+    """The texts of the kernel of a scene's equations of motion, which are derived once.
+
+    Parameters
+    ----------
+    scene : Scene
+        A scene whose torques are all formulas; InputError is raised for another torque, or if no state is integrated.
+    """
+
+    numpy_folder = "../../numpy/scenes"
+
+    def __init__(self, scene: Scene) -> None:
+        self.plan: Plan = make_plan(scene)
+        self.scene, self.name = self.plan.scene, scene_kernel_name(self.plan.scene.name)
+        if not self.plan.states:
+            raise InputError(
+                f"{self.scene.name}: expected a scene with states to integrate; all its states are constant"
+            )
+
+    @cached_property
+    def _equations(self) -> Equations:
+        return equations_of_motion(self.plan.structure)
+
+    @cached_property
+    def _lowered(self) -> Lowered:
+        return rates_program(self._equations, self.name)
+
+    @cached_property
+    def _program(self) -> Program:
+        return with_values(self._lowered.program, self._lowered.parameters, self.plan.constants)
+
+    @cached_property
+    def _functions(self) -> str:
+        return c_functions(self._program)
+
+    def _description(self, target: str, lines: tuple[tuple[str, str], ...] = ()) -> Description:
+        return scene_description(self.scene.title, self.scene.name, target, lines)
+
+    def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
+        """Return the C source and its header, whose head comments state the bounds."""
+        description = self._description("c", header_lines(self.inputs, bounds) if bounds else ())
+        return with_head(self._program, description, self._functions), c_header(self._program, description)
+
+    @cached_property
+    def numpy(self) -> str:
+        """The NumPy source."""
+        return numpy_source(self._program, self._description("numpy"))
+
+    def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
+        """Return the kernel with its texts and equations."""
+        lowered, files = self._lowered, self._certified_files(bounds)
+        return scene_kernel_under_test(
+            self._equations, lowered.program, lowered.parameters, self._description("c"), files
+        )
+
+    @cached_property
+    def inputs(self) -> SceneInputs:
+        """The arguments of the kernel, values and formulas of its parameters, and the time span of the scene."""
+        parameters, constants = self._lowered.parameters, self.plan.constants
+        formulas = {f"p[{place}]": parameter for place, parameter in enumerate(parameters)}
+        arguments, values = self._lowered.program.signature.arguments, tuple(bind(parameters, constants))
+        return SceneInputs(arguments, values, self.scene.span[:2], formulas, constants)
+
+
+def kernel_text(kernel: KernelText | Scene | str | Path) -> KernelText:
+    """Return the texts of a kernel of the library, which is printed once per process, or of a scene."""
+    if isinstance(kernel, KernelText):
+        return kernel
+    return _library_text(kernel) if isinstance(kernel, str) and kernel in kernel_names() else scene_text(kernel)
+
+
+@cache
+def _library_text(name: str) -> LibraryText:
+    return LibraryText(name)
+
+
+def scene_text(scene: Scene | str | Path) -> SceneText:
+    """Return the texts of the kernel of a scene, of a shipped scene given by its name, or of a scene file."""
+    return SceneText(scene if isinstance(scene, Scene) else load_scene(scene))
+
+
+def scene_kernel_name(scene: str) -> str:
+    """Return the name of a scene's own kernel."""
+    name = re.sub(r"\W", "_", f"{scene}_rates", flags=re.ASCII)
+    return name if name[0].isalpha() else f"scene_{name}"
