@@ -2,7 +2,7 @@
  * Many motions by Taylor series, one in each SIMD lane, each with its own step; a lane whose motion ends takes the
  * next.
  *
- * Included after lanes.h, an emitted system and series.h, in one translation unit. The system defines
+ * Included after library.h, lanes.h, an emitted system and series.h, in one translation unit. The system defines
  *     SYMROT_STATES, SYMROT_PARAMETERS   numbers of states N and parameters
  *     SYMROT_ORDER                       order of the series, even
  *     SYMROT_BLOCKS, SYMROT_EDGES, SYMROT_SCALES   blocks of states with separate error norms, as in taylor.c
@@ -17,16 +17,8 @@
 extern "C" {
 #endif
 
-#if defined(_WIN32)
-#define SYMROT_EXPORT __declspec(dllexport)
-#else
-#define SYMROT_EXPORT
-#endif
-
 #define L SYMROT_LANES
 #define N SYMROT_STATES
-
-enum { SYMROT_DONE = 0, SYMROT_PAUSED = 1, SYMROT_NOT_FINITE = 3, SYMROT_UNDERFLOW = 4, SYMROT_TOO_MANY = 5 };
 
 /* The task of a thread: `legs` parts of motions, each from t0 to one side of it. */
 typedef struct {

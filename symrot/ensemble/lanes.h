@@ -4,20 +4,10 @@
  * Included before an emitted jet and lanes.c. Every operation acts on each lane separately, with the same rounding, so
  * that the bits of a lane do not depend on the others. Define SYMROT_LANES as their number, SYMROT_PLAIN for plain C.
  */
-#include <float.h>
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
-
 #if defined(__FAST_MATH__)
 #error "compensated sums do not survive -ffast-math: compile the lanes without it"
 #endif
 
-#if defined(__cplusplus)
-#define SYMROT_RESTRICT __restrict
-#else
-#define SYMROT_RESTRICT restrict
-#endif
 /* The hyperbolic secant, which is 0 if the cosine overflows. */
 static inline double sech(double x) { return 1.0/cosh(x); }
 #if defined(__GNUC__) && !defined(SYMROT_PLAIN)

@@ -87,9 +87,9 @@ def translation_unit(
 def wrap_translation_unit(definitions: str, width: int | None = None) -> str:
     """Return the C source of a library from the printed series of its rates; see :func:`translation_unit`."""
     head = "" if width is None else "#define SYMROT_PLAIN\n" if width == 1 else f"#define SYMROT_LANES {width}\n"
-    paths = ("ensemble/lanes.h", "propagation/steppers/series.h", "ensemble/lanes.c")
-    operations, series, steps = map(c_text, paths)
-    return head + "\n".join((operations, definitions, series, steps))
+    paths = ("propagation/steppers/library.h", "ensemble/lanes.h", "propagation/steppers/series.h", "ensemble/lanes.c")
+    shared, operations, series, steps = map(c_text, paths)
+    return head + "\n".join((shared, operations, definitions, series, steps))
 
 
 _POINTERS = (

@@ -12,10 +12,6 @@
  * Source: R. E. Moore, R. B. Kearfott, M. J. Cloud, Introduction to Interval Analysis, chapters 2 to 5; M. S. Petkovic,
  * L. D. Petkovic, Complex Interval Arithmetic and Its Applications, chapter 1.
  */
-#include <float.h>
-#include <math.h>
-#include <stdint.h>
-
 typedef struct { double lo, hi; } symrot_range;
 typedef struct { double c, r; } symrot_disc;
 

@@ -1,9 +1,9 @@
 /*
  * All zeros of functions along a motion given as polynomials in time, each located to the last bits.
  *
- * Included after event_enclosures.h and the emitted functions symrot_event, symrot_event_range and symrot_event_disc,
- * see symrot.codegen.printing.event_source. The motion comes in rows, one polynomial per state each, in the layout of the steps
- * of taylor.c:
+ * Included after library.h, event_enclosures.h and the emitted functions symrot_event, symrot_event_range and
+ * symrot_event_disc, see symrot.codegen.printing.event_source. The motion comes in rows, one polynomial per state each,
+ * in the layout of the steps of taylor.c:
  *     t, h, low part of t, unit, then coefficient 0 of all states, coefficient 1, ...; powers of (time - t)/unit
  *
  * No zero is missed between samples: the search uses enclosures (bounds) of the function on whole intervals.
@@ -29,12 +29,6 @@
  */
 #ifdef __cplusplus
 extern "C" {
-#endif
-
-#if defined(_WIN32)
-#define SYMROT_EXPORT __declspec(dllexport)
-#else
-#define SYMROT_EXPORT
 #endif
 
 enum { SYMROT_POINTS = 21, SYMROT_DEGREE = SYMROT_POINTS - 1, SYMROT_DEPTH = 128, SYMROT_FOUND = 6, SYMROT_DISCS = 2 };

@@ -201,7 +201,7 @@ def guard_library_source(
     columns = {name: f"{name} of t" for name in KNOWN if name != "t"}
     columned = [rename(formula, columns) for formula in formulas]
     definitions = event_definitions(quantities, columned, states, edges, scales)
-    head = c_text("propagation/events/event_enclosures.h")
+    head = c_text("propagation/steppers/library.h") + c_text("propagation/events/event_enclosures.h")
     head += "\nstatic const double SYMROT_ROUNDING = 0.5*DBL_EPSILON, SYMROT_STATE_ERROR = 4.0*DBL_EPSILON;\n\n"
     return head + definitions + "\n" + c_text("propagation/events/events.c")
 

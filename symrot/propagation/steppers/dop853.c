@@ -1,7 +1,7 @@
 /*
  * Dormand-Prince 8(5,3) with dense output of order 7: the whole loop of steps around one inlined right-hand side.
  *
- * Included after an emitted kernel, in one translation unit that has defined
+ * Included after library.h and an emitted kernel, in one translation unit that has defined
  *     SYMROT_STATES       number of states N
  *     SYMROT_PARAMETERS   number of parameters
  *     SYMROT_RHS          the kernel: void name(double t, const double y[N], const double p[], double dy[N])
@@ -18,20 +18,10 @@
  *
  * Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.4 to 6.
  */
-#include <float.h>
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
-
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-#if defined(_WIN32)
-#define SYMROT_EXPORT __declspec(dllexport)
-#else
-#define SYMROT_EXPORT
-#endif
 #if defined(__GNUC__)
 #define SYMROT_APART __attribute__((noinline))  /* rarely called: not inlined into the loop of steps */
 #define SYMROT_ALIGNED __attribute__((aligned(32)))
@@ -46,8 +36,6 @@ enum {
     SYMROT_TERMS = 8,                                 /* coefficients of the dense output */
     SYMROT_ROW = 2 + SYMROT_TERMS*SYMROT_STATES       /* one recorded step: t, h, coefficients */
 };
-
-enum { SYMROT_DONE = 0, SYMROT_PAUSED = 1, SYMROT_FULL = 2, SYMROT_NOT_FINITE = 3, SYMROT_UNDERFLOW = 4 };
 
 typedef struct {
     double t;            /* time reached so far */
@@ -278,13 +266,7 @@ SYMROT_EXPORT void symrot_dop853_dense(const double *record, int64_t steps, cons
 {
     const double side = record[1] < 0.0 ? -1.0 : 1.0;
     for (int64_t n = 0; n < count; ++n) {
-        int64_t low = 0, high = steps;  /* the last row that starts before the time */
-        while (high - low > 1) {
-            const int64_t middle = (low + high)/2;
-            if ((record[middle*SYMROT_ROW] - times[n])*side < 0.0) low = middle;
-            else high = middle;
-        }
-        const double *row = record + low*SYMROT_ROW;
+        const double *row = symrot_row_at(record, SYMROT_ROW, steps, side, times[n]);
         symrot_dense_value(row + 2, SYMROT_STATES, (times[n] - row[0])/row[1], states + n*SYMROT_STATES);
     }
 }

@@ -106,6 +106,7 @@ def translation_unit(
     bounds = c_text("propagation/enclosures/enclosure.h")
     return "\n".join(
         (
+            c_text("propagation/steppers/library.h"),
             kernel,
             f"#define SYMROT_STATES {states}",
             f"#define SYMROT_PARAMETERS {parameters}",

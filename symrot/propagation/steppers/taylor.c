@@ -1,7 +1,7 @@
 /*
  * Taylor series of high order with dense output: the whole loop of steps around one emitted jet.
  *
- * Included after taylor.h, an emitted system and series.h, in one translation unit. The system defines
+ * Included after library.h, taylor.h, an emitted system and series.h, in one translation unit. The system defines
  *     SYMROT_STATES, SYMROT_PARAMETERS   numbers of states N and parameters
  *     SYMROT_ORDER                       order of the series, even
  *     SYMROT_ROWS                        rows of four lanes that hold the states,
@@ -25,14 +25,7 @@
 extern "C" {
 #endif
 
-#if defined(_WIN32)
-#define SYMROT_EXPORT __declspec(dllexport)
-#else
-#define SYMROT_EXPORT
-#endif
-
 enum { SYMROT_ROW = 4 + (SYMROT_ORDER + 1)*SYMROT_STATES };  /* one recorded step: t, h, low part of t, unit, terms */
-enum { SYMROT_DONE = 0, SYMROT_PAUSED = 1, SYMROT_FULL = 2, SYMROT_NOT_FINITE = 3, SYMROT_UNDERFLOW = 4 };
 
 typedef struct {
     double t, t_low;     /* time reached so far, as their sum */
@@ -297,13 +290,7 @@ SYMROT_EXPORT void symrot_taylor_dense(const double *record, int64_t steps, cons
 {
     const double side = record[1] < 0.0 ? -1.0 : 1.0;
     for (int64_t k = 0; k < count; ++k) {
-        int64_t low = 0, high = steps;  /* the last row that starts before the time */
-        while (high - low > 1) {
-            const int64_t middle = (low + high)/2;
-            if ((record[middle*SYMROT_ROW] - times[k])*side < 0.0) low = middle;
-            else high = middle;
-        }
-        const double *row = record + low*SYMROT_ROW, *x = row + 4;
+        const double *row = symrot_row_at(record, SYMROT_ROW, steps, side, times[k]), *x = row + 4;
         const double s = ((times[k] - row[0]) - row[2])/row[3];
         for (int i = 0; i < SYMROT_STATES; ++i) {
             double value = x[SYMROT_ORDER*SYMROT_STATES + i];

@@ -7,19 +7,8 @@
  * Included before an emitted jet and taylor.c. Define SYMROT_PAIRS to use two vectors of two, SYMROT_PLAIN to use plain
  * C.
  */
-#include <float.h>
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
-
 #if defined(__FAST_MATH__)
 #error "compensated sums do not survive -ffast-math: compile the Taylor stepper without it"
-#endif
-
-#if defined(__cplusplus)
-#define SYMROT_RESTRICT __restrict
-#else
-#define SYMROT_RESTRICT restrict
 #endif
 
 /* The hyperbolic secant, which is 0 if the cosine overflows. */

@@ -43,7 +43,8 @@ STEPS_OF_ALL = 4.0  # in a span of this many steps or fewer, each step may use t
 FILES = {
     "error_free.h": "closed_form/arithmetic/error_free.h",
     **{
-        name: f"propagation/steppers/{name}" for name in ("taylor.h", "series.h", "pairs.h", "projection.c", "taylor.c")
+        name: f"propagation/steppers/{name}"
+        for name in ("library.h", "taylor.h", "series.h", "pairs.h", "projection.c", "taylor.c")
     },
     **{name: f"propagation/enclosures/{name}" for name in ("disc.h", "enclosure.h")},
 }
@@ -137,7 +138,7 @@ def translation_unit(
     stepper = own["taylor.c"].replace(PROJECTION, projection)
     bounds = enclosure_source(program, order, blocks) if enclosed else NO_ENCLOSURE
     stepper = stepper.replace(ENCLOSURE, own["enclosure.h"])
-    arithmetic = (own["taylor.h"], own["error_free.h"], own["pairs.h"])
+    arithmetic = (own["library.h"], own["taylor.h"], own["error_free.h"], own["pairs.h"])
     parts = (*arithmetic, definitions, own["series.h"], invariants, own["disc.h"], bounds, stepper)
     return "\n".join(parts)
 
