@@ -18,7 +18,6 @@ import gc
 import math
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
-from fractions import Fraction
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -28,11 +27,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.bench.by_hand import text_by_hand
+from symrot.bench.comparison.exact_path import DIGITS, ExactPath
 from symrot.bench.comparison.peers import heyoka_integrator
 from symrot.build import cache
 from symrot.build.sources import c_text
-from symrot.codegen.taylor.coefficients import coefficients
-from symrot.codegen.taylor.recurrences import recurrences
 from symrot.planning.plan import Plan, make_plan
 from symrot.planning.scene_kernel import SceneKernel, bind
 from symrot.propagation.compiled_models import error_blocks, library_source, scene_kernel
@@ -80,7 +78,6 @@ OURS, BY_HAND = ("taylor", "dop853"), ("rk4", "dop853")
 HAND_DECADES = (1e-3, 1e-4, 1e-5)  # decades of the error in which low order is at its best
 DECADES = tuple(10.0**-k for k in range(3, 14))
 ORDERS = (8, 10, 12, 14, 16, 18, 20, 22, 24, 28)
-REFERENCE_DIGITS, REFERENCE_ORDER, REFERENCE_TAIL = 40, 32, 1e-28
 REFERENCES = Path(__file__).with_name("taylor.toml")
 
 
@@ -147,19 +144,8 @@ def compute_reference(name: str, scale: float = 1.0) -> list[Any]:
     import mpmath
 
     problem = _Problem(name, scale)
-    system = recurrences(problem.kernel.rates)
-    with mpmath.workdps(REFERENCE_DIGITS):
-        functions = {function: getattr(mpmath, function) for function in ("sqrt", "sin", "cos", "exp")}
-        values: dict[str, Any] = {n: mpmath.mpf(v) for n, v in zip(system.parameters, problem.p, strict=True)}
-        state, now, stop = [mpmath.mpf(v) for v in problem.y0], mpmath.mpf(0), mpmath.mpf(problem.stop)
-        while now < stop:
-            values |= {"t": now, **dict(zip(system.states, state, strict=True))}
-            series = coefficients(system, REFERENCE_ORDER, values, functions, _as_mpf)
-            last = max(max(abs(one[-1]), abs(one[-2])) for one in series)
-            step = min((REFERENCE_TAIL / last) ** (mpmath.mpf(1) / REFERENCE_ORDER), stop - now)
-            state = [mpmath.polyval(one[::-1], step) for one in series]
-            now += step
-        return state
+    with mpmath.workdps(DIGITS):
+        return ExactPath(problem.plan, problem.kernel, (problem.p, problem.y0)).state(mpmath.mpf(problem.stop))
 
 
 def references_text() -> str:
@@ -174,12 +160,6 @@ def references_text() -> str:
         values = "".join(f'  "{mpmath.nstr(value, 25)}",\n' for value in compute_reference(name))
         lines.append(f'\n"{name}" = [\n{values}]')
     return "\n".join(lines) + "\n"
-
-
-def _as_mpf(value: Fraction) -> Any:
-    import mpmath
-
-    return mpmath.mpf(value.numerator) / value.denominator
 
 
 # ------------------------------------------------------------------------------------------------ contestants

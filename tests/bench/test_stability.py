@@ -35,7 +35,8 @@ def track():
 
 def test_the_truth_is_that_of_elliptic_integrals_a_million_turns_later():
     times = np.array([0.0, 3.3, 1e7])
-    path = ExactPath(propagator(plate(), "taylor", 1e-15)._motion)
+    motion = propagator(plate(), "taylor", 1e-15)._motion
+    path = ExactPath(motion.plan, motion.kernel)
     found = path.states_of_free_body(times)
     expected = reference.motion(stability.PLATE, [Fraction(w) for w in stability.STARTS[0]], (1, 0, 0, 0), 50)
     ratio = float(path.period() / expected.period)
@@ -49,15 +50,18 @@ def test_the_truth_under_gravity():
     scene = body((1, 1, "1/2"), ("3/10", "-9/5", 4), [{**GRAVITY, "center_of_mass": [0, 0, 1]}], TILTED)
     times = np.linspace(0, 1, 5)
     motion = propagator(scene, "taylor", 1e-15)._motion
-    found = motion.evaluate(times, ExactPath(motion).states(times), [f"q{i} of t" for i in range(4)])
+    found = motion.evaluate(
+        times, ExactPath(motion.plan, motion.kernel).states(times), [f"q{i} of t" for i in range(4)]
+    )
     assert largest(found, propagator(scene, "exact")(times).quaternion, sign=True) < 4e-16
 
 
 def test_a_motion_that_never_comes_back_is_refused(monkeypatch):
     separatrix = stability._scene("separatrix", {"principal": [3, 4, 6]}, (2, "3/2", 1))
     monkeypatch.setattr(exact_path, "MOST_STEPS", 12)
+    motion = propagator(separatrix, "taylor", 1e-15)._motion
     with pytest.raises(InputError, match="does not return"):
-        exact_path.ExactPath(propagator(separatrix, "taylor", 1e-15)._motion).period()
+        exact_path.ExactPath(motion.plan, motion.kernel).period()
 
 
 def test_methods_are_told_apart(track):

@@ -1,10 +1,11 @@
-"""Reference motions, computed to 30 digits by Taylor series in mpmath; for free bodies, over any number of periods.
+"""Reference motions by Taylor series in 40 digits of mpmath; for free bodies, over any number of periods.
 
 The angular velocity of a free body is periodic, and every period adds the same rotation: with period P and ``R = q(P)
 q(0)^-1`` the attitude is ``q(t + n P) = R^n q(t)``. So the series of one period give the motion after a million
 periods. This computation shares no code or formula with the closed form that it tests.
 """
 
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -19,44 +20,69 @@ from symrot.formula import exact_numbers as number
 from symrot.formula.exact_functions import EXACT_FUNCTIONS
 from symrot.formula.tree import evaluate
 from symrot.kinematics.hamilton import hamilton
+from symrot.planning.plan import Plan
+from symrot.planning.scene_kernel import Parameters, SceneKernel
 from symrot.propagation.compiled_models import error_blocks, formula_deviations
 from symrot.propagation.enclosures.step_limit import longest_followed
-from symrot.propagation.motion import Motion
 
-__all__ = ["ExactPath"]
+__all__ = ["DIGITS", "FUNCTIONS", "ORDER", "TAIL", "ExactPath", "as_mpf", "exact_parameters", "exact_start"]
 
 Floats = NDArray[np.float64]
 
 DIGITS, ORDER, TAIL = 40, 32, 1e-28
-FUNCTIONS = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
 MOST_STEPS = 2000
 SLOWEST = 1e-8  # times the initial angular speed (rad/s if it is zero): errors of slower bodies are relative to this
 
 
-def _as_mpf(value: Fraction) -> Any:
-    return mpmath.mpf(value.numerator) / value.denominator
+_NAMES = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
+FUNCTIONS: dict[str, Callable[..., Any]] = {name: getattr(mpmath, name) for name in _NAMES} | {"abs": abs}
+
+
+def as_mpf(value: Any) -> Any:
+    """Return a Fraction or a double as a number of mpmath with the digits in force."""
+    return mpmath.mpf(value.numerator) / value.denominator if isinstance(value, Fraction) else mpmath.mpf(value)
+
+
+def exact_parameters(parameters: Parameters, plan: Plan) -> dict[str, Fraction]:
+    """Return the parameters of a kernel by name, from the exact constants of the scene."""
+    values = {"pi": number.PI, **plan.constants}
+    return {name: Fraction(evaluate(node, values, EXACT_FUNCTIONS)) for name, node in parameters}
+
+
+def exact_start(plan: Plan) -> list[Fraction]:
+    """Return the initial values of the integrated states, as the scene states them."""
+    start = plan.scene.initial
+    values = {f"omega_{i + 1}": value for i, value in enumerate(start.omega_b)} | {"theta": Fraction(0)}
+    values |= {f"q{i}": value for i, value in enumerate(start.quaternion)}
+    return [Fraction(values[name]) for name in plan.states]
 
 
 class ExactPath:
-    """The reference solution of one motion: its integrated states in 40 digits, from the exact numbers of the scene."""
+    """The reference solution of one motion: its integrated states in 40 digits.
 
-    def __init__(self, motion: Motion) -> None:
-        self.motion, plan, kernel = motion, motion.plan, motion.kernel
-        self.system = recurrences(kernel.rates)
-        self.functions = {name: getattr(mpmath, name) for name in FUNCTIONS}
-        values = {"pi": number.PI, **plan.constants}
-        start = plan.scene.initial
-        initial = {f"omega_{i + 1}": value for i, value in enumerate(start.omega_b)} | {"theta": Fraction(0)}
-        initial |= {f"q{i}": value for i, value in enumerate(start.quaternion)}
+    Parameters
+    ----------
+    plan, kernel
+        The motion.
+    rounded : pair of sequences, optional
+        The parameters of the rates and the initial states as doubles; default: the exact numbers of the scene.
+    """
+
+    def __init__(
+        self, plan: Plan, kernel: SceneKernel, rounded: tuple[Sequence[float], Sequence[float]] | None = None
+    ) -> None:  # fmt: skip
+        self.plan, self.system = plan, recurrences(kernel.rates)
+        parameters, start = rounded or (exact_parameters(kernel.rate_parameters, plan).values(), exact_start(plan))
+        names = [name for name, _ in kernel.rate_parameters]
         with mpmath.workdps(DIGITS):
-            self.parameters = {n: _as_mpf(evaluate(f, values, EXACT_FUNCTIONS)) for n, f in kernel.rate_parameters}
-            self.start = [_as_mpf(initial[name]) for name in plan.states]
-            self.t0 = _as_mpf(Fraction(plan.scene.span.start))
+            self.parameters = dict(zip(names, map(as_mpf, parameters), strict=True))
+            self.start = [as_mpf(value) for value in start]
+            self.t0 = as_mpf(Fraction(plan.scene.span.start))
         self.rates = sum(name.startswith("omega") for name in plan.states)
         bounds = formula_deviations(plan, kernel)
         self.deviations = bounds and bounds({name: float(value) for name, value in self.parameters.items()})
         self.edges = error_blocks(plan)[0]
-        self.span = abs(_as_mpf(Fraction(plan.scene.span.stop) - Fraction(plan.scene.span.start)))
+        self.span = abs(as_mpf(Fraction(plan.scene.span.stop) - Fraction(plan.scene.span.start)))
         self.slowest = SLOWEST * (max([abs(x) for x in self.start[: self.rates]], default=0) or 1)
         self.pieces: list[tuple[Any, Any, list[Any]]] = []  # start and end of the step, coefficients of each state
         self._end: tuple[Any, list[Any]] = (self.t0, self.start)
@@ -65,7 +91,7 @@ class ExactPath:
         """Add one Taylor step at the end of the path."""
         now, state = self._end
         known = self.parameters | {"t": now} | dict(zip(self.system.states, state, strict=True))
-        series = coefficients(self.system, ORDER, known, self.functions, _as_mpf)
+        series = coefficients(self.system, ORDER, known, FUNCTIONS, as_mpf)
         size = max([abs(x) for x in state[: self.rates]] + [self.slowest])
         last = max(
             abs(one[ORDER - k]) / (size if i < self.rates else 1) for i, one in enumerate(series) for k in (0, 1)
@@ -82,7 +108,7 @@ class ExactPath:
             step = min(step, mpmath.mpf(proven))
             if step < 1e-15 * max(1, abs(now)):
                 raise SymrotError(
-                    f"{self.motion.plan.scene.name}: the motion cannot be followed in {DIGITS} digits beyond "
+                    f"{self.plan.scene.name}: the motion cannot be followed in {DIGITS} digits beyond "
                     f"t = {float(now)!r} s: its steps shrink to nothing, as before a singularity"
                 )
         self.pieces.append((now, now + step, series))
@@ -92,10 +118,14 @@ class ExactPath:
     def _sum(series: list[Any], step: Any) -> list[Any]:
         return [mpmath.polyval(one[::-1], step) for one in series]
 
-    def _state(self, t: Any) -> list[Any]:
-        """Return the states at one time, which is not before the start, in 40 digits."""
+    def state(self, t: Any, on_step: Callable[[Any], object] = lambda now: None) -> list[Any]:
+        """Return the states at one time, which is not before the start; call it with 40 digits in force.
+
+        ``on_step`` is called after each step with the time that is reached; what it raises ends the computation.
+        """
         while self._end[0] < t:
             self._advance()
+            on_step(self._end[0])
         low, high = 0, len(self.pieces)
         while high - low > 1:
             middle = (low + high) // 2
@@ -107,7 +137,7 @@ class ExactPath:
     def states(self, times: Floats) -> Floats:
         """Return the states at times not before the start, rounded to double, shape (n, N)."""
         with mpmath.workdps(DIGITS):
-            return np.array([[float(x) for x in self._state(mpmath.mpf(float(t)))] for t in times])
+            return np.array([[float(x) for x in self.state(mpmath.mpf(float(t)))] for t in times])
 
     def period(self) -> Any:
         """Return the period of the angular velocity of a free body, to about 35 digits.
@@ -138,28 +168,28 @@ class ExactPath:
     def _newton(self, t: Any) -> Any:
         """Return the time near t at which omega has its initial value, or None if Newton's method fails."""
         start = self.start[: self.rates]
-        self._state(self.t0)
+        self.state(self.t0)
         speeds = [one[1] for one in self.pieces[0][2][: self.rates]]
         steepest = max(range(self.rates), key=lambda i: abs(speeds[i]))
         for _ in range(60):
-            value = self._state(t)[steepest]
+            value = self.state(t)[steepest]
             change = (value - start[steepest]) / self._slope(t, steepest)
             t -= change
             if abs(change) < mpmath.mpf(10) ** (5 - DIGITS) * abs(t):
                 break
-        apart = max(abs(x - y) for x, y in zip(self._state(t)[: self.rates], start, strict=True))
+        apart = max(abs(x - y) for x, y in zip(self.state(t)[: self.rates], start, strict=True))
         return t if apart < mpmath.mpf(10) ** (12 - DIGITS) else None
 
     def _slope(self, t: Any, index: int) -> Any:
-        state = self._state(t)
+        state = self.state(t)
         known = self.parameters | {"t": t} | dict(zip(self.system.states, state, strict=True))
-        return coefficients(self.system, 1, known, self.functions, _as_mpf)[index][1]
+        return coefficients(self.system, 1, known, FUNCTIONS, as_mpf)[index][1]
 
     def states_of_free_body(self, times: Floats) -> Floats:
         """Return omega and quaternion of a free body at any times not before the start, shape (n, 7)."""
         period = self.period()
         with mpmath.workdps(DIGITS):
-            first, last = self.start[self.rates :], self._state(self.t0 + period)[self.rates :]
+            first, last = self.start[self.rates :], self.state(self.t0 + period)[self.rates :]
             turn = hamilton(last, [first[0], *(-x for x in first[1:])])
             length = mpmath.sqrt(sum(x * x for x in turn[1:]))
             half, axis = mpmath.atan2(length, turn[0]), [x / length for x in turn[1:]]
@@ -167,7 +197,7 @@ class ExactPath:
             for time in times:
                 t = mpmath.mpf(float(time)) - self.t0
                 count = mpmath.floor(t / period)
-                state = self._state(self.t0 + (t - count * period))
+                state = self.state(self.t0 + (t - count * period))
                 whole = [mpmath.cos(count * half), *(mpmath.sin(count * half) * x for x in axis)]
                 rows.append([*state[: self.rates], *hamilton(whole, state[self.rates :])])
             return np.array([[float(x) for x in row] for row in rows])

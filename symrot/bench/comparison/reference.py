@@ -3,7 +3,7 @@
 ===========================  =====================  ============================  ==========================
 reference                    equations              method                        arithmetic
 ===========================  =====================  ============================  ==========================
-``taylor``                   the scene's own        Taylor series of order 28     mpmath, 40 digits
+``taylor``                   the scene's own        Taylor series of order 32     mpmath, 40 digits
 ``dop853 in long double``    most general: full     Dormand-Prince, fixed steps,  the C compiler's long
                              tensor, no shortcut    halved until nothing changes  double, where it is longer
 ``closed form``              (no equations)         theta functions               double-double, double
@@ -27,7 +27,6 @@ import math
 import re
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
-from itertools import pairwise
 from pathlib import Path
 from time import perf_counter, process_time
 from typing import Any, NamedTuple
@@ -35,20 +34,22 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from symrot.bench.by_hand import BY_HAND
+from symrot.bench.comparison.exact_path import (
+    DIGITS,
+    FUNCTIONS,
+    ORDER,
+    TAIL,
+    ExactPath,
+    as_mpf,
+    exact_parameters,
+    exact_start,
+)
 from symrot.bench.comparison.problem import Problem, State
 from symrot.build import cache
 from symrot.closed_form.registry import exact_form
-from symrot.codegen.enclosure.terms import enclosure
-from symrot.codegen.taylor.coefficients import coefficients
-from symrot.codegen.taylor.recurrences import recurrences
 from symrot.errors import SymrotError
-from symrot.formula import exact_numbers as number
-from symrot.formula.exact_functions import EXACT_FUNCTIONS
-from symrot.formula.tree import evaluate
 from symrot.planning.plan import Plan, general_structure
-from symrot.planning.scene_kernel import Parameters
-from symrot.propagation.compiled_models import error_blocks, formula_deviations
-from symrot.propagation.enclosures.step_limit import Deviations, longest_followed
+from symrot.propagation.compiled_models import formula_deviations
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import stepped_motion
 from symrot.propagation.propagate import propagator
@@ -60,7 +61,6 @@ __all__ = ["DIGITS", "Reference", "reference"]
 
 Progress = Callable[[str], object]
 
-DIGITS, ORDER, TAIL = 40, 28, 1e-26
 MOST_SECONDS = 150.0  # limit for the series; it is abandoned as soon as its estimated time is longer
 MOST_LONG_SECONDS = 20.0  # for fixed steps in long double
 MOST_STEPS = 2_000_000  # limit of fixed steps, like MOST_SECONDS
@@ -141,31 +141,6 @@ def reference(problem: Problem, say: Progress = lambda text: None, seconds: floa
 # ------------------------------------------------------------------------------------------------ Taylor, 40 digits
 
 
-def _as_mpf(value: Fraction) -> Any:
-    import mpmath
-
-    return mpmath.mpf(value.numerator) / value.denominator
-
-
-def _functions() -> dict[str, Callable[..., Any]]:
-    import mpmath
-
-    names = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
-    return {name: getattr(mpmath, name) for name in names} | {"abs": abs}
-
-
-def _exact_parameters(parameters: Parameters, plan: Plan) -> dict[str, Fraction]:
-    values = {"pi": number.PI, **plan.constants}
-    return {name: Fraction(evaluate(node, values, EXACT_FUNCTIONS)) for name, node in parameters}
-
-
-def _exact_start(plan: Plan) -> list[Fraction]:
-    start = plan.scene.initial
-    values = {f"omega_{i + 1}": value for i, value in enumerate(start.omega_b)} | {"theta": Fraction(0)}
-    values |= {f"q{i}": value for i, value in enumerate(start.quaternion)}
-    return [Fraction(values[name]) for name in plan.states]
-
-
 def _taylor(problem: Problem, say: Progress, seconds: float) -> list[State]:
     """Return the reference states by Taylor series in 40 digits, computed now or loaded from the cache."""
     import mpmath
@@ -174,58 +149,34 @@ def _taylor(problem: Problem, say: Progress, seconds: float) -> list[State]:
     if rough:
         raise _Unavailable(rough)
     kernel, plan = problem.kernel, problem.plan
-    exact_numbers = _exact_parameters(kernel.rate_parameters, plan), _exact_start(plan)
+    exact_numbers = exact_parameters(kernel.rate_parameters, plan), exact_start(plan)
     where = f"{problem.start} {problem.ends}"
     key = f"held reference {DIGITS} {ORDER} {TAIL}\n{json.dumps(kernel.record['rates'])}\n{exact_numbers}\n{where}"
     stored = cache.fetch(key)
     with mpmath.workdps(DIGITS):
         if stored is None:
-            path = _series(problem, exact_numbers, say, seconds)
+            path = _series(problem, say, seconds)
             stored = json.dumps([[mpmath.nstr(value, DIGITS) for value in state] for state in path])
             cache.store(key, stored)
         read = [[mpmath.mpf(value) for value in state] for state in json.loads(stored)]
         return [_state(problem, state, end) for state, end in zip(read, problem.ends, strict=True)]
 
 
-def _series(
-    problem: Problem, exact_numbers: tuple[dict[str, Fraction], list[Fraction]], say: Progress, seconds: float
-) -> list[list[Any]]:
+def _series(problem: Problem, say: Progress, seconds: float) -> list[list[Any]]:
     """Return the integrated states at the times of comparison, by Taylor series step by step."""
-    import mpmath
+    path, clock = ExactPath(problem.plan, problem.kernel), process_time()
 
-    system, functions, sizes = recurrences(problem.kernel.rates), _functions(), _sizes(problem)
-    values: dict[str, Any] = {name: _as_mpf(value) for name, value in exact_numbers[0].items()}
-    hidden = enclosure(system)
-    deviations = hidden and Deviations(hidden, {name: float(value) for name, value in exact_numbers[0].items()})
-    edges = error_blocks(problem.plan)[0]
-    allowed = [TAIL * max(sizes[low:high]) for low, high in pairwise(edges)]
-    state, path = [_as_mpf(value) for value in exact_numbers[1]], []
-    now, clock = mpmath.mpf(problem.start), process_time()
-    for end in problem.ends:
-        while now < end:
-            values |= {"t": now, **dict(zip(system.states, state, strict=True))}
-            series = coefficients(system, ORDER, values, functions, _as_mpf)
-            step = end - now
-            for n in (ORDER - 1, ORDER):
-                largest = max(abs(one[n]) / size for one, size in zip(series, sizes, strict=True))
-                if largest:
-                    step = min(step, (TAIL / largest) ** (mpmath.mpf(1) / n))
-            if deviations:  # the step must end before a feature of the torque that its coefficients do not show
-                terms = [[float(abs(one[n] * step**n)) for n in range(1, ORDER + 1)] for one in series]
-                start, length = list(map(float, state)), float(step)
-                proven = longest_followed(deviations, float(now), start, terms, length, allowed, edges, ORDER)
-                step = step if proven == length else mpmath.mpf(proven)
-                if step < 1e-15 * max(1, abs(now)):
-                    raise _Unavailable(f"the steps shrink to nothing at t = {float(now)!r}, as before a singularity")
-            state = [mpmath.polyval(one[::-1], step) for one in series]
-            now += step
-            spent = process_time() - clock
-            whole = spent * float((problem.stop - problem.start) / (now - problem.start))
-            if whole > 2.0 * seconds or spent > seconds:
-                raise _Unavailable(f"about {whole:.0f} s of work, more than the {seconds:.0f} s allowed")
-            say(f"reference: Taylor series in {DIGITS} digits, {spent:.0f} of about {whole:.0f} s")
-        path.append(state)
-    return path
+    def watch(now: Any) -> None:
+        spent = process_time() - clock
+        whole = spent * max(1.0, float((problem.stop - problem.start) / (now - problem.start)))
+        if whole > 2.0 * seconds or spent > seconds:
+            raise _Unavailable(f"about {whole:.0f} s of work, more than the {seconds:.0f} s allowed")
+        say(f"reference: Taylor series in {DIGITS} digits, {spent:.0f} of about {whole:.0f} s")
+
+    try:
+        return [path.state(end, watch) for end in problem.ends]
+    except SymrotError as reason:
+        raise _Unavailable(str(reason)) from None
 
 
 def _sizes(problem: Problem) -> list[float]:
@@ -240,9 +191,9 @@ def _state(problem: Problem, last: list[Any], end: float) -> State:
 
     kernel, plan = problem.kernel, problem.plan
     values: dict[str, Any] = dict(zip(plan.states, last, strict=True))
-    exact = _exact_parameters(kernel.quantity_parameters, plan)
-    values |= {name: _as_mpf(value) for name, value in exact.items()} | {"t": mpmath.mpf(end)}
-    quantities = kernel.quantities.evaluate(values, _functions(), _as_mpf, problem.names)
+    exact = exact_parameters(kernel.quantity_parameters, plan)
+    values |= {name: as_mpf(value) for name, value in exact.items()} | {"t": mpmath.mpf(end)}
+    quantities = kernel.quantities.evaluate(values, FUNCTIONS, as_mpf, problem.names)
     ordered = [quantities[name] for name in problem.names]
     norm = mpmath.sqrt(sum(q * q for q in ordered[3:])) if len(ordered) > 3 else 1
     rates, attitude = ([float(value) for value in part] for part in (ordered[:3], [q / norm for q in ordered[3:]]))
@@ -336,8 +287,8 @@ def _fixed_steps(
     function = getattr(ctypes.CDLL(str(cache.build(longer("\n".join(parts)), "long_double"))), f"symrot_{name}")
     real = ctypes.c_longdouble
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
-    p = _long(_exact_parameters(general.kernel.rate_parameters, general.plan).values())
-    start = _long(_exact_start(general.plan))
+    p = _long(exact_parameters(general.kernel.rate_parameters, general.plan).values())
+    start = _long(exact_start(general.plan))
     whole = general.stop - general.start
 
     def follow(steps: int) -> Any:
@@ -356,7 +307,7 @@ def _fixed_steps(
 
 def _long_state(general: Problem, y: Any, end: float) -> State:
     """Return the state of the body at time ``end`` from the integrated states ``y``, evaluated in long double."""
-    exact = _exact_parameters(general.kernel.quantity_parameters, general.plan)
+    exact = exact_parameters(general.kernel.quantity_parameters, general.plan)
     values: dict[str, Any] = dict(zip(general.plan.states, y, strict=True)) | {"t": np.longdouble(end)}
     values |= {name: _long_number(value) for name, value in exact.items()}
     functions = {"sqrt": np.sqrt, "sin": np.sin, "cos": np.cos}

@@ -61,7 +61,7 @@ class Track:
         self.scene, self.times = scene, times
         self.motion = propagator(scene, "dop853" if self.rough(scene) else "taylor", TIGHTEST)._motion
         self.speed = max(float(np.linalg.norm([float(w) for w in scene.initial.omega_b])), 1e-300)
-        path = ExactPath(self.motion)
+        path = ExactPath(self.motion.plan, self.motion.kernel)
         exact = path.states_of_free_body(times) if periodic else path.states(times)
         self.truth = self.trajectory(exact)
 
