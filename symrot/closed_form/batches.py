@@ -29,6 +29,7 @@ from symrot.closed_form.heavy_top.motion import Frame
 from symrot.closed_form.many import Batch
 from symrot.closed_form.spin_up.compiled import limits
 from symrot.formula import exact_numbers as number
+from symrot.kinematics.hamilton import hamilton
 
 __all__ = [
     "Column", "attitudes", "driven", "free_bodies", "free_bodies_of_moments", "free_bodies_of_tensors", "gyrostats",
@@ -93,7 +94,8 @@ def _units(quaternions: Floats) -> dd.Pair:
 
 def _sign(i: int, j: int) -> float:
     """Return the sign of the product of the quaternion units i and j, which are numbered 0 to 3 (1, i, j, k)."""
-    return -1.0 if (i and i == j) or (i, j) in ((1, 3), (2, 1), (3, 2)) else 1.0
+    one, other = ([float(k == unit) for k in range(4)] for unit in (i, j))
+    return float(hamilton(one, other)[i ^ j])
 
 
 def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:

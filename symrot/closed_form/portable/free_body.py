@@ -2,13 +2,25 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
 from mpmath import mp, mpf
 
 from symrot.closed_form.build import Floats
-from symrot.closed_form.portable.phases import DIGITS, TERMS, Phase, multiples, number, power_of_two, turned_by, vector
+from symrot.closed_form.portable.phases import (
+    DIGITS,
+    TERMS,
+    Phase,
+    hyperbolic,
+    multiples,
+    number,
+    power_of_two,
+    quarter_periods,
+    turned_by,
+    vector,
+)
 from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, matrix_quaternion, unit
 from symrot.kinematics.hamilton import hamilton
 
@@ -24,25 +36,11 @@ class PortableFreeBody:
     Its arguments are as for the C function ``symrot_free_body_prepare``: lists hi, lo, hi, lo, ..
     """
 
+    @mp.workdps(DIGITS)  # type: ignore[untyped-decorator]
     def __init__(
-        self,
-        inertia: list[float],
-        omega: list[float],
-        quaternion: list[float],
-        exact: list[float] | None,
+        self, inertia: list[float], omega: list[float], quaternion: list[float], exact: list[float] | None,
         axes: list[float] | None,
-    ) -> None:
-        with mp.workdps(DIGITS):
-            self._prepare(inertia, omega, quaternion, exact, axes)
-
-    def _prepare(
-        self,
-        inertia: list[float],
-        omega: list[float],
-        quaternion: list[float],
-        exact: list[float] | None,
-        axes: list[float] | None,
-    ) -> None:
+    ) -> None:  # fmt: skip
         moments, w = vector(inertia), vector(omega)
         if min(moments) <= 0 or not any(vector(quaternion)):
             raise ValueError("moments or quaternion")
@@ -92,8 +90,7 @@ class PortableFreeBody:
         m, complement = i21 * a1 * share / inertia[0], abs(defect) * share
         rate = amplitudes[2] / inertia[2] * mp.sqrt(i32 * i31 / (inertia[0] * inertia[1]))
         u = s * momenta[1] / amplitudes[1] * mp.elliprf(squares[0] / a1, squares[2] / a3, 1)
-        k = mp.pi / (2 * mp.agm(1, mp.sqrt(complement))) if complement else mp.inf
-        k_prime = mp.pi / (2 * mp.agm(1, mp.sqrt(m))) if m else mp.inf
+        k, k_prime = quarter_periods(m, complement)
         eta = amplitudes[2] / total * mp.elliprf(a1 / total**2, (a1 + m * a3) / total**2, 1)
         turning = (energy + total * amplitudes[2] / inertia[2]) / (total + amplitudes[2]) / 2  # psi/2 at u = 0
         series = self._circular if m < SWITCH else self._hyperbolic
@@ -216,13 +213,7 @@ class PortableFreeBody:
         whole, flip, v = (
             self.axial.argument_once(t) if self.regime == "separatrix" else self.axial.argument(t, self.stretch)
         )
-
-        def pair(weight: float, order: float) -> tuple[Floats, Floats]:
-            """Return nome**weight times cosh(order*v) and times sinh(order*v), without the overflow of cosh alone."""
-            log = self.log_nome * weight if weight else 0.0
-            up, down = np.exp(log + order * v), np.exp(log - order * v)
-            return 0.5 * (up + down), (np.sinh(order * v) if log == 0.0 else 0.5 * (up - down))
-
+        pair = partial(hyperbolic, self.log_nome, v=v)
         odd = [pair(n * (n + 1), 2 * n + 1) for n in range(TERMS)]
         even = [pair(n * n, 2 * n) for n in range(1, TERMS)]
         below = sum(c for c, _ in odd)

@@ -19,33 +19,33 @@ class PortableGyrostat:
 
     regime = "steady"
 
+    @mp.workdps(DIGITS)  # type: ignore[untyped-decorator]
     def __init__(
         self, moments: list[float], rotor: list[float], omega: list[float], quaternion: list[float], axis: list[float]
     ) -> None:
-        with mp.workdps(DIGITS):
-            a, c = vector(moments)
-            extra, w = number(*rotor) / a, vector(omega)
-            if a <= 0 or not any(vector(quaternion)):
-                raise ValueError("moments or quaternion")
-            self.scale = power_of_two(max(abs(extra), *(abs(x) for x in w)))
-            w = [x / self.scale for x in w]
-            along = (c / a) * w[2] + extra / self.scale  # L3/A
-            speed = mp.sqrt(w[0] ** 2 + w[1] ** 2 + along**2)
-            self.precession = Phase.of(speed / (4 * mp.pi))
-            self.spin = Phase.of((w[2] - along) / (4 * mp.pi))
-            name = [int(x) for x in axis[:3]]
-            self.omega = np.zeros((3, 3))
-            first, second, third = (float(x * self.scale) for x in w)
-            self.omega[name[0]] = first, second, 0.0
-            self.omega[name[1]] = second, -first, 0.0
-            self.omega[name[2]] = 0.0, 0.0, third
-            renaming = matrix_quaternion([[int(name[k] == j) for j in range(3)] for k in range(3)])
-            start = hamilton(unit(vector(quaternion)), conjugate(renaming))
-            direction = [mpf(0), *(x / speed if speed else mpf(0) for x in (w[0], w[1], along))]
-            about = [mpf(0), mpf(0), mpf(0), mpf(1)]
-            turned = hamilton(start, direction)
-            columns = [start, hamilton(start, about), turned, hamilton(turned, about)]
-            self.attitude = mapping([hamilton(column, renaming) for column in columns])
+        a, c = vector(moments)
+        extra, w = number(*rotor) / a, vector(omega)
+        if a <= 0 or not any(vector(quaternion)):
+            raise ValueError("moments or quaternion")
+        self.scale = power_of_two(max(abs(extra), *(abs(x) for x in w)))
+        w = [x / self.scale for x in w]
+        along = (c / a) * w[2] + extra / self.scale  # L3/A
+        speed = mp.sqrt(w[0] ** 2 + w[1] ** 2 + along**2)
+        self.precession = Phase.of(speed / (4 * mp.pi))
+        self.spin = Phase.of((w[2] - along) / (4 * mp.pi))
+        name = [int(x) for x in axis[:3]]
+        self.omega = np.zeros((3, 3))
+        first, second, third = (float(x * self.scale) for x in w)
+        self.omega[name[0]] = first, second, 0.0
+        self.omega[name[1]] = second, -first, 0.0
+        self.omega[name[2]] = 0.0, 0.0, third
+        renaming = matrix_quaternion([[int(name[k] == j) for j in range(3)] for k in range(3)])
+        start = hamilton(unit(vector(quaternion)), conjugate(renaming))
+        direction = [mpf(0), *(x / speed if speed else mpf(0) for x in (w[0], w[1], along))]
+        about = [mpf(0), mpf(0), mpf(0), mpf(1)]
+        turned = hamilton(start, direction)
+        columns = [start, hamilton(start, about), turned, hamilton(turned, about)]
+        self.attitude = mapping([hamilton(column, renaming) for column in columns])
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
         """Write angular velocity (n, 3) and attitude (n, 4) at the times into arrays; None skips a quantity."""

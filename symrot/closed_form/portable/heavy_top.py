@@ -10,7 +10,17 @@ import numpy as np
 from mpmath import mp, mpc, mpf
 
 from symrot.closed_form.build import Floats
-from symrot.closed_form.portable.phases import DIGITS, TERMS, Phase, multiples, number, power_of_two, vector
+from symrot.closed_form.portable.phases import (
+    DIGITS,
+    TERMS,
+    Phase,
+    hyperbolic,
+    multiples,
+    number,
+    power_of_two,
+    quarter_periods,
+    vector,
+)
 from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, unit
 from symrot.kinematics.hamilton import hamilton
 
@@ -27,27 +37,22 @@ class PortableHeavyTop:
     Its arguments are as for the C function ``symrot_heavy_top_prepare``: lists hi, lo, hi, lo, ..
     """
 
+    @mp.workdps(DIGITS)  # type: ignore[untyped-decorator]
     def __init__(
-        self,
-        moments: list[float],
-        pull: list[float],
-        omega: list[float],
-        quaternion: list[float],
-        space: list[float],
-        axes: list[float] | None,
-    ) -> None:
-        with mp.workdps(DIGITS):
-            a, c = vector(moments)
-            if a <= 0 or not any(vector(quaternion)):
-                raise ValueError("moments or quaternion")
-            force, w = number(*pull) / a, vector(omega)
-            self.scale = power_of_two(max(mp.sqrt(force), *(abs(x) for x in w)))
-            self.frame, self.space = Axes(axes), vector(space)
-            w = [x / self.scale for x in w]
-            q = unit(vector(quaternion))
-            start = [mpc(q[0], q[3]), mpc(q[1], q[2])]  # alpha, beta
-            start = [mpc(0) if abs(x) < NOTHING else x for x in start]
-            self._prepare(c / a, force / self.scale**2, w, start)
+        self, moments: list[float], pull: list[float], omega: list[float], quaternion: list[float],
+        space: list[float], axes: list[float] | None,
+    ) -> None:  # fmt: skip
+        a, c = vector(moments)
+        if a <= 0 or not any(vector(quaternion)):
+            raise ValueError("moments or quaternion")
+        force, w = number(*pull) / a, vector(omega)
+        self.scale = power_of_two(max(mp.sqrt(force), *(abs(x) for x in w)))
+        self.frame, self.space = Axes(axes), vector(space)
+        w = [x / self.scale for x in w]
+        q = unit(vector(quaternion))
+        start = [mpc(q[0], q[3]), mpc(q[1], q[2])]  # alpha, beta
+        start = [mpc(0) if abs(x) < NOTHING else x for x in start]
+        self._prepare(c / a, force / self.scale**2, w, start)
 
     def _prepare(self, shape: Any, pull: Any, w: list[Any], start: list[Any]) -> None:
         alpha, beta = start
@@ -72,8 +77,7 @@ class PortableHeavyTop:
             sine = min(max((s1 - s) / (s1 - s2), mpf(0)), mpf(1))
             u = mp.sqrt(sine) * mp.elliprf(1 - sine, 1 - m * sine, 1)
             u = -u if lever.real > 0 else u
-        k = mp.pi / (2 * mp.agm(1, mp.sqrt(complement))) if complement else mp.inf
-        k_prime = mp.pi / (2 * mp.agm(1, mp.sqrt(m))) if m else mp.inf
+        k, k_prime = quarter_periods(m, complement)
         ys = [
             _zero((2 - s1) / (2 - s2), m) if m else mpf(0),
             _zero(s2 / s1 / complement, m) if m and complement else mpf(0),
@@ -180,17 +184,9 @@ class PortableHeavyTop:
         return [mp.exp(self.log_nome * x) if x else mpf(1) for x in powers]
 
     def _scale_numerators(
-        self,
-        numerators: Any,
-        kappas: Any,
-        leads: Any,
-        speed: Any,
-        place: Any,
-        below: Any,
-        start: Any,
-        across: Any,
+        self, numerators: Any, kappas: Any, leads: Any, speed: Any, place: Any, below: Any, start: Any, across: Any,
         spin: Any,
-    ) -> None:
+    ) -> None:  # fmt: skip
         """Compute the constant factors of the theta series from alpha and beta at the start, or from their rates."""
         alpha, beta = start
         initial_rates = [
@@ -263,10 +259,7 @@ class PortableHeavyTop:
         whole, flip, v = self.axial.argument_once(t) if separatrix else self.axial.argument(t, self.stretch)
 
         def term(weight: int, order: int) -> tuple[Any, ...]:
-            """Return nome**weight times cosh(order*v) and times sinh(order*v), without the overflow of cosh alone."""
-            log = self.log_nome * weight if weight else 0.0
-            up, down = np.exp(log + order * v), np.exp(log - order * v)
-            c, s = 0.5 * flip * (up + down), flip * (np.sinh(order * v) if log == 0.0 else 0.5 * (up - down))
+            c, s = (flip * part for part in hyperbolic(self.log_nome, weight, order, v))
             return c, s, order * s, order * c
 
         pairs = [[term(n * (n + 1), 2 * n + 1) for n in range(TERMS)], [term(n * n, 2 * n) for n in range(TERMS)]]

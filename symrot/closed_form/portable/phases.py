@@ -11,7 +11,10 @@ from mpmath import mp, mpf
 from symrot.closed_form.arithmetic.double_double import two_product, two_sum
 from symrot.closed_form.build import Floats
 
-__all__ = ["DIGITS", "TERMS", "Phase", "multiples", "number", "power_of_two", "turned_by", "vector"]
+__all__ = [
+    "DIGITS", "TERMS", "Phase", "hyperbolic", "multiples", "number", "power_of_two", "quarter_periods", "turned_by",
+    "vector",
+]  # fmt: skip
 
 DIGITS = 120  # digits of the constants, enough to remain accurate after any cancellation
 TERMS = 8  # terms of a series
@@ -31,6 +34,12 @@ def vector(pairs: list[float]) -> list[Any]:
 def power_of_two(value: Any) -> Any:
     """Return a power of two near a positive number, or 1 for zero."""
     return mpf(2) ** int(mp.frexp(value)[1]) if value else mpf(1)
+
+
+def quarter_periods(m: Any, complement: Any) -> tuple[Any, Any]:
+    """Return the complete elliptic integrals K(m) and K(1 - m); ``complement`` is 1 - m, with all its digits."""
+    real, imaginary = (mp.pi / (2 * mp.agm(1, mp.sqrt(x))) if x else mp.inf for x in (complement, m))
+    return real, imaginary
 
 
 class Phase(NamedTuple):
@@ -96,6 +105,13 @@ class Phase(NamedTuple):
 def turned_by(real: Floats, imaginary: Floats, sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
     """Return real and imaginary part of a complex number times ``cosine + i sine``."""
     return real * cosine - imaginary * sine, real * sine + imaginary * cosine
+
+
+def hyperbolic(log_nome: float, weight: float, order: float, v: Floats) -> tuple[Floats, Floats]:
+    """Return nome**weight times cosh(order*v) and times sinh(order*v), without the overflow of cosh alone."""
+    log = log_nome * weight if weight else 0.0
+    up, down = np.exp(log + order * v), np.exp(log - order * v)
+    return 0.5 * (up + down), (np.sinh(order * v) if log == 0.0 else 0.5 * (up - down))
 
 
 def multiples(sine: Floats, cosine: Floats) -> list[tuple[Floats, Floats]]:
