@@ -29,7 +29,8 @@ _NAMES_OF_MODULES = {
     "checker.recognition.identification": ("identify",),
     "checker.verdict": ("Diagnosis", "Dimensions", "Identification", "Repair", "Verdict"),
     "scene.scene": ("Body", "Initial", "Output", "Scene", "Span", "Table", "Torque", "load_scene", "shipped_scenes"),
-    "planning.plan": ("Plan", "RuleOutcome"),
+    "planning.plan": ("Plan",),
+    "planning.rules": ("RuleOutcome",),
     "planning.scene_kernel": ("SceneKernel",),
     "ensemble.ensemble": ("Ensemble", "EnsembleStats", "propagate_ensemble"),
     "workshop.certification": (

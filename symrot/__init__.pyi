@@ -16,7 +16,8 @@ from symrot.kinematics.chart import Limit, RateMatrix, SingularSet
 from symrot.kinematics.dossier import LockedPoint, SingularityDossier, singularity_dossier
 from symrot.kinematics.euler import EulerRateMatrix, dcm, rate_jacobian
 from symrot.kinematics.quaternion import quaternion_product, quaternion_rates, quaternion_to_dcm
-from symrot.planning.plan import Plan, RuleOutcome
+from symrot.planning.plan import Plan
+from symrot.planning.rules import RuleOutcome
 from symrot.planning.scene_kernel import SceneKernel
 from symrot.proof.derivation import Derivation, ProofError
 from symrot.proof.page import Step

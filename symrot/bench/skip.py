@@ -21,7 +21,8 @@ from symrot.bench.comparison.race import Measured, race, seconds_of
 from symrot.build import cache
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
-from symrot.planning.plan import Plan, general_structure, make_plan
+from symrot.planning.general_structure import general_structure
+from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import stepped_motion
 from symrot.propagation.propagate import propagator

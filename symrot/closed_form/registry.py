@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from symrot.build import cache as library
 from symrot.closed_form.build import Floats
 from symrot.formula.exact_numbers import equal
-from symrot.planning.plan import ATTITUDE_QUANTITIES
+from symrot.planning.rules import ATTITUDE_QUANTITIES
 from symrot.scene.scene import Initial, Scene
 
 __all__ = ["FORMS", "ClosedForm", "Exact", "exact_form", "torque_and_damping"]

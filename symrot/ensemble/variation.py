@@ -15,7 +15,8 @@ from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
 from symrot.inertia.principal import principal_axes, require_admissible, why_not_propagable
-from symrot.planning.plan import Plan, general_structure, make_plan, switched
+from symrot.planning.general_structure import general_structure, switched
+from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Floats
 from symrot.scene.scene import Initial, Scene

@@ -18,7 +18,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from symrot.closed_form.registry import ClosedForm, Exact, Starts
 from symrot.errors import PropagationError
-from symrot.planning.plan import Plan, RuleOutcome
+from symrot.planning.plan import Plan
+from symrot.planning.rules import RuleOutcome
 from symrot.planning.scene_kernel import EPOCH, SceneKernel
 from symrot.propagation import time_shift
 from symrot.propagation.array_functions import ARRAY_FUNCTIONS

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
-from symrot.planning.plan import switched
+from symrot.planning.general_structure import switched
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.real_array import real_array
 from symrot.propagation.trajectory import Trajectory

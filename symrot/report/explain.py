@@ -33,7 +33,7 @@ def _row(item: str, skipped: bool, why: str, derivation: str = "", operations: C
 
 def _ladder(plan: Plan) -> "list[PlanRow]":
     """Return one table row for each rule of a plan: operations that remain after it, and operations that it saves."""
-    from symrot.planning.plan import general_structure
+    from symrot.planning.general_structure import general_structure
 
     general = _operations(general_structure(plan.scene, bool(plan.switches)))
     rows = [_row("general motion", False, "any tensor, any direction of every torque, full attitude", "", general)]

@@ -61,7 +61,7 @@ class MethodRecord(TypedDict):
 
 
 class RuleRecord(TypedDict):
-    """The decision of one rule of a plan, such as using a symmetry; see :class:`symrot.planning.plan.RuleOutcome`."""
+    """The decision of one rule of a plan, such as using a symmetry; see :class:`symrot.planning.rules.RuleOutcome`."""
 
     item: str
     skipped: bool

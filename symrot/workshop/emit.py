@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symrot.errors import InputError
-from symrot.planning.plan import Plan, make_plan, switched
+from symrot.planning.general_structure import switched
+from symrot.planning.plan import Plan, make_plan
 from symrot.scene.scene import Scene, load_scene
 
 if TYPE_CHECKING:

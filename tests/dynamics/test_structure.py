@@ -6,7 +6,8 @@ from dataclasses import replace
 import pytest
 
 from symrot.dynamics.structure import FieldTorque, FormulaTorque, InertiaTensor, Pattern, PrincipalInertia, Structure
-from symrot.planning.plan import make_plan, switched
+from symrot.planning.general_structure import switched
+from symrot.planning.plan import make_plan
 from symrot.propagation.compiled_models import kernel_key
 from symrot.scene.scene import load_scene, shipped_scenes
 

@@ -4,7 +4,8 @@ import pytest
 
 from symrot.dynamics.structure import PrincipalInertia
 from symrot.errors import InputError
-from symrot.planning.plan import RULES, make_plan
+from symrot.planning.plan import make_plan
+from symrot.planning.rules import RULES
 from symrot.scene.file import names_with_kernels
 from symrot.scene.scene import Scene, load_scene
 

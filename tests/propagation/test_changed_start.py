@@ -11,7 +11,7 @@ from symrot.closed_form import registry as choose
 from symrot.closed_form.heavy_top import motion as heavy_top
 from symrot.formula import exact_numbers as number
 from symrot.inertia import composite
-from symrot.planning import plan as planner
+from symrot.planning import rules
 from symrot.planning.plan import make_plan, structure_key
 from symrot.propagation import compiled_models as kernels
 from symrot.propagation import motion, propagate, propagator
@@ -143,18 +143,18 @@ def test_doubles_settle_which_torques_lie_along_an_axis(monkeypatch):
     """Exact numbers are taken where a component may be zero alone: they take a fifth of a millisecond."""
     vector, clear, level = (Fraction(1), Fraction(2), Fraction(-2)), (0.21, 0.33, -0.47, 0.13), (1.0, 0.0, 0.0, 0.0)
     chance = np.random.default_rng(5)
-    exact = planner._in_body
+    exact = rules._in_body
     for row in [*chance.standard_normal((200, 4)), *chance.integers(-2, 3, (400, 4)), clear, level]:
         if np.any(row):
             start = Initial((0, 0, 1), number.unit([Fraction(float(x)) for x in row]))
-            found = planner._small_components(vector, start)
+            found = rules.small_components(vector, start)
             turned = exact(vector, start)
             assert found == tuple(abs(x) <= max(map(abs, turned)) / 2**200 for x in turned)
-    monkeypatch.setattr(planner, "_in_body", None)
+    monkeypatch.setattr(rules, "_in_body", None)
     given = started(SCENES["turned top"], (0.0, 0.0, 1.0), clear)
     structure_key(given, given.initial)
     with pytest.raises(TypeError):
-        planner._small_components((Fraction(0), Fraction(0), Fraction(1)), started(given, None, level).initial)
+        rules.small_components((Fraction(0), Fraction(0), Fraction(1)), started(given, None, level).initial)
 
 
 def test_quantities_of_a_changed_start_use_one_kernel(monkeypatch):

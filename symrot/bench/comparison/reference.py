@@ -48,7 +48,8 @@ from symrot.bench.comparison.problem import Problem, State
 from symrot.build import cache
 from symrot.closed_form.registry import exact_form
 from symrot.errors import SymrotError
-from symrot.planning.plan import Plan, general_structure
+from symrot.planning.general_structure import general_structure
+from symrot.planning.plan import Plan
 from symrot.propagation.compiled_models import formula_deviations
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import stepped_motion
