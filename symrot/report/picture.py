@@ -1,19 +1,53 @@
-"""Writing of matplotlib figures to PDF, SVG or PNG files, without a date; a palette makes PNG files small."""
+"""The style of all matplotlib figures, and writing of them to PDF, SVG or PNG files, without a date.
 
+A palette makes PNG files small.
+"""
+
+from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from symrot import __version__
 from symrot.files.writing import write
-from symrot.report.plot import UNDATED
+from symrot.report.layout import one_line
 
-__all__ = ["save_page"]
+__all__ = ["COLOURS", "GREY", "STYLE", "draw", "literal", "save_page"]
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")  # Okabe & Ito, 2008
+GREY = "#606060"
+STYLE = {
+    "font.size": 9.0, "axes.titlesize": 10.0, "axes.titleweight": "bold", "axes.titlelocation": "left",
+    "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": GREY, "axes.linewidth": 0.8,
+    "grid.color": "#e4e4e4", "grid.linewidth": 0.6, "lines.linewidth": 1.2, "legend.frameon": False,
+    "legend.fontsize": 8.5, "svg.hashsalt": "symrot", "axes.formatter.useoffset": False,
+}  # fmt: skip
+UNDATED: dict[str, dict[str, Any]] = {
+    ".png": {"Software": f"symrot {__version__}"},
+    ".pdf": {"Creator": f"symrot {__version__}", "CreationDate": None},
+    ".svg": {"Creator": f"symrot {__version__}", "Date": None},
+}
 
 PALETTE = 128  # colours: a few curves, their shades on white, greys
 
 
-def save_page(page: Any, path: Path, dpi: int) -> None:
+def literal(text: str) -> str:
+    """Return text with dollar signs escaped, since matplotlib begins a formula at a dollar sign."""
+    return one_line(text).replace("\\", "/").replace("$", r"\$")
+
+
+def draw(figure: Callable[[], Any], path: Path, dpi: int = 150, few_colours: bool = True) -> None:
+    """Write the figure that a function returns to a file, in symrot's style; for the rest see :func:`save_page`."""
+    import matplotlib
+
+    with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
+        save_page(figure(), path, dpi, few_colours)
+
+
+def save_page(page: Any, path: Path, dpi: int, few_colours: bool = True) -> None:
     """Write a matplotlib Figure to a file; the suffix of ``path`` decides the format.
+
+    ``few_colours`` makes a PNG smaller, for a figure without shades.
 
     Raises
     ------
@@ -25,7 +59,7 @@ def save_page(page: Any, path: Path, dpi: int) -> None:
     def put(stream: BinaryIO) -> None:
         page.savefig(stream, format=suffix[1:], dpi=dpi, metadata=UNDATED[suffix])
 
-    write(path, (lambda stream: _palette(page, dpi, stream)) if suffix == ".png" else put)
+    write(path, (lambda stream: _palette(page, dpi, stream)) if few_colours and suffix == ".png" else put)
 
 
 def _palette(page: Any, dpi: int, stream: BinaryIO) -> None:

@@ -5,15 +5,14 @@ It uses matplotlib's objects and the Agg canvas: no window, no global state. Equ
 
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from symrot import __version__
 from symrot.errors import InputError
-from symrot.files.writing import write
-from symrot.report.layout import one_line
+from symrot.report.picture import COLOURS, GREY, draw, literal
 from symrot.report.sphere import FAINT, draw_directions, prefixed
 
 __all__ = ["SUFFIXES", "figure", "require_matplotlib", "save"]
@@ -22,22 +21,9 @@ Floats = NDArray[np.float64]
 
 SUFFIXES = (".png", ".pdf", ".svg")
 FEWEST, MOST, PER_STEP = 1500, 20_000, 6  # limits of the number of samples in a plot, and samples per step
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")  # Okabe & Ito, 2008
 WIDTHS = (2.0, 1.6, 1.2, 0.9)  # later curves are thinner and drawn on top, so that equal curves all stay visible
-GREY = "#606060"
 TIMES = ((4 * 86400.0, 86400.0, "days"), (4 * 3600.0, 3600.0, "h"), (0.0, 1.0, "s"))  # least span, factor, unit
 QUIET = 0.01  # a component that changes by less than this part of its size may be described instead of drawn
-STYLE = {
-    "font.size": 9.0, "axes.titlesize": 10.0, "axes.titleweight": "bold", "axes.titlelocation": "left",
-    "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": GREY, "axes.linewidth": 0.8,
-    "grid.color": "#e4e4e4", "grid.linewidth": 0.6, "lines.linewidth": 1.2, "legend.frameon": False,
-    "legend.fontsize": 8.5, "svg.hashsalt": "symrot", "axes.formatter.useoffset": False,
-}  # fmt: skip
-UNDATED: dict[str, dict[str, Any]] = {
-    ".png": {"Software": f"symrot {__version__}"},
-    ".pdf": {"Creator": f"symrot {__version__}", "CreationDate": None},
-    ".svg": {"Creator": f"symrot {__version__}", "Date": None},
-}
 
 
 def require_matplotlib() -> None:
@@ -190,17 +176,12 @@ def figure(trajectory: Any, tolerance: float) -> Any:
     return page
 
 
-def _literal(text: str) -> str:
-    """Return text with dollar signs escaped, since matplotlib begins a formula at a dollar sign."""
-    return one_line(text).replace("\\", "/").replace("$", r"\$")
-
-
 def _words(page: Any, trajectory: Any, tolerance: float) -> None:
     scene, stats = trajectory.scene, trajectory.stats
-    page.text(0.02, 0.972, _literal(scene.title)[:100], fontsize=15, fontweight="bold", va="top")
-    page.text(0.02, 0.928, _literal(scene.source)[:170], fontsize=8.5, color=GREY, va="top")
+    page.text(0.02, 0.972, literal(scene.title)[:100], fontsize=15, fontweight="bold", va="top")
+    page.text(0.02, 0.928, literal(scene.source)[:170], fontsize=8.5, color=GREY, va="top")
     caption = (
-        f"{_literal(scene.name)}   |   {trajectory.method}, tolerance {tolerance:g}, {stats.accepted} steps   |   "
+        f"{literal(scene.name)}   |   {trajectory.method}, tolerance {tolerance:g}, {stats.accepted} steps   |   "
         f"paths run from the dot (dark) to the square (light)   |   symrot {__version__}"
     )
     page.text(0.98, 0.018, caption, fontsize=8, color=GREY, ha="right")
@@ -216,17 +197,8 @@ def save(propagator: Any, trajectory: Any, path: Path) -> None:
     path : Path
         Its suffix, one of :data:`SUFFIXES`, decides the format.
     """
-    import matplotlib
-
     count = min(max(FEWEST, len(trajectory), PER_STEP * trajectory.stats.accepted), MOST)
     if count != len(trajectory):
         span = trajectory.scene.span
         trajectory = propagator(np.linspace(float(span.start), float(span.stop), count))
-    suffix = path.suffix.lower()
-    with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
-        page = figure(trajectory, propagator.tolerance)
-
-        def draw(stream: BinaryIO) -> None:
-            page.savefig(stream, format=suffix[1:], dpi=150, metadata=UNDATED[suffix])
-
-        write(path, draw)
+    draw(lambda: figure(trajectory, propagator.tolerance), path, few_colours=False)

@@ -5,9 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from symrot import __version__
-from symrot.report.picture import save_page
-from symrot.report.plot import COLOURS, GREY, STYLE
-from symrot.report.work_precision_plot import DPI
+from symrot.report.picture import COLOURS, GREY, draw
 
 __all__ = ["figure", "save"]
 
@@ -66,7 +64,4 @@ def figure(ladder: Mapping[str, Any]) -> Any:
 
 def save(ladder: Mapping[str, Any], path: Path) -> None:
     """Draw the savings by specialised kernels into a file, whose suffix decides the format."""
-    import matplotlib
-
-    with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
-        save_page(figure(ladder), path, DPI)
+    draw(lambda: figure(ladder), path)

@@ -6,8 +6,7 @@ from statistics import median
 from typing import Any
 
 from symrot import __version__
-from symrot.report.picture import save_page
-from symrot.report.plot import GREY, STYLE
+from symrot.report.picture import GREY, draw
 from symrot.report.work_precision_plot import LOOKS, METHOD_LABELS, OTHER, OUTERMOST, frontier
 
 __all__ = ["curves", "figure", "save"]
@@ -105,8 +104,5 @@ def curves(suite: Mapping[str, Any]) -> Any:
 
 def save(suite: Mapping[str, Any], directory: Path) -> None:
     """Draw the two figures of a suite into a folder: ``suite.png`` and ``motions.png``."""
-    import matplotlib
-
-    with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
-        save_page(figure(suite), directory / "suite.png", 130)
-        save_page(curves(suite), directory / "motions.png", 130)
+    draw(lambda: figure(suite), directory / "suite.png", 130)
+    draw(lambda: curves(suite), directory / "motions.png", 130)

@@ -11,15 +11,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from symrot import __version__
-from symrot.report.layout import apart, one_line
-from symrot.report.picture import save_page
-from symrot.report.plot import GREY, STYLE
+from symrot.report.layout import apart
+from symrot.report.picture import GREY, draw, literal
 
 __all__ = ["LOOKS", "METHOD_LABELS", "OTHER", "OUTERMOST", "figure", "frontier", "save"]
 
 LEAST_ERROR = 1e-17  # an error of zero is drawn as this error
 APART = 0.042  # least distance between two names, relative to the panel's height
-DPI = 150
 OUTERMOST = 1.5  # runs with larger errors are not shown
 
 
@@ -144,20 +142,15 @@ def _leaders(axes: Any, study: Mapping[str, Any]) -> None:
             axes.plot((error, right), (seconds, seconds), color=colour, linewidth=0.6, alpha=0.5, zorder=1)
 
 
-def _literal(text: str) -> str:
-    """Return text with dollar signs escaped, since matplotlib begins a formula at a dollar sign."""
-    return one_line(text).replace("\\", "/").replace("$", r"\$")
-
-
 def _words(page: Any, study: Mapping[str, Any]) -> None:
     scene, machine, reference = study["scene"], study["machine"], study["reference"]
-    page.text(0.02, 0.965, _literal(scene["title"])[:75], fontsize=13, fontweight="bold", va="top")
+    page.text(0.02, 0.965, literal(scene["title"])[:75], fontsize=13, fontweight="bold", va="top")
     versions = ", ".join(f"{name} {machine[name]}" for name in ("scipy", "heyoka") if machine[name])
     line = f"t = {' to '.join(apart(*scene['span']))} s, one core of {machine['processor']}; {versions}"
-    page.text(0.02, 0.915, _literal(line)[:130], fontsize=8.5, color=GREY, va="top")
+    page.text(0.02, 0.915, literal(line)[:130], fontsize=8.5, color=GREY, va="top")
     others = "; ".join(f"{other['name']} within {max(other['difference'], 1e-16):.0e}" for other in reference["others"])
     caption = f"reference: {reference['name']}" + (f"; {others}" if others else "")
-    page.text(0.02, 0.018, _literal(caption), fontsize=7.5, color=GREY)
+    page.text(0.02, 0.018, literal(caption), fontsize=7.5, color=GREY)
     page.text(0.985, 0.018, f"symrot {__version__}", fontsize=7.5, color=GREY, ha="right")
 
 
@@ -171,7 +164,4 @@ def save(study: Mapping[str, Any], path: Path) -> None:
     path : Path
         Its suffix, ``.png``, ``.pdf`` or ``.svg``, decides the format.
     """
-    import matplotlib
-
-    with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
-        save_page(figure(study), path, DPI)
+    draw(lambda: figure(study), path)

@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 
 from symrot.report.layout import one_line
-from symrot.report.picture import save_page
-from symrot.report.plot import COLOURS, GREY, STYLE
+from symrot.report.picture import COLOURS, GREY, STYLE, save_page
 
 __all__ = ["figure", "save"]
 
