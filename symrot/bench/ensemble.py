@@ -21,8 +21,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symrot.bench.taylor import DECADES, MOTIONS, Floats, Run, best_of, raced, reference
-from symrot.bench.taylor import _Problem as Problem
+from symrot.bench.taylor import DECADES, MOTIONS, Floats, Run, SteppedProblem, best_of, raced, reference
 from symrot.build import cache
 from symrot.ensemble import lanes
 
@@ -48,7 +47,7 @@ class Start(NamedTuple):
     def error(self, states: Floats) -> float:
         """Return the largest error of the end states of an ensemble, shape (n, N)."""
         pairs = zip(states[: len(self.exact)], self.exact, strict=True)
-        return float(max(self.problem.error(computed, exact) for computed, exact in pairs))
+        return float(max(self.problem.largest_error(computed, exact) for computed, exact in pairs))
 
 
 def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
@@ -228,9 +227,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--motion", choices=list(MOTIONS), help="one motion only")
     options = parser.parse_args(arguments)
     for name in [options.motion] if options.motion else MOTIONS:
-        problem = Problem(name, 1.0)
+        problem = SteppedProblem(name, 1.0)
         few = prepare(name, 8, problem.stop, problem)
-        off = problem.error(few.exact[0], reference(name))
+        off = problem.largest_error(few.exact[0], reference(name))
         print(f"\n{name}, 8 trajectories, t = {problem.stop:g} s (long double against 40 digits: {off:.0e})")
         if options.orders:
             _print_orders(few, options.rounds)

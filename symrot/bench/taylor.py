@@ -29,16 +29,15 @@ from numpy.typing import NDArray
 from symrot.bench.by_hand import text_by_hand
 from symrot.bench.comparison.exact_path import DIGITS, ExactPath
 from symrot.bench.comparison.peers import heyoka_integrator
+from symrot.bench.comparison.problem import Problem
 from symrot.build import cache
 from symrot.build.sources import c_text
-from symrot.planning.plan import Plan, make_plan
-from symrot.planning.scene_kernel import SceneKernel, bind
-from symrot.propagation.compiled_models import error_blocks, library_source, scene_kernel
+from symrot.propagation.compiled_models import error_blocks, library_source
 from symrot.propagation.invariants import invariant_parameters, invariant_source
 from symrot.propagation.steppers import dop853, taylor
 from symrot.scene.scene import Scene
 
-__all__ = ["MOTIONS", "Run", "best_of", "main", "measure", "reference", "scene"]
+__all__ = ["MOTIONS", "Run", "SteppedProblem", "best_of", "main", "measure", "reference", "scene"]
 
 Floats = NDArray[np.float64]
 
@@ -91,15 +90,12 @@ class Run(NamedTuple):
     seconds: list[float]
 
 
-class _Problem:
-    """One motion of the comparison, with its kernel and the numbers of its parameters."""
+class SteppedProblem(Problem):
+    """One motion of the comparison, on its whole span times ``scale``, with the libraries of its steppers."""
 
     def __init__(self, name: str, scale: float) -> None:
-        self.plan: Plan = make_plan(scene(name))
-        self.kernel: SceneKernel = scene_kernel(self.plan)
-        self.p = bind(self.kernel.rate_parameters, self.plan.constants)
-        self.y0 = [float(value) for value in self.plan.initial_state]
-        self.stop = float(self.plan.scene.span.stop) * scale
+        super().__init__(scene(name))
+        self.stop *= scale
         self.blocks, self.scales = error_blocks(self.plan)
 
     def taylor_library(self, order: int | None = None, project: bool = True) -> Any:
@@ -111,7 +107,7 @@ class _Problem:
     def taylor_p(self) -> list[float]:
         return [*self.p, *invariant_parameters(self.kernel, self.plan)]
 
-    def error(self, state: Iterable[Any], exact: Floats) -> float:
+    def largest_error(self, state: Iterable[Any], exact: Floats) -> float:
         """Return the largest error of a state; errors of rates are relative to the largest rate."""
         computed, worst = np.array([float(value) for value in state]), 0.0
         if not np.isfinite(computed).all():
@@ -143,7 +139,7 @@ def compute_reference(name: str, scale: float = 1.0) -> list[Any]:
     """Return the last state by Taylor series in 40 digits, from the rounded parameters of the kernel."""
     import mpmath
 
-    problem = _Problem(name, scale)
+    problem = SteppedProblem(name, scale)
     with mpmath.workdps(DIGITS):
         return ExactPath(problem.plan, problem.kernel, (problem.p, problem.y0)).state(mpmath.mpf(problem.stop))
 
@@ -169,7 +165,7 @@ TimedRun = Callable[[], StepsAndState]
 
 
 def _stepper(
-    follow: Callable[..., Any], path: Any, p: Sequence[float], problem: _Problem, tolerance: float
+    follow: Callable[..., Any], path: Any, p: Sequence[float], problem: SteppedProblem, tolerance: float
 ) -> TimedRun:
     """Return a function that runs one of symrot's steppers, which is set up once, as in a propagator."""
     motion, times = follow(path, p, problem.y0, 0.0, tolerance), np.array([problem.stop])
@@ -181,10 +177,9 @@ def _stepper(
     return task
 
 
-def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> TimedRun | None:
+def _heyoka(problem: SteppedProblem, tolerance: float, settings: dict[str, bool]) -> TimedRun | None:
     """Return a function that runs heyoka on the same right-hand side, with its parameters compiled in as numbers."""
-    parameters = dict(zip((name for name, _ in problem.kernel.rate_parameters), problem.p, strict=True))
-    run = heyoka_integrator(problem.kernel.rates, parameters, problem.y0, tolerance, settings)
+    run = heyoka_integrator(problem.kernel.rates, problem.parameters, problem.y0, tolerance, settings)
     if run is None:
         return None
 
@@ -195,7 +190,7 @@ def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> T
     return task
 
 
-def _by_hand(library_: Any, method: str, problem: _Problem, steps: int) -> TimedRun:
+def _by_hand(library_: Any, method: str, problem: SteppedProblem, steps: int) -> TimedRun:
     """Return a function that runs a handwritten loop in C, with a fixed number of steps."""
     function = getattr(library_, f"symrot_{method}")
     real = ctypes.c_double
@@ -210,7 +205,7 @@ def _by_hand(library_: Any, method: str, problem: _Problem, steps: int) -> Timed
     return task
 
 
-def _loops(problem: _Problem) -> list[tuple[str, float, TimedRun]]:
+def _loops(problem: SteppedProblem) -> list[tuple[str, float, TimedRun]]:
     """Return (name, steps, function) for handwritten loops with several numbers of steps."""
     text = "\n".join(
         (
@@ -229,7 +224,7 @@ def _loops(problem: _Problem) -> list[tuple[str, float, TimedRun]]:
     ]
 
 
-def _contestants(problem: _Problem, settings: bool) -> list[tuple[str, float, TimedRun]]:
+def _contestants(problem: SteppedProblem, settings: bool) -> list[tuple[str, float, TimedRun]]:
     tolerances = [10.0 ** (-k / 2) for k in range(2, 29)]  # two for each decade of the table
     orders = {e: taylor.order_for(e, problem.kernel.rates) for e in tolerances}
     ours = {order: problem.taylor_library(order) for order in set(orders.values())}
@@ -250,8 +245,8 @@ def _contestants(problem: _Problem, settings: bool) -> list[tuple[str, float, Ti
 
 def measure(name: str, rounds: int = 9, settings: bool = False, scale: float = 1.0) -> list[Run]:
     """Time all contestants on one motion, and return their runs; ``scale`` shortens its span."""
-    problem, exact = _Problem(name, scale), reference(name, scale)
-    return raced(_contestants(problem, settings), partial(problem.error, exact=exact), rounds)
+    problem, exact = SteppedProblem(name, scale), reference(name, scale)
+    return raced(_contestants(problem, settings), partial(problem.largest_error, exact=exact), rounds)
 
 
 def raced(
@@ -329,13 +324,13 @@ def _print_ratios(indent: str, ratios: dict[str, list[float]]) -> None:
 
 def _print_orders(name: str, rounds: int) -> None:
     """Print a comparison of orders of the series: the least time for each decade of the error."""
-    problem, exact = _Problem(name, 1.0), reference(name)
+    problem, exact = SteppedProblem(name, 1.0), reference(name)
     paths = {f"{order}": problem.taylor_library(order) for order in ORDERS}
     tasks: list[tuple[str, float, TimedRun]] = [
         (order, 10.0**-k, _stepper(taylor.integration, path, problem.taylor_p, problem, 10.0**-k))
         for k in range(2, 15) for order, path in paths.items()
     ]  # fmt: skip
-    runs = raced(tasks, partial(problem.error, exact=exact), rounds)
+    runs = raced(tasks, partial(problem.largest_error, exact=exact), rounds)
     print(f"\n{name}: ms for an error, by order of the series")
     print(f"{'  error <=':10}" + "".join(f"{order:>10}" for order in paths))
     for decade in DECADES:

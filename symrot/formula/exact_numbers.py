@@ -5,8 +5,8 @@ and the circular functions) is rounded once, to a relative error below 2^-300. S
 """
 
 __all__ = [
-    "NEGLIGIBLE", "NEGLIGIBLE_BITS", "PI", "Angle", "cos", "equal", "read", "read_angle", "show", "sin", "sqrt", "tan",
-    "unit", "without_turns",
+    "NEGLIGIBLE", "NEGLIGIBLE_BITS", "PI", "Angle", "cos", "equal", "read", "read_angle", "rounded", "show", "sin",
+    "sqrt", "tan", "unit", "without_turns",
 ]  # fmt: skip
 
 from collections.abc import Callable, Sequence
@@ -66,9 +66,9 @@ def show(value: object, limit: int = 60) -> str:
     return text if len(text) <= limit + 2 else text[:limit] + ".."
 
 
-def _round(value: Fraction, bits: int = BITS) -> Fraction:
-    """Return ``value`` rounded to an integer times a power of two, with a relative error below 2^-bits."""
-    shift = bits + 2 - value.numerator.bit_length() + value.denominator.bit_length()
+def rounded(value: Fraction) -> Fraction:
+    """Return a number rounded to an integer times a power of two, with a relative error below 2^-320."""
+    shift = BITS + 2 - value.numerator.bit_length() + value.denominator.bit_length()
     scaled = value.numerator << shift if shift > 0 else value.numerator >> -shift
     quotient = scaled // value.denominator
     return Fraction(quotient, 1 << shift) if shift > 0 else Fraction(quotient << -shift)
@@ -228,7 +228,7 @@ def _multiply(a: Angle, b: Angle) -> Angle:
         return a.scaled(b.rational)
     if not a.half_turns:
         return b.scaled(a.rational)
-    return _exactly(_round(a.radians * b.radians))
+    return _exactly(rounded(a.radians * b.radians))
 
 
 def _divide(a: Angle, b: Angle) -> Angle:
@@ -236,12 +236,12 @@ def _divide(a: Angle, b: Angle) -> Angle:
         return a.scaled(1 / b.rational)
     if not a.rational and not b.rational:
         return _exactly(a.half_turns / b.half_turns)
-    return _exactly(_round(a.radians / b.radians))
+    return _exactly(rounded(a.radians / b.radians))
 
 
 def _power(base: Fraction, exponent: int) -> Fraction:
     bits = max(base.numerator.bit_length(), base.denominator.bit_length())
-    return (_round(base) if bits > BITS else base) ** exponent
+    return (rounded(base) if bits > BITS else base) ** exponent
 
 
 _OPERATORS: dict[str, Callable[[Angle, Angle], Angle]] = {
@@ -402,4 +402,4 @@ def read_angle(value: object, degrees: bool = False, where: str = "", expect: st
         return angle
     if not angle.half_turns:
         return Angle(Fraction(0), angle.rational / 180)
-    return _exactly(_round(angle.radians * PI / 180))
+    return _exactly(rounded(angle.radians * PI / 180))

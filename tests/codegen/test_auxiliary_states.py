@@ -36,7 +36,7 @@ def turning(*torques):
 )
 def test_companions_follow_the_attitude(name, count):
     """Orders 0 to 6, exact: gamma' = gamma x omega, and two directions where one of them turns with time."""
-    system = recurrences(bench._Problem(name, 1.0).kernel.rates)
+    system = recurrences(bench.SteppedProblem(name, 1.0).kernel.rates)
     lifted = with_companions(system)
     assert len(lifted.seeds) == count and (count or lifted is system)
     assert same(system, lifted)
@@ -88,7 +88,7 @@ def test_a_system_whose_products_grow_too_long_is_left_alone(monkeypatch):
 
 
 def test_a_layout_takes_companions_where_they_save_sums():
-    problem = bench._Problem("gravity gradient", 1.0)
+    problem = bench.SteppedProblem("gravity gradient", 1.0)
     system = recurrences(problem.kernel.rates)
     plain, lifted = (lay_out(one, problem.blocks) for one in (system, with_companions(system)))
     assert len(lifted.columns) < len(plain.columns) and cost(lifted) < cost(plain)

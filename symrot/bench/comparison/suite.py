@@ -155,9 +155,9 @@ def summary(studies: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
     return rows
 
 
-def _cell(one: Mapping[str, Any], peer: str, side: str = "stepped") -> str:
-    comparison = next((item for item in one["against"] if item["peer"] == peer and side in item), None)
-    return _ratio(comparison[side]["median"], comparison[side]["least"]) if comparison else "-"
+def _cell(one: Mapping[str, Any], peer: str) -> str:
+    comparison = next((item for item in one["against"] if item["peer"] == peer and "stepped" in item), None)
+    return _ratio(comparison["stepped"]["median"], comparison["stepped"]["least"]) if comparison else "-"
 
 
 def _ratio(middle: float, least: float) -> str:

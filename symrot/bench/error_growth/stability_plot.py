@@ -58,7 +58,7 @@ def _rates(axes: Any, data: Any) -> None:
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=3, handlelength=1.4)
 
 
-def _smoothed(at: Any, values: Any, linear: bool) -> Any:
+def _smoothed(values: Any, linear: bool) -> Any:
     """Return the largest error up to each time, since an error that changes sign is not really small at its zeros."""
     if not linear:
         return values
@@ -77,7 +77,7 @@ def _curves(axes: Any, data: Any, what: str) -> None:
             if not drifts:
                 continue
             values = np.max(drifts, axis=0)
-        axes.plot(at, _smoothed(at, values, linear), label=curve["method"], **LOOKS.get(curve["method"], {}))
+        axes.plot(at, _smoothed(values, linear), label=curve["method"], **LOOKS.get(curve["method"], {}))
     axes.set_yscale("log")
     if not linear:
         axes.set_xscale("log")

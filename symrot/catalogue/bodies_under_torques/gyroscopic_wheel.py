@@ -27,7 +27,7 @@ def derive() -> Derivation:
     torque = rate(momentum, motion)
     line = Matrix([cos(PHI), sin(PHI), 0])
     _torque(d, torque, line, momentum, motion)
-    _level(d, torque, line, momentum)
+    _level(d, torque, line)
     _reactions(d)
     return d
 
@@ -79,7 +79,7 @@ def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motio
     )
 
 
-def _level(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix) -> None:
+def _level(d: Derivation, torque: Matrix, line: Matrix) -> None:
     d.section("A level axle")
     level = {THETA: pi / 2}
     axle = Matrix(dcm("ZXZ")).subs(level)[:, 2]

@@ -37,7 +37,7 @@ def derive() -> Derivation:
     _two_turns(d)
     turning = _momentum(d)
     _third_kind(d, turning)
-    _theta(d, turning)
+    _theta(d)
     _special(d)
     return d
 
@@ -260,7 +260,7 @@ def _third_kind(d: Derivation, constants: dict[str, Expr]) -> None:
     )
 
 
-def _theta(d: Derivation, constants: dict[str, Expr]) -> None:
+def _theta(d: Derivation) -> None:
     d.section("The third angle without an integral")
     relations = [H**2 - ONE**2 - THREE**2, TWO**2 - ONE**2 - MU * THREE**2, *squares()]
     imag = -THREE / ONE, H / ONE, TWO / ONE  # sn/i, cn, dn at w

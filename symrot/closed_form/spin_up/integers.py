@@ -25,11 +25,11 @@ from symrot.closed_form.spin_up.off_resonance import (
     conjugate,
     fixed,
     product,
-    rounded,
 )
 from symrot.closed_form.spin_up.resonance import Near
 from symrot.closed_form.spin_up.series import MOST, NEAR, series
 from symrot.formula import exact_numbers as number
+from symrot.formula.exact_numbers import rounded
 
 __all__ = ["Integers"]
 

@@ -16,9 +16,10 @@ from fractions import Fraction
 from symrot.closed_form.build import Floats
 from symrot.closed_form.spin_up.series import NEAR, Series
 from symrot.formula import exact_numbers as number
+from symrot.formula.exact_numbers import rounded
 from symrot.kinematics.hamilton import hamilton
 
-__all__ = ["FIXED", "ONE", "Quaternion", "Sweep", "about_third", "conjugate", "fixed", "product", "rounded"]
+__all__ = ["FIXED", "ONE", "Quaternion", "Sweep", "about_third", "conjugate", "fixed", "product"]
 
 FIXED = 144
 """Bits after the binary point of unit quaternions in fixed-point arithmetic, four times as fast as Fractions."""
@@ -29,16 +30,6 @@ ONE: Quaternion = (1 << FIXED, 0, 0, 0)
 
 _HALVINGS = 12  # smallest number of halvings of the argument of asinh
 _SMALL = Fraction(1, 1 << _HALVINGS)
-
-
-def rounded(value: Fraction) -> Fraction:
-    """Return a number with a relative error below 2^-320, as an integer times a power of two."""
-    if not value:
-        return value
-    shift = number.BITS + 2 - value.numerator.bit_length() + value.denominator.bit_length()
-    if shift > 0:
-        return Fraction((value.numerator << shift) // value.denominator, 1 << shift)
-    return Fraction((value.numerator // value.denominator >> -shift) << -shift)
 
 
 def fixed(values: Sequence[Fraction]) -> Quaternion:
