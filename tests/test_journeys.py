@@ -6,11 +6,13 @@ The calls are counted with Python's profiler, so that a count does not depend on
 import sys
 from collections import Counter
 from contextlib import contextmanager
+from pathlib import Path
 from types import CodeType
 
 import pytest
 
 import symrot
+from symrot.certificates.readback.readback import read_kernel
 from symrot.checker.claim.claims import Claim
 from symrot.closed_form.registry import exact_form
 from symrot.codegen.library_kernels import kernel_program
@@ -24,6 +26,7 @@ from symrot.propagation.method import choose_method
 from symrot.propagation.steppers.smoothness import non_smooth_torque
 from symrot.scene.scene import load_scene
 from symrot.workshop import kernel_files as files
+from symrot.workshop.certify import audit_file
 from symrot.workshop.kernel_text import LibraryText, SceneText
 
 
@@ -67,6 +70,14 @@ def certified(kernel, folder):
     bounds = files.stored_bounds(kernel, folder)
     texts = files.kernel_files(kernel, "c", bounds) | files.kernel_files(kernel, "numpy")
     return texts | files.certificate_files(kernel, folder, bounds)
+
+
+def test_an_audit_reads_each_c_function_once():
+    """The functions for double and float are read in the file and, unless a test before did it, as they are printed."""
+    read_kernel.cache_clear()
+    with counted(read_kernel.__wrapped__) as calls:
+        audit_file(Path(__file__).parents[1] / "generated" / "c" / "quaternion_dcm.cert.json")
+    assert 2 <= calls["read_kernel"] <= 4
 
 
 PRINTERS = (lower, c_functions, c_function, numpy_source)

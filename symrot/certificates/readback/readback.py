@@ -9,6 +9,7 @@ the emitter.
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import lru_cache
 from struct import pack, unpack
 
 from symrot.certificates.readback.c_functions import CFunction, Cursor, Parameter, Token, functions_of
@@ -281,8 +282,9 @@ def _real_of(function: CFunction, where: str) -> str:
 PRECISION = {"double": "binary64", "float": "binary32"}
 
 
+@lru_cache(maxsize=32)
 def read_kernel(text: str, name: str, where: str = "kernel") -> Operations:
-    """Read a one-sample function of a C file and return its operations.
+    """Read a one-sample function of a C file and return its operations; equal texts are read once.
 
     Parameters
     ----------
