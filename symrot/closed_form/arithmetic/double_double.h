@@ -68,15 +68,19 @@ ONE_COPY dd dd_div(dd a, dd b)
     return quick_two_sum(first, rest/b.hi);
 }
 
-/* The square root; zero for arguments that are not positive. */
-ONE_COPY dd dd_sqrt(dd a)
+/* The square root of a positive number. */
+ALWAYS_INLINE dd dd_root(dd a)
 {
-    if (!(a.hi > 0.0))
-        return dd_of(0.0);
     const double root = sqrt(a.hi);
     const dd square = two_product(root, root);
     const double rest = ((a.hi - square.hi) - square.lo) + a.lo; /* the first two differences are exact */
     return quick_two_sum(root, rest/(2.0*root));
+}
+
+/* The square root; zero for arguments that are not positive. */
+ONE_COPY dd dd_sqrt(dd a)
+{
+    return a.hi > 0.0 ? dd_root(a) : dd_of(0.0);
 }
 
 static inline dd dd_abs(dd a)

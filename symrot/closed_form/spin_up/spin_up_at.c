@@ -74,7 +74,7 @@ STAGE speeds(const double across[2], ptrdiff_t n, block *restrict b)
 {
     const dd square = dd_square(dd_pair(across[0], across[1]));
     EACH (i, n) {
-        const dd speed = rooted(dd_add_fast(dd_square(dd_pair(b->omega[i], b->omega_low[i])), square));
+        const dd speed = dd_root(dd_add_fast(dd_square(dd_pair(b->omega[i], b->omega_low[i])), square));
         b->speed[i] = speed.hi;
         b->speed_low[i] = speed.lo;
     }

@@ -49,14 +49,6 @@ ALWAYS_INLINE dd linear(dd a, dd b, double t)
     return dd_add_fast(a, dd_pair(p, MUL_ADD(b.lo, t, product_error(b.hi, t, p))));
 }
 
-/* The square root of a positive number, with an error of 2^-104. */
-ALWAYS_INLINE dd rooted(dd a)
-{
-    const double root = sqrt(a.hi), square = root*root;
-    const double rest = ((a.hi - square) - product_error(root, root, square)) + a.lo;
-    return quick_two_sum(root, rest/(2.0*root));
-}
-
 /* atanh(r) - r for |r| <= 1/128, with an error of 2^-74 of r, or of 2^-102 if `fine`. */
 ALWAYS_INLINE dd atanh_rest(dd r, int fine)
 {
