@@ -1,0 +1,101 @@
+"""JavaScript text of programs: a module that exports a function for one sample.
+
+The statements are those of the C text, in the same order, so that both compute the same operations.
+"""
+
+from fractions import Fraction
+
+from symrot.codegen.printing.banner import Description, banner
+from symrot.codegen.printing.kernel_functions import called, own_function
+from symrot.formula.program import Argument, Program
+from symrot.formula.tree import FUNCTIONS, Node, names, rename, text
+from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
+
+__all__ = ["js_expression", "js_function", "js_functions", "js_source"]
+
+NAMES = {name: f"Math.{name}" for name in FUNCTIONS} | {name: name for name in OWN_FUNCTIONS}
+"""A function of programs -> its name in JavaScript, where all angles are in rad too."""
+
+COPYSIGN = [
+    "function copysign(x, y) {",
+    "    return (y < 0 || Object.is(y, -0) ? -1 : 1)*Math.abs(x);",
+    "}",
+]
+"""The function of C that JavaScript does not have."""
+
+
+def _literal(value: Fraction) -> str:
+    return repr(float(value))
+
+
+def js_expression(node: Node) -> str:
+    """Return a formula as a JavaScript expression, with the brackets that its order of evaluation needs."""
+    return text(rename(node, functions=NAMES), 0, _literal)
+
+
+def _own_function(name: str) -> list[str]:
+    """Return the definition of a function, such as sinc, that kernels call and JavaScript does not have."""
+    if name == "copysign":
+        return COPYSIGN
+    parameters, temporaries, (relation, left, right, then, other) = own_function(name, "binary64")
+    condition = f"{js_expression(left)} {relation.replace('==', '===')} {js_expression(right)}"
+    return [
+        f"function {name}({', '.join(parameters)}) {{",
+        *(f"    const {temporary} = {js_expression(node)};" for temporary, node in temporaries),
+        f"    return {condition} ? {js_expression(then)} : {js_expression(other)};",
+        "}",
+    ]
+
+
+def _unpacked(argument: Argument, used: set[str]) -> list[str]:
+    """Return the statements that read the components of an input argument; a scalar argument needs no statement."""
+    if argument.is_scalar:
+        return []
+    return [
+        f"    const {name} = {argument.name}[{i}];" for i, (name, *_) in enumerate(argument.components) if name in used
+    ]
+
+
+def js_function(program: Program, qualifier: str = "") -> list[str]:
+    """Return the lines of a function with the arguments of the C function; its outputs are arrays that it fills.
+
+    Parameters
+    ----------
+    program : Program
+        The program to print. Its outputs must not overlap its inputs.
+    qualifier : str
+        Text in front of the definition, such as ``"export "``.
+    """
+    arguments = [a for a in program.signature.arguments if a.size]
+    used = set().union(*(names(node) for _, node in program.temporaries + program.outputs))
+    results = dict(program.outputs)
+    lines = [f"{qualifier}function {program.signature.name}({', '.join(a.name for a in arguments)}) {{"]
+    lines += [line for a in arguments if a.role == "in" for line in _unpacked(a, used)]
+    lines += [f"    const {name} = {js_expression(node)};" for name, node in program.temporaries]
+    lines += [
+        f"    {a.name}[{i}] = {js_expression(results[name])};"
+        for a in arguments
+        if a.role == "out"
+        for i, (name, *_) in enumerate(a.components)
+    ]
+    return [*lines, "}"]
+
+
+def js_functions(*programs: Program) -> list[str]:
+    """Return the lines of the functions, such as sinc, that programs call and JavaScript does not have, each once."""
+    needed = dict.fromkeys(name for program in programs for name in _called(program))
+    return [line for name in needed for line in (*_own_function(name), "")]
+
+
+def _called(program: Program) -> list[str]:
+    calls_copysign = "copysign" in program.operations()
+    return [*(["copysign"] if calls_copysign else []), *called(program)]
+
+
+def js_source(program: Program, description: Description) -> str:
+    """Return the text of a JavaScript module that exports one function; the same program gives the same bytes.
+
+    The function takes the input arguments, then the output arguments: arrays that it fills. It returns nothing.
+    """
+    head = banner(program, description, "/*", " *", " */")
+    return "\n".join([*head, "", *js_functions(program), *js_function(program, "export ")]) + "\n"
