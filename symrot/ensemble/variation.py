@@ -168,7 +168,8 @@ class Variation:
             torques[torque] = torques[torque].with_constant(*_constant_place(field, entry), value)
         if not PLACES.keys().isdisjoint(values):
             (xx, xy, xz), (_, yy, yz), (_, _, zz) = tensor
-            body = body._replace(inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)), principal=principal_axes(tensor))
+            inertia = (xx, xy, xz), (xy, yy, yz), (xz, yz, zz)
+            body = body._replace(inertia=inertia, principal=principal_axes(tensor), parts=())
         return replace(self.scene, initial=start, body=body, torques=tuple(torques))
 
     def plan(self) -> Plan:

@@ -5,13 +5,13 @@ The sources are ``shape`` with dimensions and mass or density; ``[[body.part]]``
 was given.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 from symrot.formula import tree as expression
 from symrot.formula.exact_numbers import NEGLIGIBLE
-from symrot.inertia.composite import MassProperties, Part, mass_properties
+from symrot.inertia.composite import Part, mass_properties
 from symrot.inertia.principal import Principal, principal_axes, require_admissible, why_not_propagable
 from symrot.inertia.shapes import SHAPES, Shape, check_dimensions
 from symrot.inertia.tensor import about_point
@@ -54,6 +54,10 @@ class Body(NamedTuple):
         How the scene describes the body.
     principal : Principal
         Class of the body, principal moments, kg m^2, and axes.
+    parts : tuple of Part
+        The shapes of which the body consists, for pictures; empty if only its inertia is known.
+    origin : tuple of 3 Fraction
+        The point of rotation, m, in the axes in which the parts are placed.
 
     Examples
     --------
@@ -69,6 +73,8 @@ class Body(NamedTuple):
     about: str
     description: str
     principal: Principal
+    parts: tuple[Part, ...] = ()
+    origin: Vector = _ZERO
 
 
 def read_body(value: Any, where: str) -> Body:
@@ -260,8 +266,12 @@ def _bounded(value: Any, where: str) -> None:
         _length(value, where)
 
 
-def _placed(properties: MassProperties, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return a body of shapes about its centre of mass, or about a fixed point given in the axes of the body."""
+def _placed(parts: Sequence[Part], values: Mapping[str, Any], where: str, source: str, of_parts: str) -> Body:
+    """Return a body of shapes about its centre of mass, or about a fixed point given in the axes of the body.
+
+    ``source`` describes the body; ``of_parts`` is the place of its parts in the scene, for errors.
+    """
+    properties = mass_properties(parts, of_parts)
     about, point = values["about"], values["fixed_point"]
     if about == "center_of_mass" and point is not None:
         fail(
@@ -272,21 +282,22 @@ def _placed(properties: MassProperties, values: Mapping[str, Any], where: str, s
     if about == "fixed_point" and point is None:
         fail(f"{where}.fixed_point", "three numbers [x, y, z] in m, in the axes of the body: it rotates "
                  "about a fixed point, the key is missing")  # fmt: skip
-    inertia, center = properties.inertia, _ZERO
+    inertia, center, origin = properties.inertia, _ZERO, properties.center_of_mass
     if about == "fixed_point":
         x, y, z = (c - p for c, p in zip(properties.center_of_mass, point, strict=True))
         size = max(map(abs, (*properties.center_of_mass, *point)))
         x, y, z = (Fraction(0) if abs(item) <= size * NEGLIGIBLE else item for item in (x, y, z))
-        center = (x, y, z)
+        center, origin = (x, y, z), point
         inertia = about_point(inertia, properties.mass, center)
     inertia = _settled(inertia)
     description = values["name"] or source
-    return Body(properties.mass, inertia, center, about, description, principal_axes(inertia, where))
+    principal = principal_axes(inertia, where)
+    return Body(properties.mass, inertia, center, about, description, principal, tuple(parts), origin)
 
 
 def _read_shape(value: Mapping[str, Any], where: str) -> Body:
     part, values = _read_shape_table(value, where, _PLACED)
-    return _placed(mass_properties([part], where), values, where, part.shape.replace("_", " "))
+    return _placed([part], values, where, part.shape.replace("_", " "), where)
 
 
 _PART = {
@@ -308,7 +319,7 @@ def _parts(value: Any, where: str) -> list[Part]:
 def _read_parts(value: Mapping[str, Any], where: str) -> Body:
     values = read_table(value, where, {"part": Entry(_parts, required=True), **_PLACED}, "a body of parts")
     parts: list[Part] = values["part"]
-    return _placed(mass_properties(parts, f"{where}.part"), values, where, f"body of {len(parts)} parts")
+    return _placed(parts, values, where, f"body of {len(parts)} parts", f"{where}.part")
 
 
 _READERS: dict[str, Callable[[Mapping[str, Any], str], Body]] = {
