@@ -51,6 +51,7 @@ _NAMES_OF_MODULES = {
     "propagation.propagator": ("Propagator",),
     "propagation.steppers.stepping": ("Stats",),
     "propagation.trajectory": ("Invariant", "Trajectory"),
+    "viewer.show": ("in_notebook", "show"),
 }
 _MODULE = {name: module for module, names in _NAMES_OF_MODULES.items() for name in names}
 _RENAMED = {"dcm_of": "quaternion_to_dcm", "qmul": "quaternion_product"}

@@ -28,6 +28,7 @@ from symrot.propagation.propagator import Propagator
 from symrot.propagation.steppers.stepping import Stats
 from symrot.propagation.trajectory import Invariant, Trajectory
 from symrot.scene.scene import Body, Initial, Output, Scene, Span, Table, Torque, load_scene, shipped_scenes
+from symrot.viewer.show import in_notebook, show
 from symrot.workshop.certification import (
     Audit,
     Certificate,
@@ -104,6 +105,7 @@ __all__ = [
     "euler_equations",
     "explain",
     "identify",
+    "in_notebook",
     "kernel_names",
     "largest_box",
     "load_scene",
@@ -117,6 +119,7 @@ __all__ = [
     "quaternion_to_dcm",
     "rate_jacobian",
     "shipped_scenes",
+    "show",
     "singularity_dossier",
     "solid",
 ]

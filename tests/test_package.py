@@ -29,6 +29,7 @@ ROOMS = (  # from left to right: a module imports, anywhere, only from its own r
     {"certificates"},
     {"closed_form", "propagation"},
     {"ensemble"},
+    {"viewer"},
     {"report"},
     {"workshop"},
     {"bench"},

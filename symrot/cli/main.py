@@ -32,6 +32,7 @@ from symrot.report.layout import emphasis, one_line
 __all__ = ["main"]
 
 TARGETS = ("c", "numpy")
+PAGE_SUFFIXES = (".html", ".htm")
 PAGES: dict[str, Callable[[Any], str]] = {
     "markdown": lambda page: page.markdown(),
     "latex": lambda page: page.latex(),
@@ -82,8 +83,9 @@ def _run(options: Namespace) -> int:
     if options.plot:
         from symrot.report import plot
 
-        check_target(options.plot, plot.SUFFIXES, "--plot")
-        plot.require_matplotlib()
+        check_target(options.plot, (*plot.SUFFIXES, *PAGE_SUFFIXES), "--plot")
+        if options.plot.suffix.lower() not in PAGE_SUFFIXES:
+            plot.require_matplotlib()
     scene = symrot.load_scene(options.scene, table_folders=options.table_folder)
     progress("preparing the kernel (a compiler has at most 300 s) ..")
     start = perf_counter()
@@ -100,7 +102,10 @@ def _run(options: Namespace) -> int:
         report["written"]["out"] = {"file": str(options.out), "samples": len(trajectory), "arrays": names}
     if options.plot:
         progress("drawing ..")
-        plot.save(propagator, trajectory, options.plot)
+        if options.plot.suffix.lower() in PAGE_SUFFIXES:
+            trajectory.show(options.plot)
+        else:
+            plot.save(propagator, trajectory, options.plot)
         report["written"]["plot"] = {"file": str(options.plot)}
     progress("")
     if options.json:
@@ -108,6 +113,18 @@ def _run(options: Namespace) -> int:
         return OK
     title, *rest = summary(report)
     say([emphasis(title, sys.stdout), *rest])
+    return OK
+
+
+def _show(options: Namespace) -> int:
+    scene = symrot.load_scene(options.scene, table_folders=options.table_folder)
+    progress("computing the motion ..")
+    path = symrot.show(scene, options.output)
+    progress("")
+    if options.json:
+        say_json({"scene": scene.name, "written": str(path), "bytes": path.stat().st_size})
+    else:
+        say([f"{path}: {path.stat().st_size / 1e6:.2f} MB, one file without links; open it in a browser"])
     return OK
 
 
@@ -349,7 +366,15 @@ def _run_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--tolerance", metavar="X", help="error to aim for, 1e-15 to 1e-2 (default: the scene's own)")
     parser.add_argument("--state", default="quaternion", metavar="SEQUENCE", help="step Euler angles, such as ZXZ")
     parser.add_argument("--out", type=Path, metavar="FILE", help="write the output quantities: FILE.npz or FILE.csv")
-    parser.add_argument("--plot", type=Path, metavar="FILE", help="draw the motion on one page: FILE.png, .pdf or .svg")
+    parser.add_argument("--plot", type=Path, metavar="FILE",
+                        help="draw the motion: FILE.png, .pdf or .svg, or FILE.html for a page that moves")  # fmt: skip
+    json_option(parser)
+
+
+def _show_arguments(parser: ArgumentParser) -> None:
+    _scene_argument(parser)
+    _table_folder_option(parser)
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="FILE.html (default: SCENE.html)")
     json_option(parser)
 
 
@@ -431,6 +456,7 @@ def _doctor_arguments(parser: ArgumentParser) -> None:
 
 COMMANDS: dict[str, Command] = {
     "run": ("propagate a scene and summarise its motion", _run, _run_arguments),
+    "show": ("write a page that plays a scene and lets the reader change it", _show, _show_arguments),
     "explain": ("show what is computed for a scene, what is skipped and why", _explain, _explain_arguments),
     "derive": ("print derivations, proven step by step", _derive, _derive_arguments),
     "check": ("decide whether formulas hold, and suggest corrections", _check, _check_arguments),

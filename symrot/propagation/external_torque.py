@@ -330,6 +330,8 @@ def external_setup(
 class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
     """Motion of a scene under a torque that is a function or a table, evaluated at the times of the scene."""
 
+    has_external_torque = True
+
     def __init__(self, shared: ExternalSetup, plan: Plan) -> None:
         super().__init__(shared.setup, plan)
         self._shared = shared

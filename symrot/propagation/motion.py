@@ -199,7 +199,12 @@ class ClosedFormSetup:
 
 
 class Motion(ABC):
-    """A plan with its kernel, its numbers and one initial state; its clock shows 0 at the scene's time ``epoch``."""
+    """A plan with its kernel, its numbers and one initial state; its clock shows 0 at the scene's time ``epoch``.
+
+    ``has_external_torque`` says whether a torque without a formula acts on the body.
+    """
+
+    has_external_torque = False
 
     def __init__(self, setup: Setup, plan: Plan) -> None:
         self.setup, self.plan = setup, plan

@@ -2,11 +2,13 @@
 
 from collections.abc import Callable
 from functools import cached_property
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+import symrot
 from symrot.errors import InputError
 from symrot.kinematics import conversions
 from symrot.planning.plan import Plan
@@ -119,6 +121,11 @@ class Trajectory:
     def scene(self) -> Scene:
         """The scene of the motion, with the initial state of this trajectory."""
         return self._motion.plan.scene
+
+    @property
+    def has_external_torque(self) -> bool:
+        """Whether a torque without a formula acted: a function, or a table of samples."""
+        return self._motion.has_external_torque
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -273,6 +280,17 @@ class Trajectory:
     @cached_property
     def _solution(self) -> Callable[[ArrayLike], Floats]:
         return self._motion.solution(self.t, self.has_attitude)
+
+    def show(self, path: str | Path | None = None) -> Path:
+        """Write the motion as one offline page of HTML that plays it; see :func:`symrot.show`.
+
+        ``path`` is the file to write; the default is the name of the scene, ``.html``, in the current folder.
+        """
+        return symrot.show(self, path)
+
+    def _repr_html_(self) -> str:
+        """Return the page of the motion in a frame, as a notebook shows it."""
+        return symrot.in_notebook(self)
 
     def quantity(self, name: str) -> Floats:
         """Return a quantity by its name in ``output.quantities`` of a scene, such as ``"euler"``."""

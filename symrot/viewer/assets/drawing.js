@@ -1,0 +1,314 @@
+/* The three-dimensional picture: body, axes, vectors, paths, Poinsot's ellipsoid on its plane, and cones. */
+
+const ARROWS = {
+    omega: {label: "ω", title: "angular velocity ω"},
+    momentum: {label: "L", title: "angular momentum L"},
+    torque: {label: "M", title: "torque M"},
+};
+const LONGEST = 1.5;      // length of the longest ω, L or M, relative to the body
+const TIP = 1.3;          // distance of the tip of the body's axis from the point of rotation
+const TRAIL = 2000;       // points of a path
+
+export class Drawing {
+    constructor(canvas, labels, data, colours) {
+        const {WebGLRenderer, Scene, PerspectiveCamera, OrbitControls, HemisphereLight, DirectionalLight, Group} = libraries;
+        this.data = data;
+        this.canvas = canvas;
+        this.labels = labels;
+        this.renderer = new WebGLRenderer({canvas, antialias: true, alpha: true});
+        this.scene = new Scene();
+        this.camera = new PerspectiveCamera(35, 1, 0.05, 100);
+        this.camera.up.set(0, 0, 1);
+        this.camera.position.set(4.3, -5.6, 2.9);
+        this.controls = new OrbitControls(this.camera, canvas);
+        this.controls.enableDamping = true;
+        this.controls.minDistance = 1.5;
+        this.controls.maxDistance = 30;
+        this.scene.add(new HemisphereLight(0xffffff, 0x8890a0, 2.2));
+        const sun = new DirectionalLight(0xffffff, 2);
+        sun.position.set(3, -4, 6);
+        this.scene.add(sun);
+        this.world = new Group();      // everything in space axes; it is rotated when the view follows the body
+        this.body = new Group();       // everything in body axes
+        this.world.add(this.body);
+        this.scene.add(this.world);
+        this.follow = false;
+        this.pins = [];                // text labels and the points to which they belong
+        this.parts = {};
+        this.colours = colours;
+        this.#addBody();
+        this.#addAxes();
+        this.#addArrows();
+        this.#addPaths();
+        this.#addGround();
+    }
+
+    #addBody() {
+        const {Mesh, MeshStandardMaterial, DoubleSide, BufferGeometry, BufferAttribute, SphereGeometry, TubeGeometry,
+            CatmullRomCurve3, Vector3, EdgesGeometry, LineSegments, LineBasicMaterial, Group} = libraries;
+        const shape = new Group();
+        this.solid = new MeshStandardMaterial({
+            color: this.colours.body, side: DoubleSide, roughness: 0.55, metalness: 0.15, vertexColors: true,
+            transparent: true, opacity: 1,
+        });
+        const hole = new MeshStandardMaterial({color: 0x000000, side: DoubleSide, transparent: true, opacity: 0.25});
+        const edge = new LineBasicMaterial({color: this.colours.edge});
+        this.data.patches.forEach((patch, number) => {
+            const points = Float32Array.from(patch.points), count = points.length/3;
+            if (patch.columns === 0) {
+                for (let k = 0; k < count; ++k) {
+                    const ball = new Mesh(new SphereGeometry(0.06, 24, 16), this.solid);
+                    ball.geometry.setAttribute("color", new BufferAttribute(
+                        new Float32Array(ball.geometry.attributes.position.count*3).fill(1), 3));
+                    ball.position.fromArray(points, 3*k);
+                    shape.add(ball);
+                }
+                return;
+            }
+            if (patch.rows === 1) {
+                const path = new CatmullRomCurve3(
+                    Array.from({length: count}, (_, k) => new Vector3().fromArray(points, 3*k)), false, "catmullrom", 0);
+                const tube = new TubeGeometry(path, Math.max(8, 2*count), 0.02, 12);
+                tube.setAttribute("color", new BufferAttribute(
+                    new Float32Array(tube.attributes.position.count*3).fill(1), 3));
+                shape.add(new Mesh(tube, this.solid));
+                return;
+            }
+            const geometry = new BufferGeometry(), index = [], shade = [];
+            for (let i = 0; i < patch.rows; ++i) {
+                for (let j = 0; j < patch.columns; ++j) {
+                    const turning = patch.columns > 2 ? j/(patch.columns - 1) : patch.rows > 2 ? i/(patch.rows - 1) : number/6;
+                    const tone = Math.floor(4*turning + 1e-9) % 2 ? 0.72 : 1;    // quarters, so that a spin can be seen
+                    shade.push(tone, tone, tone);
+                    if (i + 1 === patch.rows || j + 1 === patch.columns) continue;
+                    const a = i*patch.columns + j, b = a + 1, c = a + patch.columns, d = c + 1;
+                    index.push(a, b, c, b, d, c);
+                }
+            }
+            geometry.setAttribute("position", new BufferAttribute(points, 3));
+            geometry.setAttribute("color", new BufferAttribute(Float32Array.from(shade), 3));
+            geometry.setIndex(index);
+            geometry.computeVertexNormals();
+            shape.add(new Mesh(geometry, patch.hole ? hole : this.solid));
+            shape.add(new LineSegments(new EdgesGeometry(geometry, 30), edge));
+        });
+        this.body.add(shape);
+        this.parts.body = [shape];
+    }
+
+    #addAxes() {
+        const space = this.#axes(1.9, this.colours.space, ["x", "y", "z"], this.world);
+        const axes = this.#axes(1.55, this.colours.axes, ["1", "2", "3"], this.body);
+        this.parts.space = [space];
+        this.parts.axes = [axes];
+    }
+
+    #axes(length, colour, names, parent) {
+        const {Group, Line, BufferGeometry, LineBasicMaterial, Vector3} = libraries;
+        const group = new Group();
+        names.forEach((name, k) => {
+            const end = new Vector3().setComponent(k, length);
+            const geometry = new BufferGeometry().setFromPoints([new Vector3(), end]);
+            group.add(new Line(geometry, new LineBasicMaterial({color: colour})));
+            this.#pin(name, colour, () => group.visible ? group.localToWorld(end.clone().multiplyScalar(1.06)) : null);
+        });
+        parent.add(group);
+        return group;
+    }
+
+    /** Add a label whose place is computed for each picture; it is hidden where the place is null. */
+    #pin(text, colour, place) {
+        const element = document.createElement("span");
+        element.textContent = text;
+        element.style.color = `#${colour.toString(16).padStart(6, "0")}`;
+        this.labels.append(element);
+        this.pins.push({element, place});
+    }
+
+    #addArrows() {
+        const {ArrowHelper, Vector3, Group} = libraries;
+        this.arrows = {};
+        for (const [name, {label}] of Object.entries(ARROWS)) {
+            const arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 1, this.colours[name], 0.16, 0.09);
+            const group = new Group();
+            group.add(arrow);
+            this.world.add(group);
+            this.arrows[name] = {arrow, group, vector: new Vector3(), size: 1};
+            this.parts[name] = [group];
+            this.#pin(label, this.colours[name], () => {
+                const {vector} = this.arrows[name];
+                return group.visible && arrow.visible ? group.localToWorld(vector.clone().multiplyScalar(1.08)) : null;
+            });
+        }
+    }
+
+    #addPaths() {
+        const {Line, BufferGeometry, BufferAttribute, LineBasicMaterial, Group} = libraries;
+        const line = (colour, parent, name, opacity = 1) => {
+            const geometry = new BufferGeometry();
+            geometry.setAttribute("position", new BufferAttribute(new Float32Array(3*TRAIL), 3));
+            const path = new Line(geometry, new LineBasicMaterial({color: colour, opacity, transparent: opacity < 1}));
+            path.frustumCulled = false;
+            const group = new Group();
+            group.add(path);
+            parent.add(group);
+            this.parts[name] = [...(this.parts[name] ?? []), group];
+            return path;
+        };
+        this.paths = {
+            whole: line(this.colours.trail, this.world, "trail", 0.35),
+            trail: line(this.colours.trail, this.world, "trail"),
+            herpolhode: line(this.colours.omega, this.world, "herpolhode"),
+            polhode: line(this.colours.polhode, this.body, "polhode"),
+        };
+    }
+
+    #addGround() {
+        const {Mesh, ConeGeometry, MeshStandardMaterial, GridHelper, SphereGeometry, Group, Line, BufferGeometry,
+            LineBasicMaterial, Vector3} = libraries;
+        if (!this.data.fixedPoint) return;
+        const ground = new Group();
+        const grid = new GridHelper(6, 12, this.colours.space, this.colours.grid);
+        grid.rotation.x = Math.PI/2;
+        grid.position.z = -0.6;
+        const stand = new Mesh(new ConeGeometry(0.18, 0.6, 40), new MeshStandardMaterial({color: this.colours.grid}));
+        stand.rotation.x = Math.PI/2;
+        stand.position.z = -0.3;
+        ground.add(grid, stand, new Mesh(new SphereGeometry(0.035), new MeshStandardMaterial({color: this.colours.edge})));
+        this.world.add(ground);
+        const {center, size} = this.data;
+        if (center) {
+            const ends = [new Vector3(), new Vector3(...center).divideScalar(size)];
+            const stem = new Line(new BufferGeometry().setFromPoints(ends), new LineBasicMaterial({color: this.colours.edge}));
+            this.body.add(stem);
+        }
+    }
+
+    /** Show Poinsot's ellipsoid and plane, and the cones, of a free body with this state. */
+    construction({omega, momentum, energy, inertia, axes, quaternion}) {
+        const {Mesh, SphereGeometry, MeshStandardMaterial, DoubleSide, RingGeometry, Vector3, Matrix4, ConeGeometry,
+            Quaternion, Group} = libraries;
+        for (const group of [...(this.parts.poinsot ?? []), ...(this.parts.cones ?? [])]) group.removeFromParent();
+        const visible = {poinsot: this.parts.poinsot?.[0]?.visible ?? false, cones: this.parts.cones?.[0]?.visible ?? false};
+        const scale = LONGEST/this.arrows.omega.size, length = Math.hypot(...momentum);
+        const translucent = (colour, opacity) => new MeshStandardMaterial({
+            color: colour, transparent: true, opacity, side: DoubleSide, depthWrite: false,
+        });
+        const ellipsoid = new Group(), plane = new Group();
+        const surface = new Mesh(new SphereGeometry(1, 64, 40), translucent(this.colours.polhode, 0.35));
+        surface.scale.set(...inertia.map((moment) => scale*Math.sqrt(2*energy/moment)));
+        const turned = new Group();
+        turned.add(surface);
+        turned.setRotationFromMatrix(new Matrix4().set(
+            ...axes[0], 0, ...axes[1], 0, ...axes[2], 0, 0, 0, 0, 1));
+        ellipsoid.add(turned);
+        const normal = new Vector3(...momentum).divideScalar(length);
+        const disk = new Mesh(new RingGeometry(0, 2.6, 96), translucent(this.colours.momentum, 0.22));
+        disk.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), normal);
+        disk.position.copy(normal).multiplyScalar(scale*2*energy/length);
+        plane.add(disk);
+        this.body.add(ellipsoid);
+        this.world.add(plane);
+        this.parts.poinsot = [ellipsoid, plane];
+        this.parts.cones = [];
+        if (this.data.symmetric) {
+            const omegaUnit = new Vector3(...omega).normalize();
+            const turn = new Quaternion(quaternion[1], quaternion[2], quaternion[3], quaternion[0]);
+            const axis = new Vector3(...axes.map((row) => row[this.data.axis]));
+            const spaceOmega = omegaUnit.clone().applyQuaternion(turn);
+            const cone = (direction, about, colour, parent) => {
+                const height = LONGEST*Math.abs(direction.dot(about)), side = Math.sign(direction.dot(about)) || 1;
+                const radius = Math.sqrt(Math.max(LONGEST**2 - height**2, 0));
+                if (!(radius > 1e-3 && height > 1e-3)) return;
+                const mesh = new Mesh(new ConeGeometry(radius, height, 64, 1, true), translucent(colour, 0.35));
+                const towards = about.clone().multiplyScalar(side);
+                mesh.quaternion.setFromUnitVectors(new Vector3(0, -1, 0), towards);
+                mesh.position.copy(towards).multiplyScalar(height/2);
+                const group = new Group();
+                group.add(mesh);
+                parent.add(group);
+                this.parts.cones.push(group);
+            };
+            cone(omegaUnit, axis, this.colours.polhode, this.body);
+            cone(spaceOmega, normal, this.colours.momentum, this.world);
+        }
+        this.show("poinsot", visible.poinsot);
+        this.show("cones", visible.cones);
+    }
+
+    /** Say how long the longest ω, L and M of the motion are, so that arrows keep one scale. */
+    scales({omega, momentum, torque}) {
+        this.arrows.omega.size = omega || 1;
+        this.arrows.momentum.size = momentum || 1;
+        this.arrows.torque.size = torque || 1;
+    }
+
+    show(name, visible) {
+        for (const group of this.parts[name] ?? []) group.visible = visible;
+        if (name === "poinsot") this.solid.opacity = visible ? 0.35 : 1;
+    }
+
+    isShown(name) {
+        return this.parts[name]?.[0]?.visible ?? false;
+    }
+
+    /** Set the points of a path; `points` are triples in the units of the path. */
+    path(name, points, scale) {
+        const line = this.paths[name], array = line.geometry.attributes.position.array;
+        const count = Math.min(points.length, TRAIL);
+        for (let k = 0; k < count; ++k) {
+            for (let i = 0; i < 3; ++i) array[3*k + i] = scale*points[k][i];
+        }
+        line.geometry.attributes.position.needsUpdate = true;
+        line.geometry.setDrawRange(0, count);
+        return count;
+    }
+
+    /** Show the part of the trail up to a fraction of its points. */
+    trailUpTo(fraction, count) {
+        this.paths.trail.geometry.setDrawRange(0, Math.max(1, Math.ceil(fraction*count)));
+    }
+
+    pose({quaternion: [w, x, y, z], omega, momentum, torque}) {
+        this.body.quaternion.set(x, y, z, w);
+        for (const [name, value] of Object.entries({omega, momentum, torque})) {
+            const {arrow, vector, size} = this.arrows[name], length = value ? Math.hypot(...value)/size*LONGEST : 0;
+            arrow.visible = length > 0.02;
+            if (!arrow.visible) continue;
+            vector.set(...value).multiplyScalar(LONGEST/size);
+            arrow.setDirection(vector.clone().normalize());
+            arrow.setLength(length, Math.min(0.16, 0.4*length), Math.min(0.09, 0.25*length));
+        }
+        if (this.follow) this.world.quaternion.copy(this.body.quaternion).invert();
+        else this.world.quaternion.identity();
+    }
+
+    resize() {
+        const {clientWidth: width, clientHeight: height} = this.canvas.parentElement;
+        this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+        this.renderer.setSize(width, height, false);
+        this.camera.aspect = width/Math.max(height, 1);
+        this.camera.fov = this.camera.aspect < 1 ? 48 : 35;
+        this.camera.updateProjectionMatrix();
+        this.width = width;
+        this.height = height;
+    }
+
+    render() {
+        this.controls.update();
+        this.scene.updateMatrixWorld();
+        this.renderer.render(this.scene, this.camera);
+        for (const {element, place} of this.pins) {
+            const point = place()?.project(this.camera);
+            const hidden = !point || Math.abs(point.z) > 1;
+            element.style.visibility = hidden ? "hidden" : "visible";
+            if (hidden) continue;
+            element.style.transform = `translate(-50%, -50%) translate(${(point.x + 1)/2*this.width}px, ${(1 - point.y)/2*this.height}px)`;
+        }
+    }
+
+    static TIP = TIP;
+    static TRAIL = TRAIL;
+    static LONGEST = LONGEST;
+    static ARROWS = ARROWS;
+}

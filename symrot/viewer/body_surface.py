@@ -1,0 +1,174 @@
+"""The surface of a scene's body, as patches of points: the faces of its parts, drawn from the maps of their shapes.
+
+A shape is the image of a box of coordinates (:mod:`symrot.inertia.shapes`). Its surface is the image of the box's
+faces, so no shape needs a drawing of its own. A body of which only the inertia is known is drawn as the uniform box
+with the same moments.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from math import cos, pi, sin, sqrt
+from typing import NamedTuple
+
+from symrot.formula.tree import Node, evaluate, names, parse
+from symrot.inertia.composite import Part
+from symrot.inertia.shapes import SHAPES, Coordinate, Shape, scalars
+from symrot.scene.body import Body
+
+__all__ = ["Patch", "patches"]
+
+Point = tuple[float, float, float]
+
+PER_HALF_TURN = 24  # divisions of an angle of pi
+FUNCTIONS = {"cos": cos, "sin": sin}
+INSIDE = 0.37  # a place between the ends of a coordinate, as a part of its range
+ROUNDING = 1e-9  # distance of points that count as equal, relative to the largest dimension
+FLATTEST = 0.02  # least thickness of the box for a body without parts, relative to its longest side
+
+
+class Patch(NamedTuple):
+    """A grid of points of a surface (``rows`` times ``columns``), a curve (one row) or separate points (no columns).
+
+    Attributes
+    ----------
+    points : list of (x, y, z)
+        In m, in body axes, from the point of rotation; row by row.
+    rows, columns : int
+        Size of the grid.
+    is_hole : bool
+        Whether the part is subtracted from the body.
+    """
+
+    points: list[Point]
+    rows: int
+    columns: int
+    is_hole: bool = False
+
+
+def patches(body: Body) -> list[Patch]:
+    """Return the surface of a body, in m, in body axes, from the point of rotation.
+
+    Parameters
+    ----------
+    body : Body
+        A body of parts, or one of which only the inertia is known.
+
+    Returns
+    -------
+    list of Patch
+
+    Examples
+    --------
+    >>> import symrot
+    >>> len(patches(symrot.load_scene("tumbling_prism").body))
+    6
+    """
+    if not body.parts:
+        return _equivalent_box(body)
+    return [patch for part in body.parts for patch in _of_part(part, body)]
+
+
+def _of_part(part: Part, body: Body) -> Iterator[Patch]:
+    def place(point: Sequence[float]) -> Point:
+        x, y, z = (
+            sum(float(entry) * component for entry, component in zip(row, point, strict=True))
+            + float(at)
+            - float(start)
+            for row, at, start in zip(part.rotation, part.at, body.origin, strict=True)
+        )
+        return x, y, z
+
+    shape = SHAPES[part.shape]
+    if shape.kind == "points":
+        yield Patch([place([float(c) for c in point]) for point in part.dimensions["points"]], 1, 0, part.subtract)
+        return
+    values = {name: float(value) for name, value in scalars(shape, part.dimensions).items()}
+    position = [parse(text) for text in shape.position]
+    for fixed, free in _faces(shape):
+        grids = [_places(coordinate, values, position) for coordinate in free]
+        rows, columns = (grids[0], grids[1]) if len(grids) == 2 else ([None], grids[0])
+        ends = {name: _value(text, values) for name, text in fixed.items()}
+        if len(free) == 2 and _is_line(position, values | ends, dict(zip((c.name for c in free), grids, strict=True))):
+            continue
+        points = []
+        for row in rows:
+            for column in columns:
+                here = ends | {free[-1].name: column} | ({free[0].name: row} if row is not None else {})
+                points.append(place([evaluate(node, values | here, FUNCTIONS, float) for node in position]))
+        yield Patch(points, len(rows), len(columns), part.subtract)
+
+
+def _moved(rotation: Sequence[Sequence[Fraction]], point: Sequence[float], offsets: Sequence[float]) -> Point:
+    rows = [[float(entry) for entry in row] for row in rotation]
+    x, y, z = (
+        sum(entry * component for entry, component in zip(row, point, strict=True)) + offset
+        for row, offset in zip(rows, offsets, strict=True)
+    )
+    return x, y, z
+
+
+def _faces(shape: Shape) -> Iterator[tuple[dict[str, str], tuple[Coordinate, ...]]]:
+    """Yield the faces of a shape: the fixed coordinates with their values as text, and the free coordinates.
+
+    The two ends of a full rotation are the same points inside the body, so they are no faces.
+    """
+    coordinates = shape.coordinates
+    if len(coordinates) < 3:
+        yield {}, coordinates
+        return
+    for coordinate in coordinates:
+        if (coordinate.lower, coordinate.upper) == ("0", "2*pi"):
+            continue
+        others = tuple(c for c in coordinates if c is not coordinate)
+        for end in (coordinate.lower, coordinate.upper):
+            yield {coordinate.name: end}, others
+
+
+def _is_line(position: Sequence[Node], values: Mapping[str, float], grids: Mapping[str, list[float]]) -> bool:
+    """Return whether a face has shrunk to a line or a point, as the axis of a cylinder has: radius 0."""
+    inside = {name: grid[0] + INSIDE * (grid[-1] - grid[0]) for name, grid in grids.items()}
+
+    def point(**moved: float) -> list[float]:
+        return [evaluate(node, {**values, **inside, **moved}, FUNCTIONS, float) for node in position]
+
+    here, size = point(), max(map(abs, values.values()))
+    middles = [point(**{name: grid[0] + (grid[-1] - grid[0]) / 2}) for name, grid in grids.items()]
+    return any(max(abs(a - b) for a, b in zip(middle, here, strict=True)) <= ROUNDING * size for middle in middles)
+
+
+def _places(coordinate: Coordinate, values: Mapping[str, float], position: Sequence[Node]) -> list[float]:
+    """Return the values of a coordinate at which a surface is sampled: its ends, and places between if it curves."""
+    low, high = _value(coordinate.lower, values), _value(coordinate.upper, values)
+    count = max(1, round(PER_HALF_TURN * (high - low) / pi)) if coordinate.angle else 1
+    return [low + (high - low) * k / count for k in range(count + 1)]
+
+
+def _value(text: str, values: Mapping[str, float]) -> float:
+    node = parse(text)
+    known = {"pi": pi, **values}
+    return float(evaluate(node, {name: known[name] for name in names(node)}, FUNCTIONS, float))
+
+
+def _equivalent_box(body: Body) -> list[Patch]:
+    """Return the faces of the uniform box with the moments of a body; its size does not depend on the unknown mass."""
+    moments = [float(moment) for moment in body.principal.moments]
+    squares = [max(sum(moments) - 2 * moment, 0.0) for moment in moments]  # (B + C - A), proportional to a^2
+    sides = [sqrt(square) for square in squares]
+    sides = [max(side / max(sides), FLATTEST) for side in sides]
+
+    def corner(signs: Sequence[float]) -> Point:
+        local = [sign * side / 2 for sign, side in zip(signs, sides, strict=True)]
+        return _moved(body.principal.axes, local, (0.0, 0.0, 0.0))
+
+    faces = []
+    for axis in range(3):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        for end in (-1.0, 1.0):
+            points = []
+            for a in (-1.0, 1.0):
+                for b in (-1.0, 1.0):
+                    signs = [0.0, 0.0, 0.0]
+                    signs[axis], signs[u], signs[v] = end, a, b
+                    points.append(corner(signs))
+            faces.append(Patch(points, 2, 2))
+    return faces

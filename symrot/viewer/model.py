@@ -1,0 +1,311 @@
+"""The model of a scene in a page: kernels as JavaScript, constants that can be varied, the body and a reference.
+
+The kernels are derived for the scene with all constants free, because the page changes them: its equations are more
+general than the plan of the scene, and the same for all values.
+"""
+
+import json
+from base64 import b64encode
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.codegen.printing.js_source import js_function, js_functions
+from symrot.dynamics.structure import PrincipalInertia, component_names
+from symrot.dynamics.torque_kinds import TORQUE_KINDS, Field
+from symrot.errors import InputError
+from symrot.formula.program import Argument, Program, Signature
+from symrot.formula.tree import rename
+from symrot.planning.plan import Plan, general_structure, switched
+from symrot.planning.scene_kernel import Parameters, SceneKernel
+from symrot.propagation.compiled_models import has_formulas, scene_kernel
+from symrot.propagation.propagate import propagator
+from symrot.propagation.steppers import tableau
+from symrot.propagation.trajectory import Trajectory
+from symrot.scene.scene import Scene
+from symrot.viewer.body_surface import Patch, patches
+
+__all__ = ["PageModel", "page_model"]
+
+Floats = NDArray[np.float64]
+
+REFERENCES = 41  # times at which the page compares its motion with symrot's
+FEWEST_SAMPLES, MOST_SAMPLES, PER_STEP = 2000, 12000, 6  # of a motion that the page does not compute itself
+DIGITS = 5  # of the points of a body, relative to its size
+DEFAULT_SEQUENCE = "ZXZ"
+SUBSCRIPTS = "\u2081\u2082\u2083"
+DIGITS_OF_NAMES = "0123456789"
+UNIT_FIELDS = ("direction", "attitude")
+MOMENTS = ("A", "B", "C")
+
+
+class Slider(NamedTuple):
+    """A constant or initial value that a page can change: its name in the page, label, unit, value and range."""
+
+    name: str
+    label: str
+    unit: str
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class PageModel:
+    """Everything that a page shows and computes.
+
+    Attributes
+    ----------
+    kernel : str
+        JavaScript that defines ``kernel``, an object with functions: Euler angles and, if the page computes the motion,
+        rates, quantities and parameters.
+    data : dict
+        Numbers and texts for the page, ready for JSON.
+    """
+
+    kernel: str
+    data: dict[str, Any]
+
+
+def page_model(scene: Scene, trajectory: Trajectory | None = None) -> PageModel:
+    """Return the model of a scene for a page.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    trajectory : Trajectory, optional
+        A motion under a torque without a formula, to play instead of the scene's own motion.
+
+    Raises
+    ------
+    InputError, PropagationError
+        As for :func:`symrot.propagate`.
+    """
+    scene = _with_attitude(scene)
+    reason = _why_played(scene, trajectory)
+    data = _facts(scene)
+    if reason:
+        motion = propagator(scene)(_times(scene, REFERENCES)) if trajectory is None else trajectory
+        samples = _samples(motion)
+        text = _script(_angle_kernels(data["sequence"]))
+        return PageModel(text, data | {"played": reason, **samples, "conserved": [], "sliders": []})
+    plan = Plan(scene, _free_structure(scene), ())
+    kernel = scene_kernel(plan)
+    times = _times(scene, REFERENCES)
+    reference = propagator(scene)(times)
+    names = tuple(plan.constants)
+    outputs = {name: place for place, (name, *_) in enumerate(kernel.quantities.signature.argument("out").components)}
+    return PageModel(
+        _kernel_text(kernel, names, data["sequence"]),
+        data
+        | {
+            "constants": {name: float(value) for name, value in plan.constants.items()},
+            "sliders": [slider._asdict() for slider in _sliders(scene, plan)],
+            "outputs": outputs,
+            "conserved": [
+                {"name": item.name, "unit": item.unit, "output": outputs[item.output], "reason": item.reason}
+                for item in kernel.conserved
+                if item.holds
+            ],
+            "tableau": _tableau(),
+            "tolerance": 1e-14,
+            "reference": {"t": _packed(times), "y": _packed(np.hstack([reference.omega, reference.quaternion]))},
+        },
+    )
+
+
+def _with_attitude(scene: Scene) -> Scene:
+    output = scene.output
+    if "quaternion" in output.quantities:
+        return scene
+    return replace(scene, output=output._replace(quantities=(*output.quantities, "quaternion")))
+
+
+def _why_played(scene: Scene, trajectory: Trajectory | None) -> str:
+    """Return why the page plays samples of the motion instead of computing it; empty if it computes the motion."""
+    if trajectory is not None:
+        return "a torque without a formula acts, so symrot computed this motion beforehand"
+    if scene.table is not None:
+        return "a torque is given by samples, so symrot computed this motion beforehand"
+    if switched(scene):
+        return "a torque jumps or bends, so symrot computed this motion beforehand"
+    if has_formulas(Plan(scene, general_structure(scene), ())):
+        return "a torque formula may have narrow features, so symrot computed this motion beforehand"
+    return ""
+
+
+def _free_structure(scene: Scene) -> Any:
+    """Return the structure of a scene with every constant free; a body in its principal axes keeps these axes."""
+    structure = general_structure(scene)
+    if scene.body.principal.given_axes:
+        return replace(structure, inertia=PrincipalInertia("ABC"))
+    return structure
+
+
+def _facts(scene: Scene) -> dict[str, Any]:
+    """Return the texts and numbers that every page needs."""
+    body = scene.body
+    principal = body.principal
+    axis = 2 if principal.symmetry_axis is None else principal.symmetry_axis
+    surface = patches(body)
+    size = max((max(map(abs, point)) for patch in surface for point in patch.points), default=1.0) or 1.0
+    down = next((torque.vector("direction") for torque in scene.torques if torque.kind == "gravity"), None)
+    return {
+        "name": scene.name,
+        "title": scene.title or scene.name,
+        "source": scene.source,
+        "body": body.description,
+        "drawnFromParts": bool(body.parts),
+        "start": float(scene.span.start),
+        "stop": float(scene.span.stop),
+        "omega": [float(value) for value in scene.initial.omega_b],
+        "quaternion": [float(value) for value in scene.initial.quaternion],
+        "sequence": scene.output.sequence or DEFAULT_SEQUENCE,
+        "inertia": [[float(entry) for entry in row] for row in body.inertia],
+        "principal": [float(moment) for moment in principal.moments],
+        "axes": [[float(entry) for entry in row] for row in principal.axes],
+        "axis": axis,
+        "symmetric": principal.kind == "symmetric",
+        "free": not scene.torques and scene.table is None,
+        "fixedPoint": body.about == "fixed_point",
+        "center": None if body.center_of_mass is None else [float(value) for value in body.center_of_mass],
+        "down": None if down is None else [float(value) for value in down],
+        "size": size,
+        "patches": [_patch(patch, size) for patch in surface],
+    }
+
+
+def _patch(patch: Patch, size: float) -> dict[str, Any]:
+    """Return a patch for JSON; its points are relative to the size of the body."""
+    points = [round(component / size, DIGITS) + 0.0 for point in patch.points for component in point]
+    return {"points": points, "rows": patch.rows, "columns": patch.columns, "hole": patch.is_hole}
+
+
+def _times(scene: Scene, count: int) -> Floats:
+    return np.linspace(float(scene.span.start), float(scene.span.stop), count)
+
+
+def _packed(values: Floats) -> str:
+    """Return doubles as base64 text of their little-endian bytes."""
+    return b64encode(np.ascontiguousarray(values, dtype="<f8").tobytes()).decode("ascii")
+
+
+def _samples(motion: Trajectory) -> dict[str, Any]:
+    """Return a motion as evenly spaced samples of omega and quaternion, dense enough to be drawn."""
+    count = min(max(FEWEST_SAMPLES, PER_STEP * motion.stats.accepted), MOST_SAMPLES)
+    times = np.linspace(motion.t[0], motion.t[-1], count)
+    states = motion.sol(times).T
+    if states.shape[1] != 7:
+        raise InputError('show: expected a trajectory with attitude; add "quaternion" to output.quantities')
+    return {"start": float(times[0]), "stop": float(times[-1]), "samples": {"count": count, "y": _packed(states)}}
+
+
+def _tableau() -> dict[str, Any]:
+    return {
+        "nodes": tableau.NODES,
+        "stages": {str(stage): dict(row) for stage, row in tableau.STAGE_WEIGHTS.items()},
+        "weights": tableau.WEIGHTS,
+        "weights_3": tableau.WEIGHTS_3,
+        "error_5": tableau.ERROR_5,
+        "dense": {str(order): dict(row) for order, row in tableau.DENSE.items()},
+    }
+
+
+# --- kernels ----------------------------------------------------------------------------------------------------------
+
+
+def _angle_kernels(sequence: str) -> dict[str, Program]:
+    """Return the kernels between Euler angles and quaternions, by their names in a page."""
+    from symrot.codegen.library_kernels import kernel_program
+
+    angles = f"euler_{'' if sequence.isupper() else 'extrinsic_'}{sequence.lower()}"
+    return {
+        "angles_of_quaternion": kernel_program(f"{angles}_of_quaternion"),
+        "quaternion_of_angles": kernel_program(f"{angles}_quaternion"),
+    }
+
+
+def _kernel_text(kernel: SceneKernel, constants: Sequence[str], sequence: str) -> str:
+    """Return the JavaScript of all kernels of a page that computes the motion of a scene."""
+    programs = {
+        "rates": kernel.rates,
+        "quantities": kernel.quantities,
+        "rate_parameters": _binding("rate_parameters", kernel.rate_parameters, constants),
+        "quantity_parameters": _binding("quantity_parameters", kernel.quantity_parameters, constants),
+    }
+    sizes = {
+        "quantities": _size(kernel.quantities, "out"),
+        "rate_parameters": len(kernel.rate_parameters),
+        "quantity_parameters": len(kernel.quantity_parameters),
+    }
+    takes = {name: bool(_size(program, "p")) for name, program in programs.items()}
+    facts = {"takesParameters": takes, "sizes": sizes, "names": list(constants)}
+    return _script(programs | _angle_kernels(sequence), facts)
+
+
+def _script(programs: Mapping[str, Program], facts: Mapping[str, Any] = MappingProxyType({})) -> str:
+    """Return JavaScript that defines ``kernel``, an object with functions and facts by name."""
+    lines = js_functions(*programs.values())
+    for program in programs.values():
+        lines += [*js_function(program), ""]
+    pairs = [f"{name}: {program.signature.name}" for name, program in programs.items()]
+    pairs += [f"{name}: {json.dumps(value)}" for name, value in facts.items()]
+    return "\n".join([*lines, f"const kernel = {{{', '.join(pairs)}}};"]) + "\n"
+
+
+def _size(program: Program, name: str) -> int:
+    return sum(argument.size for argument in program.signature.arguments if argument.name == name)
+
+
+def _binding(name: str, parameters: Parameters, constants: Iterable[str]) -> Program:
+    """Return the program that computes a kernel's parameters from the array ``c`` of physical constants."""
+    components = (*((f"c_{constant}", "", "") for constant in constants), ("c_pi", "", ""))
+    names = {constant: f"c_{constant}" for constant in (*constants, "pi")}
+    results = tuple((f"p_{place}", "", "") for place, _ in enumerate(parameters))
+    outputs = tuple((f"p_{place}", rename(node, names)) for place, (_, node) in enumerate(parameters))
+    return Program(Signature(name, (Argument("c", "in", components), Argument("p", "out", results))), (), outputs)
+
+
+# --- sliders ----------------------------------------------------------------------------------------------------------
+
+
+def _sliders(scene: Scene, plan: Plan) -> list[Slider]:
+    """Return what a page can change: initial rates, moments of inertia, and constants of the torques.
+
+    Components of a unit vector and entries of a full inertia tensor are left out: they cannot change one by one.
+    """
+    rates = [float(value) for value in scene.initial.omega_b]
+    fastest = max(map(abs, rates)) or 1.0
+    sliders = []
+    for k, rate in enumerate(rates):
+        reach = 2 * max(abs(rate), fastest / 8)
+        sliders.append(Slider(f"omega_{k + 1}", "\u03c9" + SUBSCRIPTS[k], "rad/s", rate, -reach, reach))
+    values = {name: float(value) for name, value in plan.constants.items()}
+    for name in MOMENTS:
+        if name in values:
+            sliders.append(Slider(name, name, "kg m^2", values[name], values[name] / 4, 4 * values[name]))
+    for name, field in _fields(plan):
+        family = [
+            abs(value)
+            for other, value in values.items()
+            if other.rstrip(DIGITS_OF_NAMES) == name.rstrip(DIGITS_OF_NAMES)
+        ]
+        reach = 2 * (abs(values[name]) or max(family) or 1.0)
+        low = 0.0 if field.sign in ("positive", "nonnegative") else -reach
+        sliders.append(Slider(name, name.replace("_", " "), field.unit, values[name], low, reach))
+    return sliders
+
+
+def _fields(plan: Plan) -> Iterator[tuple[str, Field]]:
+    """Yield the constants of the torques that can be changed one by one: their names, and their fields."""
+    for torque in plan.structure.torques:
+        fields = {field.name: field for field in TORQUE_KINDS[torque.kind].fields}
+        for name, pattern in getattr(torque, "fields", ()):
+            if name not in UNIT_FIELDS:
+                for component in component_names(name, pattern):
+                    yield f"{torque.prefix}{component}", fields[name]

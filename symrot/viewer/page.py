@@ -1,0 +1,69 @@
+"""The text of a page: one offline HTML file that holds its script, style and numbers; nothing is fetched."""
+
+import json
+import re
+from functools import cache
+from html import escape
+from pathlib import Path
+
+from symrot import __version__
+from symrot.propagation.trajectory import Trajectory
+from symrot.scene.scene import Scene
+from symrot.viewer.model import page_model
+
+__all__ = ["page"]
+
+FOLDER = Path(__file__).with_name("assets")
+SCRIPTS = ("motion.js", "drawing.js", "panels.js", "page.js")
+STYLES = ("uplot.css", "page.css")
+LIBRARIES = "libraries.js"
+
+
+def page(scene: Scene, trajectory: Trajectory | None = None) -> str:
+    """Return a scene as a page of HTML that computes and shows its motion; the same scene gives the same bytes.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    trajectory : Trajectory, optional
+        A motion to play instead of the scene's own.
+
+    Raises
+    ------
+    InputError, PropagationError
+        As for :func:`symrot.propagate`.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> "<canvas" in page(symrot.load_scene("t_handle"))
+    True
+    """
+    model = page_model(scene, trajectory)
+    parts = {
+        "version": __version__,
+        "title": escape(scene.title or scene.name),
+        "name": escape(scene.name),
+        "style": "\n".join(_text(name) for name in STYLES),
+        "data": _in_script(json.dumps(model.data, separators=(",", ":"))),
+        "libraries": _text(LIBRARIES),
+        "kernel": model.kernel,
+        "scripts": "\n".join(_without_modules(_text(name)) for name in SCRIPTS),
+    }
+    return re.sub(r"\{(\w+)\}", lambda match: parts[match[1]], _text("page.html"))
+
+
+@cache
+def _text(name: str) -> str:
+    return (FOLDER / name).read_text(encoding="utf-8")
+
+
+def _in_script(text: str) -> str:
+    """Return JSON that cannot end the script element in which it is written, whatever a title contains."""
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+
+
+def _without_modules(text: str) -> str:
+    """Return the text of a JavaScript module without the word export, so that several can share one script."""
+    return re.sub(r"^export (?=class|const|function)", "", text, flags=re.MULTILINE)

@@ -1,0 +1,136 @@
+"""Pages that move: one file without links, which runs in a browser and says how far it can be trusted."""
+
+import html
+import json
+import re
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+
+import symrot
+from symrot.errors import InputError
+from symrot.scene.scene import Scene
+from symrot.viewer.body_surface import patches
+from symrot.viewer.page import page
+
+BROWSER = next(
+    (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
+)
+needs_browser = pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+
+
+def scene_of(body, **more):
+    content = {
+        "schema": 1, "title": "test", "body": body, "initial": {"omega": [0.1, 0.2, 3]},
+        "span": {"t": [0, 2], "samples": 5}, "output": {"quantities": ["omega"]},
+    }  # fmt: skip
+    return Scene.from_dict(content | more)
+
+
+def dom_of(path, *flags):
+    """The document as a browser has it after two seconds."""
+    command = [
+        BROWSER, "--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
+        "--disable-component-update", "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader",
+        "--enable-unsafe-swiftshader", f"--user-data-dir={path.parent / 'profile'}", "--virtual-time-budget=2000",
+        *flags, "--dump-dom", path.as_uri(),
+    ]  # fmt: skip
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
+
+
+@needs_browser
+@pytest.mark.parametrize("name", ["heavy_top_loops", "friction_wheel"])
+def test_a_page_runs_in_a_browser(name, tmp_path):
+    path = symrot.show(name, tmp_path / "page.html")
+    text = html.unescape(dom_of(path))
+    trust = re.search(r'<p id="trust">([^<]+)</p>', text)[1]
+    if name == "heavy_top_loops":
+        assert (
+            float(re.search(r"agrees with the motion that symrot computed to ([\d.e-]+)", trust, re.I)[1].rstrip("."))
+            < 1e-12
+        )
+    else:
+        assert "played" in text or "plays the motion" in text
+    assert re.search(r'<output id="time">t = [\d.]+ s</output>', text)
+
+
+def test_a_page_is_one_file_of_at_most_two_megabytes(tmp_path):
+    path = symrot.show("t_handle", tmp_path / "page.html")
+    text = path.read_text(encoding="utf-8")
+    assert path.stat().st_size < 2_000_000
+    assert re.findall(r"""(?:src|href)\s*=\s*["']?(?!data:)[\w/:.]+""", text.split("<script>")[0]) == []
+    assert re.findall(r"\b(?:fetch|XMLHttpRequest|importScripts)\b", re.sub(r"var libraries.*", "", text)) == []
+
+
+def test_equal_scenes_give_equal_bytes():
+    assert page(symrot.load_scene("heavy_top_loops")) == page(symrot.load_scene("heavy_top_loops"))
+
+
+def test_a_title_cannot_end_the_script():
+    title = "</script><script>alert(1)</script> <b>&"
+    text = page(scene_of({"shape": "box", "a": 1, "b": 2, "c": 3, "mass": 1}, title=title))
+    assert "alert(1)</script>" not in text
+    data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL)[1])
+    assert data["title"] == title
+
+
+def test_a_trajectory_shows_its_own_start_and_span(tmp_path):
+    trajectory = symrot.propagator("t_handle")([1.0, 3.0], omega=[0, 5, 1])
+    text = trajectory.show(tmp_path / "page.html").read_text(encoding="utf-8")
+    data = json.loads(re.search(r'id="data">(.*?)</script>', text, re.DOTALL)[1])
+    assert data["omega"] == [0, 5, 1]
+    assert data["stop"] == 3.0
+    assert trajectory._repr_html_().startswith("<iframe srcdoc=")
+
+
+def test_a_torque_of_python_is_played(tmp_path):
+    scene = symrot.load_scene("tumbling_prism")
+    trajectory = symrot.propagator(scene, torque=lambda t, omega, quaternion: (0.1, 0.0, 0.0))()
+    data = json.loads(
+        re.search(r'id="data">(.*?)</script>', trajectory.show(tmp_path / "p.html").read_text(), re.DOTALL)[1]
+    )
+    assert "without a formula" in data["played"]
+
+
+@pytest.mark.parametrize(("name", "message"), [("x.pdf", "ends in .html"), ("no/folder/x.html", "existing folder")])
+def test_a_file_that_cannot_be_written_is_refused(name, message, tmp_path):
+    with pytest.raises(InputError, match=message):
+        symrot.show("t_handle", tmp_path / name)
+
+
+@pytest.mark.parametrize(("shape", "dimensions", "faces"), [
+    ("box", {"a": 1, "b": 2, "c": 3}, 6), ("cylinder", {"radius": 1, "length": 2}, 3), ("sphere", {"radius": 1}, 1),
+    ("cone", {"radius": 1, "height": 2}, 2), ("hemisphere", {"radius": 1}, 2), ("torus", {"ring": 2, "tube": 1}, 1),
+    ("hollow_sphere", {"inner": 0.5, "outer": 1}, 2), ("triangular_prism", {"base": 1, "height": 1, "apex": 0, "length": 1}, 5),
+    ("tetrahedron", {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]}, 4), ("disk", {"radius": 1}, 1),
+])  # fmt: skip
+def test_a_solid_has_its_faces(shape, dimensions, faces):
+    assert len(patches(scene_of({"shape": shape, "mass": 1, **dimensions}).body)) == faces
+
+
+def test_the_surface_encloses_the_volume():
+    """The divergence theorem: the flux of r/3 through the faces of a cylinder is its volume, up to the facets."""
+    body = scene_of({"shape": "cylinder", "radius": 2, "length": 3, "mass": 1}).body
+    volume = 0.0
+    for patch in patches(body):
+        grid = np.array(patch.points).reshape(patch.rows, patch.columns, 3)
+        for i in range(patch.rows - 1):
+            for j in range(patch.columns - 1):
+                a, b, c, d = grid[i, j], grid[i, j + 1], grid[i + 1, j + 1], grid[i + 1, j]
+                volume += abs(np.dot(a, np.cross(b, c))) / 6 + abs(np.dot(a, np.cross(c, d))) / 6
+    assert volume == pytest.approx(np.pi * 4 * 3, rel=0.01)
+
+
+def test_a_body_without_parts_is_the_box_with_its_moments():
+    """Sides a, b, c of the drawn box have moments in the ratio of the body's."""
+    points = np.array([point for patch in patches(scene_of({"principal": [2, 3, 4]}).body) for point in patch.points])
+    a, b, c = np.ptp(points, axis=0)
+    assert np.array([b**2 + c**2, a**2 + c**2, a**2 + b**2]) / (b**2 + c**2) == pytest.approx([1, 1.5, 2])
+
+
+def test_a_body_about_a_fixed_point_is_drawn_from_it():
+    points = np.array([point for patch in patches(symrot.load_scene("heavy_top_loops").body) for point in patch.points])
+    assert points[:, 2].min() == pytest.approx(0.05)
+    assert points[:, 2].max() == pytest.approx(0.07)
