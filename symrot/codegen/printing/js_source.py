@@ -3,6 +3,7 @@
 The statements are those of the C text, in the same order, so that both compute the same operations.
 """
 
+from dataclasses import replace
 from fractions import Fraction
 
 from symrot.codegen.printing.banner import Description, banner
@@ -15,6 +16,14 @@ __all__ = ["js_expression", "js_function", "js_functions", "js_source"]
 
 NAMES = {name: f"Math.{name}" for name in FUNCTIONS} | {name: name for name in OWN_FUNCTIONS}
 """A function of programs -> its name in JavaScript, where all angles are in rad too."""
+
+_WORDS = """
+arguments await break case catch class const continue debugger default delete do else enum eval export extends false
+finally for function if implements import in instanceof interface let new null package private protected public return
+static super switch this throw true try typeof var void while with yield undefined NaN Infinity Math Object
+"""
+RESERVED = {*_WORDS.split(), "copysign", *OWN_FUNCTIONS}
+"""Words that no variable may be called in JavaScript, and names that the text uses."""
 
 COPYSIGN = [
     "function copysign(x, y) {",
@@ -66,6 +75,7 @@ def js_function(program: Program, qualifier: str = "") -> list[str]:
     qualifier : str
         Text in front of the definition, such as ``"export "``.
     """
+    program = _with_safe_names(program)
     arguments = [a for a in program.signature.arguments if a.size]
     used = set().union(*(names(node) for _, node in program.temporaries + program.outputs))
     results = dict(program.outputs)
@@ -79,6 +89,30 @@ def js_function(program: Program, qualifier: str = "") -> list[str]:
         for i, (name, *_) in enumerate(a.components)
     ]
     return [*lines, "}"]
+
+
+def _with_safe_names(program: Program) -> Program:
+    """Return the program with other names for variables whose names are words of JavaScript.
+
+    The constants of a scene may have any name.
+    """
+    inputs = [name for a in program.signature.arguments if a.role == "in" for name, *_ in a.components]
+    variables = [*inputs, *(name for name, _ in program.temporaries)]
+    safe: dict[str, str] = {}
+    for name in variables:
+        if name in RESERVED:
+            safe[name] = next(each for each in (name + "_" * k for k in range(1, 99)) if each not in variables)
+    if not safe:
+        return program
+    arguments = tuple(
+        replace(a, components=tuple((safe.get(c[0], c[0]) if a.role == "in" else c[0], *c[1:]) for c in a.components))
+        for a in program.signature.arguments
+    )
+    return Program(
+        replace(program.signature, arguments=arguments),
+        tuple((safe.get(name, name), rename(node, safe)) for name, node in program.temporaries),
+        tuple((name, rename(node, safe)) for name, node in program.outputs),
+    )
 
 
 def js_functions(*programs: Program) -> list[str]:

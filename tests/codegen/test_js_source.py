@@ -7,9 +7,14 @@ import subprocess
 import numpy as np
 import pytest
 
+from symrot.certificates.readback.javascript import compare_javascript
 from symrot.codegen.library_kernels import kernel_description, kernel_program
-from symrot.codegen.printing.js_source import js_source
+from symrot.codegen.printing.c_source import c_functions
+from symrot.codegen.printing.js_source import COPYSIGN, js_function, js_source
+from symrot.errors import CertificateError
 from symrot.formula.float_functions import FLOAT_FUNCTIONS
+from symrot.formula.program import Argument, Program, Signature
+from symrot.formula.tree import parse
 from symrot.kernels.library import definition, kernel_names
 from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
 
@@ -90,8 +95,6 @@ def test_every_own_function_is_tested_above():
 
 @needs_node
 def test_copysign_minds_the_sign_of_zero(tmp_path):
-    from symrot.codegen.printing.js_source import COPYSIGN
-
     (tmp_path / "sign.mjs").write_text("\n".join([*COPYSIGN, "console.log(copysign(2, -0), copysign(-2, 0))"]))
     done = subprocess.run(["node", "sign.mjs"], cwd=tmp_path, capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["-2", "2"]
@@ -100,3 +103,45 @@ def test_copysign_minds_the_sign_of_zero(tmp_path):
 def test_the_text_does_not_change_from_call_to_call():
     assert text_of("heavy_top") == text_of("heavy_top")
     assert "export function heavy_top(inertia, W, center_of_mass, omega, q, domega, dq) {" in text_of("heavy_top")
+
+
+def test_a_constant_may_have_the_name_of_a_word_of_javascript():
+    components = (("in", "", ""), ("in_", "", ""), ("var", "", ""))
+    signature = Signature("f", (Argument("p", "in", components), Argument("out", "out", (("sum", "", ""),))))
+    program = Program(signature, (), (("sum", parse("in + in_*var")),))
+    assert js_function(program)[1:] == [
+        "    const in__ = p[0];", "    const in_ = p[1];", "    const var_ = p[2];", "    out[0] = in__ + in_*var_;", "}",
+    ]  # fmt: skip
+
+
+def test_the_operations_are_those_of_the_c_text():
+    for name in kernel_names():
+        compare_javascript(text_of(name), name, c_functions(kernel_program(name)))
+
+
+@pytest.mark.parametrize(("old", "new", "message"), [
+    ("q1*half_1 + ", "q1*half_1 - ", "got others"),
+    ("const half_1 = 0.5*", "const half_1 = 0.25*", "got others"),
+    ("dq[0] =", "dq[1] =", "one assignment"),
+    ("    dq[3] =", "    // dq[3] =", "to assign"),
+    ("const A", "let A", "an output array"),
+    ("const A", "const double A", "the word double"),
+    ("2.0*W", "2*W", "literal"),
+    ("const B", "const A", "not yet used"),
+    ("0.5*omega_1", "Math.max(0.5, 1.0)*omega_1", "a function of Math"),
+    ("(inertia, W,", "(W, inertia,", "expected the arguments"),
+    ("export function heavy_top", "eval(1);\nexport function heavy_top", "functions alone"),
+    ("B - C", "B - C, A", "expected"),
+    ("q2*q3", "q2**q3", "expected"),
+])  # fmt: skip
+def test_wrong_javascript_is_refused(old, new, message):
+    text = text_of("heavy_top")
+    assert old in text
+    with pytest.raises(CertificateError, match=message):
+        compare_javascript(text.replace(old, new, 1), "heavy_top", c_functions(kernel_program("heavy_top")))
+
+
+def test_another_copysign_is_refused():
+    name = next(name for name in kernel_names() if "copysign" in text_of(name))
+    with pytest.raises(CertificateError):
+        compare_javascript(text_of(name).replace("? -1 : 1", "? 1 : -1"), name, c_functions(kernel_program(name)))

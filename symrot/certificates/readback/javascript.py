@@ -1,0 +1,115 @@
+"""Read emitted JavaScript: rewrite it as the C that means the same, and read that C; refuse all other JavaScript.
+
+Kernels in JavaScript use few words: functions, ``const``, array elements, arithmetic, ``a < b ? x : y`` and functions
+of ``Math``. With these words replaced, the text is C, and :mod:`symrot.certificates.readback.readback` reads its
+operations. JavaScript has no types; the sizes of arrays come from the C function of the same kernel. This module shares
+no code with the emitter.
+"""
+
+import re
+
+from symrot.certificates.readback.c_functions import CFunction, functions_of
+from symrot.certificates.readback.operations import Operations
+from symrot.certificates.readback.readback import read_kernel
+from symrot.errors import CertificateError
+
+__all__ = ["compare_javascript", "read_javascript"]
+
+_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
+_TOKEN = re.compile(
+    r"\s+|\d[\w.]*(?:(?<=[eE])[+-]\d+)?|[A-Za-z_]\w*(?:\.[a-z]\w*)?|===|[-+*/()\[\]{},;=<>?:]", re.ASCII
+)
+_HEAD = re.compile(r"(?:export )?function (\w+)\(([\w, ]*)\) \{", re.ASCII)
+_COPYSIGN = "function copysign(x, y) {\n    return (y < 0 || Object.is(y, -0) ? -1 : 1)*Math.abs(x);\n}\n"
+_MATH = {
+    f"Math.{name}": name
+    for name in ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log", "sinh", "cosh", "tanh")
+} | {"Math.abs": "fabs"}
+_ONLY_IN_C = ("double", "float", "fabs", "symrot_", "void", "static", "inline", "size_t", *_MATH.values())
+
+
+def read_javascript(text: str, name: str, c_text: str, where: str = "kernel") -> Operations:
+    """Return the operations of a kernel in JavaScript.
+
+    Parameters
+    ----------
+    text : str
+        A JavaScript module as symrot emits it.
+    name : str
+        Name of its function; the C function has the prefix ``symrot_``.
+    c_text : str
+        The C text of the same kernel, which gives the sizes of the arrays.
+    where : str
+        The file's name, for errors.
+
+    Raises
+    ------
+    CertificateError
+        For any JavaScript that symrot does not emit.
+    """
+    model = functions_of(c_text, where).get(f"symrot_{name}")
+    if model is None:
+        raise CertificateError(f"{where}: expected C text with the function symrot_{name}")
+    return read_kernel(_as_c(text, name, model, where), f"symrot_{name}", where)
+
+
+def compare_javascript(text: str, name: str, c_text: str, where: str = "kernel") -> None:
+    """Raise CertificateError unless a kernel in JavaScript does the operations of the C function in double precision.
+
+    The operations are compared one by one: same constants, same functions, same order of rounding.
+    """
+    if read_javascript(text, name, c_text, where) != read_kernel(c_text, f"symrot_{name}", where):
+        raise CertificateError(f"{where}: expected the operations of the C function symrot_{name}, got others")
+
+
+def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
+    """Return the C text that means the same as a JavaScript module."""
+    body = _COMMENT.sub(" ", text).replace(_COPYSIGN, "")
+    parts = _HEAD.split(body)
+    if parts[0].strip() or len(parts) < 4:
+        raise CertificateError(f"{where}: expected a JavaScript module that defines functions alone")
+    functions = []
+    for function, arguments, content in zip(parts[1::3], parts[2::3], parts[3::3], strict=True):
+        names = arguments.split(", ") if arguments else []
+        if function == name:
+            head = _kernel_head(names, model, where)
+        else:
+            head = f"static inline double {function}({', '.join(f'double {each}' for each in names)})"
+        functions.append(f"{head}\n{{{_translated(content, where)}")
+    return "\n".join(functions)
+
+
+def _kernel_head(names: list[str], model: CFunction, where: str) -> str:
+    """Return the head of the C function, if the JavaScript function has the same arguments."""
+    expected = [parameter.name for parameter in model.parameters]
+    if names != expected:
+        raise CertificateError(f"{where}: expected the arguments {', '.join(expected)}, got {', '.join(names)}")
+    declared = [
+        f"{'const ' * (bool(p.size) and p.is_const)}double {p.name}" + (f"[{p.size}]" if p.size else "")
+        for p in model.parameters
+    ]
+    return f"void {model.name}({', '.join(declared)})"
+
+
+def _translated(content: str, where: str) -> str:
+    """Return the body of a JavaScript function with the words of C; refuse words that only C has."""
+    place, words = 0, []
+    while place < len(content):
+        match = _TOKEN.match(content, place)
+        if match is None:
+            raise CertificateError(
+                f"{where}: expected JavaScript as symrot emits it, got {content[place : place + 20]!r}"
+            )
+        word, place = match[0], match.end()
+        if word in _MATH:
+            word = _MATH[word]
+        elif "." in word and not word[0].isdigit():
+            raise CertificateError(f"{where}: expected a function of Math that kernels use, got {word}")
+        elif word in _ONLY_IN_C or word.startswith("symrot_"):
+            raise CertificateError(f"{where}: expected JavaScript as symrot emits it, got the word {word}")
+        elif word == "const":
+            word = "const double"
+        elif word == "===":
+            word = "=="
+        words.append(word)
+    return "".join(words)
