@@ -8,6 +8,7 @@ import json
 from base64 import b64encode
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -164,6 +165,8 @@ def _facts(scene: Scene) -> dict[str, Any]:
         "start": float(scene.span.start),
         "stop": float(scene.span.stop),
         "omega": [float(value) for value in scene.initial.omega_b],
+        "omegaRest": [_rest(value) for value in scene.initial.omega_b],
+        "momentsRest": [_rest(moment) for moment in principal.moments],
         "quaternion": [float(value) for value in scene.initial.quaternion],
         "sequence": scene.output.sequence or DEFAULT_SEQUENCE,
         "inertia": [[float(entry) for entry in row] for row in body.inertia],
@@ -178,6 +181,11 @@ def _facts(scene: Scene) -> dict[str, Any]:
         "size": size,
         "patches": [_patch(patch, size) for patch in surface],
     }
+
+
+def _rest(value: Fraction) -> float:
+    """Return what the nearest double lacks of an exact number, so that both together have 32 digits."""
+    return float(value - Fraction(float(value)))
 
 
 def _patch(patch: Patch, size: float) -> dict[str, Any]:

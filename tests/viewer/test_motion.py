@@ -18,8 +18,7 @@ pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="needs Node
 ASSETS = Path(page_module.__file__).with_name("assets")
 WITHIN_A_PAGE = [
     "axisymmetric_satellite", "chen_cylinder", "damped_disk", "gravity_gradient_satellite", "gyrostat",
-    "heavy_top_cusps", "heavy_top_loops", "heavy_top_waves", "precessing_wheel", "spin_up", "tumbling_prism_largest",
-    "tumbling_prism_smallest",
+    "heavy_top_cusps", "heavy_top_loops", "precessing_wheel", "spin_up", "t_handle", "tumbling_prism",
 ]  # fmt: skip
 
 
@@ -61,7 +60,7 @@ def test_the_page_agrees_with_symrot(name, tmp_path):
 def test_the_agreement_notices_a_wrong_constant(tmp_path):
     wrong = "model.constants.A *= 1 + 1e-8; model.restart(); model.motion.reach(data.stop);"
     script = AGREEMENT.replace("console", f"{wrong} console")
-    assert in_node(page_model(symrot.load_scene("tumbling_prism_largest")), script, tmp_path)["agreement"] > 1e-10
+    assert in_node(page_model(symrot.load_scene("tumbling_prism")), script, tmp_path)["agreement"] > 1e-10
 
 
 def test_a_played_motion_is_interpolated_closely(tmp_path):
@@ -77,3 +76,10 @@ def test_a_played_motion_is_interpolated_closely(tmp_path):
     ):
         assert row[:3] == pytest.approx(omega, abs=1e-3 * max(abs(omega)))
         assert row[3:] == pytest.approx(quaternion, abs=1e-6)
+
+
+def test_a_free_body_keeps_energy_and_momentum_to_more_digits_than_a_double(tmp_path):
+    """Without that, rounding is amplified to 1e-9 near the separatrix of the T-handle."""
+    model = page_model(symrot.load_scene("t_handle"))
+    forgetful = AGREEMENT.replace("model.motion.reach", "model.motion.invariants = null; model.motion.reach")
+    assert in_node(model, forgetful, tmp_path)["agreement"] > 1e-11

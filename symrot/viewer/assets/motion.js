@@ -30,18 +30,82 @@ function length(values, from, to) {
     return Math.sqrt(sum);
 }
 
+/* --- numbers of two doubles: their sum is the number, the second is below the last bit of the first ------------------ */
+
+function twoSum(a, b) {
+    const sum = a + b, part = sum - a;
+    return [sum, (a - (sum - part)) + (b - part)];
+}
+
+function twoProduct(a, b) {
+    const split = (x) => {
+        const big = 134217729*x, high = big - (big - x);      // 2^27 + 1
+        return [high, x - high];
+    };
+    const product = a*b, [ah, al] = split(a), [bh, bl] = split(b);
+    return [product, ((ah*bh - product) + ah*bl + al*bh) + al*bl];
+}
+
+function add([a, b], [c, d]) {
+    const [sum, rest] = twoSum(a, c);
+    return twoSum(sum, rest + b + d);
+}
+
+function multiply([a, b], [c, d]) {
+    const [product, rest] = twoProduct(a, c);
+    return twoSum(product, rest + a*d + b*c);
+}
+
+/**
+ * The energy and the angular momentum of a free body in principal axes, kept to 30 digits.
+ *
+ * Near a separatrix the period depends so strongly on both that their rounding to doubles would be seen. After each step
+ * the angular velocity is moved by the shortest vector that restores them; it goes into the part below the last bit.
+ */
+export class FreeBody {
+    constructor(moments, omega) {
+        this.moments = moments;
+        this.squares = moments.map((moment) => multiply(moment, moment));
+        this.energy = this.#form(this.moments, omega);
+        this.momentum = this.#form(this.squares, omega);
+    }
+
+    /** Return the sum of factor k times omega_k^2. */
+    #form(factors, omega) {
+        return omega.reduce((sum, rate, k) => add(sum, multiply(factors[k], multiply(rate, rate))), [0, 0]);
+    }
+
+    restore(y, carry) {
+        const omega = [0, 1, 2].map((k) => twoSum(y[k], carry[k]));
+        const minus = ([a, b]) => [-a, -b];
+        const r = add(this.#form(this.moments, omega), minus(this.energy))[0];
+        const s = add(this.#form(this.squares, omega), minus(this.momentum))[0];
+        const g = omega.map(([rate], k) => 2*this.moments[k][0]*rate), h = omega.map(([rate], k) => 2*this.squares[k][0]*rate);
+        const dot = (a, b) => a[0]*b[0] + a[1]*b[1] + a[2]*b[2];
+        const gg = dot(g, g), gh = dot(g, h), hh = dot(h, h), determinant = gg*hh - gh*gh;
+        if (!(determinant > 1e-14*gg*hh)) return;      // both gradients are parallel: the body rotates about an axis
+        const a = (r*hh - s*gh)/determinant, b = (s*gg - r*gh)/determinant;
+        for (let k = 0; k < 3; ++k) {
+            const [sum, rest] = twoSum(y[k], carry[k] - a*g[k] - b*h[k]);
+            y[k] = sum;
+            carry[k] = rest;
+        }
+    }
+}
+
 /**
  * A motion from its start. `rates(t, y, p, dy)` fills dy; `blocks` are [first, last + 1, size] of the states with an
- * error norm of their own: size 0 for rates (errors are relative to the block), 1 for a quaternion.
+ * error norm of their own: size 0 for rates (errors are relative to the block), 1 for a quaternion. `rest` is what the
+ * doubles of the state lack, and `invariants`, a FreeBody, restores conserved quantities after each step.
  */
 export class Motion {
-    constructor({rates, table, parameters, start, stop, state, blocks, tolerance}) {
-        Object.assign(this, {rates, table, parameters, start, stop, blocks, tolerance});
+    constructor({rates, table, parameters, start, stop, state, blocks, tolerance, rest = [], invariants = null}) {
+        Object.assign(this, {rates, table, parameters, start, stop, blocks, tolerance, invariants});
         const n = state.length;
         this.size = n;
         this.t = start;
         this.y = Float64Array.from(state);
-        this.carry = new Float64Array(n);     // what rounding has removed from y
+        this.carry = Float64Array.from({length: n}, (_, i) => rest[i] ?? 0);      // what rounding has removed from y
         this.k = Array.from({length: 17}, () => new Float64Array(n));   // stages, numbered from 1
         this.times = [start];                 // ends of the steps
         this.steps = [];                      // coefficients of the dense output, 8 n numbers for each step
@@ -129,6 +193,7 @@ export class Motion {
                 this.carry[i] = added - (sum - this.y[i]);
                 this.y[i] = sum;
             }
+            this.invariants?.restore(this.y, this.carry);
             this.t = tNext;
             this.times.push(tNext);
             [k[1], k[13]] = [k[13], k[1]];

@@ -73,7 +73,20 @@ class Model {
         this.motion = new Motion({
             rates: this.rates, table: this.table, parameters: this.p, start: data.start, stop: data.stop,
             state: [...this.omega, ...this.quaternion], blocks: [[0, 3, 0], [3, 7, 1]], tolerance: data.tolerance,
+            rest: this.omega.map((rate, k) => this.#rest(rate, data.omega[k], data.omegaRest[k])),
+            invariants: data.free && this.constants.A !== undefined ? this.#invariants() : null,
         });
+    }
+
+    /** Return what a double lacks of the exact number of the scene; zero if a reader has changed it. */
+    #rest(value, original, rest) {
+        return value === original ? rest : 0;
+    }
+
+    #invariants() {
+        const {constants} = this;
+        const moments = ["A", "B", "C"].map((name, k) => [constants[name], this.#rest(constants[name], data.constants[name], data.momentsRest[k])]);
+        return new FreeBody(moments, this.omega.map((rate, k) => [rate, this.#rest(rate, data.omega[k], data.omegaRest[k])]));
     }
 
     get inertia() {
