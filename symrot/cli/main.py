@@ -119,12 +119,14 @@ def _run(options: Namespace) -> int:
 def _show(options: Namespace) -> int:
     scene = symrot.load_scene(options.scene, table_folders=options.table_folder)
     progress("computing the motion ..")
-    path = symrot.show(scene, options.output)
+    path = symrot.show(scene, options.output, lambda done, total: progress(f"drawing frame {done} of {total} .."))
     progress("")
     if options.json:
         say_json({"scene": scene.name, "written": str(path), "bytes": path.stat().st_size})
     else:
-        say([f"{path}: {path.stat().st_size / 1e6:.2f} MB, one file without links; open it in a browser"])
+        is_page = path.suffix.lower() in PAGE_SUFFIXES
+        hint = ", one file without links; open it in a browser" if is_page else ""
+        say([f"{path}: {path.stat().st_size / 1e6:.1f} MB{hint}"])
     return OK
 
 
@@ -374,7 +376,8 @@ def _run_arguments(parser: ArgumentParser) -> None:
 def _show_arguments(parser: ArgumentParser) -> None:
     _scene_argument(parser)
     _table_folder_option(parser)
-    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="FILE.html (default: SCENE.html)")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE",
+                        help="FILE.html, or a film: FILE.gif, FILE.mp4 (default: SCENE.html)")  # fmt: skip
     json_option(parser)
 
 

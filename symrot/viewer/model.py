@@ -30,7 +30,7 @@ from symrot.propagation.trajectory import Trajectory
 from symrot.scene.scene import Scene
 from symrot.viewer.body_surface import Patch, patches
 
-__all__ = ["PageModel", "page_model"]
+__all__ = ["PageModel", "page_model", "with_attitude"]
 
 Floats = NDArray[np.float64]
 
@@ -87,7 +87,7 @@ def page_model(scene: Scene, trajectory: Trajectory | None = None) -> PageModel:
     InputError, PropagationError
         As for :func:`symrot.propagate`.
     """
-    scene = _with_attitude(scene)
+    scene = with_attitude(scene)
     reason = _why_played(scene, trajectory)
     data = _facts(scene)
     if reason:
@@ -120,7 +120,8 @@ def page_model(scene: Scene, trajectory: Trajectory | None = None) -> PageModel:
     )
 
 
-def _with_attitude(scene: Scene) -> Scene:
+def with_attitude(scene: Scene) -> Scene:
+    """Return a scene whose output includes the attitude, which every picture needs."""
     output = scene.output
     if "quaternion" in output.quantities:
         return scene

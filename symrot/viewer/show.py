@@ -1,22 +1,30 @@
-"""The public function ``show``, which writes a motion as a page, and the picture of a motion in a notebook."""
+"""The public function ``show``, which writes a motion as a page or a film, and its picture in a notebook."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from html import escape
 from pathlib import Path
 
 from symrot.files.writing import check_target, write
+from symrot.propagation.propagate import propagator
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene.scene import Scene, load_scene
+from symrot.viewer import film
+from symrot.viewer.model import with_attitude
 from symrot.viewer.page import page
 
-__all__ = ["SUFFIXES", "in_notebook", "show"]
+__all__ = ["PAGES", "in_notebook", "show"]
 
-SUFFIXES = (".html", ".htm")
+PAGES = (".html", ".htm")
 
 
-def show(motion: Scene | Trajectory | str | Path, path: str | Path | None = None) -> Path:
-    """Write a motion as one offline page of HTML that computes it, plays it and lets the reader change it.
+def show(
+    motion: Scene | Trajectory | str | Path,
+    path: str | Path | None = None,
+    progress: Callable[[int, int], object] = lambda done, all: None,
+) -> Path:
+    """Write a motion as one offline page of HTML that computes it, plays it and lets readers change it; or as a film.
 
     Parameters
     ----------
@@ -24,7 +32,10 @@ def show(motion: Scene | Trajectory | str | Path, path: str | Path | None = None
         A scene, the name of a shipped scene, the path of a scene file, or a trajectory. Of a trajectory, the page shows
         its initial state and its span.
     path : str or Path, optional
-        The file to write, ``.html``; the default is the name of the scene in the current folder.
+        The file to write: ``.html``, or ``.gif`` or ``.mp4`` for a film, which needs ``symrot[film]``. The default is a
+        page with the name of the scene in the current folder.
+    progress : function
+        Called with the number of frames of a film that are drawn, and the number of all frames.
 
     Returns
     -------
@@ -34,7 +45,7 @@ def show(motion: Scene | Trajectory | str | Path, path: str | Path | None = None
     Raises
     ------
     InputError
-        For a scene that cannot be used, or a file that cannot be written.
+        For a scene that cannot be used, a file that cannot be written, or an encoder that is not installed.
     PropagationError
         For a motion that symrot cannot follow to its end.
 
@@ -50,8 +61,12 @@ def show(motion: Scene | Trajectory | str | Path, path: str | Path | None = None
     't_handle.html'
     """
     scene, trajectory = _scene_and_motion(motion)
-    target = Path(path) if path is not None else Path(f"{scene.name}{SUFFIXES[0]}")
-    check_target(target, SUFFIXES, "show")
+    target = Path(path) if path is not None else Path(f"{scene.name}{PAGES[0]}")
+    check_target(target, (*PAGES, *film.SUFFIXES), "show")
+    if target.suffix.lower() in film.SUFFIXES:
+        film.require_encoder(target)
+        film.write_film(trajectory or propagator(with_attitude(scene))(), target, progress)
+        return target
     text = page(scene, trajectory)
     write(target, lambda stream: stream.write(text.encode("utf-8")))
     return target

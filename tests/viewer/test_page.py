@@ -134,3 +134,20 @@ def test_a_body_about_a_fixed_point_is_drawn_from_it():
     points = np.array([point for patch in patches(symrot.load_scene("heavy_top_loops").body) for point in patch.points])
     assert points[:, 2].min() == pytest.approx(0.05)
     assert points[:, 2].max() == pytest.approx(0.07)
+
+
+def test_a_film_has_the_frames_of_the_dense_motion(tmp_path):
+    """A scene with five samples gives as many frames as any other, and two films are the same bytes."""
+    pytest.importorskip("matplotlib")
+    from PIL import Image
+
+    scene = scene_of({"shape": "box", "a": 1, "b": 2, "c": 3, "mass": 1}, span={"t": [0, 0.2], "samples": 5})
+    first, second = (symrot.show(scene, tmp_path / f"{name}.gif") for name in "ab")
+    assert Image.open(first).n_frames == 40
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_a_missing_encoder_is_named(tmp_path, monkeypatch):
+    monkeypatch.setattr("symrot.viewer.film.find_spec", lambda name: None)
+    with pytest.raises(InputError, match=r"symrot\[film\]"):
+        symrot.show("t_handle", tmp_path / "x.mp4")

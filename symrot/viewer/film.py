@@ -1,0 +1,179 @@
+"""Films of a motion, GIF or MP4: matplotlib draws frames from the dense motion, Pillow or ffmpeg encodes them."""
+
+from collections.abc import Callable, Iterator
+from importlib.util import find_spec
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.errors import InputError
+from symrot.files.writing import write
+from symrot.kinematics.conversions import quaternion_to_dcm
+from symrot.propagation.trajectory import Trajectory
+from symrot.viewer.body_surface import Patch, patches
+
+__all__ = ["SUFFIXES", "require_encoder", "write_film"]
+
+Floats = NDArray[np.float64]
+
+SUFFIXES = (".gif", ".mp4")
+RATE = 20  # frames per second
+LONGEST = 8.0  # s, duration of a film
+FASTEST = 1.5 * pi  # rad/s, rotation in the film, unless the film would be longer than LONGEST
+TRAIL_POINTS = 1500
+SIZE = 5.0  # inches at 100 dots per inch
+REACH = 1.75  # half the width of the picture, relative to the size of the body
+TIP = 1.35  # length of the drawn axis of the body
+BODY, EDGE, AXES, OMEGA, MOMENTUM, TRAIL = "#7fa6cf", "#24364a", "#6b7684", "#d55e00", "#0060b0", "#008a63"
+VIEW = {"elev": 22.0, "azim": -52.0}
+
+
+def require_encoder(path: Path) -> None:
+    """Raise InputError if what draws or encodes a film is not installed."""
+    if find_spec("matplotlib") is None:
+        raise InputError(f"{path}: expected matplotlib, but it is not installed; pip install 'symrot[film]'")
+    if path.suffix.lower() == ".mp4" and find_spec("imageio_ffmpeg") is None:
+        raise InputError(f"{path}: expected imageio-ffmpeg, but it is not installed; pip install 'symrot[film]'")
+
+
+def write_film(
+    trajectory: Trajectory, path: Path, progress: Callable[[int, int], object] = lambda done, all: None
+) -> None:
+    """Write the motion of a trajectory as a film.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        A motion with attitude. Frames are taken from its dense solution, not from its samples.
+    path : Path
+        ``.gif`` or ``.mp4``.
+    progress : function
+        Called with the number of frames that are drawn and the number of all frames.
+
+    Raises
+    ------
+    InputError
+        If the encoder is not installed.
+    """
+    require_encoder(path)
+    times = _times(trajectory)
+
+    def frames() -> Iterator[Floats]:
+        for number, frame in enumerate(_frames(trajectory, times), start=1):
+            progress(number, len(times))
+            yield frame
+
+    if path.suffix.lower() == ".gif":
+        write(path, lambda stream: _gif(frames(), stream))
+    else:
+        _mp4(frames(), path)
+
+
+def _times(trajectory: Trajectory) -> Floats:
+    """Return the times of the frames, evenly spaced over the whole motion."""
+    start, stop = float(trajectory.t.min()), float(trajectory.t.max())
+    fastest = float(np.max(np.linalg.norm(trajectory.omega, axis=1)))
+    duration = min(max(fastest * (stop - start) / FASTEST, 2.0), LONGEST)
+    return np.linspace(start, stop, round(duration * RATE))
+
+
+def _frames(trajectory: Trajectory, times: Floats) -> Iterator[Floats]:
+    """Yield the frames as arrays of pixels, shape (height, width, 3), 8 bits per colour."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    scene = trajectory.scene
+    surface = patches(scene.body)
+    size = max((float(np.max(np.abs(patch.points))) for patch in surface), default=1.0) or 1.0
+    axis = 2 if scene.body.principal.symmetry_axis is None else scene.body.principal.symmetry_axis
+    inertia = np.array(scene.body.inertia, dtype=float)
+    path = quaternion_to_dcm(_attitudes(trajectory, np.linspace(times[0], times[-1], TRAIL_POINTS)))[:, :, axis] * TIP
+    omegas = trajectory.sol(times).T[:, :3]
+    dcms = quaternion_to_dcm(_attitudes(trajectory, times))
+    scales = [1.5 / max(float(np.max(np.linalg.norm(v, axis=1))), 1e-300) for v in (omegas, omegas @ inertia)]
+    polygons = [face / size for patch in surface for face in _polygons(patch)]
+    shades = [_shade(patch, place) for patch in surface for place in range(len(_polygons(patch)))]
+    figure = Figure(figsize=(SIZE, SIZE), dpi=100)
+    canvas = FigureCanvasAgg(figure)
+    for number, (time, dcm, omega) in enumerate(zip(times, dcms, omegas, strict=True)):
+        figure.clear()
+        axes: Any = figure.add_axes((0, 0, 1, 1), projection="3d", computed_zorder=False)
+        _draw(axes, [face @ dcm.T for face in polygons], shades, path, number / max(len(times) - 1, 1))
+        arrows = ((dcm @ omega * scales[0], OMEGA, "\u03c9"), (dcm @ inertia @ omega * scales[1], MOMENTUM, "L"))
+        for vector, colour, name in arrows:
+            axes.quiver(0, 0, 0, *vector, color=colour, linewidth=2, arrow_length_ratio=0.1, zorder=5)
+            axes.text(*(1.1 * vector), name, color=colour, fontsize=13, fontstyle="italic", zorder=6)
+        figure.text(0.02, 0.95, scene.title[:60], fontsize=11, color=EDGE, parse_math=False)
+        figure.text(0.02, 0.03, f"t = {time:.4g} s", fontsize=11, color=EDGE)
+        canvas.draw()
+        yield np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
+
+
+def _attitudes(trajectory: Trajectory, times: Floats) -> Floats:
+    states = trajectory.sol(times).T
+    if states.shape[1] != 7:
+        raise InputError('show: expected a trajectory with attitude; add "quaternion" to output.quantities')
+    quaternions: Floats = states[:, 3:] / np.linalg.norm(states[:, 3:], axis=1, keepdims=True)
+    return quaternions
+
+
+def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, part: float) -> None:
+    """Draw the body, the axes of space, and the path of the body's axis up to a part of the motion."""
+    from matplotlib.colors import to_rgb
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    axes.set(xlim=(-REACH, REACH), ylim=(-REACH, REACH), zlim=(-REACH, REACH))
+    axes.set_box_aspect((1, 1, 1), zoom=1.3)
+    axes.view_init(**VIEW)
+    axes.set_axis_off()
+    for k, name in enumerate("xyz"):
+        end = np.zeros(3)
+        end[k] = REACH
+        axes.plot(*np.array([np.zeros(3), end]).T, color=AXES, linewidth=1, zorder=1)
+        axes.text(*(1.06 * end), name, color=AXES, fontsize=12, fontstyle="italic")
+    colours = [tuple(shade * c for c in to_rgb(BODY)) for shade in shades]
+    axes.add_collection3d(Poly3DCollection(polygons, facecolors=colours, edgecolors=colours, linewidths=0.4, zorder=2))
+    axes.plot(*path.T, color=TRAIL, alpha=0.3, linewidth=1, zorder=3)
+    axes.plot(*path[: max(2, round(part * len(path)))].T, color=TRAIL, linewidth=1.6, zorder=4)
+
+
+def _polygons(patch: Patch) -> list[Floats]:
+    """Return the quadrilaterals of a patch, each of shape (4, 3); curves and points have none."""
+    if patch.rows < 2 or patch.is_hole:
+        return []
+    grid = np.array(patch.points).reshape(patch.rows, patch.columns, 3)
+    return [
+        np.array([grid[i, j], grid[i, j + 1], grid[i + 1, j + 1], grid[i + 1, j]])
+        for i in range(patch.rows - 1)
+        for j in range(patch.columns - 1)
+    ]
+
+
+def _shade(patch: Patch, place: int) -> float:
+    """Return the brightness of a quadrilateral: its quarter of a round patch, so that a spin can be seen."""
+    across = max(patch.columns, patch.rows) - 1
+    column = place % (patch.columns - 1) if patch.columns > 2 else place // max(patch.columns - 1, 1)
+    return 0.72 if int(4 * column / max(across, 1)) % 2 else 0.95
+
+
+def _gif(frames: Iterator[Floats], stream: Any) -> None:
+    from PIL import Image
+
+    first, *others = (Image.fromarray(frame).quantize(128, dither=Image.Dither.NONE) for frame in frames)
+    first.save(stream, format="GIF", save_all=True, append_images=others, duration=1000 // RATE, loop=0, optimize=True)
+
+
+def _mp4(frames: Iterator[Floats], path: Path) -> None:
+    import imageio_ffmpeg
+
+    first = next(frames)
+    height, width, _ = first.shape
+    writer = imageio_ffmpeg.write_frames(str(path), (width, height), fps=RATE, macro_block_size=2)
+    writer.send(None)
+    writer.send(np.ascontiguousarray(first))
+    for frame in frames:
+        writer.send(np.ascontiguousarray(frame))
+    writer.close()
