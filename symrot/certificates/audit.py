@@ -2,7 +2,7 @@
 
 :mod:`symrot.certificates.exact_check` first checks all that follows from the files alone. The audit then checks that
 
-- the header holds nothing but prototypes, and the C text performs the certified operations;
+- the header holds nothing but prototypes, the C text performs the certified operations, and so does JavaScript;
 - symrot derives the same statements (formulas, laws and their proofs, domain, units, assumptions) for a kernel of that
   name and proves them exactly, as identities of fractions of polynomials (:mod:`symrot.certificates.laws.laws`,
   :mod:`symrot.certificates.laws.equality`), so that a correct certificate of another kernel is refused;
@@ -19,6 +19,7 @@ from symrot.certificates import exact_check
 from symrot.certificates.certificate import Data, certificate_json, intended_text
 from symrot.certificates.readback.header import check_header
 from symrot.certificates.readback.intended_constants import intended_value
+from symrot.certificates.readback.javascript import compare_javascript
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.certificates.rounding.bounds import check_bounds, check_section
@@ -128,15 +129,30 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
     check_header(header, source, name)
     _check_readback(data, source)
+    findings = _check_javascript(path, data, source)
     if path.read_text(encoding="utf-8") != certificate_json(data):
         raise CertificateError(
             f"{path}: expected a certificate as symrot prints it, got another layout; emit the kernel again"
         )
     statement = symrot_statement(data)
     if statement is None:
-        return [f"symrot has no kernel {name}: its formulas and laws are only those that the certificate states"]
+        return [
+            *findings,
+            f"symrot has no kernel {name}: its formulas and laws are only those that the certificate states",
+        ]
     _compare(path, data, statement)
-    return ["formulas, laws, domain, units, flags and assumptions are those that symrot derives, and proves exactly"]
+    return [
+        *findings,
+        "formulas, laws, domain, units, flags and assumptions are those that symrot derives, and proves exactly",
+    ]
+
+
+def _check_javascript(path: Path, data: Data, source: str) -> list[str]:
+    """Check that the JavaScript of a kernel performs the operations of its C text; return a sentence if it is there."""
+    files = [file for file in data["files"] if file.endswith(".js") and (path.parent / file).is_file()]
+    for file in files:
+        compare_javascript((path.parent / file).read_text(encoding="utf-8"), data["kernel"], source, file)
+    return [f"{file} performs the operations of the C text" for file in files]
 
 
 def _compared(data: Data) -> list[str]:

@@ -31,7 +31,7 @@ from symrot.report.layout import emphasis, one_line
 
 __all__ = ["main"]
 
-TARGETS = ("c", "numpy")
+TARGETS = ("c", "numpy", "js")
 PAGE_SUFFIXES = (".html", ".htm")
 PAGES: dict[str, Callable[[Any], str]] = {
     "markdown": lambda page: page.markdown(),
@@ -206,12 +206,12 @@ def _emit(options: Namespace) -> int:
         written = kernels.write_all(options.directory or Path("generated"), targets, progress)
     else:
         kernel = kernel_text(options.kernel)
-        bounds = kernels.stored_bounds(kernel, options.directory) if options.target != "numpy" else None
+        bounds = kernels.stored_bounds(kernel, options.directory) if options.target in (None, "c") else None
         texts = kernels.kernel_files(kernel, options.target or "c", bounds)
         if options.directory is None:
             sys.stdout.write("\n".join(texts.values()))
             return OK
-        if options.target != "numpy":
+        if options.target in (None, "c"):
             texts |= kernels.certificate_files(kernel, options.directory, bounds)
         written = kernels.write_files(options.directory, texts)
     progress("")
@@ -393,7 +393,7 @@ def _emit_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--all", action="store_true", help="write the library and the kernels of all shipped scenes")
     parser.add_argument("--check", action="store_true", help="compare the written kernels; exit 1 with a diff if stale")
     parser.add_argument(
-        "--target", choices=TARGETS, help="language (default: c for a kernel, both for --all and --check)"
+        "--target", choices=TARGETS, help="language (default: c for a kernel, all for --all and --check)"
     )
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
                         help="folder (default: standard output for a kernel, ./generated otherwise)")  # fmt: skip
@@ -464,7 +464,7 @@ COMMANDS: dict[str, Command] = {
     "derive": ("print derivations, proven step by step", _derive, _derive_arguments),
     "check": ("decide whether formulas hold, and suggest corrections", _check, _check_arguments),
     "identify": ("recognise a formula, whatever the names of its symbols", _identify, _identify_arguments),
-    "emit": ("print a kernel of the library or of a scene as C or NumPy", _emit, _emit_arguments),
+    "emit": ("print a kernel of the library or of a scene as C, NumPy or JavaScript", _emit, _emit_arguments),
     **cli_certify.COMMANDS,
     "bench": ("measure time against error on a scene of your choice", _bench, _bench_arguments),
     "scenes": ("list the scenes that come with symrot", _scenes, json_option),

@@ -21,7 +21,8 @@ from symrot.dynamics.torque_kinds import TORQUE_KINDS, Field
 from symrot.errors import InputError
 from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import rename
-from symrot.planning.plan import Plan, general_structure, switched
+from symrot.planning.general_structure import general_structure, switched
+from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import Parameters, SceneKernel
 from symrot.propagation.compiled_models import has_formulas, scene_kernel
 from symrot.propagation.propagate import propagator

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["TARGETS", "Emitted", "emit", "explain", "kernel_names", "plan"]
 
-TARGETS = ("c", "numpy")
+TARGETS = ("c", "numpy", "js")
 
 
 class _Texts(NamedTuple):
@@ -53,7 +53,7 @@ class Emitted(_Texts):
     @classmethod
     def of(cls, text: "KernelText", target: str, bounds: Mapping[str, Any] | None) -> "Emitted":
         """Return an :class:`Emitted`: the texts of a kernel for one target."""
-        source, header = text.c(bounds) if target == "c" else (text.numpy, "")
+        source, header = text.c(bounds) if target == "c" else (text.source(target), "")
         emitted = cls(text.name, source, header)
         emitted.text, emitted.bounds = text, bounds
         return emitted
@@ -141,7 +141,7 @@ def emit(kernel: Scene | str | Path, target: str = "c", bounds: Mapping[str, Any
         The name of a kernel (:func:`symrot.kernel_names`) or of a shipped scene, a scene, or the path of a scene file.
         The kernel of a scene computes its equations of motion ``dy/dt``.
     target : str
-        ``"c"`` (C99, valid C++) or ``"numpy"``.
+        ``"c"`` (C99, valid C++), ``"numpy"`` or ``"js"`` (a JavaScript module).
     bounds : mapping, optional
         Bounds of the rounding errors of a scene's kernel on a box of your choice, for the head comment of its C and for
         its certificate (:func:`symrot.workshop.bounds.section`); a kernel of the library has its own.

@@ -25,7 +25,7 @@ from symrot.workshop.workers import workers
 
 __all__ = ["certificate_files", "kernel_files", "kernel_lines", "stale", "stored_bounds", "write_all", "write_files"]
 
-SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",)}
+SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",), "js": (".js",)}
 RECHECK = "recheck.py"  # re-checks certificates without symrot
 SCENES = "scenes"  # subfolder of each target's folder for the kernels of shipped scenes; the library is directly in it
 
@@ -42,7 +42,7 @@ def kernel_files(kernel: KernelText, target: str, bounds: Mapping[str, Any] | No
     In C the header comes first. ``bounds`` are the rounding bounds for the comment at the head of a scene's C file (see
     :func:`symrot.emit`).
     """
-    return {f"{kernel.name}.py": kernel.numpy} if target == "numpy" else kernel.c_files(bounds)
+    return kernel.files(target, bounds)
 
 
 def certificate_files(

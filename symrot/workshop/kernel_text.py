@@ -1,4 +1,4 @@
-"""The texts of one kernel of the library or of one scene: C, NumPy and certificate, all from one derivation.
+"""The texts of one kernel of the library or of one scene: C, NumPy, JavaScript and certificate, from one derivation.
 
 Each text is printed at its first use and at most once; only the comment at the head of a scene's C file depends on the
 rounding bounds that it states.
@@ -9,7 +9,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from functools import cache, cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from symrot.certificates.certificate import KernelUnderTest, certificate_text, with_sections
 from symrot.certificates.kernel_under_test import library_kernel_under_test, scene_kernel_under_test
@@ -19,6 +19,7 @@ from symrot.codegen.library_kernels import kernel_description, kernel_program
 from symrot.codegen.lowering.lower import Lowered
 from symrot.codegen.printing.banner import Description
 from symrot.codegen.printing.c_source import DOUBLE, FLOAT, MATH_HEADER, c_functions, c_header, with_head
+from symrot.codegen.printing.js_source import js_source
 from symrot.codegen.printing.math_header import math_header
 from symrot.codegen.printing.numpy_source import numpy_source
 from symrot.codegen.scene_kernels import rates_program, scene_description, with_values
@@ -30,7 +31,10 @@ from symrot.planning.plan import Plan, make_plan
 from symrot.planning.scene_kernel import bind
 from symrot.scene.scene import Scene, load_scene
 
-__all__ = ["KernelText", "SceneText", "kernel_text", "scene_kernel_name", "scene_text"]
+__all__ = ["SUFFIX", "KernelText", "SceneText", "kernel_text", "scene_kernel_name", "scene_text"]
+
+SUFFIX = {"c": ".c", "numpy": ".py", "js": ".js"}
+"""The ending of a source file in each language that kernels are printed in."""
 
 Bounds = Mapping[str, Any]
 
@@ -39,7 +43,7 @@ class KernelText(ABC):
     """The texts of one kernel; ``bounds``, where they are an argument, are those of :func:`symrot.emit`."""
 
     name: str
-    numpy_folder: str  # relative to the folder of the certificate
+    folders: ClassVar[Mapping[str, str]]  # target -> its folder, relative to the folder of the certificate
 
     @abstractmethod
     def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
@@ -49,6 +53,11 @@ class KernelText(ABC):
     @abstractmethod
     def numpy(self) -> str:
         """The NumPy source."""
+
+    @property
+    @abstractmethod
+    def js(self) -> str:
+        """The JavaScript source, a module."""
 
     @abstractmethod
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
@@ -69,16 +78,31 @@ class KernelText(ABC):
         shared = {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in source else {}
         return {f"{self.name}.h": header, f"{self.name}.c": source} | shared
 
+    def source(self, target: str, bounds: Bounds | None = None) -> str:
+        """Return the source in one of the languages "c", "numpy" and "js"."""
+        if target == "c":
+            return self.c(bounds)[0]
+        return self.numpy if target == "numpy" else self.js
+
+    def files(self, target: str, bounds: Bounds | None = None) -> dict[str, str]:
+        """Return the files in one of the languages as a mapping from name to text; in C the header comes first."""
+        return self.c_files(bounds) if target == "c" else {f"{self.name}{SUFFIX[target]}": self.source(target)}
+
     def _certified_files(self, bounds: Bounds | None) -> dict[str, str]:
         """Return the files that a certificate is about, in the order of its list: the C source comes first."""
         files, source = self.c_files(bounds), f"{self.name}.c"
-        return {source: files[source]} | files | {f"{self.numpy_folder}/{self.name}.py": self.numpy}
+        others = {
+            f"{folder}/{file}": text
+            for target, folder in self.folders.items()
+            for file, text in self.files(target).items()
+        }
+        return {source: files[source]} | files | others
 
 
 class LibraryText(KernelText):
     """The texts of a kernel of the library, which has its own box and its own bounds."""
 
-    numpy_folder = "../numpy"
+    folders: ClassVar[Mapping[str, str]] = {"numpy": "../numpy", "js": "../js"}
 
     def __init__(self, name: str) -> None:
         self.name, self._definition = name, definition(name)
@@ -107,6 +131,11 @@ class LibraryText(KernelText):
         """The NumPy source."""
         return numpy_source(kernel_program(self.name), kernel_description(self._definition, "numpy"))
 
+    @cached_property
+    def js(self) -> str:
+        """The JavaScript source."""
+        return js_source(kernel_program(self.name), kernel_description(self._definition, "js"))
+
     def rounding(self, bounds: Bounds | None) -> Bounds | None:
         """Return the kernel's own bounds, or None if it has none."""
         return self._section if isinstance(self._section, dict) else None
@@ -126,7 +155,7 @@ class SceneText(KernelText):
         A scene whose torques are all formulas; InputError is raised for another torque, or if no state is integrated.
     """
 
-    numpy_folder = "../../numpy/scenes"
+    folders: ClassVar[Mapping[str, str]] = {"numpy": "../../numpy/scenes", "js": "../../js/scenes"}
 
     def __init__(self, scene: Scene) -> None:
         self.plan: Plan = make_plan(scene)
@@ -164,6 +193,11 @@ class SceneText(KernelText):
     def numpy(self) -> str:
         """The NumPy source."""
         return numpy_source(self._program, self._description("numpy"))
+
+    @cached_property
+    def js(self) -> str:
+        """The JavaScript source."""
+        return js_source(self._program, self._description("js"))
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
         """Return the kernel with its texts and equations."""

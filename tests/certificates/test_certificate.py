@@ -574,3 +574,21 @@ def test_a_rotation_that_recheck_draws_is_one():
         products = [sum(x * y for x, y in zip(p, q, strict=True)) for p in (a, b, c) for q in (a, b, c)]
         assert all(abs(each - (k % 4 == 0)) < Decimal("1e-85") for k, each in enumerate(products))
         assert all(abs(a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] - c[k]) < Decimal("1e-85") for k in range(3))
+
+
+def test_javascript_with_other_operations_is_refused_although_its_hash_is_right(dcm):
+    """The audit reads the JavaScript back; the two checkers that know no JavaScript compare its hash alone."""
+    (file,) = (name for name in dcm.texts if name.endswith(".js"))
+    text = dcm.texts[file].replace("q1*q2", "q1*q3", 1).replace("2.0*", "4.0*", 1)
+    assert text != dcm.texts[file]
+    (dcm.directory / file).write_text(text, encoding="utf-8")
+    hashes = dcm.data["files"] | {file: sha256(text.encode()).hexdigest()}
+    dcm.path.write_text(certificate_json(dcm.data | {"files": hashes}), encoding="utf-8")
+    with pytest.raises(CertificateError, match="operations"):
+        audit(dcm.path, lambda data: dcm.said)
+
+
+def test_an_audit_says_that_javascript_was_compared(dcm):
+    assert any(
+        "performs the operations of the C text" in sentence for sentence in audit(dcm.path, lambda data: dcm.said)[1]
+    )
