@@ -106,7 +106,7 @@ def test_without_switching_steps_multiply_near_the_lock(method):
 
 
 def test_without_switching_the_lock_itself_ends_the_motion():
-    with pytest.raises(PropagationError, match=r"beyond t = 0.0 s .*ZXZ are the state, .*switching=True avoids"):
+    with pytest.raises(PropagationError, match=r"beyond t = 0.0 s .*Euler angles ZXZ, .*switching=True avoids"):
         symrot.propagator(scene(0), state="ZXZ", switching=False)([1.0])
 
 

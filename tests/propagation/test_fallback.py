@@ -22,7 +22,7 @@ def test_scipy_methods_are_known_by_name(text, name):
 
 @pytest.mark.parametrize("text", ["scipy:RK4", "scipy:lsoda", "euler"])
 def test_unknown_scipy_methods_are_refused_with_the_list(text):
-    with pytest.raises(InputError, match=r"scipy:RK45.*scipy:LSODA; got '"):
+    with pytest.raises(InputError, match=r"scipy:RK45.*scipy:LSODA, got '"):
         fallback.method_name(text)
 
 
@@ -59,7 +59,7 @@ def test_the_fallback_samples_and_records_as_the_stepper_does():
     assert abs(solution(times) - wave(times)).max() < 1e-8
     assert solution(1.0).shape == (2,)
     assert fallback.integrate(*arguments, [], 1e-9, blocks)[0].shape == (0, 2)
-    with pytest.raises(InputError, match=r"got the time 3\.5 s"):
+    with pytest.raises(InputError, match=r"motion is known, got 3\.5 s"):
         solution(3.5)
 
 
@@ -80,7 +80,7 @@ def test_the_fallback_restarts_at_a_switching_time():
         (lambda t, y, p: [math.nan if t > 0.5 else 1.0], {}, PropagationError, r"beyond t = 0.\d+ s"),
         (lambda t, y, p: [y[0]], {"max_steps": 10}, PropagationError, "10 evaluations were not enough"),
         (lambda t, y, p: [1.0, 2.0], {}, InputError, "returns 1 numbers"),
-        (lambda t, y, p: [1.0], {"method": "Euler"}, InputError, "SciPy's methods are"),
+        (lambda t, y, p: [1.0], {"method": "Euler"}, InputError, "method: expected one of scipy:DOP853"),
         (lambda t, y, p: [1.0], {"max_step": 0.0}, InputError, "max_step: expected"),
     ],
     ids=["nan", "nan later", "long", "shape", "name", "step"],

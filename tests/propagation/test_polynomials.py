@@ -49,7 +49,7 @@ def test_fits_follow_a_motion_to_rounding_and_are_cut_where_it_is_steep():
 
 
 def test_what_polynomials_cannot_follow_is_refused():
-    with pytest.raises(PropagationError, match="expected a motion that polynomials can follow"):
+    with pytest.raises(PropagationError, match="expected a motion that piecewise polynomials can approximate"):
         fitted(lambda t: np.sign(t - 0.3)[:, None], np.array([0.0, 1.0]), [0, 1], [1.0])
 
 

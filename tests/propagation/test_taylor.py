@@ -333,7 +333,9 @@ def test_a_recording_agrees_with_samples():
     states, _ = taylor.integration(body(), p, start, 0.0, 1e-12).sample(t)
     assert abs(solution(t) - states).max() < 1e-13
     assert (solution(0.0) == start).all() and solution.span == (-5.0, 20.0)
-    with pytest.raises(InputError, match=r"known from -5\.0 to 20\.0 s, got the time 21\.0 s"):
+    with pytest.raises(
+        InputError, match=r"expected times from -5\.0 to 20\.0 s, where the motion is known, got 21\.0 s"
+    ):
         solution(21.0)
 
 
@@ -380,13 +382,13 @@ def test_too_many_steps_are_refused():
     [
         ({"tolerance": 0.0}, "between 0 and 1, got 0.0"),
         ({"tolerance": math.nan}, "between 0 and 1"),
-        ({"times": [[1.0]]}, r"sample times are a sequence of numbers, got an array of shape \(1, 1\)"),
-        ({"times": [1.0, math.inf]}, "sample times must be finite, got inf"),
-        ({"times": [math.nan, 1.0]}, "sample times must be finite, got nan"),
-        ({"y0": [1.0]}, r"takes 2 states, got an array of shape \(1,\)"),
-        ({"y0": [1.0, math.nan]}, "states must be finite numbers"),
-        ({"p": []}, "takes 1 parameters"),
-        ({"t0": math.inf}, "initial time must be finite"),
+        ({"times": [[1.0]]}, r"times: expected a sequence of sample times in s, got an array of shape \(1, 1\)"),
+        ({"times": [1.0, math.inf]}, "times: expected finite sample times in s, got inf"),
+        ({"times": [math.nan, 1.0]}, "times: expected finite sample times in s, got nan"),
+        ({"y0": [1.0]}, r"states: expected an array of shape \(2,\) for this kernel, got shape \(1,\)"),
+        ({"y0": [1.0, math.nan]}, "states: expected finite numbers"),
+        ({"p": []}, r"parameters: expected an array of shape \(1,\) for this kernel"),
+        ({"t0": math.inf}, "t0: expected a finite initial time"),
         ({"max_step": 0.0}, "max_step: expected a positive number"),
     ],
 )  # fmt: skip
@@ -413,7 +415,7 @@ def test_odd_orders_are_refused(order):
 
 @pytest.mark.parametrize("blocks, scales", [((0, 1), (1.0,)), ((0, 1, 1, 2), (1, 1, 1)), ((0, 2), (1, 1))])
 def test_blocks_that_do_not_fit_are_refused(blocks, scales):
-    with pytest.raises(InputError, match="expected edges of blocks that rise from 0 to 2"):
+    with pytest.raises(InputError, match="expected increasing edges from 0 to 2, the number of states"):
         taylor.translation_unit(program({"x": "y", "y": "x"}), blocks, scales)
 
 
