@@ -146,11 +146,11 @@ STRANGE = (
     (f"{GOOD}; ret", IDENTICAL, ""),
     (f"{GOOD}; xor ebx,ebx; ret", NOT_UNDERSTOOD, "expected the same value of register rbx"),
     (f"sub rsp,8; {GOOD}; ret", NOT_UNDERSTOOD, "'ret"),
-    (f"{GOOD}; movsd QWORD PTR [rdi],xmm1; ret", NOT_UNDERSTOOD, "expected writes inside the output arrays, got one outside, to x"),
-    (f"{GOOD}; movsd QWORD PTR [rsi+8],xmm1; ret", NOT_UNDERSTOOD, "expected writes inside the output arrays, got one outside, to y"),
+    (f"{GOOD}; movsd QWORD PTR [rdi],xmm1; ret", NOT_UNDERSTOOD, "expected writes inside the output arrays, got a write outside, to x"),
+    (f"{GOOD}; movsd QWORD PTR [rsi+8],xmm1; ret", NOT_UNDERSTOOD, "expected writes inside the output arrays, got a write outside, to y"),
     (f"{GOOD}; movsd QWORD PTR [rsp+8],xmm1; ret", NOT_UNDERSTOOD, "got one to stack"),
-    (f"movsd xmm2,QWORD PTR [rdi+16]; {GOOD}; ret", NOT_UNDERSTOOD, "expected a read inside the array x, got one outside"),
-    (f"movsd xmm2,QWORD PTR [rsi]; {GOOD}; ret", NOT_UNDERSTOOD, "before it is read, got none"),
+    (f"movsd xmm2,QWORD PTR [rdi+16]; {GOOD}; ret", NOT_UNDERSTOOD, "expected a read inside the array x, got the offset 16"),
+    (f"movsd xmm2,QWORD PTR [rsi]; {GOOD}; ret", NOT_UNDERSTOOD, "to be written before it is read"),
     (f"movapd xmm3,XMMWORD PTR [rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "expected an aligned address, got one in x"),
     (f"movsd xmm2,QWORD PTR fs:[rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "segment fs"),
     (f"movsd xmm2,QWORD PTR fs:[rip+f]; {GOOD}; ret", NOT_UNDERSTOOD, "segment fs"),
@@ -211,18 +211,18 @@ def test_a_product_that_is_rounded_here_and_fused_there_is_refused(tmp_path):
 def test_files_that_are_no_object_files_are_refused_in_one_sentence(tmp_path):
     source, target = tmp_path / "kernel.c", tmp_path / "kernel.o"
     source.write_text(TEXT)
-    with pytest.raises(CertificateError, match="got none"):
+    with pytest.raises(CertificateError, match="got no file"):
         compare_object(TEXT, target)
     with pytest.raises(CertificateError, match="got a folder"):
         compare_object(TEXT, tmp_path)
     target.write_bytes(b"")
-    with pytest.raises(CertificateError, match="got an empty one"):
+    with pytest.raises(CertificateError, match="got an empty file"):
         compare_object(TEXT, target)
     target.write_text("no object")
     with pytest.raises(CertificateError, match="objdump cannot read it"):
         compare_object(TEXT, target)
     compile_object("gcc", ("-O2",), source, target)
-    with pytest.raises(CertificateError, match="expected machine code of g, got that of f"):
+    with pytest.raises(CertificateError, match="expected machine code of g, got only that of f"):
         compare_object(TEXT.replace("void f(", "void g("), target)
     with pytest.raises(CertificateError, match="expected a function named h"):
         compare_object(TEXT, target, ["h"])

@@ -1,4 +1,4 @@
-"""Symbolic execution of a function of an object file, along every path that its comparisons allow.
+"""Symbolic execution of one function in an object file, along every path that its comparisons allow.
 
 Integers and addresses must have known values, so that each loop runs a known number of times. If the outcome of a
 floating-point comparison is not known, both branches are followed. An instruction that is in no table, or a state of
@@ -47,7 +47,10 @@ NO_OPERATION = {"nop", "endbr64"}
 
 @dataclass(frozen=True)
 class ExecutionPath:
-    """One path through a function: the memory when it returns, and the outcomes of comparisons that lead there."""
+    """One path through a function: the memory at the return, and the outcomes of comparisons that lead there.
+
+    ``known`` maps a pair of compared terms to their possible outcomes, ``visited`` holds the executed addresses.
+    """
 
     memory: Mapping[tuple[str, int], int]
     known: Mapping[tuple[int, int], Outcomes]
@@ -58,7 +61,7 @@ class ExecutionPath:
 def state_at_call(
     context: CallContext, names: tuple[str, ...], numbers: tuple[str, ...], start: tuple[str, int]
 ) -> MachineState:
-    """Return the processor's state at the call of a function with the given arrays and numbers as arguments."""
+    """Return the processor's state when a function is called; ``names`` are its array arguments."""
     terms = context.terms
     state = MachineState(context, start, {}, {})
     for name in (*CALLER_SAVED, *CALLEE_SAVED, "rsp"):
@@ -113,7 +116,7 @@ def execution_paths(state: MachineState) -> Iterator[ExecutionPath]:
 
 
 def _run_step(state: MachineState) -> None:
-    """Execute the next instruction; for an instruction that is not understood, raise NotUnderstood with its address."""
+    """Execute the next instruction; if symbolic execution cannot follow it, raise NotUnderstood with its address."""
     instruction = state.context.listing.code.get(state.at)
     if instruction is None:
         raise NotUnderstood(f"expected an instruction, got none at {state.at[1]:#x} of {state.at[0]}")
@@ -126,7 +129,7 @@ def _run_step(state: MachineState) -> None:
 
 
 def _run_instruction(state: MachineState, instruction: Instruction) -> tuple[str, int]:
-    """Execute one instruction and return the section and address of the next one."""
+    """Execute one instruction and return the section and address of the next instruction."""
     mnemonic = instruction.mnemonic
     following = (instruction.section, instruction.address + instruction.size)
     if (
@@ -152,7 +155,7 @@ def _run_instruction(state: MachineState, instruction: Instruction) -> tuple[str
 
 
 def _target(state: MachineState, instruction: Instruction) -> tuple[str, int] | str:
-    """Return where a jump leads: an address in this object file, or the name of a function of another file."""
+    """Return the target of a jump: an address in this object file, or the name of another file's function."""
     (operand,) = operands_of(instruction, 1)
     if isinstance(operand, Constant):
         if instruction.relocation is None:
@@ -220,7 +223,7 @@ FLOW: dict[str, Callable[[MachineState, Instruction, tuple[str, int]], tuple[str
 
 
 def _call_library(state: MachineState, name: str, on_stack: int) -> None:
-    """Execute a call of a C library function; registers that the call may change become unknown."""
+    """Execute a call of a C library function; every register that the call may change becomes unknown."""
     terms = state.context.terms
     _, offset = stack_place(state)
     if (offset + on_stack) % 16:

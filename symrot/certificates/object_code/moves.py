@@ -1,4 +1,7 @@
-"""The effect of SSE2 and AVX move instructions, and the table look-up of every other vector instruction."""
+"""The effect of SSE2 and AVX move instructions; all other vector instructions are looked up in the tables.
+
+``bare`` is the name of an instruction without the prefix ``v`` of its VEX form, ``is_vex`` whether it had that prefix.
+"""
 
 from collections.abc import Callable
 
@@ -62,9 +65,9 @@ def run_vector_instruction(state: MachineState, instruction: Instruction) -> Non
 
 
 def _bytes_of(bare: str, operand: object, whole: int) -> int:
-    """Return the size in bytes of a source operand in memory; ``bare`` is the instruction's name without prefix ``v``.
+    """Return the size in bytes of a source operand: the size that the instruction reads from memory, or ``whole``.
 
-    A register operand has the size ``whole``.
+    ``whole`` is the size of a register operand.
     """
     if not isinstance(operand, Memory):
         return whole
@@ -129,7 +132,7 @@ def _move_bits(size: int) -> Callable[[MachineState, Instruction, str, bool], No
 
 
 def _move_half(start: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return the function that executes movlpd or movhpd: copy 64 bits between memory and half of a vector register."""
+    """Return the function that executes movlpd or movhpd: copy 64 bits between memory and half of a register."""
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources = instruction.operands
