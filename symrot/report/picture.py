@@ -63,7 +63,7 @@ def save_page(page: Any, path: Path, dpi: int, few_colours: bool = True) -> None
 
 
 def _palette(page: Any, dpi: int, stream: BinaryIO) -> None:
-    """Write a figure as a PNG with few colours, using Pillow, which matplotlib requires anyway."""
+    """Write a figure as a PNG with few colours; it uses Pillow, which matplotlib requires anyway."""
     from PIL import Image
     from PIL.PngImagePlugin import PngInfo
 
