@@ -157,15 +157,32 @@ def arguments(parser: ArgumentParser) -> None:
     for mode in MODES:
         if mode.option:
             add(mode.option, help=mode.about, **(mode.more or {}))
-    add("--methods", metavar="NAMES", help="comma-separated, of exact, taylor, dop853, scipy, heyoka, DOP853, RK45, "
-        "LSODA, Radau (default: all)")  # fmt: skip
-    add("--tolerances", metavar="LIST", help="such as 1e-3,1e-6,1e-9 (default: one or two per decade)")
-    add("--rounds", type=int, metavar="N", help="repetitions of each run; the median counts (default: 9, --quick: 5)")
-    add("--quick", action="store_true", help="fewer tolerances and repetitions, heyoka in its default settings only")
-    add("--long", action="store_true", help="with --stability: 1e6 revolutions")
+    add("--methods", metavar="NAMES", help="methods, separated by commas, of exact, taylor, dop853, scipy, heyoka, "
+        "DOP853, RK45, LSODA and Radau (default: all)")  # fmt: skip
+    add(
+        "--tolerances", metavar="LIST", help="tolerances, such as 1e-3,1e-6,1e-9 (default: one or two per power of ten)"
+    )
+    add(
+        "--rounds",
+        type=int,
+        metavar="N",
+        help="repetitions of each run (default: 9; with --quick: 5); their median is the result",
+    )
+    add(
+        "--quick",
+        action="store_true",
+        help="run fewer tolerances and repetitions, and heyoka in its default setting only",
+    )
+    add("--long", action="store_true", help="with --stability: follow 1e6 revolutions instead of 1e5")
     add("--plot", type=Path, metavar="FILE", help="draw time against error: FILE.png, .pdf or .svg")
     add("--out", type=Path, metavar="FILE", help="write the study as FILE.json, for --compare")
-    add("-o", type=Path, metavar="DIR", dest="directory", help="folder of --suite (default: ./generated/bench)")
+    add(
+        "-o",
+        type=Path,
+        metavar="DIR",
+        dest="directory",
+        help="folder that --suite writes to (default: ./generated/bench)",
+    )
     add("--json", action="store_true", help="print JSON")
 
 

@@ -346,7 +346,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.taylor", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--quick", action="store_true", help="run heyoka in its default setting only")
-    parser.add_argument("--orders", action="store_true", help="compare orders of the series")
+    parser.add_argument("--orders", action="store_true", help="compare orders of symrot's series instead")
     parser.add_argument(
         "--reference", action="store_true", help="compute the last states and print them (takes minutes)"
     )

@@ -253,12 +253,12 @@ class KernelCheck:
         many = [one[k] if base == "p" else f"{typed[base]} *SYMROT_RESTRICT {base}" for k, base in enumerate(bases)]
         require(
             self.c_functions[self.name][1:3] == ("void", ", ".join(one)),
-            f"{self.name} has other arguments than expected: the inputs and outputs of the certificate",
+            f"expected the arguments {', '.join(one)} of {self.name}, as in the certificate, got others",
         )
         _, kind, arguments, loops = self.c_functions[f"{self.name}_batch"]
         require(
             (kind, arguments) == ("void", ", ".join(["size_t n", *many])),
-            f"{self.name}_batch has other arguments than expected: the inputs and outputs of the certificate",
+            f"expected the arguments {', '.join(['size_t n', *many])} of {self.name}_batch, got {arguments}",
         )
 
         def of_sample(place):
@@ -272,13 +272,13 @@ class KernelCheck:
         if loop := LOOP.fullmatch(loops) or PARTS.fullmatch(loops):
             return self.compare(loop.groups(), batch, map(of_sample, self.outputs))
         bits, first, far, again = require(
-            BLOCKS.fullmatch(loops), f"{self.name}_batch does not have the expected loop over all samples"
+            BLOCKS.fullmatch(loops), f"expected a loop over all samples in {self.name}_batch, got {loops[:60]!r}"
         ).groups()
         tested = re.findall(rf"symrot_far{self.end}\(((?:[^()]|\([^()]*\))*)\)", far)
         holds = far == " + ".join(f"symrot_far{self.end}({each})" for each in tested)
         require(
             holds and bits == {"double": "64", "float": "32"}[self.real],
-            f"{far} does not test every angle as expected",
+            f"expected symrot_far{self.end} of every angle, got {far!r}",
         )
         self.compare([first], batch, map(of_sample, self.outputs), tested)
         self.compare([again], batch, map(of_sample, self.outputs))
@@ -291,7 +291,7 @@ class KernelCheck:
         for target, (place, expected) in zip(targets, self.outputs.items()):
             require(
                 target in computed and computed[target] == expected,
-                f"{place} of {self.name} does not have the value of its formula, as expected",
+                f"expected {place} of {self.name} to be the value of its formula, but the C text computes another",
             )
 
     def check_own(self, function, bare):
@@ -304,14 +304,19 @@ class KernelCheck:
             falling = [abs(each) * Fraction(split) ** k for k, each in enumerate(taylor)]
             holds = sorted(falling, reverse=True) == falling and [*map(Fraction, coefficients)] == taylor[:-1]
             holds = holds and Fraction(rest) == falling[-1] / (falling[0] - falling[1])
-            require(holds, f"the series of {bare}, or the bound of its error, is not the expected one")
+            require(
+                holds, f"expected the Taylor series of {bare} with the bound of its error, got another series or bound"
+            )
             series = [f"({nearest(each, self.real)})*x**{2 * k}" for k, each in enumerate(taylor[:-1])]
             case = case.format(series=" + ".join(series), split=split)
         names = [argument.removeprefix(f"{self.real} ") for argument in arguments.split(", ")]
         values = [self.symbols[f"an argument {k}"] for k in range(4)]
         expected = Evaluator(dict(zip("xyzw", values)), self.functions).read(f"{case} else {explicit}")
         computed = self.run(body, dict(zip(names, values)), near=names[:1] * function.startswith("symrot_near_"))
-        require(computed == expected, f"{function} is not {case} else {explicit}")
+        require(
+            computed == expected,
+            f"expected {function} to compute {case} else {explicit}, but it computes another value",
+        )
 
 
 class FloatFunctions(dict):
@@ -410,7 +415,7 @@ def prove(law, case, formulas):
     for text, entry in zip(law["vanishing"], case["entries"]):
         require(
             combined(reader.read(text), *entry),
-            f"the law {law['law']!r} does not follow from the formulas as expected: its stored proof is wrong",
+            f"expected the law {law['law']!r} to follow from the formulas, but its stored proof is wrong",
         )
 
 
@@ -436,7 +441,8 @@ def functions_of(text, name, files):
             HEAD.fullmatch(" ".join(chunk.split()) + " "), f"expected a function, got {chunk.strip()[:60]!r}"
         )
         require(
-            head[3] not in functions and (not head[1] or head[3].startswith("symrot_")), f"{head[3]} is defined twice"
+            head[3] not in functions and (not head[1] or head[3].startswith("symrot_")),
+            f"expected each function once, and symrot_ before the name of a static function, got {head[3]}",
         )
         functions[head[3]] = head.group(1, 2, 4, 5)
     return functions

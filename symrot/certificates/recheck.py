@@ -1128,7 +1128,10 @@ def check_law(law, specification, points):
     place = f"the law {quoted(law['law'])}"
     need(law["vanishing"], f"{place} does not follow: expected an expression that vanishes, got none")
     members = law["given"]
-    need(all(is_name(name) for name in members), f"{place}: expected names of symbols as given, got {quoted(members)}")
+    need(
+        all(is_name(name) for name in members),
+        f"{place}: expected a list of names of symbols as 'given', got {quoted(members)}",
+    )
     expressions = [specification.read(text, place) for text in law["vanishing"]]
 
     def values(law_holds):
@@ -1345,9 +1348,12 @@ def point_of_box(data, specification, real):
     numbers = Decimals()
     names, inputs = Names(numbers), {}
     for place, symbol in specification.symbols.items():
-        need(place in bounds["box"], f"rounding.box: expected a range of {quoted(place)}")
+        need(place in bounds["box"], f"rounding.box: expected a range of {quoted(place)}, and it is missing")
         low, high = (hexadecimal(end, f"rounding.box.{place}") for end in bounds["box"][place])
-        need(-math.inf < low <= high < math.inf, f"rounding.box: expected a finite range of {quoted(place)}")
+        need(
+            -math.inf < low <= high < math.inf,
+            f"rounding.box: expected a finite range of {quoted(place)}, got {low} to {high}",
+        )
         value = NEAREST[real](low + (high - low) * randbelow(2**53 + 1) / 2**53).value
         inputs[place] = min(max(value, low), high)
         names.define(symbol, Decimal(inputs[place]))

@@ -122,7 +122,9 @@ def _bound_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--target", type=float, metavar="X", help="find the largest box on which no error is above X")
     parser.add_argument("--variable", metavar="NAME", action="append", default=[],
                         help="with --target: resize the range of this input only; may be repeated")  # fmt: skip
-    parser.add_argument("--precision", choices=("double", "float"), default="double", help="(default: double)")
+    parser.add_argument(
+        "--precision", choices=("double", "float"), default="double", help="type of the numbers (default: double)"
+    )
     json_option(parser)
 
 
@@ -137,19 +139,23 @@ def _certify_arguments(parser: ArgumentParser) -> None:
         "--objects", action="store_true", help="compile the kernel, and compare the object code with the C text"
     )
     parser.add_argument("--no-bounds", action="store_true", help="omit the bounds of rounding errors")
-    parser.add_argument("-o", type=Path, metavar="DIR", dest="directory", help="write kernel and certificate there")
+    parser.add_argument(
+        "-o", type=Path, metavar="DIR", dest="directory", help="write the kernel and its certificate into this folder"
+    )
     json_option(parser)
 
 
 def _audit_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("certificates", type=Path, nargs="+", metavar="FILE.cert.json",
                         help="a certificate, in one folder with the files of its kernel")  # fmt: skip
-    parser.add_argument("--object", type=Path, metavar="FILE.o", help="the C file as compiled by your compiler")
+    parser.add_argument(
+        "--object", type=Path, metavar="FILE.o", help="compare the object file that your compiler made from the C file"
+    )
     parser.add_argument(
         "--flags", metavar="'CC FLAGS'", help="say what still holds under your flags, such as 'gcc -O3 -mfma'"
     )
     parser.add_argument("--rerun-bounds", action="store_true", help="compute the bounds of rounding errors again")
-    parser.add_argument("--coq", action="store_true", help="have Coq check the theorem about the kernel")
+    parser.add_argument("--coq", action="store_true", help="let Coq check the theorem about the kernel")
     json_option(parser)
 
 

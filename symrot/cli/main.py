@@ -377,7 +377,8 @@ def _emit_arguments(parser: ArgumentParser) -> None:
         "--target", choices=TARGETS, help="language (default: c for a kernel, both for --all and --check)"
     )
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
-                        help="folder (default: standard output for a kernel, ./generated otherwise)")  # fmt: skip
+                        help="folder to write to, or to compare with --check (default: standard output for a kernel, "
+                        "otherwise ./generated)")  # fmt: skip
 
 
 def _derive_arguments(parser: ArgumentParser) -> None:
@@ -415,13 +416,15 @@ def _check_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--textbook", metavar="NAME", help="check the claims of a document: chen, sahakian, brown, "
                         "beer-johnston, or all")  # fmt: skip
     parser.add_argument("--all", action="store_true", help="with --textbook all: write the page of errata")
-    parser.add_argument("-o", "--output", metavar="DIR", default="generated", help="folder of --all (./generated)")
+    parser.add_argument(
+        "-o", "--output", metavar="DIR", default="generated", help="folder that --all writes to (default: ./generated)"
+    )
     parser.add_argument("--given", dest="hypotheses", metavar="HYPOTHESIS", action="append", default=[],
                         help="'a == b', 'x > 0' or 'x != 0', with a claim as text; may be repeated")  # fmt: skip
     parser.add_argument("--unit", metavar="NAME=UNIT", action="append", default=[],
                         help="unit of a symbol, with a claim as text: 'F=kg m/s^2'; may be repeated")  # fmt: skip
     parser.add_argument("--strict", action="store_true",
-                        help="exit 1 for a definition, a named formula that symrot does not know")  # fmt: skip
+                        help="exit 1 for a definition (a name for a formula that symrot does not know)")  # fmt: skip
     parser.add_argument("--no-repair", action="store_true", help="do not look for true formulas near a false one")
     json_option(parser)
 

@@ -190,7 +190,7 @@ def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) ->
         name, index = place.removesuffix("]").split("[")
         words = [path.memory.get((name, (int(index) * width + 32 * part) // 8)) for part in range(width // 32)]
         if None in words:
-            raise NotUnderstood(f"expected every path through the code to write {place}, got one that does not")
+            raise NotUnderstood(f"expected every path through the code to write {place}, got a path that does not")
         outputs.append(words[0] if width == 32 else terms.join(*(word for word in words if word is not None)))
     return [item for item in outputs if item is not None]
 

@@ -275,7 +275,7 @@ def _instruction(
     if len(inside) > 1:
         raise CertificateError(
             f"{where}: expected at most one relocation (address filled in by the linker) in the "
-            f"instruction at {address:#x} of {section}, got more"
+            f"instruction at {address:#x} of {section}, got {len(inside)}"
         )
     for at, (kind, symbol, plus) in inside:
         relocation = Relocation(kind, symbol, plus + address + len(content) - at)

@@ -163,10 +163,10 @@ def _target(state: MachineState, instruction: Instruction) -> tuple[str, int] | 
         base, offset = relocated_place(state, instruction, RELATIVE)
         if base or not offset:
             return (base.removeprefix("section "), offset) if base else instruction.relocation.symbol
-        raise NotUnderstood("expected a jump to the beginning of a function, got one into its middle")
+        raise NotUnderstood("expected a jump to the beginning of a function, got a jump into its middle")
     node = state.context.terms.nodes[state.whole(read(state, instruction, operand, 8))]
     if node[0] != "address" or not node[2].startswith("symbol ") or node[3]:
-        raise NotUnderstood("expected a jump to a fixed address, got a computed one")
+        raise NotUnderstood("expected a jump to a fixed address, got a computed address")
     return str(node[2].removeprefix("symbol "))
 
 
@@ -182,7 +182,7 @@ def _jump_if(condition: str) -> Callable[[MachineState, Instruction, tuple[str, 
     def jump(state: MachineState, instruction: Instruction, following: tuple[str, int]) -> tuple[str, int]:
         target = _target(state, instruction)
         if isinstance(target, str):
-            raise NotUnderstood(f"expected a jump within the function, got one to {target}")
+            raise NotUnderstood(f"expected a jump within the function, got a jump to {target}")
         return target if condition_holds(state, condition) else following
 
     return jump
@@ -236,7 +236,7 @@ def _call_library(state: MachineState, name: str, on_stack: int) -> None:
         for pointer, function in (("rdi", "sin"), ("rsi", "cos")):
             node = terms.nodes[state.whole(state.general[pointer])]
             if node[0] != "address":
-                raise NotUnderstood("expected known addresses for the results of sincos, got unknown ones")
+                raise NotUnderstood("expected known addresses for the results of sincos, got unknown addresses")
             written.append((node[2], node[3], state.halves(terms.call(function, width, operands[:1]))))
     elif bare in LIBRARY:
         result = state.halves(terms.call(bare, width, operands[: LIBRARY[bare]]))

@@ -79,7 +79,7 @@ def _pblendw(_: MachineState, sources: list[Words], constant: int) -> Words:
     for place in range(len(sources[0])):
         chosen = constant >> 2 * (place % 4) & 3
         if chosen not in (0, 3):
-            raise NotUnderstood("expected a blend of 32-bit words, got one of 16-bit words")
+            raise NotUnderstood("expected a blend of 32-bit words, got a blend of 16-bit words")
         blended.append(sources[1 if chosen else 0][place])
     return blended
 
@@ -162,7 +162,7 @@ def _pshufb(state: MachineState, sources: list[Words], _: int) -> Words:
         elif control[0] % 4 == 0 and all((byte & 0x8F) == (control[0] & 15) + i for i, byte in enumerate(control)):
             shuffled.append(sources[0][(place & ~3) + (control[0] & 15) // 4])
         else:
-            raise NotUnderstood("expected a shuffle of 32-bit words, got one of single bytes")
+            raise NotUnderstood("expected a shuffle of 32-bit words, got a shuffle of single bytes")
     return shuffled
 
 

@@ -429,7 +429,9 @@ def _check_precision(
     tasks_by_output = bound_tasks(operations, box, region, 0, libm_ulp)
     unit = 2.0 ** -DIGITS[operations.precision]
     if [item["output"] for item in part["outputs"]] != list(tasks_by_output) or float.fromhex(part["unit"]) != unit:
-        raise CertificateError(f"{name}: expected bounds of {', '.join(tasks_by_output)}")
+        raise CertificateError(
+            f"{name}: expected bounds of {', '.join(tasks_by_output)} in units of {unit:g}, got other outputs or units"
+        )
     for item in part["outputs"]:
         task, bound = tasks_by_output[item["output"]], float.fromhex(item["absolute"])
         at = np.array([float.fromhex(item["at"][place]) for place in task.graph.places])
@@ -438,7 +440,7 @@ def _check_precision(
         choices, safe = _choice_phrases(task), task.graph.contraction_safe
         if item["choices"] != choices or item["contraction_safe"] is not safe:
             raise CertificateError(
-                f"{name}: expected the same choices for {item['output']} as in the operations of the C text"
+                f"{name}: expected the same choices for {item['output']} as in the operations of the C text, got others"
             )
         if at.size and not ((task.box[0] <= at) & (at <= task.box[1])).all():
             raise CertificateError(
