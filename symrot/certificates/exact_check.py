@@ -472,7 +472,7 @@ def check(path):
         for case in law["cases"]:
             prove(law, case, formulas)
     checked = " and ".join(readback)
-    laws = f"{len(data['laws'])} laws of the formulas"
+    laws = f"{len(data['laws'])} {'law' if len(data['laws']) == 1 else 'laws'} of the formulas"
     return f"{name}: {len(files)} hashes, C text of {checked} and batches = formulas, {laws} (bounds not checked)"
 
 
