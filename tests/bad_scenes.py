@@ -228,7 +228,7 @@ CHANGES = [
      ("output.sequence", "euler", "'ZXZ'")),
     ("tolerance 0", {"accuracy": "[accuracy]\ntolerance = 0"}, ("accuracy.tolerance", "1e-15", "got 0")),
     ("tolerance -1", {"accuracy": "[accuracy]\ntolerance = -1"}, ("accuracy.tolerance", "1e-15", "got -1")),
-    ("tolerance 0.5", {"accuracy": "[accuracy]\ntolerance = 0.5"}, ("accuracy.tolerance", "1e-2", "0.5", "nothing")),
+    ("tolerance 0.5", {"accuracy": "[accuracy]\ntolerance = 0.5"}, ("accuracy.tolerance", "1e-2", "0.5", "meaningless")),
     ("tolerance 1e-20", {"accuracy": "[accuracy]\ntolerance = 1e-20"}, ("accuracy.tolerance", "1e-20", "double")),
 ]  # fmt: skip
 

@@ -198,7 +198,8 @@ class KernelCheck:
         parameters = {symbol for place, symbol, _ in data["inputs"] if place.startswith("p[")}
         require(
             {*self.spec["parameters"]} == parameters,
-            "expected the same parameters in the formulas and among the inputs",
+            "expected the same parameters in the formulas and among the inputs, "
+            f"got {', '.join(sorted(self.spec['parameters']))} and {', '.join(sorted(parameters))}",
         )
         require(
             all(symbol.isidentifier() for _, symbol, _ in data["inputs"]),
@@ -206,7 +207,7 @@ class KernelCheck:
         )
         require(
             len({*inputs.values(), "pi"}) == len(data["inputs"]) + 1,
-            "expected inputs that differ from each other and from pi",
+            "expected inputs that differ from each other and from pi, got one of them twice, or pi",
         )
         formula = Evaluator(self.symbols, self.functions)
         self.inputs = {place: formula.read(text) for place, text in inputs.items()}
@@ -431,7 +432,7 @@ def complete(cases):
 def functions_of(text, name, files):
     """Return a map from the name of each function in a C text to the tuple (static, type, arguments, body)."""
     odd = re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", text)
-    require(not odd, "expected no backslash, trigraph, // comment or control character in the C text")
+    require(not odd, f"expected no backslash, trigraph, // comment or control character, got {odd and odd[0]!r}")
     known = ["#include <math.h>", f'#include "{name}.h"', *['#include "symrot_math.h"'] * ("symrot_math.h" in files)]
     lines = [line for line in re.sub(r"/\*.*?\*/", " ", text, flags=re.S).split("\n") if line.strip() not in known]
     functions, (*chunks, end) = {}, re.split(r"^\}$", "\n".join(lines), flags=re.M)
@@ -458,8 +459,9 @@ def check(path):
     name, files, spec, readback = data["kernel"], data["files"], data["spec"], data["readback"]
     c_functions = functions_of(path.with_name(f"{name}.c").read_text("utf-8"), name, files)
     expected = {f"{function}{end}" for function in readback for end in ("", "_batch")}
+    public = {f for f in c_functions if not c_functions[f][0]}
     require(
-        {f for f in c_functions if not c_functions[f][0]} == expected, f"expected the functions {', '.join(expected)}"
+        public == expected, f"expected the functions {', '.join(sorted(expected))}, got {', '.join(sorted(public))}"
     )
     for function in readback:
         KernelCheck(function, data, c_functions).check()

@@ -44,7 +44,9 @@ def _prefix(where: str) -> str:
 
 def _points(part: Part, dimensions: Mapping[str, Any], where: str) -> MassProperties:
     if part.mass is not None or part.density is not None:
-        raise InputError(f"{_prefix(where)}expected no mass or density of point_masses; give their masses in 'masses'")
+        raise InputError(
+            f"{_prefix(where)}expected no mass or density of point_masses, got one; give their masses in 'masses' only"
+        )
     nothing = tensor.scale(Fraction(0), IDENTITY)
     pairs = zip(dimensions["masses"], dimensions["points"], strict=True)
     return compose([MassProperties(mass, point, nothing) for mass, point in pairs])

@@ -201,7 +201,7 @@ def _properties(
     """Return mass, centre of mass, and inertia about the centre of mass per unit mass; the default density is 1."""
     measure, specific_moments = moments_per_measure(region, density)
     if not specific_moments.zeroth:
-        raise InputError("expected a density with a positive mass, got one with a mass of 0 kg")
+        raise InputError("expected a density with a positive mass, got a density with a mass of 0 kg")
     mass = _expression(measure, values) * _expression(specific_moments.zeroth, values)
     center = [_ratio(entry, specific_moments.zeroth, values) for entry in specific_moments.first]
     second = [[_ratio(entry, specific_moments.zeroth, values) for entry in row] for row in specific_moments.second]

@@ -132,7 +132,7 @@ def read_study(path: Path) -> dict[str, Any]:
         whole = False
     if not whole:
         raise InputError(
-            f"{label}: expected a whole study of `symrot bench`, got one with missing parts or impossible numbers"
+            f"{label}: expected a whole study of `symrot bench`, got a study with missing parts or impossible numbers"
         )
     return study
 

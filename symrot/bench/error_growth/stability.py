@@ -112,7 +112,9 @@ def _median(rows: list[Floats], count: int) -> Floats:
 
 def _of_scene(scene: Scene, long: bool, say: Callable[[str], object]) -> dict[str, Any]:
     if not scene.span.stop > scene.span.start:
-        raise InputError(f"{scene.name}: span: expected a last time after the first time")
+        raise InputError(
+            f"{scene.name}: span: expected a last time after the first, got {scene.span.start} to {scene.span.stop} s"
+        )
     times = np.linspace(float(scene.span.start), float(scene.span.stop), SAMPLES)
     say(f"{scene.name}: truth in 30 digits ..")
     track = Track(scene, times, periodic=False)

@@ -208,7 +208,7 @@ class _EqualityProver:
                     ):
                         return self.fractions.generator(atom)
         raise CertificateError(
-            f"{self.operations.name}: expected a conditional that the formula contains too, got one "
+            f"{self.operations.name}: expected a conditional that the formula contains too, got a conditional "
             f"with the relation {relation!r}"
         )
 
@@ -271,7 +271,7 @@ class _EqualityProver:
         if sorted(terms, reverse=True) != terms or any(a * b >= 0 for a, b in pairwise(exact)):
             raise CertificateError(
                 f"{self.operations.name}: expected a series whose terms decrease up to x^2 = {split}, "
-                "got one whose terms do not"
+                "got a series whose terms do not"
             )
         return Truncation(name, split, len(written), terms[-1] / (terms[0] - terms[1]))
 

@@ -41,7 +41,7 @@ class FractionField:
         """Return ``above/below`` in lowest terms, scaled so that the denominator's leading coefficient is 1."""
         if not below:
             raise CertificateError(
-                f"{self.name}: expected a formula that is defined somewhere, got one that divides by "
+                f"{self.name}: expected a formula that is defined somewhere, got a formula that divides by "
                 "an expression that is zero everywhere"
             )
         if not below.is_ground:

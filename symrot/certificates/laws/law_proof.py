@@ -119,7 +119,9 @@ class LawProver(FormulaReader):
         self.decided = {(left, right): relation for left, relation, right in decided}
         hypotheses = [self.read(relation) for relation in self.law.relations]
         if any(below != 1 for _, below in hypotheses):
-            raise CertificateError(f"{self.name}: expected the hypotheses of {self.law.text!r} to be polynomials")
+            raise CertificateError(
+                f"{self.name}: expected polynomials as hypotheses of {self.law.text!r}, got a quotient"
+            )
         self.hypotheses = [above for above, _ in hypotheses]
         fractions = [self.read(entry) for entry in self.law.vanishing]
         entries = []
@@ -334,7 +336,7 @@ class LawProver(FormulaReader):
             if coefficient.denominator != 1:
                 raise CertificateError(
                     f"{self.name}: expected integer multiples of an arc tangent as the argument of a "
-                    "sine or cosine, got a fraction of one"
+                    "sine or cosine, got a fraction of an arc tangent"
                 )
             return Fraction(1)
         known = self.bases.get(str(unit), self.first_coefficients.setdefault(str(unit), abs(coefficient)))

@@ -51,7 +51,7 @@ def memory_place(state: MachineState, instruction: Instruction, operand: Memory)
     if operand.base != "rip":
         return state.address(operand)
     if operand.segment or operand.index:
-        raise NotUnderstood(f"expected an address without a segment, got one in the segment {operand.segment}")
+        raise NotUnderstood(f"expected an address without a segment, got an address in the segment {operand.segment}")
     return relocated_place(state, instruction, RELATIVE)
 
 
@@ -71,7 +71,7 @@ def symbol_of(state: MachineState, instruction: Instruction) -> int:
     """Return the term for the address of another file's symbol, read from the global offset table."""
     base, offset = relocated_place(state, instruction, INDIRECT)
     if base or offset or instruction.relocation is None:
-        raise NotUnderstood("expected an address within the object file, got one that only the linker knows")
+        raise NotUnderstood("expected an address within the object file, got an address that only the linker knows")
     return state.context.terms.address(f"symbol {instruction.relocation.symbol}", 0)
 
 
@@ -91,7 +91,7 @@ def read(state: MachineState, instruction: Instruction, operand: object, size: i
         return state.halves(symbol_of(state, instruction))
     if operand.size not in (size, 0) or size < 4:
         raise NotUnderstood(
-            f"expected an access to memory of the instruction's operand size, got one to {operand.size} bytes"
+            f"expected an access to memory of the instruction's operand size, got an access to {operand.size} bytes"
         )
     return state.load(*memory_place(state, instruction, operand), size // 4)
 

@@ -137,7 +137,7 @@ def _run_instruction(state: MachineState, instruction: Instruction) -> tuple[str
         and mnemonic not in FLOW
         and not any(isinstance(item, Memory) and item.base == "rip" for item in instruction.operands)
     ):
-        raise NotUnderstood("expected an address within the object file, got one that only the linker knows")
+        raise NotUnderstood("expected an address within the object file, got an address that only the linker knows")
     if mnemonic in NO_OPERATION or (mnemonic == "xchg" and instruction.operands == (Register("ax"), Register("ax"))):
         return following
     flow = FLOW.get(mnemonic)
@@ -213,7 +213,7 @@ def _return(state: MachineState, instruction: Instruction, _: tuple[str, int]) -
                 )
         return "", 0
     if node[0] != "address" or not node[2].startswith("section "):
-        raise NotUnderstood("expected a return to the caller, got one to an unknown address")
+        raise NotUnderstood("expected a return to the caller, got a return to an unknown address")
     return node[2].removeprefix("section "), node[3]
 
 

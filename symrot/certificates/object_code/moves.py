@@ -27,7 +27,7 @@ def _source(state: MachineState, instruction: Instruction, operand: object, size
     is_vex = instruction.mnemonic.startswith("v")
     must_be_aligned = size >= 16 and bare not in UNALIGNED and (not is_vex or bare in ALIGNED)
     if must_be_aligned and (base in state.context.arrays or offset % size):
-        raise NotUnderstood(f"expected an aligned address, got one in {base} that may not be aligned")
+        raise NotUnderstood(f"expected an aligned address, got an address in {base} that may not be aligned")
     return state.load(base, offset, size // 4)
 
 
@@ -86,7 +86,7 @@ def _move_whole(state: MachineState, instruction: Instruction, bare: str, is_vex
         words = _source(state, instruction, source, 0, bare)
         base, offset = memory_place(state, instruction, target)
         if bare in ALIGNED and (base in state.context.arrays or offset % (4 * len(words))):
-            raise NotUnderstood(f"expected an aligned address, got one in {base} that may not be aligned")
+            raise NotUnderstood(f"expected an aligned address, got an address in {base} that may not be aligned")
         write(state, instruction, target, words)
         return
     assert isinstance(target, Register)

@@ -169,7 +169,9 @@ class MachineState:
     def address(self, operand: Memory) -> tuple[str, int]:
         """Return the base and offset of a memory operand whose address is known without the linker."""
         if operand.segment:
-            raise NotUnderstood(f"expected an address without a segment, got one in the segment {operand.segment}")
+            raise NotUnderstood(
+                f"expected an address without a segment, got an address in the segment {operand.segment}"
+            )
         base, offset = "", operand.offset
         for name, scale in ((operand.base, 1), (operand.index, operand.scale)):
             if not name:
@@ -211,7 +213,7 @@ class MachineState:
             return terms.word(place, offset % size // 4) if size == 8 else place
         content = self.context.listing.constants.get(base.removeprefix("section "), b"")
         if not base.startswith("section ") or not 0 <= offset <= len(content) - 4:
-            raise NotUnderstood(f"expected a read of a known constant, got one from {base.removeprefix('section ')}")
+            raise NotUnderstood(f"expected a read of a known constant, got a read from {base.removeprefix('section ')}")
         return terms.bits(32, int.from_bytes(content[offset : offset + 4], "little"))
 
     def store(self, base: str, offset: int, words: Words) -> None:

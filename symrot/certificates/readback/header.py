@@ -70,7 +70,7 @@ def check_header(header: str, source: str, name: str) -> None:
     """
     if re.search(r"\\|\?\?|[\0-\x09\x0b-\x1f]", header):
         raise CertificateError(
-            f"{name}.h: expected a header without backslash, trigraph or control character, got one there"
+            f"{name}.h: expected a header without backslash, trigraph or control character, got such a character"
         )
     lines = [line.strip() for line in _COMMENT.sub(" ", header).split("\n")]
     lines = [line for line in lines if line]
@@ -83,7 +83,7 @@ def check_header(header: str, source: str, name: str) -> None:
             raise CertificateError(f"{name}.h: expected the line {fixed!r}, got {got[:80]!r}")
     middle = lines[len(top) : len(lines) - len(end)]
     if len(lines) < len(top) + len(end) or lines[len(lines) - len(end) :] != end:
-        raise CertificateError(f"{name}.h: expected the lines {' '.join(end)!r} at the end")
+        raise CertificateError(f"{name}.h: expected the lines {' '.join(end)!r} at the end, got others")
     if any("#" in line for line in middle):
         raise CertificateError(f"{name}.h: expected nothing but prototypes between the fixed lines, got other text")
     declared = {_words(each) for each in " ".join(middle).split(";") if each.strip()}

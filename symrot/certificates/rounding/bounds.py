@@ -214,7 +214,7 @@ def _output_bound(operations: Operations, place: str, task: BoundTask, result: S
         where = ", ".join(f"{name} = {x:.6g}" for k, (name, x) in enumerate(at) if k in inputs)
         what = task.graph.text(result.obstacle)
         raise InputError(
-            f"{operations.name}: expected a box without singular points, got one where {place} has no bound: "
+            f"{operations.name}: expected a box without singular points, got a box where {place} has no bound: "
             f"{what} is not known to stay away from its singular values near {where}"
         )
     mantissa, exponent = frexp(result.largest_value)
@@ -365,7 +365,7 @@ def check_section(
         if isinstance(error, CertificateError | InputError):
             raise CertificateError(str(error)) from None
         raise CertificateError(
-            f"expected a section of rounding bounds, got one in which this is missing or wrong: {error}"
+            f"expected a section of rounding bounds, got a section in which this is missing or wrong: {error}"
         ) from None
     if precisions != list(kernels):
         raise CertificateError(f"expected bounds for {' and '.join(kernels)}, got {' and '.join(precisions) or 'none'}")
