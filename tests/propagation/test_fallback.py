@@ -1,4 +1,4 @@
-"""SciPy around a kernel keeps the promises of the stepper: tolerance, sampling, switching, errors in a sentence."""
+"""SciPy's solvers around a kernel keep the stepper's promises: tolerance, sampling, switching, errors in one sentence."""
 
 import math
 
@@ -132,7 +132,7 @@ SWITCHING = ("0.02*sign(sin(0.5*t))", "-0.01*sign(omega_2 - 0.3)", "0.05*sin(t)*
 
 @pytest.mark.parametrize("method", ["scipy:RK45", "scipy:LSODA"])
 def test_an_interrupt_under_switches_keeps_every_sample_up_to_it(method):
-    """The interrupt comes from a progress report, at several times, before and after switches of the same window."""
+    """A progress report interrupts, at several times, before and after switches of one window."""
     propagate = propagator(switching_scene(100, *SWITCHING), method, 1e-6)
     times = np.linspace(0.0, 100.0, 2001)
     whole = propagate(times).omega
@@ -163,7 +163,7 @@ def test_endlessly_many_switches_are_given_up_soon_with_the_samples_before(metho
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("method", list(fallback.METHODS))
 def test_a_torque_that_leaves_zero_slowly_is_followed(method):
-    """Up to 1 s nothing acts, then the fifth power of the time acts on two axes."""
+    """Nothing acts until 1 s; then torques that grow with the fifth power of time act about two axes."""
     scene = switching_scene(3, "where(t > 1, (t-1)**5, 0)", "where(t > 1, (t-1)**5, 0)", "0")
     exact, found = propagator(scene, "dop853", 1e-11)(), propagator(scene, f"scipy:{method}", 1e-6)()
     assert abs(found.omega - exact.omega).max() < 20 * 1e-6 * abs(exact.omega).max()

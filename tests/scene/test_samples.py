@@ -1,4 +1,6 @@
-"""Torques by samples in scene files: the motion that Python's ``torque=`` has, and what cannot be read."""
+"""Torques by samples in scene files: the same motion as with the argument ``torque=``, and messages on files that
+cannot be read.
+"""
 
 import json
 
@@ -106,7 +108,7 @@ def test_the_shipped_scene():
 
 
 def test_steps_end_at_samples():
-    """Where the third derivative of the torque jumps: a step across it would miss its tolerance a hundredfold."""
+    """At samples the third derivative of the torque jumps: a step across one would miss its tolerance a hundredfold."""
     for tolerance in (1e-8, 1e-10, 1e-12):
         found, fine = (symrot.propagator("thruster_pulse", tolerance=x)([30.0]) for x in (tolerance, 1e-14))
         assert np.abs(found.y - fine.y).max() < tolerance
