@@ -1,34 +1,36 @@
-"""Re-check kernels from their files alone: ``python recheck.py NAME.cert.json ..``. It needs Python, nothing of symrot.
+"""Check kernels from their files alone: ``python recheck.py NAME.cert.json ..``. It needs Python but not symrot.
 
 What is checked
 ---------------
 Files (`certified`): the seal of the certificate and the hash of every file that it names.
 
-C text (`check_precision`): each function computes the formulas of the certificate. Both are evaluated at one random
-point, exactly, in fractions. There, sin(x) is a random number that depends on x alone, and ``a < b ? x : y`` is a mean
-of x and y with a random weight that depends on a and b alone. Two texts that differ as rational expressions of their
-functions and choices agree at such a point with negligible probability. Identities of functions, such as sin^2 + cos^2
-= 1, do not hold for such random numbers, so a C text may not rely on them.
+C text (`check_precision`): each function computes the formulas of the certificate. C text and formulas are evaluated at
+one random point, exactly, in fractions. There, sin(x) is a random number that depends on x alone, and a choice ``a < b
+? x : y`` is a mean of x and y with a random weight that depends on a and b alone. Two texts that differ as rational
+expressions of their functions and choices agree at such a point with negligible probability. Identities of functions,
+such as sin^2 + cos^2 = 1, do not hold for such random numbers, so a C text may not rely on identities.
 
-Series (`check_series`): a polynomial that replaces a function near a removable singularity is close enough to it,
-measured at 64 random points.
+Series (`check_series`): a polynomial that replaces a function near a removable singularity is close enough to the
+function at 64 random points.
 
-Laws (`check_law`): the formulas obey the laws, to 60 digits, at 8 random points up to 1000 (64 points if there are
-choices). A smaller violation, or one near few points or far out, is not noticed: `symrot audit` proves laws.
+Laws (`check_law`): the formulas obey the laws, to 60 digits, at 8 random points with coordinates up to 1000 (64 points
+if there are choices). A smaller violation, or a violation near few points or farther out, is not noticed; `symrot
+audit` proves laws.
 
-Rounding (`check_rounding`): at one random point of the box, computed as C computes, the error is within its bound. So
-a text with ``(x + 1e20) - 1e20`` for x is refused, although both are equal in exact arithmetic.
+Rounding (`check_rounding`): at one random point of the box, the outputs computed as C computes them have errors within
+the bounds. So a text with ``(x + 1e20) - 1e20`` for x is refused, although both are equal in exact arithmetic.
 
 Header (`check_header`): it declares the functions of the C file and defines only the known macros.
 
 What is not checked
 -------------------
-Proofs of laws, theorems of Coq, operation counts, flags, object code, the domain; NumPy texts beyond their hash. That a
-kernel computes what its name promises: all files must agree on the name, but only `symrot audit` knows its meaning.
+Not checked are proofs of laws, theorems of Coq, operation counts, flags, object code, the domain, and NumPy texts
+beyond their hash; nor that a kernel computes what its name promises: all files must agree on the name, but only `symrot
+audit` knows its meaning.
 
 Which C is read
 ---------------
-Everything that this grammar does not derive is refused. ``real`` is double or float; E is an expression.
+A C text that this grammar does not describe is refused. ``real`` is double or float; E is an expression.
 
     file        = {include} {function}
     include     = #include <math.h> | #include "symrot_math.h" | #include "NAME.h"       (each at most once)
@@ -48,8 +50,8 @@ Everything that this grammar does not derive is refused. ``real`` is double or f
     product     = factor {(* | /) factor}
     factor      = -factor | number | x | a[index] | function(sum, ..) | (sum)
 
-Each name is declared before its use and never again, and each component is assigned once. Formulas of certificates
-have the same expressions, with powers ``x**2``, ``x**(3/2)`` and whole numbers or decimals.
+Each name is declared once, before its use, and each component is assigned once. Formulas of certificates have the same
+expressions, and powers such as ``x**2`` and ``x**(3/2)``; their numbers are whole numbers or decimals.
 """
 
 # mypy: ignore-errors
@@ -85,19 +87,20 @@ COMPARISONS = {"<": operator.lt, "==": operator.eq, ">=": operator.ge}
 
 
 def need(holds, sentence):
-    """Raise ValueError with a sentence unless a condition holds; the certificate is then refused."""
+    """Raise ValueError with a sentence, by which the certificate is refused, unless a condition holds."""
     if not holds:
         raise ValueError(sentence)
 
 
 def quoted(value):
-    """Return a value as text for a message, shortened and on one line."""
+    """Return a value as text for a message, shortened to 60 characters."""
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 # --- expressions ------------------------------------------------------------------------------------------------------
-# A node's method value(numbers, names) takes an arithmetic of the next section and the values of variables by name.
+# The method value(numbers, names) of a node returns its value; ``numbers`` is an arithmetic of the next section, and #
+# ``names`` maps the names of variables to their values.
 
 
 class Number(NamedTuple):
@@ -110,7 +113,7 @@ class Number(NamedTuple):
 
 
 class Literal(NamedTuple):
-    """A node of an expression tree: a number in a C text, with the double or float that C makes of it."""
+    """A node of an expression tree: a number in a C text, as the double or float that C rounds it to."""
 
     number: float
 
@@ -217,13 +220,13 @@ OPERATIONS = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": oper
 
 
 class Arithmetic:
-    """The base class of arithmetics: one kind of numbers, and random values of functions, at one random point."""
+    """The base class of arithmetics: a kind of number, and random values of functions at one random point."""
 
     def __init__(self):
         self.drawn = {}  # (function, *arguments) or (comparison, a, b) -> random number
 
     def random(self, *key):
-        """Return a random number; equal arguments give the same number."""
+        """Return a random number; the same key always gives the same number."""
         if key not in self.drawn:
             self.drawn[key] = self.draw()
         return self.drawn[key]
@@ -235,7 +238,7 @@ class Arithmetic:
         return OPERATIONS[operation](x, y)
 
     def choose(self, comparison, a, b, x, y):
-        """Return ``x()`` if the comparison of ``a`` with ``b`` holds, else ``y()``; the other one is not called."""
+        """Return ``x()`` if the comparison of ``a`` with ``b`` holds, else ``y()``; only that function is called."""
         return x() if COMPARISONS[comparison](a, b) else y()
 
 
@@ -243,7 +246,8 @@ class AnyFunctions(Arithmetic):
     """An arithmetic of exact fractions, in which functions and choices have random values.
 
     A function has a random value for each argument; ``a < b ? x : y`` is a mean of x and y with a random weight for
-    each a and b. Expressions that agree here agree, with overwhelming probability, for all functions of these names.
+    each a and b. Expressions with equal values here have equal values, with overwhelming probability, whatever
+    functions their names stand for.
     """
 
     def __init__(self):
@@ -269,7 +273,7 @@ class AnyFunctions(Arithmetic):
         return x**exponent
 
     def short(self, x, times=1):
-        """Return a number unchanged; raise ValueError if its power ``times`` has too many digits for a fast check."""
+        """Return a number unchanged; raise ValueError if its power of exponent ``times`` has too many digits."""
         digits = max(x.numerator.bit_length(), x.denominator.bit_length()) * times
         need(digits <= LONGEST_NUMBER, f"expected numbers of at most {LONGEST_NUMBER} binary digits, got longer ones")
         return x
@@ -301,7 +305,7 @@ def cosine(x):
 
 
 def arc_tangent(y, x):
-    """Return atan2(y, x) of Decimals: the value in double precision, improved by steps that each triple its digits."""
+    """Return atan2(y, x) of Decimals: the value in double precision, improved by two steps that triple its digits."""
     angle = Decimal(math.atan2(y, x))
     for _ in range(2):
         angle += (y * cosine(angle) - x * sine(angle)) / (x * x + y * y).sqrt()
@@ -313,7 +317,7 @@ EXACT_FUNCTIONS |= {"copysign": Decimal.copy_sign}
 
 
 class Decimals(Arithmetic):
-    """An arithmetic of 190-digit numbers; functions that occur in no law (tan, exp, ..) have random values."""
+    """An arithmetic of 190-digit numbers; functions such as tan and exp, which occur in no law, have random values."""
 
     def __init__(self):
         super().__init__()
@@ -358,7 +362,7 @@ class Machine(Arithmetic):
 
 
 class Names(dict):
-    """The values of symbols at a random point; a symbol without a definition gets a random value at its first use."""
+    """A dictionary of the values of symbols; a symbol without a value gets a random value at its first look-up."""
 
     def __init__(self, numbers):
         super().__init__(pi=numbers.number(PI))
@@ -374,7 +378,7 @@ class Names(dict):
 
 
 def at_a_point(compute):
-    """Return the value of ``compute`` at a random point; if the value is undefined there, draw another point."""
+    """Return the value of ``compute()``, which draws a random point; call it again if its value is undefined there."""
     for _ in range(200):
         try:
             return compute()
@@ -405,7 +409,7 @@ class Token(NamedTuple):
 
 
 def tokens(text, place):
-    """Return the words (tokens) of a text, each as long as possible, as a C compiler splits it."""
+    """Return the words (tokens) of a text; each word is as long as possible, as a C compiler splits a text."""
     words, start, line = [], 0, 1
     while start < len(text):
         match = TOKEN.match(text, start)
@@ -455,19 +459,19 @@ class Reader:
         return True
 
     def take(self, phrase):
-        """Move past the words of a phrase; raise ValueError if other words come next."""
+        """Move past the words of a phrase; raise ValueError if the next words are others."""
         for word in tokens(phrase, phrase)[:-1]:
             if not self.accept(word.text):
                 self.refuse(f"`{word.text}` of `{phrase}`")
 
     def take_name(self, what):
-        """Return the next word, a name; refuse names that compilers reserve (with leading _) and names of macros."""
+        """Return the next word, which must be a name; refuse names of macros, and names with a leading underscore."""
         if self.token.kind != "name" or self.token.text.startswith(("_", "SYMROT_")):
             self.refuse(what)
         return self.advance()
 
     def expression(self):
-        """Read a sum, or a choice between two sums; a choice inside a choice is refused, since it is easily misread."""
+        """Read a sum, or a choice between two sums; return its node. A choice inside a choice is refused."""
         a = self.sum()
         if self.token.text not in COMPARISONS:
             return a
@@ -490,7 +494,7 @@ class Reader:
         return Chain(first, rest) if rest else first
 
     def factor(self):
-        """Read a number, a variable, a call or a sum in parentheses, with an exponent if the subclass allows it."""
+        """Read a number, a variable, a call or a sum in parentheses, with an exponent if allowed; return its node."""
         if self.accept("-"):
             return Negative(self.factor())
         if self.token.kind == "number":
@@ -506,7 +510,7 @@ class Reader:
         return operand
 
     def call(self, name):
-        """Read the arguments of a function call, from behind the opening parenthesis; return the node of the call."""
+        """Read the arguments of a function call after the opening parenthesis; return the node of the call."""
         arguments = [self.sum()]
         while self.accept(","):
             arguments.append(self.sum())
@@ -531,7 +535,7 @@ class Reader:
 class FormulaReader(Reader):
     """A parser of the formulas in a certificate: symbols, powers, and functions that the certificate defines.
 
-    A name outside ``symbols``, if passed, is refused; in a constant, functions are refused too.
+    If ``symbols`` is passed, other names are refused; in a constant, functions are refused too.
     """
 
     def __init__(self, text, place, own, symbols=None, is_constant=False):
@@ -555,14 +559,17 @@ class FormulaReader(Reader):
         return name
 
     def power(self, operand):
-        """Read the exponent of a power: one or two digits, or half of such a number.
+        """Read the exponent of a power, if there is one; return the node of the power, or ``operand``.
 
-        Negative and half exponents need parentheses.
+        An exponent has one or two digits, or is half of such a number; a negative or half exponent needs parentheses.
         """
         if not self.accept("**"):
             return operand
         inner, sign = self.accept("("), -1 if self.accept("-") else 1
-        self.need(re.fullmatch(r"\d\d?", self.token.text), "expected an exponent of one or two digits, got another")
+        self.need(
+            re.fullmatch(r"\d\d?", self.token.text),
+            f"expected an exponent of one or two digits, got {quoted(self.token.text)}",
+        )
         exponent = sign * int(self.advance())
         if inner and self.accept("/"):
             self.take("2")
@@ -574,7 +581,7 @@ class FormulaReader(Reader):
         return Power(operand, exponent)
 
     def whole(self):
-        """Parse the whole text as one expression and return it; refuse a text with anything after the expression."""
+        """Parse the whole text as one expression and return its node; refuse any word after the expression."""
         expression = self.expression()
         self.need(self.token.kind == "end", f"expected the end of the formula, got {quoted(self.token.text)}")
         self.check_weight()
@@ -582,7 +589,7 @@ class FormulaReader(Reader):
 
 
 def constant(text, place):
-    """Return the exact value of a text without variables and functions, such as ``"pi/3"``; pi has 100 digits."""
+    """Return the exact value of a text without variables and functions, such as ``"pi/3"``; pi is rounded."""
     return FormulaReader(text, place, {}, ("pi",), is_constant=True).whole().value(AnyFunctions(), {"pi": PI})
 
 
@@ -604,7 +611,10 @@ COUNTERS = {"double": "uint64_t", "float": "uint32_t"}
 
 
 class Parameter(NamedTuple):
-    """A parameter of a C function; its form is "value" (a number), "array" (one sample) or "samples" (all samples)."""
+    """A parameter of a C function.
+
+    Its form is "value" (a number), "array" (the components of one sample) or "samples" (those of all samples).
+    """
 
     name: str
     form: str
@@ -613,14 +623,14 @@ class Parameter(NamedTuple):
 
 
 class Body(NamedTuple):
-    """The statements of a C function that are computed for one sample, in order."""
+    """The statements that a C function, or one of its loops, performs for one sample, in order."""
 
     statements: list  # of (name or (array, component), expression)
     far: list  # arguments of `symrot_far`, the angles that are tested for their range
 
 
 class Kernel(NamedTuple):
-    """A C function that writes arrays: its parameters, and its statements for one sample or for n samples in loops."""
+    """A C function that writes arrays: its parameters, and a body for each of its loops or for one sample."""
 
     parameters: list
     shape: str  # "one sample", "each sample", "spans" or "blocks"
@@ -632,8 +642,9 @@ class Kernel(NamedTuple):
 def without_comments(text, file):
     """Return a C text in which spaces replace comments; lines keep their numbers.
 
-    The text is refused if compilers or versions of C may read it in different ways: it must not have trigraphs, lines
-    joined by a backslash, line comments, comments in comments, or any characters but printable ASCII and ends of lines.
+    The text is refused if compilers or versions of C may read it in different ways: it must not contain trigraphs,
+    lines joined by a backslash, line comments, comments in comments, or other characters than printable ASCII and ends
+    of lines.
     """
     odd = re.search(r"[^\n -~]|\\|\?\?|//", text)
     need(not odd, f"{file}: expected plain ASCII without backslashes, ?? and //, got {quoted(odd and odd[0])}")
@@ -650,8 +661,8 @@ def without_comments(text, file):
 def split_includes(text, name, files):
     """Return the headers that a C text includes, and the text with its #include lines replaced by empty lines.
 
-    Lines of the preprocessor are #include lines of the three known headers, before all code. Any other # is refused as
-    a word outside the grammar, so that macros cannot change the meaning of the text.
+    The only allowed preprocessor lines are #include lines of the three known headers, before all code. Any other # is
+    refused later as a word outside the grammar, so that macros cannot change the meaning of the text.
     """
     known = {'#include "symrot_math.h"'} if "symrot_math.h" in files else set()
     known |= {"#include <math.h>", f'#include "{name}.h"'}
@@ -697,7 +708,7 @@ class CReader(Reader):
         return Literal(NEAREST[self.real](float(text.removesuffix("f"))).value)
 
     def variable(self, name):
-        """Read the name of a variable: a local variable, a parameter that is one number, or a component of an input."""
+        """Return the node for a local variable, a parameter that is a number, or a component of an input array."""
         if self.token.text == "[":
             return Variable(self.component(name, is_input=True))
         if name not in self.names:
@@ -706,9 +717,9 @@ class CReader(Reader):
         return Variable(name)
 
     def component(self, name, is_input):
-        """Read an array index and return the number of the component: 2 for ``[2]`` of one sample.
+        """Read an array index; return (array, component), such as ("q", 2) for ``[2]`` of one sample.
 
-        Of sample k of n samples, ``[k]`` is component 0, ``[n + k]`` is 1 and ``[2*n + k]`` is 2.
+        For sample k of n samples, ``[k]`` means component 0, ``[n + k]`` component 1 and ``[2*n + k]`` component 2.
         """
         parameter = self.parameters.get(name)
         self.need(
@@ -725,7 +736,7 @@ class CReader(Reader):
                 component = self.index()
                 self.take("*")
             self.take("n + k")
-        self.need(component < parameter.size, f"expected an index below {parameter.size} of {name}")
+        self.need(component < parameter.size, f"expected an index of {name} below {parameter.size}, got {component}")
         self.take("]")
         return name, component
 
@@ -735,7 +746,7 @@ class CReader(Reader):
         return int(self.advance())
 
     def use(self, real):
-        """Set the type of numbers, double or float, and the functions that exist for this type."""
+        """Set ``self.real`` to the type of numbers, double or float, and the tables of functions for this type."""
         self.real, end = real, REALS[real]
         self.own = self.inline[real]
         functions = C_FUNCTIONS if "math.h" in self.included else {}
@@ -751,7 +762,7 @@ class CReader(Reader):
     # functions
 
     def new_name(self, what):
-        """Return the next word, a name that no variable, function or loop has yet and that C does not use."""
+        """Return the next word, which must be a name without a meaning so far, in this text or in C."""
         name = self.take_name(what)
         known = [self.names, self.parameters, self.kernels, RESERVED, *self.inline.values()]
         for end in REALS.values():
@@ -771,7 +782,7 @@ class CReader(Reader):
         self.check_weight()
 
     def inline_function(self):
-        """Read a helper function: local variables, then the value. It may only call functions above it."""
+        """Read a helper function (local variables, then its value) and store it; it may call only functions above."""
         self.take("static inline")
         if self.token.text not in REALS:
             self.refuse("double or float")
@@ -796,7 +807,7 @@ class CReader(Reader):
         self.inline[self.real][name] = Definition(parameters, local, result, self.weight)
 
     def kernel(self):
-        """Read a function that writes arrays, for one sample or (if its first parameter is n) for n samples."""
+        """Read and store a function that writes arrays: for n samples if n is its first parameter, else for one."""
         start = self.position
         self.take("void")
         name = self.new_name("the name of a function")
@@ -838,11 +849,12 @@ class CReader(Reader):
         return Parameter(name, "value", 1, True)
 
     def loops(self):
-        """Read the loops over samples, which must have one of three fixed forms.
+        """Read the loops over samples; return their form ("each sample", "spans" or "blocks") and their bodies.
 
-        Each form visits every sample from 0 to n - 1. Spans keep arrays in the cache: each of two loops computes a part
-        of the outputs. Blocks compute all outputs by functions for a range of angles; `beyond` counts the angles
-        outside it, and if there is one, the block is computed again by the functions of <math.h>.
+        Each form visits every sample from 0 to n - 1. A span or a block is a run of samples. Each span has two loops,
+        which compute different outputs, so that arrays stay in the processor's cache. A block computes all outputs
+        with functions for a limited range of angles; `beyond` counts the angles outside that range, and if it is not
+        zero, the block is computed again with the functions of <math.h>.
         """
         if self.accept(INDEPENDENT):
             self.take(EACH_SAMPLE)
@@ -861,12 +873,12 @@ class CReader(Reader):
         return shape, bodies
 
     def comes(self, phrase):
-        """Tell whether the next words are a given phrase."""
+        """Return whether the next words are those of a phrase."""
         words = [token.text for token in tokens(phrase, phrase)[:-1]]
         return words == [token.text for token in self.tokens[self.position : self.position + len(words)]]
 
     def body(self, asks_far=False):
-        """Read statements up to a closing brace, at which the variables that they declare go out of scope."""
+        """Read statements up to a closing brace, which ends the scope of their variables; return them as a Body."""
         outer, self.names, self.assigned = self.names, set(self.names), set()
         statements, far = [], []
         while not self.accept("}"):
@@ -880,7 +892,7 @@ class CReader(Reader):
         return Body(statements, far)
 
     def local(self):
-        """Read ``const double x = E;``, where E must not use x."""
+        """Read ``const double x = E;``, where E must not use x; return (name, node of E)."""
         self.take(f"const {self.real}")
         name = self.new_name("the name of a variable")
         self.take("=")
@@ -890,7 +902,7 @@ class CReader(Reader):
         return name, expression
 
     def assignment(self):
-        """Read ``a[2] = E;``: each component of an output is assigned once and never read."""
+        """Read ``a[2] = E;`` and return ((array, component), node of E); no output may be assigned twice."""
         place = self.component(self.take_name("`const`, an output or `}`"), is_input=False)
         self.need(place not in self.assigned, f"expected an output to be written once, got {place[0]} again")
         self.assigned.add(place)
@@ -900,7 +912,7 @@ class CReader(Reader):
         return place, expression
 
     def far(self):
-        """Read the line that tests which angles are outside the range of symrot_sin and symrot_cos."""
+        """Read the line that tests angles for the range of symrot_sin and symrot_cos; return the tested angles."""
         asked = []
         self.take("+=")
         while not asked or self.accept("+"):
@@ -937,7 +949,7 @@ ROUNDING_SHAPE = {
 
 
 def check_shape(value, shape, place):
-    """Raise ValueError if a value lacks the types of a schema; parts that the schema does not mention are ignored."""
+    """Raise ValueError if a value does not have the types in ``shape``; other parts of the value are ignored."""
     if isinstance(shape, type):
         need(isinstance(value, shape), f"{place}: expected a text, as the schema says, got {quoted(value)}")
     elif isinstance(shape, tuple):
@@ -957,7 +969,7 @@ def check_shape(value, shape, place):
 
 
 def content(path):
-    """Return the bytes of a file; refuse a file that is not regular, or is larger than any file of a kernel can be."""
+    """Return the bytes of a file; refuse a file that is not regular or is larger than LARGEST_FILE."""
     small = path.is_file() and path.stat().st_size <= LARGEST_FILE
     need(small, f"{path.name} is not a regular file of at most {LARGEST_FILE} bytes: expected a file of the kernel")
     return path.read_bytes()
@@ -972,17 +984,18 @@ def text_of(path):
 
 
 def without_repetition(pairs):
-    """Return a JSON object from its (name, value) pairs; refuse a repeated name, whose value depends on the reader."""
+    """Return a JSON object from its (name, value) pairs; refuse a repeated name, whose value is ambiguous."""
     items = dict(pairs)
-    need(len(items) == len(pairs), "expected each name once in an object of the certificate, got one twice")
+    need(len(items) == len(pairs), "expected each name once in an object of the certificate, got a name twice")
     return items
 
 
 def certified(path):
-    """Read and return a certificate whose seal (hash) and whose hashes of the files that it names are right.
+    """Return the certificate in a file, after checking its seal and the hash of every file that it names.
 
-    Hashes show only that no file was changed after it was certified; other checks show that the files are right. Files
-    in other folders (NumPy texts) may be missing, but those in the folder of the certificate may not.
+    The seal is a hash of the certificate itself. Hashes show only that no file was changed after it was certified;
+    other checks show that the files are right. Files in other folders (NumPy texts) may be missing, but files in the
+    folder of the certificate may not.
     """
     try:
         data = json.loads(content(path), object_pairs_hook=without_repetition)
@@ -1020,13 +1033,16 @@ def certified(path):
 
 
 def is_name(text):
-    """Tell whether a text can be the name of a symbol in a formula: a name without another meaning there."""
+    """Return whether a text can be the name of a symbol in a formula: a name without another meaning."""
     reserved = text in FORMULA_FUNCTIONS or text in FORMULA_CHOICES or text == "pi"
     return bool(re.fullmatch(r"[A-Za-z]\w*", text, re.ASCII)) and not reserved
 
 
 def defined_functions(definitions):
-    """Return the functions of x, y, z, w that a certificate defines; each may only call functions above it."""
+    """Return a map from name to Definition of the functions of x, y, z, w that a certificate defines.
+
+    A function may only call functions above it.
+    """
     functions = {}
     for name, text in definitions:
         new = is_name(name) and name not in functions
@@ -1072,7 +1088,7 @@ class Specification:
         return FormulaReader(text, place, self.functions).whole()
 
     def set_values(self, names):
-        """Store intermediate quantities and outputs by name; return the inputs by index text such as ``q[2]``."""
+        """Store intermediate quantities and outputs in ``names``; return a map from index text (``q[2]``) to input."""
         inputs = {place: expression.value(names.numbers, names) for place, expression in self.inputs}
         for symbol, expression in self.named:
             names.define(symbol, expression.value(names.numbers, names))
@@ -1083,9 +1099,9 @@ class Specification:
 
 
 def draw_hypothesis(members, names):
-    """Draw random values for symbols that a law assumes to be a rotation matrix (nine, row by row) or a unit vector.
+    """Define random values for symbols that a law assumes to form a rotation matrix (9, row by row) or a unit vector.
 
-    The matrix is that of a random unit quaternion: 2*v*v^T + 2*q0*[v]x + (2*q0^2 - 1)*1.
+    The matrix is computed from a random unit quaternion (q0, v): 2*v*v^T + 2*q0*[v]x + (2*q0^2 - 1)*1.
     """
     vector = [names.numbers.draw() for _ in range(4 if len(members) == 9 else len(members))]
     length = Decimal.sqrt(sum(each * each for each in vector))
@@ -1106,13 +1122,16 @@ def check_law(law, specification, points):
     """Raise ValueError if an expression of a law, which must be zero, is not zero to 60 digits at random points.
 
     At each point the hypotheses of the law hold and the outputs have the values of their formulas. An expression counts
-    as zero if it is small compared with its size at another point, where all symbols are random, and at most 1e-40. An
-    analytic expression that is not identically zero is so small at a random point with negligible probability.
+    as zero if it is at most 1e-40, and small compared with its size at another point, where all symbols are random. The
+    probability that an analytic expression which is not identically zero is so small at a random point is negligible.
     """
     place = f"the law {quoted(law['law'])}"
     need(law["vanishing"], f"{place} does not follow: expected an expression that vanishes, got none")
     members = law["given"]
-    need(all(is_name(name) for name in members), f"{place}: expected names of symbols as given, got {quoted(members)}")
+    need(
+        all(is_name(name) for name in members),
+        f"{place}: expected a list of names of symbols as 'given', got {quoted(members)}",
+    )
     expressions = [specification.read(text, place) for text in law["vanishing"]]
 
     def values(law_holds):
@@ -1138,10 +1157,10 @@ LEAST = {"double": Fraction(1, 2**55), "float": Fraction(1, 2**26)}  # a quarter
 
 
 def check_series(series, functions, real):
-    """Return the functions, one of them replaced by a polynomial near x = 0; refuse a polynomial with a large error.
+    """Return ``functions``, in which a polynomial replaces the function of ``series`` near x = 0.
 
-    The error of the polynomial, relative to the function, is computed at 64 random points of the interval. It must be
-    at most as large as the certificate says, and at most a quarter of a unit in the last place.
+    The error of the polynomial, relative to the function, is computed at 64 random points of the interval. ValueError
+    is raised if it is larger than the certificate says, or larger than a quarter of a unit in the last place.
     """
     name, split_text, coefficient_texts, rest_text = series
     place = f"series of {quoted(name)}"
@@ -1170,9 +1189,10 @@ def check_series(series, functions, real):
 
 
 def constants_of(readback, real):
-    """Return the exact number for each rounded constant of the C text, after checking that the constant is nearest.
+    """Return a map from each rounded constant of the C text to its exact number.
 
-    Halves, quarters and other multiples of 2^-20 stand for themselves alone.
+    ValueError is raised if the constant is not the nearest number, or stands for a multiple of 2^-20, such as 1/2:
+    such a number needs no rounding.
     """
     pairs = [(constant(a, "constants"), constant(b, "constants")) for a, b in readback["constants"]]
     for name, _, coefficients, _ in readback["series"]:
@@ -1193,7 +1213,7 @@ def constants_of(readback, real):
 def component_of(place):
     """Return (array, component) of an index text such as ``q[2]``; a single number is component 0 of its name."""
     match = re.fullmatch(r"([A-Za-z]\w*)(?:\[(0|[1-9]\d{0,2})\])?", place, re.ASCII)
-    need(match, f"{quoted(place)}: expected an argument of a function such as W or q[2]")
+    need(match, f"{quoted(place)}: expected an argument of a function, such as W or q[2]")
     return match[1], int(match[2] or 0)
 
 
@@ -1211,8 +1231,8 @@ def array_sizes(data, is_input):
 def expected_parameters(data, in_batch):
     """Return the parameters that a C function must have, according to the inputs and outputs of the certificate.
 
-    For one sample, a number is passed by value and other quantities as arrays. In a batch, both are arrays of all
-    samples, except the parameters of a scene, which all samples share. Inputs are const.
+    For one sample, a number is passed by value, and any other quantity as an array. In a batch, every quantity is an
+    array for all samples, except the parameters of a scene, which all samples share. Inputs are const.
     """
     by_value = {place for place, *_ in data["inputs"] if "[" not in place}
     parameters = []
@@ -1227,7 +1247,7 @@ def expected_parameters(data, in_batch):
 
 
 def by_component(values):
-    """Return a mapping with keys such as ``q[2]`` under the keys (array, component), and numbers by name too."""
+    """Return a map with the keys (array, component) instead of ``q[2]``; single numbers also appear by name."""
     named = {component_of(place): value for place, value in values.items()}
     return named | {place: value for place, value in values.items() if "[" not in place}
 
@@ -1241,7 +1261,7 @@ class ExactPoint(NamedTuple):
 
 
 def exact_point(specification):
-    """Return a random point at which all inputs differ, so that using one in place of another is noticed."""
+    """Return a random point at which all inputs differ, so that a C text cannot use one input in place of another."""
     names = Names(AnyFunctions())
     inputs = specification.set_values(names)
     need(
@@ -1255,8 +1275,9 @@ def exact_point(specification):
 def check_formulas(name, kernel, data, point):
     """Raise ValueError if the outputs of a C function differ from the formulas at a random point of exact fractions.
 
-    Functions and conditionals have random values there, so that equality at the point means equality as expressions.
-    Each loop of a batch function computes all outputs; only in the form with two loops (SPANS), each computes a part.
+    Functions and conditionals have random values at ``point``, so that equality there means equality as expressions.
+    Each loop of a batch function must compute all outputs, except in the form SPANS, where each of the two loops
+    computes a part of the outputs.
     """
     need(
         kernel.parameters == expected_parameters(data, kernel.shape != "one sample"),
@@ -1305,7 +1326,7 @@ class BoxPoint(NamedTuple):
 
 
 def hexadecimal(text, place):
-    """Return the double that a hexadecimal text such as 0x1.8p+3 stands for."""
+    """Return the value, a double, of a hexadecimal text such as 0x1.8p+3."""
     try:
         return float.fromhex(text)
     except (ValueError, OverflowError):
@@ -1313,9 +1334,10 @@ def hexadecimal(text, place):
 
 
 def point_of_box(data, specification, real):
-    """Return a random point of the box of the rounding bounds, or None if no point of the box can be drawn.
+    """Return a random point of the box for which rounding errors are bounded, or None if no point can be drawn.
 
-    That is so without bounds, for a box with excluded points, and for a kernel with the parameters of a scene.
+    No point is drawn if the certificate has no bounds, if points of the box are excluded, or if the kernel has the
+    parameters of a scene.
     """
     if "rounding" not in data or data["spec"]["parameters"]:
         return None
@@ -1326,9 +1348,12 @@ def point_of_box(data, specification, real):
     numbers = Decimals()
     names, inputs = Names(numbers), {}
     for place, symbol in specification.symbols.items():
-        need(place in bounds["box"], f"rounding.box: expected a range of {quoted(place)}")
+        need(place in bounds["box"], f"rounding.box: expected a range of {quoted(place)}, and it is missing")
         low, high = (hexadecimal(end, f"rounding.box.{place}") for end in bounds["box"][place])
-        need(-math.inf < low <= high < math.inf, f"rounding.box: expected a finite range of {quoted(place)}")
+        need(
+            -math.inf < low <= high < math.inf,
+            f"rounding.box: expected a finite range of {quoted(place)}, got {low} to {high}",
+        )
         value = NEAREST[real](low + (high - low) * randbelow(2**53 + 1) / 2**53).value
         inputs[place] = min(max(value, low), high)
         names.define(symbol, Decimal(inputs[place]))
@@ -1350,7 +1375,7 @@ def check_rounding(name, kernel, point):
     """Raise ValueError if a C function's error at a point of the box is larger than the certified bound.
 
     The function is computed as C computes it, rounding by rounding, and compared with the exact formula at the same
-    inputs. A bound holds at every point, so one point where it does not refutes it.
+    inputs. A bound must hold at every point, so one point where it fails refutes it.
     """
     machine = Machine(NEAREST[kernel.real])
     for body in kernel.bodies:
@@ -1366,10 +1391,10 @@ def check_rounding(name, kernel, point):
 
 
 def check_precision(name, data, specification, kernels):
-    """Check the double or the float functions, for one sample and for many, against the formulas and the error bounds.
+    """Check the C functions for double or for float, for one sample and for many, against formulas and error bounds.
 
-    Rounded constants are replaced by the exact numbers that they stand for, and series by the functions they
-    approximate.
+    For the comparison, exact numbers replace the rounded constants, and functions replace the series that approximate
+    them.
     """
     readback = data["readback"][name]
     real = readback["type"]
@@ -1428,7 +1453,7 @@ HEADER_END = """#ifdef __cplusplus
 
 
 def check_header(name, text, kernels):
-    """Raise ValueError if a header holds more than the known macros and one prototype for each function of the C file.
+    """Raise ValueError if a header contains more than the known macros and a prototype of each function in the C file.
 
     The C file includes the header, so another macro there could change the meaning of the C text.
     """
@@ -1454,10 +1479,10 @@ def check_header(name, text, kernels):
 
 
 def check_banner(data, text):
-    """Raise ValueError if a C file's first comment lacks the name, title or command in the certificate.
+    """Raise ValueError if a C file's first comment (banner) lacks the name, title or command in the certificate.
 
-    So a renamed kernel is noticed if any file still has the old name. Only letters and digits are compared: banners
-    break lines, omit characters that would end a comment, and write other alphabets as <U+00E9>.
+    This reveals a renamed kernel if any file still has the old name. Only letters and digits are compared: banners
+    break lines, omit characters that would end a comment, and write other alphabets as codes such as <U+00E9>.
     """
 
     def bare(words):
@@ -1475,7 +1500,7 @@ def check_banner(data, text):
 
 
 def has_choices(data):
-    """Tell whether formulas or laws contain conditionals, so that one random point tests only one branch."""
+    """Return whether formulas or laws contain conditionals, of which one random point tests only one branch."""
     return bool(re.search(r"select_|Abs|copysign|\?", json.dumps([data["spec"], data["laws"]])))
 
 
@@ -1509,7 +1534,7 @@ def check_files(path):
 
 
 def check(path):
-    """Check a certificate; return one line about the checks, or raise ValueError or OSError with one sentence."""
+    """Check a certificate; return one line that lists the checks, or raise ValueError or OSError with one sentence."""
     try:
         return check_files(path)
     except (ValueError, OSError):
@@ -1521,7 +1546,7 @@ def check(path):
 
 
 def main(paths):
-    """Check certificates one after the other and print a line for each; exit with code 1 at the first that fails."""
+    """Check certificates one after the other; print a line for each, and exit with code 1 at the first that fails."""
     if not paths:
         sys.exit("usage: python recheck.py NAME.cert.json ..")
     for path in paths:

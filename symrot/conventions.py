@@ -48,7 +48,7 @@ def parse_sequence(name: str) -> tuple[tuple[int, int, int], bool]:
     Parameters
     ----------
     name : str
-        Three axis letters, upper case for intrinsic, lower case for extrinsic, e.g. ``"ZXZ"`` or ``"zyx"``.
+        Three axis letters, upper case for intrinsic, lower case for extrinsic, such as ``"ZXZ"`` or ``"zyx"``.
 
     Raises
     ------

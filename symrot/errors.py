@@ -1,8 +1,8 @@
 """The exceptions of symrot. Each message is one sentence: the place, the expected value and the value that arrived.
 
 The command line prints the message and exits with code 2, or with code 1 if an audit fails. :class:`InputError` is also
-a ``ValueError``, because an argument has an unusable value. The other exceptions are not: they report the outcome of a
-computation, and an ``except ValueError`` must not hide it.
+a ``ValueError``, because an argument has an unusable value. The other exceptions are no ``ValueError``: they report the
+outcome of a computation, which an ``except ValueError`` must not hide.
 """
 
 __all__ = ["CertificateError", "CompilerError", "InputError", "PropagationError", "SymrotError", "complaint"]
@@ -52,7 +52,7 @@ class PropagationError(SymrotError):
     Attributes
     ----------
     trajectory : Trajectory
-        The samples before the failure, with ``status`` -1; absent if there are none.
+        The samples before the failure, with ``status`` -1; the attribute is absent if there are no samples.
 
     Examples
     --------

@@ -13,7 +13,7 @@ def _make(names: str, unit: str, **assumptions: bool) -> tuple[Symbol, ...]:
 
 
 def constant(name: str) -> Symbol:
-    """Return the real symbol of a constant of a scene, e.g. the weight in a gravity torque."""
+    """Return the real symbol of a constant in a scene, such as the weight in a gravity torque."""
     return Symbol(name, real=True)
 
 

@@ -1,7 +1,7 @@
-"""Scenes that cannot be used, each with what its one sentence must name.
+"""Scenes that cannot be used, each with words that its error message must contain.
 
-``CONTENTS`` are whole files: (name, bytes, words). ``CHANGES`` are faults of one key in a good scene of the given base:
-(name, base, TOML to put in the place of a table, words). Other tests (the command line) import both.
+``CONTENTS`` are whole files: (name, bytes, words). ``CHANGES`` change one table of a good scene: (name, base, TOML that
+replaces a table, words). The tests of the command line import both.
 """
 
 __all__ = ["CHANGES", "CONTENTS", "bad_scenes", "base_scene"]
@@ -18,7 +18,7 @@ TABLES = {"head": "schema = 1\n", "body": BODY, "initial": INITIAL, "torque": ""
 
 
 def base_scene(**tables: str) -> str:
-    """Return a good scene as text, with some of its tables replaced."""
+    """Return a good scene as text, in which some tables are replaced."""
     return "\n".join({**TABLES, **tables}.values())
 
 
@@ -228,11 +228,11 @@ CHANGES = [
      ("output.sequence", "euler", "'ZXZ'")),
     ("tolerance 0", {"accuracy": "[accuracy]\ntolerance = 0"}, ("accuracy.tolerance", "1e-15", "got 0")),
     ("tolerance -1", {"accuracy": "[accuracy]\ntolerance = -1"}, ("accuracy.tolerance", "1e-15", "got -1")),
-    ("tolerance 0.5", {"accuracy": "[accuracy]\ntolerance = 0.5"}, ("accuracy.tolerance", "1e-2", "0.5", "nothing")),
+    ("tolerance 0.5", {"accuracy": "[accuracy]\ntolerance = 0.5"}, ("accuracy.tolerance", "1e-2", "0.5", "meaningless")),
     ("tolerance 1e-20", {"accuracy": "[accuracy]\ntolerance = 1e-20"}, ("accuracy.tolerance", "1e-20", "double")),
 ]  # fmt: skip
 
 
 def bad_scenes() -> list[tuple[str, bytes, tuple[str, ...]]]:
-    """Return every bad scene as (name, content of the file, words of its sentence)."""
+    """Return every bad scene as (name, content of the file, words that the message must contain)."""
     return CONTENTS + [(name, base_scene(**tables).encode(), words) for name, tables, words in CHANGES]

@@ -1,6 +1,6 @@
-"""Code blocks of a Markdown page: find them, run them, and compare what they print with what the page shows.
+"""Code blocks of a Markdown page: find them, run them, and compare their output with the output that the page shows.
 
-A comment on the line above a block says how the test treats it:
+A comment on the line above a block says how the test treats the block:
 
 ``<!-- file: NAME -->``
     The block is a file that later blocks of the page use.
@@ -9,11 +9,12 @@ A comment on the line above a block says how the test treats it:
 ``<!-- diagram -->``
     The block is a drawing.
 ``<!-- not run: REASON -->``
-    The block is not run. The test holds the number of such blocks.
+    The block is not run. The test states the number of such blocks.
 
 Python blocks run in the order of the page and share their names. Lines of a ``sh`` block run one after another. A
-``text`` block below a block that runs is its output: ``...`` on a line of its own is any number of lines, numbers agree
-to nine digits, rounding noise below 1e-12 agrees with other noise, and times are not compared.
+``text`` block below a block that runs is its expected output: ``...`` on a line of its own stands for any number of
+lines, numbers must agree to nine digits, rounding noise below 1e-12 agrees with other noise, and times are not
+compared.
 """
 
 import contextlib
@@ -74,7 +75,7 @@ def blocks(page: str) -> Iterator[Block]:
 
 
 def run_block(block: Block, names: dict[str, Any], directory: Path) -> str:
-    """Run a block in a directory that is the current one; return what it prints."""
+    """Run a block in the current directory; return what it prints."""
     if block.directive == "file":
         (directory / block.argument).write_text(block.text, encoding="utf-8")
         return ""
@@ -106,7 +107,7 @@ def _run_line(line: str, code: int) -> None:
 
 
 def agree(shown: str, printed: str) -> bool:
-    """Return whether the output that a page shows is the output that was printed."""
+    """Return whether the output that a page shows agrees with the printed output."""
     return _lines_agree(_lines(shown), _lines(printed))
 
 

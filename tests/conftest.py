@@ -1,4 +1,4 @@
-"""What all tests share: one cache of compiled kernels, the order of work, and a precision of mpmath that none may change."""
+"""Fixtures of all tests: a common cache of compiled kernels, the order of the tests, and a check of mpmath's precision."""
 
 import gc
 import os
@@ -20,9 +20,9 @@ os.environ.setdefault("SYMPY_CACHE_SIZE", "100000")  # results of SymPy in memor
 
 @pytest.hookimpl(optionalhook=True, tryfirst=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Give each process a run of neighbouring tests, so that what a module derives and compiles is made in one process.
+    """Give each process a run of neighbouring tests, so that one process derives and compiles what a module needs.
 
-    A process that is done takes over the last part of what another one has left. ``--dist`` chooses another scheduler.
+    A process that has finished takes over the last part of another process's run. ``--dist`` chooses another scheduler.
     """
     if config.getoption("dist") != "load":
         return None
@@ -33,10 +33,10 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Leave most cases of functions marked ``thinned(n)`` to ``pytest -m campaign``; put modules marked ``first`` first.
+    """Leave most cases of tests marked ``thinned(n)`` to ``pytest -m campaign``; put modules marked ``first`` first.
 
-    Every n-th case stays, and as many more as it takes that each value of each axis of parameters stays. A module
-    at the end may be divided between two processes, and each would then make its fixtures.
+    Every n-th case stays, and as many more as are needed for each value of each parameter to stay. A module at the end
+    may be divided between two processes, and each would then make its fixtures.
     """
     items.sort(key=lambda item: item.get_closest_marker("first") is None)
     functions: dict[str, list[Any]] = {}
@@ -55,7 +55,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Keep the garbage collector from walking through all modules and tests again and again while SymPy derives."""
+    """Keep the garbage collector from visiting all modules and tests again and again while SymPy derives."""
     gc.collect()
     gc.freeze()
     gc.set_threshold(50_000, 20, 50)
@@ -73,7 +73,7 @@ def shared_directory(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session", autouse=True)
 def session_cache(shared_directory: Path) -> Iterator[None]:
-    """Point SYMROT_CACHE, for all processes of this session and those they start, at one directory of this session."""
+    """Point SYMROT_CACHE at one directory of this session, for all its processes and the processes that they start."""
     before = os.environ.get("SYMROT_CACHE")
     os.environ["SYMROT_CACHE"] = str(shared_directory / "cache")
     yield
@@ -85,7 +85,7 @@ def session_cache(shared_directory: Path) -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def quick_compiler_words(shared_directory: Path) -> str | None:
-    """Return a compiler that compiles the kernels of scenes at -O0, or None where there is no compiler.
+    """Return a compiler command that compiles the kernels of scenes at -O0, or None if there is no compiler.
 
     It takes 25 % of the time of -O2. Closed forms (-ffp-contract=off), which all tests load, keep their own flags.
     """
@@ -112,9 +112,9 @@ def quick_compiler_words(shared_directory: Path) -> str | None:
 def quick_compiler(
     request: pytest.FixtureRequest, quick_compiler_words: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Compile for a test that judges motions and messages; others judge speed and bits under the flags that ship.
+    """Compile quickly for a test of motions and messages; tests of speed and bits use the normal flags.
 
-    In a module of such tests, the mark ``long_motion`` keeps the flags that ship for one that computes for seconds.
+    In a module of such tests, the mark ``long_motion`` keeps the normal flags for a test that computes for seconds.
     """
     if quick_compiler_words is not None and request.node.get_closest_marker("long_motion") is None:
         monkeypatch.setenv("CC", quick_compiler_words)
@@ -122,7 +122,9 @@ def quick_compiler(
 
 @pytest.fixture(autouse=True)
 def precision_is_left_alone() -> Iterator[None]:
-    """Refuse a test, or the code under it, that leaves mpmath's global precision changed: results would depend on order."""
+    """Fail a test if it, or the code under test, leaves mpmath's global precision changed: results would depend on
+    order.
+    """
     before = mp.prec
     yield
     after, mp.prec = mp.prec, before

@@ -1,4 +1,4 @@
-"""What some tests need of the machine: compilers, objdump, a processor."""
+"""Marks for tests that need something of the machine: a compiler, objdump, or a processor with certain instructions."""
 
 import shutil
 from pathlib import Path

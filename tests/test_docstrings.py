@@ -1,4 +1,4 @@
-"""The public contract: docstrings with all sections, examples that run, exported types, and what type checkers see."""
+"""Public names: docstrings with all sections, examples that run, exported types, and types that checkers see."""
 
 import ast
 import builtins
@@ -29,7 +29,7 @@ FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
 def failures(module):
-    """Run the examples in the docstrings of a module; return the number of failures and of examples."""
+    """Run the examples in a module's docstrings; return the number of failures and the number of examples."""
     return tuple(doctest.testmod(module, optionflags=FLAGS))
 
 
@@ -40,7 +40,7 @@ def test_the_examples_of_a_module_run(name):
 
 
 def missing_sections(value):
-    """Return the sections that the docstring of a public function or class lacks."""
+    """Return the sections that are missing in the docstring of a public function or class."""
     document = inspect.getdoc(value) or ""
     present = {title for title in ("Parameters", "Attributes", "Returns", "Raises", "Examples")
                if f"\n{title}\n{'-' * len(title)}\n" in document}  # fmt: skip
@@ -93,7 +93,7 @@ def test_missing_sections_and_wrong_examples_are_noticed():
 
 
 def own_classes(annotation):
-    """Yield the classes of symrot in an annotation, those in unions and containers included."""
+    """Yield the classes of symrot in an annotation, also those inside unions and containers."""
     for part in typing.get_args(annotation):
         yield from own_classes(part)
     if inspect.isclass(annotation) and annotation.__module__.startswith("symrot."):
@@ -101,7 +101,7 @@ def own_classes(annotation):
 
 
 def unexported(function):
-    """Return the classes of symrot that a function takes or returns and that symrot does not export."""
+    """Return the classes of symrot that a function takes or returns and symrot does not export."""
     names = {name: getattr(symrot, name) for name in symrot.__all__}
     hints = typing.get_type_hints(function, localns={**vars(builtins), **names})
     classes = {each for hint in hints.values() for each in own_classes(hint)}
@@ -125,14 +125,14 @@ def test_public_functions_take_and_return_exported_classes():
 
 
 def test_public_methods_return_few_classes_that_are_not_exported():
-    """Parts of kernels, plans and solids that only symrot itself makes and reads."""
+    """The exceptions are parts of kernels, plans and solids that only symrot makes and reads."""
     inner = {"Conserved", "FormulaTorque", "Integral", "Motion", "Program", "Shape"}
     functions = [function for name in PUBLIC for function in callables_of(getattr(symrot, name))]
     assert {name for function in functions for name in unexported(function)} == inner
 
 
 def raised_names(function):
-    """Return the exceptions in the section Raises of a docstring."""
+    """Return the exceptions in a docstring's section Raises."""
     section = (inspect.getdoc(function) or "").partition("\nRaises\n")[2].partition("\n\n")[0]
     lines = [line for line in section.splitlines()[1:] if not line.startswith(" ")]
     return [name.strip() for line in lines for name in line.split(",")]
@@ -195,7 +195,7 @@ OPTIONAL = {
 
 
 def undeclared(imports, dependencies):
-    """Return the imported packages that are neither declared dependencies nor optional nor standard Python."""
+    """Return the imported packages that are not declared dependencies, optional or part of standard Python."""
     return imports - dependencies - OPTIONAL - set(sys.stdlib_module_names) - {"symrot"}
 
 
@@ -235,7 +235,7 @@ REVEALED = {  # expression -> the type that mypy reveals
 
 
 def test_type_checkers_see_every_public_name(tmp_path):
-    """A user's script passes mypy --strict, and an unknown name in it is an error."""
+    """A user's script passes mypy --strict, which reports an unknown name in it."""
     pytest.importorskip("mypy")
     lines = ["import symrot", *(f"reveal_type({expression})" for expression in REVEALED), "symrot.no_such_name"]
     script = tmp_path / "script.py"

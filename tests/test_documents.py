@@ -1,4 +1,4 @@
-"""The documents are true: every code block runs and prints what the page shows, every link leads somewhere."""
+"""The documents are true: every code block runs and prints what the page shows, and every link leads somewhere."""
 
 import inspect
 import json
@@ -99,13 +99,13 @@ def test_a_block_of_an_unknown_kind_is_noticed(tmp_path):
 
 
 def anchors(text):
-    """The anchors of the headings of a page."""
+    """Return the anchors of a page's headings."""
     headings = re.findall(r"^#+ (.*)$", CODE.sub(lambda match: match[0].strip("`"), text), re.MULTILINE)
     return {re.sub(r"[^\w -]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
 
 
 def broken_links(page, text):
-    """The links of a page that lead to no file or heading of the repository."""
+    """Return a page's links to missing files or headings of the repository."""
     for link in LINK.findall(CODE.sub("", text)):
         if not link.startswith("https://"):
             path, _, anchor = link.partition("#")
@@ -125,7 +125,7 @@ def test_broken_links_are_noticed():
 
 
 def dangling(text):
-    """The documents that a text cites and the repository does not have."""
+    """Return the documents that a text cites and the repository lacks."""
     return [name for name in CITED.findall(text) if not (ROOT / name).exists()]
 
 
@@ -177,7 +177,7 @@ def test_every_command_and_option_that_a_page_names_is_there(page, capsys):
 
 
 def usage(command, capsys):
-    """The help text of a command."""
+    """Return the help text of a command."""
     with pytest.raises(SystemExit):
         main([command, "--help"])
     return capsys.readouterr().out

@@ -1,6 +1,6 @@
-"""The three journeys pass each room once: nothing is read, planned, derived, interpreted or printed twice.
+"""Each of the three journeys passes each room once: it reads, plans, derives, interprets and prints nothing twice.
 
-The calls are counted with Python's profiler, so that a count does not depend on how a function is imported.
+Python's profiler counts the calls, so a count does not depend on how a function is imported.
 """
 
 import sys
@@ -32,7 +32,7 @@ from symrot.workshop.kernel_text import LibraryText, SceneText
 
 @contextmanager
 def counted(*functions):
-    """Count the calls of functions while the block runs, by their names."""
+    """Count the calls of functions, by name, while the ``with`` block runs."""
     codes: dict[CodeType, str] = {function.__code__: function.__qualname__ for function in functions}
     calls: Counter[str] = Counter()
 
@@ -66,14 +66,16 @@ def test_a_claim_gets_its_meaning_once_on_its_way_to_a_verdict(text):
 
 
 def certified(kernel, folder):
-    """All files of a kernel, as `symrot emit --all` and `symrot certify` make them."""
+    """Return all files of a kernel, as `symrot emit --all` and `symrot certify` make them."""
     bounds = files.stored_bounds(kernel, folder)
     texts = files.kernel_files(kernel, "c", bounds) | files.kernel_files(kernel, "numpy")
     return texts | files.certificate_files(kernel, folder, bounds)
 
 
 def test_an_audit_reads_each_c_function_once():
-    """The functions for double and float are read in the file and, unless a test before did it, as they are printed."""
+    """The functions for double and float are read once in the file and, unless an earlier test did this, once as
+    printed.
+    """
     read_kernel.cache_clear()
     with counted(read_kernel.__wrapped__) as calls:
         audit_file(Path(__file__).parents[1] / "generated" / "c" / "quaternion_dcm.cert.json")

@@ -1,4 +1,4 @@
-"""Names say what a thing is: no variable, argument, attribute or function is called by a participle such as ``found``."""
+"""Names say what a thing is: no variable, argument, attribute or function is named by a participle such as ``found``."""
 
 import ast
 from pathlib import Path
@@ -13,7 +13,7 @@ ROOMS = tuple(sorted({path.name for path in PACKAGE.iterdir() if (path / "__init
 
 
 def participles(source):
-    """The names in a text of Python that are participles, with their lines."""
+    """Return the names in Python source that are participles, with their lines."""
     for node in ast.walk(ast.parse(source)):
         names = {
             ast.Name: ("id",), ast.arg: ("arg",), ast.Attribute: ("attr",), ast.keyword: ("arg",),

@@ -1,4 +1,4 @@
-"""The package as it is installed: its walls, its wheel, its import time."""
+"""The package as installed: its rooms and the imports between them, its wheel, its import time."""
 
 import ast
 import os
@@ -52,7 +52,7 @@ def room_of(module):
 
 
 def imports_of(path):
-    """The modules of symrot that a file imports anywhere: when it is imported, in functions, or for types alone."""
+    """Return the modules of symrot that a file imports anywhere: at its top, in functions, or for types alone."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and node.module:
             for name in node.names:
@@ -70,14 +70,14 @@ MODULES = {module_of(path): path for path in sorted(PACKAGE.rglob("*.py"))}
 
 @pytest.fixture(scope="module")
 def imports():
-    """Module -> the modules of symrot that it imports."""
+    """Return each module with the modules of symrot that it imports."""
     return {
         module: {name for name in imports_of(path) if name in MODULES} - {module} for module, path in MODULES.items()
     }
 
 
 def backward(imports):
-    """The imports of a room from rooms to its right."""
+    """Return the imports, as (module, imported name), that lead from a room to a room on its right."""
     return [
         (module, name)
         for module, names in imports.items()
@@ -102,7 +102,7 @@ def test_walls_and_circles_are_noticed(imports):
 
 
 def test_no_room_is_crowded():
-    """At most 16 modules beside tables of data, so that a folder is seen at a glance."""
+    """A folder has at most 16 modules beside tables of data, so that a reader can survey it."""
     rooms = Counter(path.parent for path in MODULES.values() if path.stem != "__init__")
     assert {str(room.relative_to(PACKAGE)): count for room, count in rooms.items() if count > MOST_IN_A_ROOM} == {}
 
@@ -137,7 +137,7 @@ def test_a_name_that_is_not_there_is_an_attribute_error():
 
 @pytest.fixture(scope="module")
 def unpacked_wheel(tmp_path_factory):
-    """The wheel, unpacked outside the source tree."""
+    """Return the folder of the wheel, unpacked outside the source tree."""
     directory = tmp_path_factory.mktemp("wheel")
     command = [
         sys.executable,
@@ -180,7 +180,7 @@ def test_the_wheel_holds_all_data_and_no_test(unpacked_wheel):
 
 
 def test_a_warm_run_imports_nothing_it_can_do_without(tmp_path):
-    """A start costs what it imports: neither OpenSSL nor archives nor the commands that were not asked for."""
+    """The start is fast if it imports neither OpenSSL nor archives nor commands that are not used."""
     spared = (
         "sympy",
         "scipy",
@@ -207,7 +207,7 @@ def test_a_warm_run_imports_nothing_it_can_do_without(tmp_path):
 
 
 def test_help_of_one_command_and_of_all():
-    """One parser for a known command; the names of all for `--help` and for what is no command."""
+    """A known command builds its parser alone; `--help` and an unknown command list the names of all."""
     lines = run("from symrot.cli.main import COMMANDS, _parser; print(_parser('run').format_help(), *COMMANDS)")
     assert "propagate a scene" in lines and "bench" in lines
     done = subprocess.run([sys.executable, "-m", "symrot", "--help"], capture_output=True, text=True)

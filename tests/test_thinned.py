@@ -1,4 +1,4 @@
-"""The mark ``thinned``: what runs by default, and that nothing is lost for ``pytest -m campaign``."""
+"""The mark ``thinned``: which cases run by default, and that ``pytest -m campaign`` runs all of them."""
 
 from pathlib import Path
 

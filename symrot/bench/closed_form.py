@@ -2,8 +2,8 @@
 
     python -m symrot.bench.closed_form [--rounds 300]
 
-The result is the minimum over interleaved rounds, because other work on the machine only adds time. Errors are tested
-by ``pytest tests/closed_form``.
+All runs are timed once in every round, and the least time of each counts, because other work on the machine only adds
+time. Errors are tested by ``pytest tests/closed_form``.
 """
 
 import argparse
@@ -58,7 +58,7 @@ def _seconds(run: Callable[[], Any]) -> float:
 
 
 def measure(rounds: int) -> list[tuple[str, str, list[float]]]:
-    """Return for each motion its name, its regime, and the smallest times measured, s.
+    """Return, for each motion, its name, the formula used for its parameters (regime), and six least times in s.
 
     The times are: set-up, both quantities, omega alone, attitude alone, one sample, set-up with both quantities.
     """
@@ -91,7 +91,9 @@ def measure(rounds: int) -> list[tuple[str, str, list[float]]]:
 def main(arguments: list[str] | None = None) -> None:
     """Print the times of the closed forms: set-up, samples, and complete calls from Python."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
-    parser.add_argument("--rounds", type=int, default=300, help="repetitions, of which the fastest counts")
+    parser.add_argument(
+        "--rounds", type=int, default=300, help="repetitions of each run (default: 300); the least time is the result"
+    )
     rounds = parser.parse_args(arguments).rounds
     print(f"{'':26}{'series':>12}{'set-up':>9}{'both':>8}{'omega':>8}{'q':>8}{'1 sample':>10}{f'{SAMPLES} in all':>13}")
     print(f"{'':38}{'us':>9}{'ns':>8}{'ns':>8}{'ns':>8}{'us':>10}{'us':>13}")

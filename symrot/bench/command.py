@@ -26,14 +26,14 @@ class ModeReport(NamedTuple):
 
 
 class Mode(NamedTuple):
-    """A mode of ``symrot bench``: its option, help text, accepted options, and function.
+    """A mode of ``symrot bench``: the option that chooses it, its help text, accepted options, and its function.
 
-    The mode that studies one scene has no option; its option is "".
+    ``option`` is "" for the mode that studies one scene.
     """
 
     option: str
     about: str
-    takes: frozenset[str]  # names of the other options that it accepts
+    takes: frozenset[str]  # names of the other options that the mode accepts
     run: Callable[[Namespace, Progress], ModeReport]
     more: Mapping[str, Any] | None = None  # further arguments of argparse's add_argument
 
@@ -115,7 +115,7 @@ STUDIES: dict[str, str] = {
     "start": "`symrot run` from a cold and from a warm start",
     "derive": "how long deriving takes",
 }
-"""Studies of a single question: name of a module of :mod:`symrot.bench` -> the question."""
+"""Studies of a single question: the name of a module in :mod:`symrot.bench` -> the question."""
 
 
 def _list(options: Namespace, say: Progress) -> ModeReport:
@@ -131,16 +131,16 @@ def _list(options: Namespace, say: Progress) -> ModeReport:
 SWEEP = frozenset({"methods", "tolerances", "rounds", "quick"})
 SCENE_STUDY = SWEEP | {"scene", "plot", "out", "json"}
 MODES: tuple[Mode, ...] = (
-    Mode("", "time against error for every method, on a scene of yours", SCENE_STUDY, _study),
+    Mode("", "study time against error for every method, on one scene", SCENE_STUDY, _study),
     Mode(
-        "--compare", "one study against an earlier one of the same scene", frozenset({"out", "json"}), _compare,
+        "--compare", "compare a study with an earlier study of the same scene", frozenset({"out", "json"}), _compare,
         {"nargs": 2, "metavar": ("BEFORE.json", "NOW.json")},
     ),
-    Mode("--suite", "the fixed suite, with its figures; goes on where it was interrupted",
+    Mode("--suite", "study every motion of the suite, with figures; continue after an interruption",
          SWEEP | {"json", "directory", "out"}, _suite, {"action": "store_true"}),
-    Mode("--skip", "what specialisation saves: a ladder of scenes, or the scene given",
+    Mode("--skip", "measure what specialised kernels save, for fixed scenes or for SCENE",
          frozenset({"scene", "quick", "plot", "out", "json"}), _skip, {"action": "store_true"}),
-    Mode("--stability", "how errors grow over 1e5 revolutions, or over the span of the scene given",
+    Mode("--stability", "study how errors grow over 1e5 revolutions, or over the span of SCENE",
          frozenset({"scene", "long", "plot", "json", "out"}), _stability, {"action": "store_true"}),
     Mode("--list", "list the modes, and the studies of one question each", frozenset({"json"}), _list,
          {"action": "store_true"}),
@@ -157,15 +157,32 @@ def arguments(parser: ArgumentParser) -> None:
     for mode in MODES:
         if mode.option:
             add(mode.option, help=mode.about, **(mode.more or {}))
-    add("--methods", metavar="NAMES", help="comma-separated, of exact, taylor, dop853, scipy, heyoka, DOP853, RK45, "
-        "LSODA, Radau (default: all)")  # fmt: skip
-    add("--tolerances", metavar="LIST", help="such as 1e-3,1e-6,1e-9 (default: one or two per decade)")
-    add("--rounds", type=int, metavar="N", help="repetitions of each run; the median counts (default: 9, --quick: 5)")
-    add("--quick", action="store_true", help="fewer tolerances and repetitions, heyoka in its default settings only")
-    add("--long", action="store_true", help="with --stability: 1e6 revolutions")
+    add("--methods", metavar="NAMES", help="methods, separated by commas, of exact, taylor, dop853, scipy, heyoka, "
+        "DOP853, RK45, LSODA and Radau (default: all)")  # fmt: skip
+    add(
+        "--tolerances", metavar="LIST", help="tolerances, such as 1e-3,1e-6,1e-9 (default: one or two per power of ten)"
+    )
+    add(
+        "--rounds",
+        type=int,
+        metavar="N",
+        help="repetitions of each run (default: 9; with --quick: 5); their median is the result",
+    )
+    add(
+        "--quick",
+        action="store_true",
+        help="run fewer tolerances and repetitions, and heyoka in its default setting only",
+    )
+    add("--long", action="store_true", help="with --stability: follow 1e6 revolutions instead of 1e5")
     add("--plot", type=Path, metavar="FILE", help="draw time against error: FILE.png, .pdf or .svg")
     add("--out", type=Path, metavar="FILE", help="write the study as FILE.json, for --compare")
-    add("-o", type=Path, metavar="DIR", dest="directory", help="folder of --suite (default: ./generated/bench)")
+    add(
+        "-o",
+        type=Path,
+        metavar="DIR",
+        dest="directory",
+        help="folder that --suite writes to (default: ./generated/bench)",
+    )
     add("--json", action="store_true", help="print JSON")
 
 

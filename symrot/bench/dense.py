@@ -4,10 +4,10 @@
 
 The motions are those of :mod:`symrot.bench.taylor`. symrot is called as a user calls it, ``propagator(t)``; heyoka by
 ``propagate_grid``, and by ``propagate_until`` with ``c_output``, whose continuous output is then evaluated at all times
-at once. The array of times is made before the clock starts. Both run at several tolerances. The error of a run is that
-of its last sample against a series in 40 digits; the table also has the largest distance of its samples from those of
-symrot's run with the tightest tolerance. Each run of heyoka is compared with the fastest run of symrot whose error is
-not larger. Runs alternate; the result is the median of the processor time.
+at once. The array of times is made before the clock starts. Both run at several tolerances. The error of a run is the
+error of its last sample against a series in 40 digits; the table also has the largest difference of its samples from
+the samples of symrot's run with the tightest tolerance. Each run of heyoka is compared with the fastest run of symrot
+whose error is not larger. Runs alternate; the result is the median of the processor time.
 
 heyoka is optional: ``pip install heyoka``.
 """
@@ -33,7 +33,7 @@ PEERS = (1e-9, 1e-12, 2.0**-52)
 
 
 class Sampled(NamedTuple):
-    """One contestant at one tolerance: seconds, error of the last sample, distance of samples from the best run."""
+    """One contestant at one tolerance: its times and error, and the distance of its samples from symrot's best run."""
 
     measured: Measured
     apart: float
@@ -95,7 +95,7 @@ def measure(name: str, samples: int, rounds: int) -> list[Sampled]:
 
 
 def _distance(states: Floats, exact: Floats) -> float:
-    """Return the largest difference between samples of two runs; for angular velocities, relative to their size."""
+    """Return the largest difference between samples of two runs; in angular velocities, relative to their size."""
     apart, rates = abs(states - exact), states.shape[-1] - 4
     size = float(np.linalg.norm(np.atleast_2d(exact)[-1, :rates]))
     return max(float(apart[:, :rates].max()) / size, float(apart[:, rates:].max()))

@@ -1,4 +1,4 @@
-"""Times of derivations: every Euler sequence with rates, inverse and determinant in both frames, and every solid.
+"""Times of derivations: the rate Jacobians of every Euler sequence in both frames, and the inertia of every solid.
 
 ``python -m symrot.bench.derive`` prints seconds of processor time, without the import of SymPy.
 """

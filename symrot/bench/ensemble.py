@@ -6,11 +6,11 @@ The motions are listed in :mod:`symrot.bench.taylor`; initial states differ by a
 the whole span, and 4096 trajectories over a twentieth of it. heyoka compiles the same right-hand side with its
 constants as numbers. It runs in batches of 4 and of 8; the 4096 trajectories also run through
 ``ensemble_propagate_until`` and its batch form with one thread. Runs are interleaved; the least processor time counts,
-since wall-clock time grows with other work on the machine. The error is the largest of all trajectories (of 4096: the
-first 16) against heyoka in long double, which is checked against a series in 40 digits. For each decade of the error,
-the table has the fastest run with at most that error.
+since wall-clock time grows with other work on the machine. The error is the largest error of all trajectories (of 4096,
+only the first 16 are compared) against heyoka in long double, which is checked against a series in 40 digits. For each
+power of ten, the table has the fastest run with at most that error.
 
-``--orders`` compares orders of our own series instead. heyoka is needed: ``pip install heyoka``.
+``--orders`` compares orders of symrot's own series instead. heyoka is needed: ``pip install heyoka``.
 """
 
 import argparse
@@ -33,11 +33,11 @@ COMPARED = 16  # number of trajectories that are compared with the reference
 TIGHTEST = 1e-19  # tolerance of the reference in long double
 ORDERS = (8, 10, 12, 14, 16, 18, 20)
 WIDTHS = (4, 8)
-ENSEMBLE_TOLERANCES = (1e-6, 1e-12)  # few: each of its trajectories takes a copy of the integrator
+ENSEMBLE_TOLERANCES = (1e-6, 1e-12)  # only two, because heyoka's ensemble copies the integrator for each trajectory
 
 
 class Start(NamedTuple):
-    """An ensemble to measure: motion, initial states (n, N), end time, reference end states of the first members."""
+    """An ensemble to measure: motion, initial states (n, N), end time, reference end states of the first 16."""
 
     problem: Any
     y: Floats
@@ -51,7 +51,7 @@ class Start(NamedTuple):
 
 
 def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
-    """Return an ensemble of n initial states near that of a motion; the first trajectory is the motion itself."""
+    """Return an ensemble of n initial states near a motion's initial state, which is the first of them."""
     random = np.random.default_rng(1)
     y = np.tile(np.array(problem.y0), (n, 1))
     rates = problem.blocks[1]
@@ -62,7 +62,7 @@ def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
 
 
 def _references(problem: Any, y: Floats, stop: float) -> Floats:
-    """Return the end states of an ensemble, computed by heyoka in long double."""
+    """Return the end states of trajectories from the initial states ``y``, computed by heyoka in long double."""
     import heyoka
 
     real = np.longdouble
@@ -77,7 +77,7 @@ def _references(problem: Any, y: Floats, stop: float) -> Floats:
 
 
 def _system(problem: Any, real: Callable[[float], Any] = float) -> list[tuple[Any, Any]]:
-    """Return the right-hand side of a motion in heyoka's form; ``real`` makes its numbers."""
+    """Return the right-hand side of a motion in heyoka's form; ``real`` converts its numbers."""
     import heyoka
 
     names = [name for name, *_ in problem.kernel.rates.signature.argument("y").components]
@@ -119,7 +119,7 @@ def _ours(
 
 
 def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
-    """Return steps and last states of an ensemble by heyoka's batch integrator, one batch after another."""
+    """Return steps and last states of an ensemble, computed by heyoka's batch integrator, one batch after another."""
     states, steps = np.empty_like(start.y), 0
     for first in range(0, len(start.y), width):
         integrator.set_time(0.0)
@@ -131,7 +131,7 @@ def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
 
 
 def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> BatchEnd:
-    """Return steps and last states of an ensemble by heyoka's own ensemble function in one thread."""
+    """Return steps and last states of an ensemble, computed by heyoka's own ensemble function in one thread."""
 
     def begin(integrator: Any, i: int) -> Any:
         if width == 1:
@@ -222,8 +222,10 @@ def main(arguments: list[str] | None = None) -> None:
     """Print the times of ensembles, symrot against heyoka, at equal error."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.ensemble", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=9)
-    parser.add_argument("--orders", action="store_true", help="compare orders of the series")
-    parser.add_argument("--many", type=int, default=4096, help="trajectories of the large ensemble (a multiple of 8)")
+    parser.add_argument("--orders", action="store_true", help="compare orders of symrot's series instead")
+    parser.add_argument(
+        "--many", type=int, default=4096, help="number of trajectories in the large ensemble, a multiple of 8"
+    )
     parser.add_argument("--motion", choices=list(MOTIONS), help="one motion only")
     options = parser.parse_args(arguments)
     for name in [options.motion] if options.motion else MOTIONS:

@@ -1,14 +1,15 @@
-"""Comparison of symrot's kernels with kernels of other tools: operations, and ns per sample, alone and in batches.
+"""Comparison of symrot's kernels with kernels of other tools: operations, and nanoseconds per sample.
 
     python -m symrot.bench.kernels [--rounds 63] [--many 1000000] [--kernels NAME ..]
 
-All contestants alternate in one run, on one thread, on the same memory, and their results are compared. For batches of
-10^6, the rounds alternate between several blocks of memory: the place of a block's pages in the processor's caches is
-random, and changes the time of the same machine code by up to 8 %. All emitted C is compiled with the same compiler and
-flags; heyoka's machine code, with its sines of 3.5 ulp, is linked to the same loops. CasADi's own evaluation is called
-from Python. The row "moves only" reads each input of a batch, adds them up and writes each output: roughly the time
-that memory access alone takes for a batch of 10^6. A kernel with a longer loop, which processes fewer samples at once,
-can be a few percent faster.
+A contestant is one tool's version of a kernel. Each is timed on one sample at a time, on a batch that fits in the
+cache, and on a batch of 10^6 samples. All contestants alternate in one run, on one thread, on the same memory, and
+their results are compared. For batches of 10^6, the rounds alternate between several blocks of memory: the place of a
+block's pages in the processor's caches is random, and changes the time of the same machine code by up to 8 %. All C is
+compiled with the same compiler and flags; heyoka's machine code, with its sines of 3.5 ulp, is linked to the same
+loops. CasADi's own evaluation is called from Python. The row "moves only" reads all inputs of a batch, adds them up and
+writes all outputs. It shows roughly the time that memory access alone takes for a batch of 10^6; a kernel with a longer
+loop, which processes fewer samples at once, can be a few percent faster.
 """
 
 import argparse
@@ -39,7 +40,7 @@ __all__ = ["Contestant", "contest", "main"]
 
 FLAGS = ("-std=c99", "-O3", build_cache.NATIVE, "-fno-math-errno", "-ffp-contract=fast", "-fno-tree-slp-vectorize",
          "-falign-functions=64", "-falign-loops=64", "-fPIC", "-fno-semantic-interposition", "-shared")  # fmt: skip
-CACHED, MANY = 1000, 1_000_000  # no power of two, at which all arrays would share cache lines
+CACHED, MANY = 1000, 1_000_000  # numbers of samples; with a power of two, all arrays would compete for cache lines
 PROPER = ("zxz", "zyz", "xyx", "xzx", "yxy", "yzy")
 TAIT_BRYAN = ("zyx", "zxy", "xyz", "xzy", "yxz", "yzx")
 PAGE = 4096  # bytes
@@ -54,7 +55,10 @@ SHAPES = ("one", "cached", "many")
 
 @dataclass
 class Contestant:
-    """One tool's version of a kernel: its operations, and seconds per sample for each shape of input and each round."""
+    """One tool's version of a kernel: its operations, and seconds per sample for each shape of input and round.
+
+    The shapes of input are "one" sample at a time, a "cached" batch and "many" samples.
+    """
 
     name: str
     operations: Counter[str]
@@ -68,7 +72,7 @@ class Contestant:
 
 @cache
 def _samples(name: str, count: int) -> list[Floats]:
-    """Return random inputs in the box of a kernel, an array (size, count) for each argument; quaternions are unit."""
+    """Return random inputs in a kernel's box, one array (size, count) per argument; quaternions have unit norm."""
     kernel, draw = definition(name), np.random.default_rng(5)
     arrays = []
     for argument in kernel.inputs:
@@ -80,11 +84,11 @@ def _samples(name: str, count: int) -> list[Floats]:
 
 @cache
 def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Floats]:
-    """Return inputs and outputs in memory that all contestants share; a sample is a row, or in a batch a column.
+    """Return inputs and outputs in memory that all contestants share; samples are rows, or columns in a batch.
 
     The outputs follow the inputs in one block, which begins on a page boundary and has been written completely. With
     ordinary allocation, their distance modulo a page and the kind of pages would differ in each run, and every second
-    vector would lie across two cache lines. ``place`` is the number of the block; all blocks hold the same values.
+    vector would lie across two cache lines. ``place`` is the number of the block; all blocks contain the same values.
     """
     samples = np.concatenate(_samples(name, count))
     size = sum(a.size for a in kernel_program(name).signature.arguments if a.role == "out")
@@ -188,7 +192,7 @@ def _heyoka_drivers(signature: Signature) -> str:
 
 
 def _moving(signature: Signature) -> str:
-    """Return C code that reads every input and writes every output of a batch, with only a sum in between."""
+    """Return C code that reads every input and writes every output of a batch; between them it computes only a sum."""
     inputs, outputs = ([a for a in signature.arguments if a.role == role] for role in ("in", "out"))
     heads = [f"const double *restrict {a.name}" for a in inputs] + [f"double *restrict {a.name}" for a in outputs]
     total = " + ".join(f"{a.name}[{i}*n + k]" for a in inputs for i in range(a.size))
@@ -201,7 +205,7 @@ def _moving(signature: Signature) -> str:
 
 
 def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], float]:
-    """Return a function that times ``run(repeats, place)``, in s per sample, with enough repeats for the clock."""
+    """Return a function of ``place`` that times ``run(repeats, place)`` in s per sample, with enough repeats."""
     repeats, elapsed = 1, 0.0
     while elapsed < SHORTEST:  # the first runs start with cold caches
         repeats *= 2 if elapsed else 1
@@ -253,9 +257,9 @@ def _symrot_text(name: str) -> str:
 
 
 def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
-    """Return each tool's version of a kernel, symrot first, and the names of the tools that are missing.
+    """Return each tool's version of a kernel, beginning with symrot's, and the names of the missing tools.
 
-    The outputs must agree; otherwise an error is raised.
+    Raise AssertionError if the outputs of two tools differ.
     """
     contestants: list[Contestant] = []
     missing: list[str] = []
@@ -294,7 +298,7 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
 
 
 def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Return timing functions and outputs of CasADi's own evaluation of a batch, which maps a function over samples."""
+    """Return timing functions and outputs of CasADi's own evaluation, which maps a function over the samples."""
     import casadi
 
     def run(count: int) -> Callable[[int, int], object]:
@@ -331,7 +335,10 @@ def _casadi_text(name: str, function: Any) -> str:
 
 
 def measure(contestants: Sequence[Contestant], rounds: int) -> None:
-    """Time all contestants in rounds, each round in another order, because the previous contestant fills the caches."""
+    """Time all contestants in rounds, and append the times to ``seconds`` of each contestant.
+
+    The order changes in each round, because the previous contestant fills the caches.
+    """
     draw = Random(5)
     for number in range(rounds):
         for contestant in draw.sample(contestants, len(contestants)):
@@ -358,10 +365,10 @@ def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
 
 
 def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
-    """Return the ratio of symrot's time to that of the best other tool, for each shape.
+    """Return, for each shape of input, the ratio of symrot's time to the time of the best other tool.
 
-    The least times are compared, except for batches limited by memory, which other processes use too. There the ratio
-    is computed for each round and each other tool; the result is the largest median.
+    The least times are compared, except for batches of many samples: their speed is limited by memory, which other
+    processes use too. There the ratio to each other tool is computed in each round; the result is the largest median.
     """
     own, others = contestants[0], [c for c in contestants[1:] if c.name != FLOOR]
     ratios = {}
@@ -376,7 +383,7 @@ def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
 
 
 def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return the table of a kernel as lines: its contestants, and the ratios of symrot to the best other tool."""
+    """Return the table of a kernel as lines: its contestants, and symrot's ratios to the best other tool."""
     parts = [f"operations {mine} to {best}" for mine, best in (_operations(contestants),)]
     parts += [f"{shape} {ratio:.2f}" for shape, ratio in _ratios(contestants).items()]
     lines = [
@@ -405,10 +412,8 @@ def main(arguments: list[str] | None = None) -> None:
     """Print, for each kernel, operations and times of symrot and of the other tools."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.kernels", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=63)
-    parser.add_argument("--many", type=int, default=MANY, help="samples of the large batch; 0 leaves it out")
-    parser.add_argument(
-        "--kernels", nargs="+", metavar="NAME", help="kernels to compare, in the place of those of the table"
-    )
+    parser.add_argument("--many", type=int, default=MANY, help="number of samples in the large batch; 0 omits it")
+    parser.add_argument("--kernels", nargs="+", metavar="NAME", help="kernels to compare (default: those in the table)")
     options = parser.parse_args(arguments)
     rates = [f"euler_{sequence}_body_rates" for sequence in (*PROPER, *TAIT_BRYAN)]
     names = options.kernels or ["quaternion_dcm", *rates, "rigid_body_tensor", "heavy_top"]

@@ -3,9 +3,9 @@
     python -m symrot.bench.long [--revolutions 1e6] [--states 4]
 
 The contestants are the Taylor stepper with and without projection onto the conserved quantities, and heyoka, if it is
-installed, at its tightest tolerance. The table has the errors at the end against the exact motion: relative error of
-the kinetic energy, and error of the attitude in rad; medians over the initial states. All contestants run from one
-initial state before any runs from the next, so that they run under the same conditions.
+installed, at its tightest tolerance. The table has the errors at the end against the exact motion: the relative error
+of the kinetic energy and the error of the attitude in rad, each as the median over the initial states. All contestants
+run from one initial state before any runs from the next, so that they run under the same conditions.
 
 heyoka is optional: ``pip install heyoka``.
 """
@@ -52,7 +52,7 @@ def _scene(omega: Sequence[Any]) -> Scene:
 
 
 def measure(omega: Sequence[Any], revolutions: float) -> dict[str, tuple[float, float, float, int]]:
-    """Return for each contestant: relative error of the energy, error of the attitude in rad, seconds, and steps."""
+    """Return, for each contestant, relative error of the energy, error of the attitude in rad, seconds and steps."""
     scene = _scene(omega)
     plan = make_plan(scene)
     kernel = scene_kernel(plan)
@@ -91,7 +91,7 @@ def main(arguments: list[str] | None = None) -> None:
     """Print the errors of each stepper after many revolutions of a free body."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.long", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--revolutions", type=float, default=1e6)
-    parser.add_argument("--states", type=int, default=len(STATES), help="how many of the initial states")
+    parser.add_argument("--states", type=int, default=len(STATES), help="number of initial states")
     options = parser.parse_args(arguments)
     runs = [measure(omega, options.revolutions) for omega in STATES[: options.states]]
     print(f"free body, moments {MOMENTS}, {options.revolutions:.0e} revolutions, {len(runs)} initial states: medians")

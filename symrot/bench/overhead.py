@@ -2,8 +2,8 @@
 
     python -m symrot.bench.overhead [--rounds 25] [SCENE ...]
 
-For the bare call, all addresses are prepared, and one copy of bytes resets the state of the run; only the call itself
-is Python. Runs alternate; the results are medians of processor time.
+For the bare call, all addresses are computed before, and copying a few bytes resets the state of the run, so that
+Python only makes the call. Runs alternate; the results are medians of processor time.
 """
 
 import argparse
@@ -63,7 +63,7 @@ def _bare_exact(propagate: Propagator, times: "np.ndarray[tuple[int], np.dtype[n
 
 
 def measure(name: str, method: str, samples: int, rounds: int) -> tuple[float, float] | None:
-    """Return the seconds of ``propagator(t)`` and of the bare call in C; None if the method cannot follow the scene."""
+    """Return the seconds of ``propagator(t)`` and of the bare C call; None if the method cannot compute the scene."""
     try:
         propagate = propagator(name, method)
         if propagate.method != method:

@@ -1,10 +1,10 @@
-"""Savings by specialisation: each motion with the most general kernel and with the scene's own kernel.
+"""What specialised kernels save: the cost of each motion with the most general kernel and with the scene's own kernel.
 
-The general kernel has a full tensor, the full attitude and all kinds of torque that can act together, each with
-arbitrary constants, which are zero for a torque that the motion lacks. Both kernels compute the same motion by Taylor
-series at the same tolerance. Their final states must agree; otherwise the table says so and the command fails.
-Nanoseconds are per evaluation of the rates in C, in a loop over many states; microseconds are for the whole motion. The
-last column is the time of `auto`, which uses a closed form where there is one.
+The general kernel has a full inertia tensor, the full attitude and all kinds of torque that can act together; the
+constants of a torque that the motion lacks are zero. Both kernels compute the same motion by Taylor series at the same
+tolerance. Their final states must agree; otherwise the table says so and the command fails. Nanoseconds are per
+evaluation of the rates in C, in a loop over many states; microseconds are for the whole motion. The last column is the
+time of `auto`, which uses a closed form if there is one.
 """
 
 import ctypes
@@ -49,7 +49,7 @@ Progress = Callable[[str], object]
 
 
 def rungs() -> dict[str, tuple[str, Scene]]:
-    """Return the compared motions as name -> (description, scene), from the most general to the most special."""
+    """Return a map from name to (description, scene) of the compared motions, the most general motion first."""
     scenes = {}
     for name, entry in read_toml(LADDER, LADDER.name).items():
         about = str(entry.pop("about"))
@@ -68,7 +68,7 @@ def _nothing(kind: str) -> Torque:
 
 
 def general_plan(scene: Scene) -> Plan:
-    """Return the plan of a scene without any simplification, with a zero torque of every kind that the scene lacks."""
+    """Return the plan of a scene without any simplification, and with a zero torque of each kind that it lacks."""
     kinds = {torque.kind for torque in scene.torques}
     left_out = ABOUT_POINT if kinds & set(ABOUT_CENTRE) else ABOUT_CENTRE
     lacking = [kind for kind in TORQUE_KINDS if kind not in kinds and kind != "expression" and kind not in left_out]
@@ -102,7 +102,7 @@ def measure(name: str | None = None, quick: bool = False, say: Progress = lambda
 
 
 def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[], object]]]:
-    """Return a row of the table without its times, and the runs to be timed for it."""
+    """Return a row of the table, still without times, and the runs to be timed for it, by name."""
     plans = {"general": general_plan(scene), "own": make_plan(scene)}
     row: dict[str, Any] = {"motion": about}
     runs: dict[str, Callable[[], object]] = {}

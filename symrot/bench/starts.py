@@ -7,14 +7,16 @@ The first table has a row for each scene and method, in microseconds. The column
 
 - reading the initial state; planning (with known structure); binding parameters; setting up the motion (constants of a
   closed form, or the task of a stepper);
-- the motion itself: the work in C and the call of it, for a start with both angular velocity and attitude changed;
+- the motion itself: the work in C and the call of this work, if both angular velocity and attitude are changed;
 - whole calls at 101 times with another angular velocity, with another attitude, and with both;
-- overhead, the time of a call minus that of its motion: of the more expensive of the first two calls, and of the third;
-- the most expensive call of a stepper while nothing is done in C. On a loaded machine Python is slower after a long
-  motion; this column is free of that effect.
+- overhead, the time of a call minus the time of its motion: for the more expensive of the first two calls, and for the
+  third call;
+- the most expensive call of a stepper while C does no work. On a loaded machine Python is slower after a long motion;
+  this column is free of that effect.
 
 The second table has microseconds per trajectory of 101 samples, in closed form and by steps, for ensembles that vary
-only initial states or initial states and constants, and the method that ``auto`` chooses. Medians of processor time.
+only initial states, or both initial states and constants. It also names the method that ``auto`` chooses. All times are
+medians of processor time.
 """
 
 import argparse
@@ -92,7 +94,7 @@ MADE: dict[str, Callable[[], Scene]] = {
     ),
     "spun up far off": lambda: _made("spun up far off", [_PUSH], [2, 2, 1], ["1/3", "-1/7", "20"]),
 }
-"""Families of motions in closed form of which no scene is shipped."""
+"""Names and scenes of motions with a closed form for which symrot ships no scene."""
 
 
 def _scene(name: str) -> Scene:
@@ -100,7 +102,7 @@ def _scene(name: str) -> Scene:
 
 
 VARIED = (("weight", "weight", None), ("torque_3", "torque", 2), ("angular_momentum_3", "angular_momentum", 2))
-"""Constants that vary, if the first torque has them."""
+"""Constants that an ensemble varies if the first torque has them: (name in the ensemble, field, component)."""
 
 
 def _median(run: Callable[[], object], rounds: int) -> float:
@@ -114,13 +116,13 @@ def _median(run: Callable[[], object], rounds: int) -> float:
 
 
 def _start(scene: Scene) -> tuple[Floats, Floats]:
-    """Return an angular velocity and attitude near the initial state of a scene, without zero components."""
+    """Return an angular velocity and a quaternion near the initial state of a scene."""
     omega, quaternion = (np.array([float(x) for x in vector]) for vector in scene.initial)
     return omega * (1 + SPREAD) + SPREAD * abs(omega).max(), quaternion + SPREAD
 
 
 def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int) -> tuple[float, float, float]:
-    """Return median microseconds of two runs that alternate, and the median of their difference.
+    """Return the median microseconds of two runs that alternate, and the median of their difference.
 
     A slow change of the machine's speed affects both runs and cancels in the difference.
     """
@@ -137,7 +139,7 @@ def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int
 
 
 class _Row(NamedTuple):
-    """Microseconds of a scene and method, for calls with another omega, with another attitude, and with both."""
+    """A row of the first table: microseconds of calls with another omega, with another attitude, and with both."""
 
     parts: tuple[float, ...]  # to read the initial state, plan, bind parameters, set up the motion
     motion: float  # the motion itself, with both changed
@@ -237,7 +239,7 @@ def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
 
 
 def changed_starts(scenes: list[str], rounds: int) -> None:
-    """Print the table of calls of a propagator with another initial state."""
+    """Print the times of propagator calls with another initial state, as a table."""
     heads = ("read", "plan", "bind", "set up", "motion", "omega", "attitude", "both", "Python", "of both", "no C")
     print(f"{'us of a changed start':28}{'method':>8}" + "".join(f"{head:>9}" for head in heads))
     for name in scenes:
@@ -277,7 +279,7 @@ def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tup
 
 
 def ensembles(scenes: list[str], rounds: int, most: int) -> None:
-    """Print the times of one trajectory of an ensemble, in closed form and by steps."""
+    """Print the times per trajectory of ensembles, in closed form and by steps, as a table."""
     print(f"{'us per trajectory':26}{'varied':36}{'n':>8}{'exact':>9}{'taylor':>9}   auto takes")
     for name in scenes:
         scene = _scene(name)
@@ -297,8 +299,8 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.starts", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("scenes", metavar="SCENE", nargs="*")
     parser.add_argument("--rounds", type=int)
-    parser.add_argument("--ensembles", action="store_true", help="trajectories of ensembles instead")
-    parser.add_argument("--most", type=int, default=SIZES[-1], help="trajectories of the largest ensemble")
+    parser.add_argument("--ensembles", action="store_true", help="measure ensembles instead of single calls")
+    parser.add_argument("--most", type=int, default=SIZES[-1], help="number of trajectories in the largest ensemble")
     options = parser.parse_args(arguments)
     if options.ensembles:
         ensembles(options.scenes or [*ENSEMBLES, *MADE], options.rounds or 5, options.most)

@@ -1,4 +1,4 @@
-"""Times of three DOP853 steppers: symrot's, a handwritten one in C, and SciPy's, on the free asymmetric body.
+"""Times of three DOP853 steppers on the free asymmetric body: symrot's, a handwritten stepper in C, and SciPy's.
 
     python -m symrot.bench.stepper [--tolerance 1e-9] [--stop 1000] [--rounds 15]
 

@@ -1,7 +1,8 @@
 """Error, steps and time of motions with switched torques, compared with closed forms at tolerances 1e-6 to 1e-12.
 
-There are three motions: a wheel that dry friction stops and releases; a body whose angle swings in parabolas under a
-relay; and a thruster that fires for 10 ms in each of 1000 seconds. Run it as ``python -m symrot.bench.switches``.
+There are three motions: a wheel that dry friction stops and releases; a body whose angle oscillates along parabolas
+under a relay; and a body with a thruster that fires for 10 ms in each of 1000 seconds. Run the module as ``python -m
+symrot.bench.switches``.
 """
 
 import math
@@ -26,7 +27,10 @@ ROUNDS = 3
 
 
 class Problem(NamedTuple):
-    """A test problem: a torque about axis 3, N m, its span, s, a start, rad/s, and omega_3 as a function of time."""
+    """A test problem: a torque about axis 3 (N m), the end time (s), the initial omega_3 (rad/s), and the solution.
+
+    ``solution`` returns omega_3 at given times.
+    """
 
     torque: str
     parameters: dict[str, float]
@@ -36,9 +40,9 @@ class Problem(NamedTuple):
 
 
 def _friction(times: Floats) -> Floats:
-    """Return omega_3 of a wheel under the torque 2 sin t - sign(omega_3), from rest, at the times.
+    """Return omega_3, at ``times``, of a wheel that starts at rest under the torque 2 sin t - sign(omega_3).
 
-    From t = pi/6 the wheel slips until it stops.
+    Friction holds the wheel until t = pi/6; from then on it rotates until it stops.
     """
     loose = math.asin(0.5)
     slip = np.maximum(times, loose)
@@ -47,17 +51,14 @@ def _friction(times: Floats) -> Floats:
 
 
 def _relay(times: Floats) -> Floats:
-    """Return omega_3 under the torque -sign(angle) at the times.
-
-    The period is 12 s, with four arcs of constant torque.
-    """
+    """Return omega_3, at ``times``, under the torque -sign(angle); its period is 12 s."""
     phase = np.mod(times, 4.0 * MOMENT)
     swing: Floats = np.where(phase < 2 * MOMENT, 1.0 - phase / MOMENT, -1.0 + (phase - 2 * MOMENT) / MOMENT)
     return swing
 
 
 def _thruster(times: Floats) -> Floats:
-    """Return omega_3 under pulses of 10 ms at each full second, at the times."""
+    """Return omega_3, at ``times``, under a pulse of 10 ms at each full second."""
     whole = np.floor(times)
     burned: Floats = (0.01 * whole + np.minimum(times - whole, 0.01)) / MOMENT
     return burned
@@ -80,7 +81,7 @@ def scene(problem: Problem) -> Scene:
 
 
 def _measured(problem: Problem, method: str, tolerance: float) -> tuple[float, Any, float]:
-    """Return the largest error at samples and between them (in tolerances), the statistics, and the least seconds."""
+    """Return the largest error at samples and between them in units of the tolerance, statistics, and least seconds."""
     made = propagator(scene(problem), method, tolerance)
     times = np.linspace(0.0, problem.stop, 1001)
     least, motion = math.inf, made(times)

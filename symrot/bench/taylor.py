@@ -2,12 +2,13 @@
 
     python -m symrot.bench.taylor [--rounds 7] [--quick] [--orders] [--motion NAME]
 
-Each contestant runs over a range of tolerances (handwritten RK4 and DOP853 with a fixed step: over a range of step
-counts). Runs are interleaved and the least time of each counts; the error is that of the last state against a Taylor
-series in 40 digits. For each decade of the error, the table has the fastest run with at most that error, so no curve is
-smoothed or extended. ``best heyoka`` is heyoka's fastest setting at each decade: default, fast math, high accuracy,
-compact; ``--quick`` runs only the default. Handwritten loops are compared with the faster of symrot's two methods, in
-the decades where low order is at its best. ``--orders`` compares orders of symrot's own series instead.
+Each contestant runs at several tolerances; handwritten RK4 and DOP853 with a fixed step run with several numbers of
+steps. Runs are interleaved, and the least time of each counts. The error of a run is the error of its last state
+against a Taylor series in 40 digits. The table has a row for each power of ten of the error (a decade) with the fastest
+run of at most that error, so no curve is smoothed or extended. ``best heyoka`` is heyoka's fastest setting in each row:
+default, fast math, high accuracy or compact; ``--quick`` runs only the default. Handwritten loops are compared with the
+faster of symrot's two methods, in the decades in which methods of low order are at their best. ``--orders`` compares
+orders of symrot's own series instead.
 
 heyoka is optional: ``pip install heyoka``.
 """
@@ -74,7 +75,7 @@ SETTINGS: dict[str, dict[str, bool]] = {
     "heyoka compact": {"compact_mode": True},
 }  # fmt: skip
 OURS, BY_HAND = ("taylor", "dop853"), ("rk4", "dop853")
-HAND_DECADES = (1e-3, 1e-4, 1e-5)  # decades of the error in which low order is at its best
+HAND_DECADES = (1e-3, 1e-4, 1e-5)  # errors at which methods of low order are at their best
 DECADES = tuple(10.0**-k for k in range(3, 14))
 ORDERS = (8, 10, 12, 14, 16, 18, 20, 22, 24, 28)
 REFERENCES = Path(__file__).with_name("taylor.toml")
@@ -108,7 +109,7 @@ class SteppedProblem(Problem):
         return [*self.p, *invariant_parameters(self.kernel, self.plan)]
 
     def largest_error(self, state: Iterable[Any], exact: Floats) -> float:
-        """Return the largest error of a state; errors of rates are relative to the largest rate."""
+        """Return the largest error of a state; errors of angular velocities are relative to the exact |omega|."""
         computed, worst = np.array([float(value) for value in state]), 0.0
         if not np.isfinite(computed).all():
             return math.inf
@@ -126,7 +127,7 @@ def scene(name: str) -> Scene:
 
 
 def reference(name: str, scale: float = 1.0) -> Floats:
-    """Return the exact last state of a motion: from :data:`REFERENCES` for the whole span, otherwise computed now."""
+    """Return the exact last state of a motion: from :data:`REFERENCES` for the whole span, otherwise computed here."""
     stored = tomllib.loads(REFERENCES.read_text(encoding="utf-8")).get(name)
     return (
         np.array([float(value) for value in stored])
@@ -136,7 +137,7 @@ def reference(name: str, scale: float = 1.0) -> Floats:
 
 
 def compute_reference(name: str, scale: float = 1.0) -> list[Any]:
-    """Return the last state by Taylor series in 40 digits, from the rounded parameters of the kernel."""
+    """Return a motion's last state by Taylor series in 40 digits, computed from the kernel's rounded parameters."""
     import mpmath
 
     problem = SteppedProblem(name, scale)
@@ -145,7 +146,7 @@ def compute_reference(name: str, scale: float = 1.0) -> list[Any]:
 
 
 def references_text() -> str:
-    """Return the Python text of :data:`REFERENCES`, with all references computed again."""
+    """Return the TOML text of the file :data:`REFERENCES`, with all references computed again."""
     import mpmath
 
     lines = [
@@ -167,7 +168,7 @@ TimedRun = Callable[[], StepsAndState]
 def _stepper(
     follow: Callable[..., Any], path: Any, p: Sequence[float], problem: SteppedProblem, tolerance: float
 ) -> TimedRun:
-    """Return a function that runs one of symrot's steppers, which is set up once, as in a propagator."""
+    """Return a function that runs one of symrot's steppers; the stepper is set up once, as in a propagator."""
     motion, times = follow(path, p, problem.y0, 0.0, tolerance), np.array([problem.stop])
 
     def task() -> StepsAndState:
@@ -178,7 +179,7 @@ def _stepper(
 
 
 def _heyoka(problem: SteppedProblem, tolerance: float, settings: dict[str, bool]) -> TimedRun | None:
-    """Return a function that runs heyoka on the same right-hand side, with its parameters compiled in as numbers."""
+    """Return a function that runs heyoka on the same right-hand side, whose parameters are compiled as numbers."""
     run = heyoka_integrator(problem.kernel.rates, problem.parameters, problem.y0, tolerance, settings)
     if run is None:
         return None
@@ -244,7 +245,7 @@ def _contestants(problem: SteppedProblem, settings: bool) -> list[tuple[str, flo
 
 
 def measure(name: str, rounds: int = 9, settings: bool = False, scale: float = 1.0) -> list[Run]:
-    """Time all contestants on one motion, and return their runs; ``scale`` shortens its span."""
+    """Time all contestants on one motion, and return their runs; ``scale`` multiplies the span of the motion."""
     problem, exact = SteppedProblem(name, scale), reference(name, scale)
     return raced(_contestants(problem, settings), partial(problem.largest_error, exact=exact), rounds)
 
@@ -253,9 +254,9 @@ def raced(
     tasks: Sequence[tuple[str, float, Callable[[], tuple[int, Any]]]], error: Callable[[Any], float], rounds: int,
     clock: Callable[[], float] = perf_counter,
 ) -> list[Run]:  # fmt: skip
-    """Return the runs of several contestants (name, tolerance, task), timed alternately.
+    """Return the runs of several contestants (name, tolerance, task), timed alternately with ``clock``.
 
-    ``clock`` gives the seconds.
+    ``error`` computes the error of a run from its last states.
     """
     runs = []
     for name, tolerance, task in tasks:
@@ -282,7 +283,7 @@ def best_of(runs: Iterable[Run], error: float, names: Sequence[str]) -> Run | No
 
 
 def _print_table(name: str, runs: list[Run]) -> dict[str, list[float]]:
-    """Print the table of one motion; return the ratios of times by title."""
+    """Print the table of one motion; return the ratios of times by title of a column."""
     stop = MOTIONS[name]["span"]["t"][1]
     present = list(dict.fromkeys(run.name for run in runs))
     peers = [n for n in present if n.startswith("heyoka")]
@@ -323,7 +324,7 @@ def _print_ratios(indent: str, ratios: dict[str, list[float]]) -> None:
 
 
 def _print_orders(name: str, rounds: int) -> None:
-    """Print a comparison of orders of the series: the least time for each decade of the error."""
+    """Print a comparison of orders of the series: the least time for each power of ten of the error."""
     problem, exact = SteppedProblem(name, 1.0), reference(name)
     paths = {f"{order}": problem.taylor_library(order) for order in ORDERS}
     tasks: list[tuple[str, float, TimedRun]] = [
@@ -341,12 +342,14 @@ def _print_orders(name: str, rounds: int) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print, for each motion, the fastest steppers at each decade of the error."""
+    """Print, for each motion, the fastest steppers at each power of ten of the error."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.taylor", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=7)
-    parser.add_argument("--quick", action="store_true", help="race heyoka in its default setting only")
-    parser.add_argument("--orders", action="store_true", help="compare orders of the series")
-    parser.add_argument("--reference", action="store_true", help="compute the last states (minutes) and print them")
+    parser.add_argument("--quick", action="store_true", help="run heyoka in its default setting only")
+    parser.add_argument("--orders", action="store_true", help="compare orders of symrot's series instead")
+    parser.add_argument(
+        "--reference", action="store_true", help="compute the last states and print them (takes minutes)"
+    )
     parser.add_argument("--motion", choices=list(MOTIONS), help="one motion only")
     options = parser.parse_args(arguments)
     if options.reference:

@@ -2,17 +2,16 @@
 
     python -m symrot.bench.ulps [--points 20000]
 
-These are the functions with a removable singularity, and the sines, cosines and arc tangents of batches. Each function
-is taken from emitted C and compiled with and without fused operations, in double and in float. It is measured in the
-form for one sample (``one``, with the C library) and in the form for batches (``batch``, without a branch; angles
-within the range of ``symrot_math.h``, all numbers for arc tangents). The reference is mpmath at 60 digits. Test points
-are taken at all scales from the smallest normal number to the reach, on both sides of the threshold below which a
-series is used, and next to multiples of pi/2.
+The functions are those with a removable singularity, and the sines, cosines and arc tangents of batches. Each function
+is taken from emitted C and compiled with and without fused operations, in double and in float. It is measured in two
+forms: the form for one sample (``one``), which calls the C library, and the form for batches (``batch``), which has no
+branch. The reference is mpmath at 60 digits. Test points have all magnitudes from the smallest normal number to the
+function's reach; some lie on both sides of the threshold below which a series is used, and next to multiples of pi/2.
 
-The reach is all finite numbers for one sample, and the range of ``symrot_math.h`` for a batch, which outside it calls
-the form for one sample. tangent_gap is measured in ulp up to pi, before its first zero, and for larger x in units of
-2^-53/x^2 (float: 2^-24): it decreases as cos(x)/x^2, and its relative error has no bound near its zeros, which are no
-floating-point numbers.
+The reach is the largest |x| that is tested: any finite number for one sample, and the range of ``symrot_math.h`` for a
+batch, which calls the form for one sample outside this range. tangent_gap is measured in ulp up to pi, before its first
+zero, and for larger x in units of 2^-53/x^2 (float: 2^-24/x^2). It decreases as cos(x)/x^2, and its relative error has
+no bound near its zeros, which are not floating-point numbers.
 """
 
 import argparse
@@ -51,7 +50,7 @@ class Function:
     exact: Callable[..., Any]
     kernel: str  # kernel whose C text contains the function
     forms: tuple[tuple[str, str], ...] = (("one", "symrot_"), ("batch", "symrot_near_"))
-    reach: float = inf  # largest |x|
+    reach: float = inf  # largest |x| that is tested
     beyond: float = 0.0  # if not 0: the smallest |x|; the unit of errors is then the roundoff over x^2
 
 
@@ -121,7 +120,7 @@ FUNCTIONS = (
 
 
 def _points(function: Function, real: Real, form: str, count: int) -> Floats:
-    """Return test arguments as columns; for a function of two arguments, the components of unit vectors."""
+    """Return test arguments, one column per point; for functions of two arguments, components of vectors."""
     draw = np.random.default_rng(3)
     far = float(FAR[real.precision])
     reach = min(function.reach, REACH[real.precision] if form == "one" else far)
@@ -145,7 +144,8 @@ def _points(function: Function, real: Real, form: str, count: int) -> Floats:
 def _directions(real: Real, count: int, kind: Any) -> Floats:
     """Return test arguments y and x of the arc tangent, as two rows.
 
-    They are angles all around, all sizes and ratios, and the neighbours of y = x/2, x and 2 x.
+    There are unit vectors in all directions, vectors of all magnitudes and ratios, and points near y = x/2, y = x and
+    y = 2 x.
     """
     draw, third = np.random.default_rng(4), count // 3
     low, high = np.log(LEAST[real.precision]), np.log(REACH[real.precision])
@@ -177,7 +177,7 @@ def _text(function: Function) -> str:
 
 
 def _ulps(computed: float, exact: Any, real: Real, x: float = 0.0) -> float:
-    """Return the error in units in the last place of the exact value; if x is not 0, in ulp of 1/(2 x^2)."""
+    """Return the error in units in the last place of the exact value; if x is not 0, in units of roundoff/x^2."""
     digits, least = DIGITS[real.precision]
     if x:
         return abs(float((computed - exact) / max(ldexp(1.0, -digits) / x / x, ldexp(1.0, least))))
@@ -195,7 +195,7 @@ def measured(points: int = 20_000, contraction: Sequence[str] = tuple(CONTRACTIO
     points : int
         Approximate number of arguments of each function.
     contraction : sequence of str
-        ``"unfused"``, ``"fused"``: whether the compiler may fuse a product and a sum.
+        Among ``"unfused"`` and ``"fused"``: whether the compiler may fuse a product and a sum.
     """
     import mpmath
 

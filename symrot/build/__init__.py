@@ -1,1 +1,1 @@
-"""Compilation of C into shared libraries, and the cache that stores them for the user."""
+"""Compilation of C into shared libraries, and the cache that stores the libraries for the user."""

@@ -1,13 +1,15 @@
 """The cache of compiled C: a library is compiled once, stored for the user, and later loaded without a compiler.
 
-An entry is keyed by the source, the identity of the compiler (resolved path, size, modification time), the flags and
-the processor. A library is named by its own checksum, so a truncated or altered file is detected and rebuilt instead of
-loaded. Files appear by atomic rename, so any number of processes may build at once. The directory is private (mode
-0700); a directory that belongs to another user, or that another user could replace, is not used. If the cache cannot be
-used, a temporary directory of this process replaces it, and :func:`cache` returns the reason.
+An entry is a small file that names a library; its key consists of the source, the identity of the compiler (resolved
+path, size, modification time), the flags and the processor. The name of a library contains the checksum of its content,
+so a truncated or altered library is detected, and built again instead of loaded. Files appear by atomic rename, so any
+number of processes may build at once. The directory is private (mode 0700); a directory that belongs to another user,
+or that another user could replace, is not used. If the cache cannot be used, a temporary directory of this process
+replaces it, and :func:`cache` returns the reason.
 
-Environment: ``CC`` names the compiler; ``SYMROT_CACHE`` the cache directory, else ``XDG_CACHE_HOME/symrot``, else the
-platform's own place. This module imports neither SymPy nor NumPy nor SciPy.
+Environment variables: ``CC`` names the compiler. ``SYMROT_CACHE`` names the cache directory; if it is not set, the
+directory is ``XDG_CACHE_HOME/symrot``, or else the usual one of the platform. This module imports neither SymPy nor
+NumPy nor SciPy.
 """
 
 import os
@@ -55,7 +57,7 @@ FLAGS = (
 )
 SCHEDULED = ("-fschedule-insns", "-fsched-pressure")  # reorder sums to fit the number of registers
 TUNING = (*SCHEDULED, "-fno-tree-pre", "-fno-gcse", "-fno-ivopts")  # so that numbers stay in memory, not in registers
-"""Flags of gcc that make long sums faster, as measured; they are dropped for a compiler that does not accept them."""
+"""Flags of gcc that make long sums faster, as measured; they are left out if the compiler does not accept them."""
 
 COMPILERS = ("cc", "gcc", "clang")
 SECONDS_TO_COMPILE = 300  # a compiler that takes longer is stopped
@@ -65,21 +67,21 @@ OWN_FILE = re.compile(r"(\w+-[0-9a-f]{32}\.(so|dll|dylib|index|text)|\.symrot-\w
 
 
 class Compiler(NamedTuple):
-    """A C compiler: its command line, and the identity of its program for cache keys."""
+    """A C compiler: its command line, and a text that identifies its program in cache keys."""
 
     command: tuple[str, ...]
     identity: str
 
 
 class Cache(NamedTuple):
-    """A directory of compiled kernels; ``reason`` says why it is not the user's cache, or is empty."""
+    """A directory of compiled kernels; ``reason`` is empty, or says why the directory is not the user's cache."""
 
     directory: Path
     reason: str
 
 
 def compiler() -> Compiler:
-    """Return the C compiler named by ``CC``, or the first of cc, gcc, clang on the path; no program is run.
+    """Return the C compiler that ``CC`` names, or the first of cc, gcc and clang on the path; no program is run.
 
     Raises
     ------
@@ -93,7 +95,7 @@ def compiler() -> Compiler:
         if path is not None:
             return Compiler((path, *command[1:]), _identity(path, command[1:]))
     reason = f"CC={chosen!r} names no program" if chosen else f"none of {', '.join(COMPILERS)} is on the path"
-    raise CompilerError(f"expected a C compiler: {reason}; set CC to one")
+    raise CompilerError(f"expected a C compiler, but {reason}; set CC to one")
 
 
 def missing() -> str:
@@ -106,9 +108,9 @@ def missing() -> str:
 
 
 def cache(probe: bool = False) -> Cache:
-    """Return the cache directory in use, with the reason if it is a temporary one.
+    """Return the cache directory that is used; if it is a temporary directory, the result contains the reason.
 
-    With ``probe`` a file is written, which detects a full disk.
+    With ``probe`` a file is written first, so that a full disk is noticed.
     """
     if probe:
         _keep(_text_name("probe"), b"")
@@ -119,21 +121,21 @@ def cache(probe: bool = False) -> Cache:
 
 
 def build(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path:
-    """Return the shared library compiled from ``source``, from the cache if it has an undamaged copy.
+    """Return the path of the shared library compiled from ``source``; an undamaged library in the cache is reused.
 
     Parameters
     ----------
     source : str
-        A complete C translation unit; it is compiled from standard input.
+        The complete C text; the compiler reads it from standard input.
     name : str
-        Letters, digits and underscores, with which the file's name begins.
+        Beginning of the file name: letters, digits and underscores.
     flags : tuple of str
-        Flags of the compiler. If it rejects ``-march=native``, it is run again without this flag.
+        Flags of the compiler. If the compiler rejects ``-march=native``, it is run again without this flag.
 
     Raises
     ------
     CompilerError
-        If there is no compiler, or it rejects the source; the message quotes its first error.
+        If there is no compiler, or if it rejects the source; the message quotes the first error.
     """
     tool = compiler()
     library = built(source, name, flags)
@@ -141,7 +143,7 @@ def build(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path:
 
 
 def built(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path | None:
-    """Return the library that :func:`build` would return, if the cache contains it, else None."""
+    """Return the path that :func:`build` would return if the cache contains the library, otherwise None."""
     entry = _entry(compiler(), source, name, flags)
     for directory in _directories():
         if (library := _sound_library(directory, entry, name)) is not None:
@@ -150,7 +152,7 @@ def built(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path | None
 
 
 class Building:
-    """A library that is being compiled in another thread; arguments as for :func:`build`."""
+    """A library that is being compiled in another thread; the arguments are those of :func:`build`."""
 
     def __init__(self, source: str, name: str, flags: tuple[str, ...] = FLAGS) -> None:
         self._path: Path | None = built(source, name, flags)
@@ -167,7 +169,7 @@ class Building:
             self._error = error
 
     def wait(self) -> None:
-        """Wait until the compiler has ended, with or without success."""
+        """Wait until the compiler has ended, successfully or not."""
         if self._thread is not None:
             try:
                 self._thread.join()
@@ -191,10 +193,10 @@ class Building:
 
 
 def _thread(work: Callable[..., None], *arguments: object) -> Any:
-    """Return a thread that runs ``work`` to compile; all modules that the work needs are imported here first.
+    """Return a thread that runs ``work``, a compilation; all modules that the work needs are imported here first.
 
     A thread that imports a module waits for Python's import lock. Ctrl-C during an import of the main thread can leave
-    this lock locked for good: then neither the thread nor the process, which waits for its threads, would ever end.
+    this lock locked for ever: then neither the thread nor the process, which waits for its threads, would end.
     """
     import atexit  # noqa: F401
     import shutil  # noqa: F401
@@ -220,9 +222,9 @@ def _entry(tool: Compiler, source: str, name: str, flags: tuple[str, ...]) -> st
 
 
 def store(key: str, text: str) -> None:
-    """Store a small text in the cache under a key (any string).
+    """Store a small text in the cache under a key, which may be any string.
 
-    If the cache cannot be written, the text is stored for this process only.
+    If the cache cannot be written, the text is stored only for this process.
     """
     try:
         _keep(_text_name(key), f"{_digest(text)}\n{text}".encode())
@@ -231,7 +233,7 @@ def store(key: str, text: str) -> None:
 
 
 def fetch(key: str) -> str | None:
-    """Return the text stored in the cache under a key, or None if it is missing or damaged."""
+    """Return the text that is stored in the cache under a key, or None if the text is missing or damaged."""
     for directory in _directories():
         content = _read(directory / _text_name(key))
         if content is not None:
@@ -242,7 +244,7 @@ def fetch(key: str) -> str | None:
 
 
 def clear() -> tuple[Path, ...]:
-    """Remove every file that symrot wrote into the cache, and return their paths; other files stay."""
+    """Remove all files that symrot wrote into the cache, and return their paths; other files are not touched."""
     removed = []
     for directory in _directories():
         for path in sorted(directory.iterdir()):
@@ -261,7 +263,10 @@ def _digest(text: str) -> str:
 
 
 def _which(program: str) -> str | None:
-    """Return the full path of an executable file, searched as the shell does (shutil is slow to import)."""
+    """Return the full path of a program, searched as a shell does, or None if there is none.
+
+    The module shutil has such a function but is slow to import.
+    """
     endings = ("", ".exe") if sys.platform == "win32" else ("",)
     named = os.sep in program or (os.altsep is not None and os.altsep in program)
     for place in [""] if named else os.environ.get("PATH", os.defpath).split(os.pathsep):
@@ -280,7 +285,7 @@ def _identity(path: str, arguments: tuple[str, ...]) -> str:
 
 @cache_once
 def _processor() -> str:
-    """Return the identity of the processor for ``-march=native``: family, model and features of its first core."""
+    """Return a text that identifies the processor for ``-march=native``: family, model and features."""
     try:
         with Path("/proc/cpuinfo").open(encoding="ascii", errors="replace") as stream:
             first = stream.read(16384).split("\n\n")[0]
@@ -333,7 +338,7 @@ def _cache_directory() -> Path:
 
 
 def _foreign(path: Path) -> str:
-    """Return the reason why a file or directory must not be trusted, or an empty text."""
+    """Return the reason why a file or directory must not be trusted, or an empty text if it can be trusted."""
     status = path.lstat()
     if hasattr(os, "getuid") and status.st_uid != os.getuid():
         return f"{path} belongs to another user (uid {status.st_uid})"
@@ -349,9 +354,9 @@ def _exposed(directory: Path) -> str:
     """Return the reason why another user could replace the cache directory, or an empty text.
 
     A user who may write to a directory may rename its entries, even entries of other users. In a sticky directory such
-    as ``/tmp``, only the owner of the entry, the owner of the directory and root may. Therefore every parent directory,
-    with symbolic links followed and not followed, must belong to the user or to root, and must be sticky if others may
-    write to it.
+    as ``/tmp``, only the owner of the entry, the owner of the directory and root may rename an entry. Therefore every
+    parent directory, with symbolic links followed and not followed, must belong to the user or to root, and must be
+    sticky if others may write to it.
     """
     if not hasattr(os, "getuid"):
         return ""
@@ -367,7 +372,10 @@ def _exposed(directory: Path) -> str:
 
 
 def _shared_group(group: int) -> bool:
-    """Return whether a group may have members other than the user; a user's own group has the user's name."""
+    """Return whether a group may have members other than the user.
+
+    A group is the user's own if it has the name of the user and no other members.
+    """
     import grp
     import pwd
 
@@ -379,7 +387,7 @@ def _shared_group(group: int) -> bool:
 
 
 def _user_directory() -> tuple[Path, str]:
-    """Return the user's cache directory, and the reason why it cannot be used (an empty text if it can)."""
+    """Return the user's cache directory, and the reason why it cannot be used, or an empty text if it can."""
     directory = _cache_directory() / CACHE_SUBDIR
     try:
         if not directory.is_dir():
@@ -396,7 +404,7 @@ def _user_directory() -> tuple[Path, str]:
 
 
 def _directories() -> list[Path]:
-    """Return the directories that may contain entries: the user's cache if usable, and the temporary one if any."""
+    """Return the directories that may contain entries: the user's cache, if it can be used, and the temporary one."""
     directory, reason = _user_directory()
     return [*([] if reason else [directory]), *([] if _temporary.path is None else [_temporary.path])]
 
@@ -405,7 +413,7 @@ def _directories() -> list[Path]:
 
 
 def _read(path: Path) -> bytes | None:
-    """Return a file's bytes, or None if it is missing or unreadable, or belongs to another user."""
+    """Return the content of a file, or None if the file is missing, cannot be read or cannot be trusted."""
     try:
         return None if _foreign(path) else path.read_bytes()
     except OSError:
@@ -413,7 +421,7 @@ def _read(path: Path) -> bytes | None:
 
 
 def _replace(path: Path, content: bytes) -> None:
-    """Write a file atomically: other processes see the old content or the new one, never a part."""
+    """Write a file atomically: other processes see either the old or the new content, never a part of it."""
     passing = path.with_name(f".symrot-{os.getpid()}_{os.urandom(4).hex()}")
     try:
         passing.write_bytes(content)
@@ -423,7 +431,7 @@ def _replace(path: Path, content: bytes) -> None:
 
 
 def _keep(name: str, content: bytes) -> Path:
-    """Write a file into the cache, or into the temporary directory if the cache is full or read-only."""
+    """Write a file into the cache, or into the temporary directory if the cache cannot be written; return its path."""
     if _temporary.path is None:
         directory, reason = _user_directory()
         if not reason:
@@ -450,7 +458,7 @@ def _library_name(name: str, content: bytes) -> str:
 
 
 def _sound_library(directory: Path, entry: str, name: str) -> Path | None:
-    """Return the library that an index entry names, if its content still has the checksum in its name, else None."""
+    """Return the path of the library that an entry names, or None if its content does not match its checksum."""
     pointer = _read(directory / entry)
     if pointer is None:
         return None

@@ -1,6 +1,6 @@
-"""Runs of a C compiler with a time limit; it is killed with all its child processes if this process is stopped.
+"""Runs of a C compiler with a time limit; the compiler and its child processes are killed if this process is stopped.
 
-This module is imported only if something has to be compiled; most runs find their libraries in the cache.
+This module is imported only if something has to be compiled; mostly the library is already in the cache.
 """
 
 import os
@@ -19,18 +19,18 @@ __all__ = ["WAITING", "run_compiler", "stop_all"]
 SIGKILL = getattr(signal, "SIGKILL", signal.SIGTERM)
 
 WAITING, STOPPED = "symrot compiles", "symrot compiles no more"
-"""Names of threads that wait for a compiler: before and after :func:`stop_all`."""
+"""Names of a thread that waits for a compiler: before and after :func:`stop_all`."""
 
 _running: set[Popen[bytes]] = set()
 
 
 def run_compiler(command: Sequence[str], flags: Sequence[str], source: str, output: Path, seconds: float) -> str:
-    """Compile a text into ``output``; return the compiler's first error message, or an empty text on success.
+    """Compile a text into ``output``; return the first error message of the compiler, or an empty text.
 
     Raises
     ------
     CompilerError
-        If the compiler takes longer than ``seconds`` or is killed; then a second try with other flags is useless.
+        If the compiler takes longer than ``seconds``, or is killed, so that a second try with other flags is useless.
     """
     words = [*command, *flags, "-x", "c", "-", "-o", str(output), "-lm"]
     environment = {**os.environ, "LC_ALL": "C"}
@@ -46,13 +46,13 @@ def run_compiler(command: Sequence[str], flags: Sequence[str], source: str, outp
             complaint = process.communicate(source.encode(), seconds)[1].decode("utf-8", "replace")
         except TimeoutExpired:
             raise CompilerError(
-                f"the C compiler {command[0]} is stopped: no answer within {seconds:g} s; set CC to another one"
+                f"the C compiler {command[0]} did not end within {seconds:g} s and was stopped; set CC to another one"
             ) from None
         finally:
             _running.discard(process)
             _kill(process)
     if process.returncode == -SIGKILL:
-        raise CompilerError(f"the C compiler {command[0]} was killed before it was done")
+        raise CompilerError(f"the C compiler {command[0]} was killed before it had finished")
     if process.returncode == 0 and output.is_file() and output.stat().st_size:
         return ""
     lines = [line.strip() for line in complaint.splitlines() if line.strip()]
@@ -62,7 +62,7 @@ def run_compiler(command: Sequence[str], flags: Sequence[str], source: str, outp
 
 
 def stop_all() -> None:
-    """Kill all running compilers, including those that waiting threads are about to start."""
+    """Kill all running compilers, and prevent waiting threads from starting further compilers."""
     for thread in enumerate_threads():
         if thread.name == WAITING:
             thread.name = STOPPED
@@ -71,7 +71,7 @@ def stop_all() -> None:
 
 
 def _kill(process: Popen[bytes]) -> None:
-    """Kill a compiler and the programs that it started, which belong to the same process group."""
+    """Kill a compiler and the programs that it started; all belong to the same process group."""
     if process.poll() is None:
         with suppress(ProcessLookupError):
             os.killpg(process.pid, SIGKILL) if hasattr(os, "killpg") else process.kill()

@@ -93,14 +93,14 @@ def names() -> tuple[str, ...]:
 
 
 def module_of(name: str) -> str:
-    """Return the name of the module of a derivation: ``symrot.catalogue.free_bodies.poinsot`` for ``poinsot``."""
+    """Return the name of a derivation's module, such as ``symrot.catalogue.free_bodies.poinsot`` for ``poinsot``."""
     chapter = next(chapter for chapter, members in READING_ORDER.items() if name in members)
     return f"{__name__}.{chapter.lower().replace(' ', '_')}.{name}"
 
 
 @cache
 def derivation(name: str) -> "Derivation":
-    """Return one derivation of the catalogue, with every step proven; it is derived once per process.
+    """Return one derivation of the catalogue, in which every step is proven; it is derived once per process.
 
     Parameters
     ----------
@@ -142,11 +142,11 @@ Say = Callable[[str], object]
 
 
 def _quiet(text: str) -> None:
-    """Ignore a message on progress (the default for the parameter ``say``)."""
+    """Ignore a message about progress; this is the default for the parameter ``say``."""
 
 
 def pages(say: Say = _quiet) -> dict[str, str]:
-    """Return file name -> text of the printed page of every derivation.
+    """Return a map from file name to text of the printed pages of all derivations.
 
     The table of contents (``README.md``) comes first.
     """
@@ -168,12 +168,12 @@ def pages(say: Say = _quiet) -> dict[str, str]:
 
 
 def write_pages(directory: Path | str, form: str) -> list[Path]:
-    """Write every derivation as LaTeX or HTML into a directory, one file each, and return the files.
+    """Write every derivation as LaTeX or HTML into a directory, one file each, and return the paths of the files.
 
     Parameters
     ----------
     directory : Path or str
-        Created if it does not exist.
+        The directory, which is created if it does not exist.
     form : str
         ``"latex"`` or ``"html"``.
 
@@ -195,9 +195,9 @@ def write_pages(directory: Path | str, form: str) -> list[Path]:
 
 
 def derive_all(directory: Path | str, say: Say = _quiet) -> list[Path]:
-    """Print every page into a directory and return the files that changed.
+    """Print every page into a directory and return the paths of the files that changed.
 
-    Pages of derivations that are no longer in the catalogue are removed; other files are not touched.
+    Pages of derivations that are no longer in the catalogue are deleted; other files are not touched.
     """
     directory = Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
@@ -217,7 +217,7 @@ def derive_all(directory: Path | str, say: Say = _quiet) -> list[Path]:
 
 
 def check(directory: Path | str, say: Say = _quiet) -> list[tuple[Path, str]]:
-    """Return the pages in a directory that differ from newly printed pages, each with a unified diff.
+    """Return a unified diff for each page in a directory that differs from the newly printed page.
 
     The list is empty if all pages are up to date.
     """

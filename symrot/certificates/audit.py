@@ -1,12 +1,13 @@
-"""Audit a certificate: check that every statement in it holds for its files and agrees with what symrot derives.
+"""The audit of a certificate: it checks every statement against the certified files and symrot's own derivations.
 
-:mod:`symrot.certificates.exact_check` first checks all that follows from the files alone. The audit then checks that
+A certificate is a JSON file of statements about an emitted C kernel, with proofs. A check from the files alone
+(:mod:`symrot.certificates.exact_check`) comes first. The audit then checks that
 
 - the header holds nothing but prototypes, the C text performs the certified operations, and so does JavaScript;
 - symrot derives the same statements (formulas, laws and their proofs, domain, units, assumptions) for a kernel of that
   name and proves them exactly, as identities of fractions of polynomials (:mod:`symrot.certificates.laws.laws`,
   :mod:`symrot.certificates.laws.equality`), so that a correct certificate of another kernel is refused;
-- symrot computes the same bounds of rounding errors on the box of the certificate.
+- symrot computes the same bounds of the rounding errors on the certificate's box, the ranges of the inputs.
 """
 
 import json
@@ -108,7 +109,7 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
     Raises
     ------
     CertificateError
-        If a statement does not hold; the message names the first.
+        If a statement does not hold; the message names the first such statement.
     """
     data = load_certificate(path)
     for file in data["files"]:
@@ -124,7 +125,7 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
 
 
 def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | None]) -> list[str]:
-    """Check a certificate against symrot's own derivations and bounds; return a sentence for each check."""
+    """Check header, C text and statements of a certificate against what symrot derives; return a sentence per check."""
     name = data["kernel"]
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
     check_header(header, source, name)
@@ -156,9 +157,9 @@ def _check_javascript(path: Path, data: Data, source: str) -> list[str]:
 
 
 def _compared(data: Data) -> list[str]:
-    """Return the sentence that the verdicts on object code were not checked, if there are any.
+    """Return the sentence that verdicts on object code were not checked, or no sentence if there are no such verdicts.
 
-    Such verdicts hold only for the machine that made them.
+    A verdict on object code holds only for the machine where it was made.
     """
     finding = "its verdicts on object code were not checked: --object compares an object file of yours"
     return [finding] if data.get("objects") else []
@@ -213,7 +214,7 @@ def _check_readback(data: Data, source: str) -> None:
         end = "f" if stated["type"] == "float" else ""
         checks = {
             "keys": list(stated) == ["type", "operations", "digest", "constants", "series"],
-            "digest": one.digest() == batch.digest() == stated["digest"],
+            "digests": one.digest() == batch.digest() == stated["digest"],
             "counts": stated["operations"] == one.counts(),
             "constants": listed == [each for each in constants if each in listed]
             and all(
@@ -226,5 +227,5 @@ def _check_readback(data: Data, source: str) -> None:
         for what, holds in checks.items():
             if not holds:
                 raise CertificateError(
-                    f"{where}: expected the {what} that follows from the operations of {name}, got another"
+                    f"{where}: expected the {what} that follow from the operations of {name}, got others"
                 )

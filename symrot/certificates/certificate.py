@@ -3,8 +3,9 @@
 The program ``recheck.py`` checks a certificate without symrot.
 
 Two statements are proven here from the printed files: the formulas obey their laws (identities such as "the norm is
-1"), and the C text computes the formulas. The sections about rounding errors and object code are added on request. The
-same kernel has the same certificate, byte for byte, on every machine.
+1"), and the C text computes the formulas; the proof of the second statement is called the readback. The sections about
+rounding errors and object code are added on request. The same kernel has the same certificate, byte for byte, on every
+machine.
 """
 
 import json
@@ -59,8 +60,8 @@ TRUSTED = {
 class KernelUnderTest:
     """A kernel to certify: the formulas and laws that its description states, and the printed files.
 
-    ``files`` maps paths, relative to the certificate, to texts; ``types`` maps the suffix of a function's name to its
-    type, such as ``"f"`` to ``"float"``.
+    ``files`` maps each path, relative to the certificate, to the text of the file; ``types`` maps the suffix of a C
+    function's name to the type of its numbers, such as ``"f"`` to ``"float"``.
     """
 
     name: str
@@ -74,16 +75,16 @@ class KernelUnderTest:
     types: Mapping[str, str]
     parameters: Mapping[str, Expr] = field(
         default_factory=dict
-    )  # symbol of an input -> the formula in constants that it stands for
+    )  # symbol of an input -> the formula in physical constants for which the symbol stands
 
     @property
     def places(self) -> dict[str, tuple[str, str]]:
-        """The symbol and unit of each input component, by its index text such as ``"q[1]"``."""
+        """A map from the index text of each input component, such as ``"q[1]"``, to its symbol and unit."""
         return {place: (name, unit) for a in self.inputs for place, (name, unit, _) in _places(a)}
 
     @property
     def formulas(self) -> dict[str, tuple[str, Expr]]:
-        """The symbol and formula of each output component, by its index text such as ``"dq[1]"``."""
+        """A map from the index text of each output component, such as ``"dq[1]"``, to its symbol and formula."""
         return {
             place: (component[0], formula)
             for target, formulas in self.outputs
@@ -92,7 +93,7 @@ class KernelUnderTest:
 
 
 def _places(argument: Argument) -> list[tuple[str, tuple[str, str, str]]]:
-    """Return for each component of an argument its index text, such as ``"q[1]"``, symbol, unit and description."""
+    """Return the index text, such as ``"q[1]"``, and (symbol, unit, description) of each component of an argument."""
     if argument.is_scalar:
         return [(argument.name, argument.components[0])]
     return [(f"{argument.name}[{i}]", component) for i, component in enumerate(argument.components)]
@@ -131,7 +132,7 @@ PROVERS = (
 
 @cache
 def _prover_digest() -> str:
-    """Return the SHA-256 of the source files that prove certificates; if it changes, cached proofs are not used."""
+    """Return the SHA-256 of the source files in ``PROVERS``; proofs cached under another hash are not used."""
     here = Path(__file__).parent
     return sha256(b"".join((here / f"{name}.py").read_bytes() for name in PROVERS)).hexdigest()
 
@@ -162,7 +163,7 @@ def unproven_statement(kernel: KernelUnderTest) -> Data:
 
 
 def _functions(formulas: Sequence[Expr]) -> list[list[str]]:
-    """Return the functions in formulas that have a removable singularity, each with its definition as text."""
+    """Return the name and definition, as text, of each function in the formulas that has a removable singularity."""
     x, y = (Symbol(name, real=True) for name in "xy")
     names = {type(call).__name__ for formula in formulas for call in formula.atoms(Function)}
     texts = {}
@@ -176,7 +177,7 @@ def _functions(formulas: Sequence[Expr]) -> list[list[str]]:
 
 
 def proven_statement(kernel: KernelUnderTest) -> Data:
-    """Return a kernel's certificate, every statement proven by symrot, without its optional sections and its seal.
+    """Return a kernel's certificate, in which symrot has proven every statement, without optional sections and seal.
 
     The optional sections are the rounding bounds and the verdicts on object code; the seal is a hash of the content.
     """
@@ -184,7 +185,7 @@ def proven_statement(kernel: KernelUnderTest) -> Data:
 
 
 def _proven(kernel: KernelUnderTest) -> Data:
-    """Return the proofs of the laws, and the proofs that the C text computes the formulas, for a certificate."""
+    """Return the sections ``laws`` and ``readback`` of a certificate: the proofs of its two statements."""
     known = {str(symbol): value for symbol, value in kernel.named} | dict(kernel.formulas.values())
     return {
         "laws": [_law(prove_law(kernel.name, law, known)) for law in kernel.laws],
@@ -237,7 +238,7 @@ def _readback(kernel: KernelUnderTest, suffix: str, real: str) -> Data:
 
 
 def intended_text(constant: IntendedConstant) -> str:
-    """Return the exact number that a rounded constant of the C text stands for, as text such as ``"1/3"``."""
+    """Return, as text such as ``"1/3"``, the exact number for which a rounded constant of the C text stands."""
     return f"{constant.fraction}*pi" if constant.times_pi else str(constant.fraction)
 
 
@@ -272,8 +273,8 @@ OPTIONAL_SECTIONS: dict[str, Callable[[Data, Any], bool]] = {  # section -> whet
 def with_sections(text: str, sections: Mapping[str, Any]) -> str:
     """Return a certificate to which bounds of rounding errors or verdicts on object code are added.
 
-    ``sections`` maps ``"rounding"`` or ``"objects"`` to its content. A section that belongs to an earlier version of
-    the kernel's C text is left out.
+    ``sections`` maps ``"rounding"`` or ``"objects"`` to the content of that section. A section about an earlier version
+    of the kernel's C text is left out.
     """
     data = json.loads(text)
     for name, is_about in OPTIONAL_SECTIONS.items():

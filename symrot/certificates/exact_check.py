@@ -1,13 +1,13 @@
-"""Check certificates exactly, from their files alone; ``symrot audit`` begins with this check.
+"""An exact check of certificates from their files alone; ``symrot audit`` begins with it.
 
 The module checks every hash, that the C text computes the formulas, and that the formulas obey their laws (identities
-such as "the norm is 1"). Equations are evaluated in exact arithmetic at random integers; the value of a function such
-as sin(x) is one more random integer for each different argument. A wrong equation passes one run with a chance of about
-its degree in 2^128. Laws are proven by the cases, steps and cofactors in the certificate
+such as "the norm is 1"). It evaluates both sides of each equation in exact arithmetic; every variable, and every
+function call such as sin(x), gets a random integer of 128 bits as its value. A wrong equation of degree d passes with a
+probability of about d/2^128. The laws are proven with the cases, steps and cofactors that the certificate stores
 (:mod:`symrot.certificates.laws.laws`). ``recheck.py``, which evaluates numbers and reads no proofs, shares only the
-seal and the hashes with this module. Headers are checked by hash alone. All other statements of a certificate (titles
-and units, counts and digests of operations, flags, theorems, bounds of rounding errors, object code) are not checked
-here.
+check of seal and hashes with this module. Headers are checked by hash alone. All other statements of a certificate
+(titles and units, counts and digests of operations, flags, theorems, bounds of rounding errors, object code) are not
+checked here.
 """
 
 import ast
@@ -54,7 +54,7 @@ SAFE = {  # function of emitted files -> its formula, and its value in an except
     "select_ge": ("w", "z if x >= y"),
 }
 TAYLOR = {"sine_gap": lambda k: 1, "tangent_gap": lambda k: 2 * k + 2}  # times (-1)^k x^(2 k)/(2 k + 3)!
-FACTS = {  # identities of functions: left = right = left = right
+FACTS = {  # name -> two identities of functions, written as left = right = left = right
     "sum": "sin(X + Y) = sin(X)*cos(Y) + cos(X)*sin(Y) = cos(X + Y) = cos(X)*cos(Y) - sin(X)*sin(Y)",
     "odd": "sin(-X) = -sin(X) = cos(-X) = cos(X)",
     "quarter": "sin(X + pi/2) = cos(X) = cos(X + pi/2) = -sin(X)",
@@ -68,7 +68,7 @@ PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459"
 
 
 def require(holds, message):
-    """Return the value ``holds`` if it is true; otherwise raise ValueError with a message."""
+    """Return ``holds`` itself if it is true (such as a match); otherwise raise ValueError with the message."""
     if not holds:
         raise ValueError(message)
     return holds
@@ -82,7 +82,7 @@ def nearest(value, real):
 
 
 class RandomIntegers(defaultdict):
-    """A random integer for each variable and for each function call with its arguments, drawn at the first use."""
+    """A dictionary that draws a random integer for each new key: a variable, or a function with its arguments."""
 
     def __missing__(self, key):
         return self.setdefault(key, Fraction(secrets.randbits(128)))
@@ -96,18 +96,18 @@ class Evaluator:
         self.constants, self.cases, self.near = dict(constants), cases, set()
 
     def parsed(self, text):
-        """Return the syntax tree of an expression, in which numbers are strings."""
+        """Return the syntax tree of an expression; its decimal numbers are strings there, so that they stay exact."""
         require(
             text.isascii() and not re.search(r"//|\+\+|--|['\"\\#]", text), f"expected a formula, got {text[:60]!r}"
         )
         return ast.parse(NUMBER.sub(r"'\1'", text.strip()), mode="eval").body
 
     def read(self, text):
-        """Return the value of an expression that is given as text."""
+        """Return the value of an expression given as text."""
         return self.value(self.parsed(text))
 
     def value(self, node):
-        """Return the value of an expression that is given as a syntax tree."""
+        """Return the value of an expression given as a syntax tree."""
         match node:
             case ast.Constant(value=int(number)) if not self.real:
                 return Fraction(number)
@@ -151,7 +151,10 @@ class Evaluator:
         return self.functions[name, *values]
 
     def run(self, body, places, targets=()):
-        """Run C statements; return the assigned values by target, such as ``"q[1]"``, or the value of ``return``."""
+        """Run C statements; return the value of ``return``, or else the assigned values by target, such as ``"q[1]"``.
+
+        ``places`` maps the input names that may be read to their values; ``targets`` are the outputs to assign.
+        """
         self.names, results, statements = dict(places), {}, body.split(";")
         require(not statements.pop().strip(), f"expected a semicolon at the end, got {body[-60:]!r}")
         for place, statement in enumerate(statements, 1):
@@ -195,7 +198,8 @@ class KernelCheck:
         parameters = {symbol for place, symbol, _ in data["inputs"] if place.startswith("p[")}
         require(
             {*self.spec["parameters"]} == parameters,
-            "expected the same parameters in the formulas and among the inputs",
+            "expected the same parameters in the formulas and among the inputs, "
+            f"got {', '.join(sorted(self.spec['parameters']))} and {', '.join(sorted(parameters))}",
         )
         require(
             all(symbol.isidentifier() for _, symbol, _ in data["inputs"]),
@@ -203,7 +207,7 @@ class KernelCheck:
         )
         require(
             len({*inputs.values(), "pi"}) == len(data["inputs"]) + 1,
-            "expected inputs that differ from each other and from pi",
+            "expected inputs that differ from each other and from pi, got one of them twice, or pi",
         )
         formula = Evaluator(self.symbols, self.functions)
         self.inputs = {place: formula.read(text) for place, text in inputs.items()}
@@ -213,7 +217,7 @@ class KernelCheck:
         self.constants = dict(map(self.constant, self.readback["constants"]))
 
     def constant(self, pair):
-        """Check that a constant of the C text is its exact number rounded; return the constant and the exact number."""
+        """Check that a constant of the C text is the exact number in ``pair``, rounded; return both numbers."""
         written, exact = Fraction(pair[0]), Fraction(pair[1].removesuffix("*pi"))
         times_pi = pair[1].endswith("*pi")
         require(
@@ -250,12 +254,12 @@ class KernelCheck:
         many = [one[k] if base == "p" else f"{typed[base]} *SYMROT_RESTRICT {base}" for k, base in enumerate(bases)]
         require(
             self.c_functions[self.name][1:3] == ("void", ", ".join(one)),
-            f"{self.name} has other arguments than expected: the inputs and outputs of the certificate",
+            f"expected the arguments {', '.join(one)} of {self.name}, as in the certificate, got others",
         )
         _, kind, arguments, loops = self.c_functions[f"{self.name}_batch"]
         require(
             (kind, arguments) == ("void", ", ".join(["size_t n", *many])),
-            f"{self.name}_batch has other arguments than expected: the inputs and outputs of the certificate",
+            f"expected the arguments {', '.join(['size_t n', *many])} of {self.name}_batch, got {arguments}",
         )
 
         def of_sample(place):
@@ -269,13 +273,13 @@ class KernelCheck:
         if loop := LOOP.fullmatch(loops) or PARTS.fullmatch(loops):
             return self.compare(loop.groups(), batch, map(of_sample, self.outputs))
         bits, first, far, again = require(
-            BLOCKS.fullmatch(loops), f"{self.name}_batch does not have the expected loop over all samples"
+            BLOCKS.fullmatch(loops), f"expected a loop over all samples in {self.name}_batch, got {loops[:60]!r}"
         ).groups()
         tested = re.findall(rf"symrot_far{self.end}\(((?:[^()]|\([^()]*\))*)\)", far)
         holds = far == " + ".join(f"symrot_far{self.end}({each})" for each in tested)
         require(
             holds and bits == {"double": "64", "float": "32"}[self.real],
-            f"{far} does not test every angle as expected",
+            f"expected symrot_far{self.end} of every angle, got {far!r}",
         )
         self.compare([first], batch, map(of_sample, self.outputs), tested)
         self.compare([again], batch, map(of_sample, self.outputs))
@@ -288,11 +292,11 @@ class KernelCheck:
         for target, (place, expected) in zip(targets, self.outputs.items()):
             require(
                 target in computed and computed[target] == expected,
-                f"{place} of {self.name} does not have the value of its formula, as expected",
+                f"expected {place} of {self.name} to be the value of its formula, but the C text computes another",
             )
 
     def check_own(self, function, bare):
-        """Check a helper function of the C file: it must compute its formula, or near zero a close enough series."""
+        """Check that a helper function of the C file computes its formula, or an accurate series near zero."""
         (explicit, case), (_, _, arguments, body) = SAFE[bare], self.c_functions[function]
         for _, split, coefficients, rest in (each for each in self.readback["series"] if each[0] == bare):
             taylor = [
@@ -301,25 +305,30 @@ class KernelCheck:
             falling = [abs(each) * Fraction(split) ** k for k, each in enumerate(taylor)]
             holds = sorted(falling, reverse=True) == falling and [*map(Fraction, coefficients)] == taylor[:-1]
             holds = holds and Fraction(rest) == falling[-1] / (falling[0] - falling[1])
-            require(holds, f"the series of {bare}, or the bound of its error, is not the expected one")
+            require(
+                holds, f"expected the Taylor series of {bare} with the bound of its error, got another series or bound"
+            )
             series = [f"({nearest(each, self.real)})*x**{2 * k}" for k, each in enumerate(taylor[:-1])]
             case = case.format(series=" + ".join(series), split=split)
         names = [argument.removeprefix(f"{self.real} ") for argument in arguments.split(", ")]
         values = [self.symbols[f"an argument {k}"] for k in range(4)]
         expected = Evaluator(dict(zip("xyzw", values)), self.functions).read(f"{case} else {explicit}")
         computed = self.run(body, dict(zip(names, values)), near=names[:1] * function.startswith("symrot_near_"))
-        require(computed == expected, f"{function} is not {case} else {explicit}")
+        require(
+            computed == expected,
+            f"expected {function} to compute {case} else {explicit}, but it computes another value",
+        )
 
 
 class FloatFunctions(dict):
-    """The functions that formulas call, computed in floating-point arithmetic."""
+    """A dictionary that computes, for a key (function name, arguments), the value of the function in floats."""
 
     def __missing__(self, call):
         return Fraction(getattr(math, call[0])(*map(float, call[1:])))
 
 
 def hypotheses(values):
-    """Return polynomials that are zero if the numbers are a unit vector, unit quaternion or rotation matrix."""
+    """Return polynomials that are all zero if the values form a unit vector, unit quaternion or rotation matrix."""
     if len(values) != 9:
         return [sum(each**2 for each in values) - 1] if values else []
     rows, pairs = [values[:3], values[3:6], values[6:]], [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
@@ -331,11 +340,12 @@ def hypotheses(values):
 
 
 def prove(law, case, formulas):
-    """Check the stored proof of a law in one case: entry times factor must be the sum of cofactors times relations.
+    """Check the stored proof of a law in one case; raise ValueError if it is wrong.
 
-    An entry is an expression that the law states to be zero; a relation is a polynomial that is known to be zero.
-    Factors and cofactors are also evaluated at the witness, a stored point where the hypotheses of the law hold, to
-    exclude a hidden division by zero.
+    An entry is an expression that the law states to be zero; a relation is a polynomial that is known to be zero. The
+    proof gives a factor and cofactors: entry times factor must be the sum of the cofactors times their relations. A
+    factor must not be zero, and a cofactor must be finite, at the witness, a stored point where the hypotheses of the
+    law hold; this excludes a hidden division by zero.
     """
     witness = {name: Fraction(text) for name, text in law["witness"].items()} | {"pi": PI}
     there, reader = (
@@ -406,12 +416,12 @@ def prove(law, case, formulas):
     for text, entry in zip(law["vanishing"], case["entries"]):
         require(
             combined(reader.read(text), *entry),
-            f"the law {law['law']!r} does not follow from the formulas as expected: its stored proof is wrong",
+            f"expected the law {law['law']!r} to follow from the formulas, but its stored proof is wrong",
         )
 
 
 def complete(cases):
-    """Tell whether the cases of a proof cover both branches of every conditional in the formulas."""
+    """Return whether the cases of a proof cover both branches of every conditional in the formulas."""
     if not cases or not cases[0]:
         return len(cases) == 1
     left, _, right = cases[0][0]
@@ -420,9 +430,9 @@ def complete(cases):
 
 
 def functions_of(text, name, files):
-    """Return the functions of a C text by name, each as a tuple (static, type, arguments, body)."""
+    """Return a map from the name of each function in a C text to the tuple (static, type, arguments, body)."""
     odd = re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", text)
-    require(not odd, "expected no backslash, trigraph, // comment or control character in the C text")
+    require(not odd, f"expected no backslash, trigraph, // comment or control character, got {odd and odd[0]!r}")
     known = ["#include <math.h>", f'#include "{name}.h"', *['#include "symrot_math.h"'] * ("symrot_math.h" in files)]
     lines = [line for line in re.sub(r"/\*.*?\*/", " ", text, flags=re.S).split("\n") if line.strip() not in known]
     functions, (*chunks, end) = {}, re.split(r"^\}$", "\n".join(lines), flags=re.M)
@@ -432,7 +442,8 @@ def functions_of(text, name, files):
             HEAD.fullmatch(" ".join(chunk.split()) + " "), f"expected a function, got {chunk.strip()[:60]!r}"
         )
         require(
-            head[3] not in functions and (not head[1] or head[3].startswith("symrot_")), f"{head[3]} is defined twice"
+            head[3] not in functions and (not head[1] or head[3].startswith("symrot_")),
+            f"expected each function once, and symrot_ before the name of a static function, got {head[3]}",
         )
         functions[head[3]] = head.group(1, 2, 4, 5)
     return functions
@@ -441,15 +452,16 @@ def functions_of(text, name, files):
 def check(path):
     """Check a certificate and its files exactly; return a line that lists the checks.
 
-    A failed check raises an exception of the types REFUSALS.
+    A failed check raises an exception whose type is in ``REFUSALS``.
     """
     path = Path(path)
     data = recheck.certified(path)
     name, files, spec, readback = data["kernel"], data["files"], data["spec"], data["readback"]
     c_functions = functions_of(path.with_name(f"{name}.c").read_text("utf-8"), name, files)
     expected = {f"{function}{end}" for function in readback for end in ("", "_batch")}
+    public = {f for f in c_functions if not c_functions[f][0]}
     require(
-        {f for f in c_functions if not c_functions[f][0]} == expected, f"expected the functions {', '.join(expected)}"
+        public == expected, f"expected the functions {', '.join(sorted(expected))}, got {', '.join(sorted(public))}"
     )
     for function in readback:
         KernelCheck(function, data, c_functions).check()
@@ -462,7 +474,7 @@ def check(path):
         for case in law["cases"]:
             prove(law, case, formulas)
     checked = " and ".join(readback)
-    laws = f"{len(data['laws'])} laws of the formulas"
+    laws = f"{len(data['laws'])} {'law' if len(data['laws']) == 1 else 'laws'} of the formulas"
     return f"{name}: {len(files)} hashes, C text of {checked} and batches = formulas, {laws} (bounds not checked)"
 
 
@@ -471,7 +483,7 @@ REFUSALS += (ValueError,)
 
 
 def sentence(reason):
-    """Return the exception of a failed check as one sentence for the user."""
+    """Return a sentence for the user about the exception that a failed check raised."""
     if isinstance(reason, (SyntaxError, LookupError)):
         return f"no text of kernels, or no certificate of the schema ({reason.args[0]!r})"
     text = str(reason) if isinstance(reason, (ValueError, OSError)) else f"no certificate of the schema ({reason!r})"

@@ -1,10 +1,11 @@
 """The effect of compiler flags on a certificate: bits and error bounds hold, only the bounds hold, or nothing holds.
 
 A certificate is about the operations of the C text, each rounded once to nearest. A flag that lets the compiler round
-elsewhere voids it. Contraction (a*b + c rounded once) removes roundings: the bits change, but the bounds hold. The
-exception is a product that is fused in some places and rounded in others, so that its errors no longer cancel.
-The table follows the documentation of the flags; a comparison of object code
-(:mod:`symrot.certificates.object_code.comparison`) shows the effect in one case. Only the standard library is used.
+elsewhere makes the certificate void. Contraction (a*b + c rounded once) removes roundings: the bits of the results
+change, but the error bounds hold, unless a product is fused in some places and rounded in others, so that its errors no
+longer cancel. The table of flags follows the compilers' manuals; a comparison of object code
+(:mod:`symrot.certificates.object_code.comparison`) shows what the flags changed in one compiled file. Only the standard
+library is used.
 """
 
 import re
@@ -42,7 +43,7 @@ UNFIXED = "without it a compiler may contract a*b + c where the processor has it
 
 @dataclass(frozen=True)
 class FlagRule:
-    """A row of the table of compiler flags: a pattern of flags, and the properties of code that they change."""
+    """A row of the table of compiler flags: a pattern of flags, and the code properties that they switch on or off."""
 
     form: str  # regular expression that matches the whole flag
     reason: str
@@ -159,7 +160,7 @@ class FlagEffect:
 
     @property
     def accepted(self) -> bool:
-        """Whether the error bounds of the certificate hold for code compiled with these flags."""
+        """Whether at least the certificate's error bounds hold for code compiled with these flags."""
         return self.holds != NOTHING
 
     def sentence(self) -> str:
@@ -178,12 +179,12 @@ class FlagEffect:
 
 
 def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
-    """Return the effect of flags of gcc or clang on a certificate. A later flag overrides an earlier one.
+    """Return the effect of a gcc or clang command's flags on a certificate; a later flag overrides an earlier flag.
 
     Parameters
     ----------
     flags : str or sequence of str
-        A command line, with or without the compiler's name in front; names of files are ignored.
+        A compiler command, with or without the compiler's name in front; file names in it are ignored.
 
     Raises
     ------
@@ -242,7 +243,7 @@ def _compiler(words: Sequence[str]) -> tuple[str, int]:
 def _check_file(word: str) -> None:
     """Raise InputError if a word of a compiler command is neither a flag nor the name of a file."""
     if not _FILE.fullmatch(word):
-        raise InputError(f"flags: expected flags (-O2) and names of files (kernel.c), got {word[:80]!r}")
+        raise InputError(f"flags: expected a flag such as -O2 or a file name such as kernel.c, got {word[:80]!r}")
 
 
 def _rule(flag: str) -> FlagRule:
@@ -254,7 +255,7 @@ def _rule(flag: str) -> FlagRule:
 
 
 def flags_section() -> dict[str, object]:
-    """Return the certificate's section ``flags``: compiler flags that it requires, allows or forbids, with reasons."""
+    """Return the certificate's section ``flags``: the required, allowed and forbidden compiler flags, with reasons."""
     void = ("-ffast-math", "-Ofast", "-funsafe-math-optimizations", "-fassociative-math", "-freciprocal-math",
             "-ffinite-math-only", "-fno-signed-zeros", "-fapprox-func", "-mdaz-ftz", "-mfpmath=387",
             "-fsingle-precision-constant")  # fmt: skip

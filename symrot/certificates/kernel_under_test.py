@@ -23,16 +23,16 @@ DOUBLE_AND_FLOAT, ONLY_DOUBLE = {"": "double", "f": "float"}, {"": "double"}
 def library_kernel_under_test(
     kernel: Definition, description: Description, files: Mapping[str, str]
 ) -> KernelUnderTest:
-    """Return a kernel of the library with the content of its certificate: formulas, laws, description and files.
+    """Return a library kernel with all that its certificate states: formulas, laws, description and files.
 
     Parameters
     ----------
     kernel : Definition
-        Its formulas and laws.
+        The kernel's formulas and laws.
     description : Description
-        The content of the header comments of its files.
+        The content of the header comments in the kernel's files.
     files : mapping of str to str
-        Path of a file, relative to the certificate -> its text.
+        A map from each file's path, relative to the certificate, to its text.
     """
     return KernelUnderTest(
         kernel.name, kernel.title, description, kernel.inputs, kernel.results, kernel.named, kernel.laws(), files,
@@ -47,9 +47,9 @@ def scene_kernel_under_test(
     description: Description,
     files: Mapping[str, str],
 ) -> KernelUnderTest:
-    """Return the kernel of a scene's equations of motion with everything that its certificate states.
+    """Return the kernel of a scene's equations of motion with all that its certificate states.
 
-    ``parameters`` are the arguments of the kernel that stand for formulas in the constants of the scene.
+    ``parameters`` gives the kernel's arguments that stand for formulas in the scene's physical constants.
     """
     inputs = tuple(a for a in program.signature.arguments if a.role == "in" and a.size)
     (target,) = (a for a in program.signature.arguments if a.role == "out")
@@ -73,10 +73,10 @@ class _ConstantsByName(dict[str, Symbol]):
 
 
 def scene_laws(equations: Equations) -> tuple[Law, ...]:
-    """Return the laws that the rates of a scene's state obey, as equations that are not solved for the rates.
+    """Return the laws that the rates (the time derivatives of a scene's states) obey; no law is solved for the rates.
 
-    ``I domega/dt + omega x (I omega + h)`` equals the torque in every component, including the components of ``omega``
-    that stay constant and so are not states; and ``dq/dt`` equals ``q (0, omega) / 2``.
+    ``I domega/dt + omega x (I omega + h)`` equals the torque in every component, even where a component of ``omega``
+    is constant and therefore not a state; and ``dq/dt`` equals ``q (0, omega) / 2``.
     """
     motion = equations.motion
     rate = {state: constant(f"d{state}") for state in equations.states}

@@ -38,7 +38,10 @@ CHECKS: tuple[tuple[str, str], ...] = (
 
 @dataclass(frozen=True)
 class _CheckedFunction:
-    """A function of libm to test: its name, the allowed error, and a generator of test arguments."""
+    """A function of libm to test: name, allowed error, and a generator of test arguments (y, x) with a given precision.
+
+    Functions of one argument use x alone.
+    """
 
     name: str
     allowed: Fraction  # ulp
@@ -52,7 +55,7 @@ class _CheckedFunction:
 
 
 def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Return random angles up to 1e6 rad that test sine and cosine, many near multiples of pi/2.
+    """Yield angles up to 1e6 rad that test sine and cosine: multiples of pi/2, and random angles.
 
     Near multiples of pi/2 the reduction of an angle loses digits. Beyond 1e6 rad libraries are less accurate: the
     cosine of glibc 2.36 has an error of 8 ulp at 6381956970095103*2^797.
@@ -69,7 +72,7 @@ def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 def _sides(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Return random arguments (y, x) that test atan2, with ratios of many magnitudes."""
+    """Yield random arguments (y, x) that test atan2; y has many magnitudes."""
     from mpmath import mpf
 
     for size in (1e-12, 1e-6, 1e-3, 0.3, 1.0, 1.0, 3.0, 1e3, 1e6, 1e12):
@@ -81,7 +84,7 @@ def _sides(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 def _radicands(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Return random arguments that test the square root, of many magnitudes."""
+    """Yield random positive numbers of many magnitudes that test the square root."""
     from mpmath import mpf
 
     for _ in range(POINTS):
@@ -106,7 +109,7 @@ def _rounded(value: Any, digits: int) -> float:
 
 
 def _point(name: str, suffix: str, y: float, x: float) -> str:
-    """Return one row of a C table of test points: arguments, rounded value, exact minus rounded value and ulp."""
+    """Return a row of a C table of test points: arguments, rounded value, its error in ulp, and the size of an ulp."""
     from mpmath import floor, log, mp, mpf
 
     digits, smallest = FORMATS[suffix]
@@ -119,7 +122,7 @@ def _point(name: str, suffix: str, y: float, x: float) -> str:
 
 @cache
 def selftest_files() -> dict[str, str]:
-    """Return the files of the self-test in C, name -> text; the same text on every machine."""
+    """Return a map from the name of each C file of the self-test to its text, which is the same on every machine."""
     from mpmath import workdps
 
     tables, rows, sentences = [], [], [text for _, text in CHECKS]
@@ -148,7 +151,7 @@ def selftest_files() -> dict[str, str]:
 
 
 def _string(text: str) -> str:
-    """Return a text as C string literals, one for each line of the text."""
+    """Return a text as C string literals on several lines, for one entry of an array."""
     return "\n".join(f'        "{line}"' for line in wrap(text, 100, drop_whitespace=False)) + ","
 
 
@@ -192,7 +195,10 @@ def _header() -> str:
 
 @dataclass(frozen=True)
 class SelfTest:
-    """The result of the self-test: ``passed``, a ``sentence`` about it, and the worst errors by function, in ulp."""
+    """The result of the self-test: whether it ``passed``, a ``sentence`` that says so, and each function's worst error.
+
+    ``ulps`` maps the name of a function to its worst error, in ulp.
+    """
 
     passed: bool
     sentence: str
@@ -213,14 +219,14 @@ class SelfTest:
 
 
 def run_selftest(bits: bool = True, flags: Sequence[str] = FLAGS) -> SelfTest:
-    """Compile the self-test with the compiler of this machine and run it in this process and thread.
+    """Compile the self-test with this machine's C compiler, run it in this process and thread, and return the result.
 
     Parameters
     ----------
     bits : bool
         Whether a*b + c must be rounded twice, so that the bits of the C text hold and not only its error bounds.
     flags : sequence of str
-        The flags for compiling a shared library.
+        The compiler flags, which must produce a shared library.
 
     Raises
     ------
@@ -236,7 +242,7 @@ def run_selftest(bits: bool = True, flags: Sequence[str] = FLAGS) -> SelfTest:
     try:
         library = ctypes.CDLL(str(path))
     except OSError as reason:
-        raise CompilerError(f"the self-test was compiled and cannot be loaded ({reason})") from None
+        raise CompilerError(f"the self-test was compiled but cannot be loaded ({reason})") from None
     library.symrot_selftest_sentence.restype = ctypes.c_char_p
     ulps = (ctypes.c_double * len(NAMES))(*[-1.0] * len(NAMES))
     failure = library.symrot_selftest(int(bits), ulps)

@@ -1,4 +1,4 @@
-"""External programs, such as objdump and coqc, run with a time limit that also ends the programs they start."""
+"""Running of external programs, such as objdump and coqc, with a time limit."""
 
 import os
 import signal
@@ -18,12 +18,13 @@ def run_tool(
     cwd: Path | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> CompletedProcess[str]:
-    """Run a program and return its output and its exit status.
+    """Run a program and return its output, error output and exit status.
 
     Raises
     ------
     CompilerError
-        If the program cannot be run, or takes too long; it is then killed, with all programs that it started.
+        If the program cannot be started, or does not end within ``seconds``; then it and all programs that it started
+        are killed.
     """
     try:
         process = Popen(

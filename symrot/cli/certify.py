@@ -94,16 +94,20 @@ def _audit(options: Namespace) -> int:
 
 
 def _prove_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("--coq", type=Path, metavar="DIR", required=True, help="write the theorems as files of Coq")
     parser.add_argument(
-        "--check", action="store_true", help="require that Coq checks them (default: only if it is installed)"
+        "--coq", type=Path, metavar="DIR", required=True, help="write the theorems as Coq files into this folder"
+    )
+    parser.add_argument(
+        "--check", action="store_true", help="fail if Coq is not installed (default: then only write the files)"
     )
     json_option(parser)
 
 
 def _selftest_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
-        "--bounds", action="store_true", help="test only what error bounds need: contraction is accepted"
+        "--bounds",
+        action="store_true",
+        help="test only what the error bounds need, so that contraction (a*b + c rounded once) is accepted",
     )
     json_option(parser)
 
@@ -113,12 +117,14 @@ def _bound_arguments(parser: ArgumentParser) -> None:
         "kernel", metavar="KERNEL", help="a kernel of the library (see `symrot emit --list`) or a scene"
     )
     parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
-                        help="range of an input, theta=-1.4:1.4 (default: the kernel's), or of a physical constant of "
-                        "a scene, A=1:2; may be repeated")  # fmt: skip
+                        help="range of an input, such as theta=-1.4:1.4 (default: the kernel's own range), or of a "
+                        "physical constant of a scene, such as A=1:2; may be repeated")  # fmt: skip
     parser.add_argument("--target", type=float, metavar="X", help="find the largest box on which no error is above X")
     parser.add_argument("--variable", metavar="NAME", action="append", default=[],
                         help="with --target: resize the range of this input only; may be repeated")  # fmt: skip
-    parser.add_argument("--precision", choices=("double", "float"), default="double", help="(default: double)")
+    parser.add_argument(
+        "--precision", choices=("double", "float"), default="double", help="type of the numbers (default: double)"
+    )
     json_option(parser)
 
 
@@ -130,27 +136,33 @@ def _certify_arguments(parser: ArgumentParser) -> None:
                         help="range of an input for the bounds of rounding errors, or of a physical constant of a "
                         "scene; may be repeated")  # fmt: skip
     parser.add_argument(
-        "--objects", action="store_true", help="compile it, and compare the object code with the C text"
+        "--objects", action="store_true", help="compile the kernel, and compare the object code with the C text"
     )
     parser.add_argument("--no-bounds", action="store_true", help="omit the bounds of rounding errors")
-    parser.add_argument("-o", type=Path, metavar="DIR", dest="directory", help="write kernel and certificate there")
+    parser.add_argument(
+        "-o", type=Path, metavar="DIR", dest="directory", help="write the kernel and its certificate into this folder"
+    )
     json_option(parser)
 
 
 def _audit_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("certificates", type=Path, nargs="+", metavar="FILE.cert.json",
-                        help="in one folder with the files of the kernel")  # fmt: skip
-    parser.add_argument("--object", type=Path, metavar="FILE.o", help="the C file as compiled by your compiler")
-    parser.add_argument("--flags", metavar="'CC FLAGS'", help="say what holds under your flags, e.g. 'gcc -O3 -mfma'")
+                        help="a certificate, in one folder with the files of its kernel")  # fmt: skip
+    parser.add_argument(
+        "--object", type=Path, metavar="FILE.o", help="compare the object file that your compiler made from the C file"
+    )
+    parser.add_argument(
+        "--flags", metavar="'CC FLAGS'", help="say what still holds under your flags, such as 'gcc -O3 -mfma'"
+    )
     parser.add_argument("--rerun-bounds", action="store_true", help="compute the bounds of rounding errors again")
-    parser.add_argument("--coq", action="store_true", help="have Coq check the theorem about the kernel")
+    parser.add_argument("--coq", action="store_true", help="let Coq check the theorem about the kernel")
     json_option(parser)
 
 
 COMMANDS: dict[str, Command] = {
     "prove": ("print the kinematics as theorems, and have Coq check them", _prove, _prove_arguments),
     "certify": ("certify a kernel: laws, C text, rounding errors, object code", _certify, _certify_arguments),
-    "audit": ("check that a certificate holds for the files beside it", _audit, _audit_arguments),
+    "audit": ("check that a certificate holds for the files in its folder", _audit, _audit_arguments),
     "bound": ("bound the rounding errors of a kernel on a box of inputs", _bound, _bound_arguments),
     "selftest": ("check that this machine computes as the certificates assume", _selftest, _selftest_arguments),
 }

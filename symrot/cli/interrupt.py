@@ -1,4 +1,4 @@
-"""A hook that makes Ctrl-C end the command even at moments when Python discards the KeyboardInterrupt.
+"""A hook with which Ctrl-C ends the command even at moments when Python discards the KeyboardInterrupt.
 
 Python discards an exception raised inside a weak reference's callback, a ``__del__`` method or a callback from C: it
 passes the exception to ``sys.unraisablehook`` and continues. A KeyboardInterrupt at such a moment, for example during

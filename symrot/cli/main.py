@@ -1,7 +1,7 @@
 """The command line: parses arguments, calls the command, prints its result to stdout and its progress to stderr.
 
-Texts come from :mod:`symrot.report`. Exit codes: 0 success, 1 a check failed, 2 bad usage or input, 130 interrupted,
-141 the program that read the output has ended.
+Texts come from :mod:`symrot.report`. The exit codes are 0 for success, 1 if a check failed, 2 for bad usage or input,
+130 after an interrupt, and 141 if the program that read the output has ended.
 """
 
 import os
@@ -133,7 +133,7 @@ def _show(options: Namespace) -> int:
 def _trajectory(propagator: Any, options: Namespace) -> Any:
     """Propagate a motion and return its trajectory, or None after Ctrl-C.
 
-    If it ends early, the samples so far are written to the file of ``--out``.
+    If the propagation ends early, the samples so far are written to the file of ``--out``.
     """
     from symrot.propagation.progress import reporting
 
@@ -161,14 +161,14 @@ def _trajectory(propagator: Any, options: Namespace) -> Any:
 
 
 def _write_partial(error: BaseException, propagator: Any, options: Namespace) -> str:
-    """Write the samples before an error to the file of ``--out``; return a clause about them for the error message."""
+    """Write the samples before an error to the file of ``--out``; return the end of a sentence that says so."""
     part = getattr(error, "trajectory", None)
     if not options.out or part is None or not len(part):
         return ""
     from symrot.report import output
 
     output.save(part, options.out, propagator.tolerance)
-    return f"; {options.out} holds the {len(part)} samples before"
+    return f"; {options.out} contains the {len(part)} samples before"
 
 
 def _explain(options: Namespace) -> int:
@@ -366,7 +366,12 @@ def _run_arguments(parser: ArgumentParser) -> None:
     _table_folder_option(parser)
     parser.add_argument("--method", default="auto", metavar="NAME", help="auto, exact, taylor, dop853 or scipy:NAME")
     parser.add_argument("--tolerance", metavar="X", help="error to aim for, 1e-15 to 1e-2 (default: the scene's own)")
-    parser.add_argument("--state", default="quaternion", metavar="SEQUENCE", help="step Euler angles, such as ZXZ")
+    parser.add_argument(
+        "--state",
+        default="quaternion",
+        metavar="SEQUENCE",
+        help="integrate Euler angles of this sequence, such as ZXZ (default: quaternion)",
+    )
     parser.add_argument("--out", type=Path, metavar="FILE", help="write the output quantities: FILE.npz or FILE.csv")
     parser.add_argument("--plot", type=Path, metavar="FILE",
                         help="draw the motion: FILE.png, .pdf or .svg, or FILE.html for a page that moves")  # fmt: skip
@@ -391,27 +396,36 @@ def _emit_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("kernel", metavar="KERNEL", nargs="?", help="a kernel of the library, a scene, or its file")
     parser.add_argument("--list", action="store_true", help="list the kernels of the library")
     parser.add_argument("--all", action="store_true", help="write the library and the kernels of all shipped scenes")
-    parser.add_argument("--check", action="store_true", help="compare the written kernels; exit 1 with a diff if stale")
+    parser.add_argument(
+        "--check",
+        action="store_true",
+        help="compare the files on disk with new ones; exit 1 with a diff if they differ",
+    )
     parser.add_argument(
         "--target", choices=TARGETS, help="language (default: c for a kernel, all for --all and --check)"
     )
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
-                        help="folder (default: standard output for a kernel, ./generated otherwise)")  # fmt: skip
+                        help="folder to write to, or to compare with --check (default: standard output for a kernel, "
+                        "otherwise ./generated)")  # fmt: skip
 
 
 def _derive_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("name", metavar="NAME", nargs="?", help="a derivation (default: list all)")
     parser.add_argument("--all", action="store_true", help="write the pages of all derivations")
-    parser.add_argument("--check", action="store_true", help="compare the written pages; exit 1 with a diff if stale")
+    parser.add_argument(
+        "--check",
+        action="store_true",
+        help="compare the pages on disk with new ones; exit 1 with a diff if they differ",
+    )
     parser.add_argument(
         "--format", choices=PAGES, default="markdown", help="format of a derivation (default: markdown)"
     )
     parser.add_argument("--step", type=int, metavar="N", help="print one step of a derivation")
     parser.add_argument(
-        "--detail", action="store_true", help="with --step: show every expression between its two sides"
+        "--detail", action="store_true", help="with --step: show every expression between the two sides of its equation"
     )
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
-                        help="folder of --all and --check (default: ./derivations)")  # fmt: skip
+                        help="folder that --all writes and --check reads (default: ./derivations)")  # fmt: skip
 
 
 def _check_arguments(parser: ArgumentParser) -> None:
@@ -430,13 +444,15 @@ def _check_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--textbook", metavar="NAME", help="check the claims of a document: chen, sahakian, brown, "
                         "beer-johnston, or all")  # fmt: skip
     parser.add_argument("--all", action="store_true", help="with --textbook all: write the page of errata")
-    parser.add_argument("-o", "--output", metavar="DIR", default="generated", help="folder of --all (./generated)")
+    parser.add_argument(
+        "-o", "--output", metavar="DIR", default="generated", help="folder that --all writes to (default: ./generated)"
+    )
     parser.add_argument("--given", dest="hypotheses", metavar="HYPOTHESIS", action="append", default=[],
                         help="'a == b', 'x > 0' or 'x != 0', with a claim as text; may be repeated")  # fmt: skip
     parser.add_argument("--unit", metavar="NAME=UNIT", action="append", default=[],
                         help="unit of a symbol, with a claim as text: 'F=kg m/s^2'; may be repeated")  # fmt: skip
     parser.add_argument("--strict", action="store_true",
-                        help="exit 1 for a definition, a named formula that symrot does not know")  # fmt: skip
+                        help="exit 1 for a definition (a name for a formula that symrot does not know)")  # fmt: skip
     parser.add_argument("--no-repair", action="store_true", help="do not look for true formulas near a false one")
     json_option(parser)
 
@@ -453,7 +469,7 @@ def _bench_arguments(parser: ArgumentParser) -> None:
 
 
 def _doctor_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("--clear-cache", action="store_true", help="remove the kernels kept in the cache")
+    parser.add_argument("--clear-cache", action="store_true", help="remove all kernels from the cache")
     json_option(parser)
 
 
@@ -474,7 +490,7 @@ COMMANDS: dict[str, Command] = {
 
 
 def _nowhere() -> TextIO:
-    """Return a null stream, used if the process was started with stdout or stderr closed."""
+    """Return a stream that discards its text, for a process that was started with stdout or stderr closed."""
     return Path(os.devnull).open("w", encoding="utf-8")
 
 
@@ -499,7 +515,7 @@ def _parser(only: str = "") -> _Parser:
 
 
 def _check_command(arguments: Sequence[str]) -> None:
-    """Raise InputError for an unknown command, suggesting the most similar one."""
+    """Raise InputError for an unknown command; the message suggests the most similar command."""
     if arguments and not arguments[0].startswith("-") and arguments[0] not in COMMANDS:
         from symrot.scene.reader import nearest
 
@@ -509,7 +525,7 @@ def _check_command(arguments: Sequence[str]) -> None:
 
 
 def _silence(stream: Any) -> None:
-    """Redirect an output stream whose reader has ended to the null device, so that Python closes it without error."""
+    """Redirect a stream whose reader has ended to the null device, so that Python closes the stream without error."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 

@@ -1,1 +1,1 @@
-"""Motions in closed form: the angular velocity and attitude at any time, without stepping."""
+"""Motions in closed form: the angular velocity and attitude at any time, without numerical integration."""

@@ -1,7 +1,7 @@
 """Constants of many motions in closed form, computed as arrays; every bit is the same as for single motions.
 
-Sums in which all digits may cancel are computed in integers, one motion after the other. Double-double arithmetic (sums
-of two doubles) computes the rest for all motions at once.
+A double-double number is a sum hi + lo of two doubles. Sums in which all digits may cancel are computed in integers,
+one motion after the other; all other constants are computed in double-double arithmetic, for all motions at once.
 """
 
 from collections.abc import Callable, Sequence
@@ -37,7 +37,7 @@ __all__ = [
 ]  # fmt: skip
 
 Column = Floats | Fraction
-"""A constant: one value for each motion, shape (n,), or one value for all motions."""
+"""The values of a constant: an array with one value for each motion, shape (n,), or one Fraction for all motions."""
 
 _SPREAD = 2.0**-300  # quaternions whose components differ by a larger factor are computed in fractions
 _DOUBT = 2.0**-12  # part of a grid step; the errors of double-double numbers are less than a quarter of it
@@ -46,19 +46,19 @@ _TURNED = 2.0**-99  # error of products of unit quaternions: 2^-100 of the units
 
 
 def attitudes(quaternions: Floats) -> Floats:
-    """Return unit quaternions as sums of two doubles, shape (n, 8): hi and lo of each component.
+    """Return quaternions divided by their norms, as double-double numbers, shape (n, 8): hi and lo of each component.
 
-    The numbers equal those of :func:`symrot.closed_form.arithmetic.pairs.attitude`. If double-double arithmetic leaves
-    the last bit in doubt, as for about one quaternion in a thousand, exact arithmetic decides it.
+    The numbers are the same as from :func:`symrot.closed_form.arithmetic.pairs.attitude`. For about one quaternion in a
+    thousand, double-double arithmetic leaves the last bit in doubt; exact arithmetic then determines it.
     """
     high, low = _units(quaternions)
     return _on_grid(high, low, 0.0, lambda i: attitude(_unit(quaternions[i])))
 
 
 def turned(frame: Frame, quaternions: Floats) -> Floats:
-    """Return attitudes converted to the axes in which a heavy top is solved, shape (n, 8): hi and lo of each component.
+    """Return attitudes converted to the axes of the formulas of a heavy top, shape (n, 8): hi and lo of each component.
 
-    The numbers equal those of :meth:`symrot.closed_form.heavy_top.motion.Frame.start` for each single attitude.
+    The numbers are the same as from :meth:`symrot.closed_form.heavy_top.motion.Frame.start` for each attitude.
     """
     attitudes = _units(quaternions)
     if frame.before is not None:
@@ -75,7 +75,7 @@ def _unit(quaternion: Floats) -> Sequence[Fraction]:
 def _units(quaternions: Floats) -> dd.Pair:
     """Return quaternions divided by their norms, as double-double numbers.
 
-    The error of each component is less than a quarter of :data:`_DOUBT`, in units of the rounding grid.
+    The error of each component is less than a quarter of :data:`_DOUBT` times the step of the rounding grid.
     """
     scaled = np.ldexp(quaternions, -np.frexp(abs(quaternions).max(axis=1))[1][:, None])
     square = dd.two_product(scaled, scaled)
@@ -99,9 +99,9 @@ def _sign(i: int, j: int) -> float:
 
 
 def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
-    """Return the products of one constant unit quaternion with many others, shape (n, 4), with an error of 2^-102.
+    """Return the products of one constant unit quaternion with many unit quaternions q, shape (n, 4).
 
-    If ``before`` is true, the constant quaternion is the left factor.
+    If ``before`` is true, the constant quaternion is the left factor. The error is 2^-102.
     """
     product: dd.Pair | None = None
     for i, (high, low) in enumerate(map(pair, constant)):
@@ -116,8 +116,8 @@ def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
 def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], Sequence[float]]) -> Floats:
     """Return double-double numbers rounded as :func:`symrot.closed_form.arithmetic.pairs.on_grid` rounds exact numbers.
 
-    Rows whose rounding is in doubt are replaced by ``exactly(row)``. The error of the numbers is at most a quarter of
-    :data:`_DOUBT` of a grid step of each component, plus ``error``.
+    If the rounding of row i is in doubt, the row is replaced by ``exactly(i)``. The numbers passed have an error of at
+    most ``error`` plus a quarter of :data:`_DOUBT` times the grid step of the component.
     """
     last = np.where(abs(high) > _SPREAD, np.spacing(abs(high)), 1.0)
     part, steps = abs(low) / last, low / (last * GRID)
@@ -133,14 +133,14 @@ def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], S
 
 
 def _pairs(values: Floats) -> Floats:
-    """Return doubles as double-double numbers, each followed by a low part of zero."""
+    """Return doubles as double-double numbers: each double followed by the low part zero."""
     pairs = np.zeros((*values.shape[:-1], 2 * values.shape[-1]))
     pairs[..., ::2] = values
     return pairs
 
 
 def _columns(values: Sequence[Column], n: int) -> Floats:
-    """Return k constants as double-double numbers in an array of shape (n, 2 k), one row for each motion."""
+    """Return k constants as double-double numbers, shape (n, 2 k): one row for each motion."""
     columns = np.zeros((n, 2 * len(values)))
     for k, value in enumerate(values):
         if isinstance(value, Fraction):
@@ -151,26 +151,26 @@ def _columns(values: Sequence[Column], n: int) -> Floats:
 
 
 def _together(values: Sequence[Column], n: int) -> Floats:
-    """Return k constants as double-double numbers: shape (2 k,) if all n motions share them, else (n, 2 k)."""
+    """Return k constants as double-double numbers: shape (2 k,) if none of them varies, otherwise (n, 2 k)."""
     return _columns(values, n)[0] if all(isinstance(value, Fraction) for value in values) else _columns(values, n)
 
 
 def usual(omega: Floats) -> NDArray[np.bool_]:
-    """Return, for each angular velocity (n, 3), whether arrays of its size give the same bits as single motions."""
+    """Return, for each angular velocity (n, 3), whether batches give the same bits as single motions."""
     largest = abs(omega).max(axis=1)
     is_usual: NDArray[np.bool_] = (largest <= LARGEST) & ((largest >= SMALLEST) | (largest == 0))
     return is_usual
 
 
 def _noticed(omega: Floats) -> Floats:
-    """Return angular velocities with components set to zero that are too small to affect a motion."""
+    """Return angular velocities in which components that are too small to affect a motion are set to zero."""
     return np.where(abs(omega) < np.ldexp(abs(omega).max(axis=1), -number.NEGLIGIBLE_BITS)[:, None], 0.0, omega)
 
 
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of one free body from many initial angular velocities and attitudes.
+    """Return the batch of the motions of one free body from many initial angular velocities and attitudes.
 
-    The angular velocities must pass :func:`usual`. The attitudes are pairs hi, lo, of shape (8,) or (n, 8).
+    :func:`usual` must be true for the angular velocities. The attitudes are pairs hi, lo, of shape (8,) or (n, 8).
     """
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
@@ -186,7 +186,7 @@ def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
 
 
 def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floats) -> Batch:
-    """Return the motions of free bodies in principal axes, given their three moments, kg m^2.
+    """Return the batch of the motions of free bodies in principal axes, given their three moments of inertia, kg m^2.
 
     The other arguments are as for :func:`free_bodies`.
     """
@@ -211,10 +211,10 @@ def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floa
 def free_bodies_of_tensors(
     entries: Sequence[Column], omega: Floats, start: Floats
 ) -> tuple[Batch | None, NDArray[np.bool_]]:
-    """Return motions of free bodies in axes that are not principal, and a mask of the motions computed exactly.
+    """Return the batch of free bodies in axes that are not principal, and for which motions it is valid.
 
-    ``entries`` are the tensor's xx, yy, zz, xy, xz and yz, kg m^2; the other arguments are as for :func:`free_bodies`.
-    The motions outside the mask must be computed one by one.
+    ``entries`` are the components xx, yy, zz, xy, xz and yz of the inertia tensors, kg m^2; the other arguments are as
+    for :func:`free_bodies`. Motions for which the Boolean array is false must be computed one by one.
     """
     settled = np.ones(len(omega), np.bool_)
     principal = bodies.principal_bodies(entries, omega)
@@ -225,7 +225,7 @@ def free_bodies_of_tensors(
 
 
 def _integers(values: list[float]) -> list[int]:
-    """Return some doubles as integers: each double is multiplied by the same power of two."""
+    """Return three doubles as integers: all are multiplied by the same power of two."""
     (a, over_a), (b, over_b), (c, over_c) = (value.as_integer_ratio() for value in values)
     if over_a == over_b == over_c:
         return [a, b, c]
@@ -236,10 +236,10 @@ def _integers(values: list[float]) -> list[int]:
 def tops(
     across: Column, own: Column, pull: Floats, frame: Frame, omega: Floats, start: Floats,
 ) -> Batch:  # fmt: skip
-    """Return the motions of symmetric heavy tops from many initial states.
+    """Return the batch of the motions of symmetric heavy tops from many initial states.
 
-    ``across`` and ``own`` are the moments across and about the symmetry axis; ``pull`` is weight times height as hi,
-    lo, of shape (2,) or (n, 2); ``start`` holds attitudes in the axes of ``frame``, see :func:`turned`.
+    ``across`` and ``own`` are the moments of inertia across and about the symmetry axis; ``pull`` is weight times
+    height as hi, lo, of shape (2,) or (n, 2); ``start`` holds attitudes in the axes of ``frame``, see :func:`turned`.
     """
     rates = _pairs(np.ascontiguousarray(omega[:, frame.named]))
     axes = None if frame.axes is None else np.array(frame.axes)
@@ -247,9 +247,10 @@ def tops(
 
 
 def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of symmetric gyrostats whose rotor lies along one axis, from many initial states.
+    """Return the batch of the motions of symmetric gyrostats, rotor along ``axis``, from many initial states.
 
-    ``across`` and ``own`` are the moments across and about that axis, ``rotor`` is the rotor's angular momentum.
+    ``across`` and ``own`` are the moments of inertia across and about the axis, ``rotor`` is the angular momentum of
+    the rotor.
     """
     named = [(axis + 1) % 3, (axis + 2) % 3, axis]
     rates = _pairs(np.ascontiguousarray(omega[:, named]))
@@ -258,9 +259,9 @@ def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floa
 
 
 def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of symmetric bodies under a constant torque about their axis, from many initial states.
+    """Return the batch of symmetric bodies under a constant torque about ``axis``, from many initial states.
 
-    ``across`` and ``own`` are the moments across and about that axis.
+    ``across`` and ``own`` are the moments of inertia across and about the axis.
     """
     numbers = np.empty((len(omega), 20))
     numbers[:, :6] = _columns([across, own, torque], len(omega))
@@ -270,9 +271,9 @@ def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floa
 
 
 def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
-    """Return the motions of bodies driven about one axis, from many initial states.
+    """Return the batch of the motions of bodies driven about one axis, from many initial states.
 
-    ``constants`` describe one body for all initial states, or one body for each state. They were computed in integers.
+    ``constants``, computed in integers, describe one body for all initial states, or one body for each initial state.
     """
     bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis

@@ -1,10 +1,11 @@
 """Compilation of the closed forms, once per machine: all scenes share the code and differ only in constants.
 
-A closed form consists of two C files, compiled in parallel. ``name.c`` computes the constants of a motion, once per
-motion; it is compiled at -Og, which takes a third of the time of -O2 and costs 1 us per motion. ``name_at.c`` holds the
-loops over samples. A form with elementary constants has no ``name.c``; ``bodies_at.c`` loops over bodies. Double-double
-arithmetic requires that every operation is rounded separately. Contraction to fused operations is therefore off, and
-each prepared motion first tests the compiled code for it.
+A closed form consists of two C files, compiled in parallel. ``name.c`` computes the constants of a motion; it is
+compiled with -Og, which takes a third of the compile time of -O2, but makes each motion 1 us slower. ``name_at.c``
+contains the loops over samples. A closed form with elementary constants has no ``name.c``; ``bodies_at.c`` contains
+loops over bodies. Double-double arithmetic (numbers that are sums of two doubles) requires that every operation is
+rounded separately. The compiler must therefore not combine a product and a sum into one operation, and each prepared
+motion first tests whether the compiled code rounds every operation.
 """
 
 import ctypes
@@ -38,7 +39,7 @@ FLAGS = (
 INCLUDE = '\n#include "'
 
 PARTS = {"": (*FLAGS, "-Og"), "_at": (*FLAGS, "-O2")}
-"""Compiler flags of the C files of a closed form, by the ending of the file's name."""
+"""Compiler flags for the C files of a closed form, by the ending of the file name."""
 
 _begun: dict[str, list[library.Building]] = {}
 _loaded: dict[str, tuple[Any, ...]] = {}
@@ -51,7 +52,7 @@ def _files() -> dict[str, Path]:
 
 
 def source(name: str) -> str:
-    """Return the text of ``name.c`` as one translation unit: each header is inserted once."""
+    """Return the text of ``name.c`` with the text of its headers inserted, each header only once."""
     places, seen = _files(), set()
 
     def text(file: str) -> str:
@@ -67,7 +68,7 @@ def source(name: str) -> str:
 
 
 def begin(name: str) -> list[library.Building]:
-    """Start to compile the libraries of a closed form and return the running compilations.
+    """Start to compile the libraries of a closed form, and return the running compilations.
 
     There is one library for each name in :data:`PARTS`; a cached library is not compiled again.
 
@@ -91,7 +92,7 @@ def loaded(name: str) -> bool:
 
 
 def load(name: str) -> tuple[Any, ...]:
-    """Return the loaded libraries of a closed form: of its constants, if it has such a library, then of its loops.
+    """Return the loaded libraries of a closed form: that of its constants, if there is one, and that of its loops.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""Many motions of one closed form in one call of C: constants that differ are arrays, shared constants are passed once.
+"""Many motions of one closed form in one call of C: constants that vary are arrays, shared constants are passed once.
 
-The same compiled functions compute each motion from the same numbers as for a single motion, so that all bits of the
-results are equal.
+Each motion is computed by the same compiled functions and from the same numbers as a single motion, so that all bits of
+the results are equal.
 """
 
 import ctypes
@@ -21,18 +21,18 @@ AT_ONCE = 1024  # motions per call of C, about 10 ms, after which Python can rea
 
 
 class Batch(NamedTuple):
-    """A batch of motions of the closed form ``name``, given by the arguments of its C function `prepare`.
+    """A batch of n motions of the closed form ``name``, given by the arguments of its C function `prepare`.
 
     Each argument is an array of shape (k,) that all motions share, an array of shape (n, k), or None. For ``axial`` the
     only argument is the complete record of constants. For ``spin_up`` there are two arguments: the numbers of each
-    motion, and the axis with the limits that all motions share.
+    motion, and an array with the axis and the limits that all motions share.
     """
 
     name: str
     arguments: tuple[Floats | None, ...]
 
     def of(self, chosen: NDArray[np.bool_]) -> "Batch":
-        """Return the batch of the motions whose entry in ``chosen`` is true."""
+        """Return a batch of only those motions whose entry in ``chosen`` is true."""
         own = (values[chosen] if values is not None and values.ndim == 2 else values for values in self.arguments)
         return Batch(self.name, tuple(own))
 
@@ -55,7 +55,7 @@ def _place(function: Any) -> int:
 def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | None, workers: int = 1) -> list[int]:
     """Write the samples of n motions into arrays; return the indices of the motions that could not be computed.
 
-    These motions exceed the range of this arithmetic and must be evaluated one by one.
+    Their numbers exceed the range of double-double arithmetic, and they must be computed one by one.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
     times : array, shape (m,) or (n, m)
         Times from the start, s.
     omega, quaternion : arrays, shapes (n, m, 3) and (n, m, 4), or None
-        The arrays to fill, contiguous for each motion; None skips a quantity.
+        The arrays to fill, contiguous for each motion; without an array for quaternions, no attitudes are computed.
     workers : int
         Number of threads; each computes a part of the motions.
     """
@@ -95,13 +95,13 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
         return refused
 
     odd = _shared(share, n, min(workers, max(1, n // AT_ONCE)))
-    told = omega if quaternion is None else quaternion
-    ends = told[:, 0, 0] + told[:, -1, -1]  # not finite if a motion overflows; evaluated alone, it raises the error
+    values = omega if quaternion is None else quaternion
+    ends = values[:, 0, 0] + values[:, -1, -1]  # not finite if a motion overflows; evaluated alone, it raises the error
     return sorted({*odd, *np.flatnonzero(np.isnan(ends)).tolist()})
 
 
 class _Linked(NamedTuple):
-    """Compiled loop over motions, with the addresses of the C functions of one closed form that it calls."""
+    """The compiled loop over motions, and the addresses of the C functions of one closed form that the loop calls."""
 
     run: Any
     prepare: int

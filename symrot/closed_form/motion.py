@@ -1,4 +1,4 @@
-"""The base class of motions in closed form, which return angular velocity and attitude at any time."""
+"""The base class of motions in closed form, which compute angular velocity and attitude at any time."""
 
 import ctypes
 from abc import ABC, abstractmethod
@@ -18,7 +18,8 @@ from symrot.errors import CompilerError, InputError
 __all__ = ["REGIMES", "ExactMotion", "functions", "prepared"]
 
 REGIMES = ("steady", "circular", "hyperbolic", "separatrix")
-"""Kinds of functions in a motion: elementary, theta series, their imaginary transforms, functions of a separatrix."""
+"""Kinds of functions in a motion: elementary functions, theta series, their imaginary transforms (series for large
+moduli), and functions on the separatrix."""
 
 _DOMAIN = 1
 _Functions = tuple[Any, Any, Any]
@@ -26,9 +27,9 @@ _bound: dict[str, _Functions] = {}
 
 
 class ExactMotion(ABC):
-    """The interface of a motion in closed form, which can be evaluated at any time.
+    """Interface of a motion in closed form, which can be evaluated at any time.
 
-    Times are counted from the initial state, s.
+    Times, s, are counted from the initial state.
     """
 
     regime: str
@@ -47,19 +48,19 @@ class ExactMotion(ABC):
         t : number or sequence of n numbers
             Times from the initial state, s, in any order; negative times are allowed.
         omega, quaternion : bool
-            Whether to compute each; the result for the other is None.
+            Whether to compute the angular velocity and the attitude; a result that is not computed is None.
 
         Returns
         -------
         omega : array, shape (n, 3), or None
-            rad/s, along the body's axes.
+            Angular velocity, rad/s, body components.
         quaternion : array, shape (n, 4), or None
-            Body to space, scalar first, unit, continuous in time.
+            Attitude as unit quaternions, body to space, scalar first, continuous in time.
 
         Raises
         ------
         InputError
-            If a time is not finite, or products of the numbers and times exceed the range of doubles.
+            If a time is not finite, or if a product of a rate and a time exceeds the range of doubles.
         """
         times = times_of(t)
         rates = np.empty((len(times), 3)) if omega else None
@@ -89,7 +90,7 @@ class _Compiled(ExactMotion):
 
 
 class _Portable(ExactMotion):
-    """A motion in closed form for use without a C compiler: mpmath computes the constants, NumPy the samples."""
+    """A motion in closed form that needs no C compiler: mpmath computes the constants, NumPy the samples."""
 
     def __init__(self, motion: Any) -> None:
         self.regime, self._motion = motion.regime, motion
@@ -99,7 +100,7 @@ class _Portable(ExactMotion):
 
 
 def functions(name: str, arguments: int) -> _Functions:
-    """Return the C functions of a closed form: `prepare`, the loop over samples, and the type of their record."""
+    """Return the C functions `prepare` and loop over samples of a closed form, and the ctypes type of its constants."""
     if name not in _bound:
         constants, samples = load(name)
         prepare, length = (getattr(constants, f"symrot_{name}_{part}") for part in ("prepare", "length"))
@@ -113,16 +114,16 @@ def functions(name: str, arguments: int) -> _Functions:
 
 
 def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Callable[[], str]) -> ExactMotion:
-    """Return the motion that the C function `prepare` of ``name.c`` makes from its arguments.
+    """Return the motion whose constants the C function `prepare` of ``name.c`` computes from ``arguments``.
 
     Each argument is a list of doubles or None. ``refusal`` returns the error message for numbers outside the domain.
 
     Raises
     ------
     InputError
-        With the text of ``refusal`` if the numbers are outside the motion's domain.
+        With the text of ``refusal``, if the numbers are outside the domain of the closed form.
     CompilerError
-        If the C compiler rejects the source, or breaks error-free arithmetic.
+        If the C compiler rejects the source, or does not round every operation separately.
     """
     if name not in _bound and library.missing():
         from symrot.closed_form.portable import MOTIONS
@@ -138,7 +139,7 @@ def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Call
     if status == _DOMAIN:
         raise InputError(refusal())
     if status:
-        raise CompilerError("the C compiler breaks error-free arithmetic: it must round every operation as written")
+        raise CompilerError("the C compiler does not round every operation separately; set CC to another compiler")
     return _Compiled(constants, evaluate)
 
 
@@ -146,5 +147,5 @@ _packing = {length: Struct(f"{length}d").pack for length in (2, 4, 6, 8, 26)}
 
 
 def _packed(values: list[float]) -> bytes:
-    """Return doubles as the bytes that C reads, in a fifth of the time that a ctypes array takes."""
+    """Return doubles as bytes for C. This takes a fifth of the time of a ctypes array."""
     return _packing[len(values)](*values)

@@ -1,4 +1,4 @@
-"""The table of closed forms, each with its condition on scenes and the function that makes its motions."""
+"""The table of closed forms: each has a condition on scenes, and a function that returns its motions."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -16,12 +16,12 @@ __all__ = ["FORMS", "ClosedForm", "Exact", "exact_form", "torque_and_damping"]
 
 
 class Exact(Protocol):
-    """The interface of a motion in closed form; times are counted from the initial state, s."""
+    """Interface of a motion in closed form; times, s, are counted from the initial state."""
 
     def evaluate(
         self, t: ArrayLike, omega: bool = True, quaternion: bool = True
     ) -> tuple[Floats | None, Floats | None]:
-        """Return angular velocity (n, 3), body axes, and attitude (n, 4) at the times.
+        """Return angular velocity (n, 3), body components, rad/s, and attitude (n, 4) at the times t.
 
         A quantity that is not requested is None.
         """
@@ -32,11 +32,11 @@ Starts = Callable[[Initial], Exact]
 
 
 class ClosedForm(NamedTuple):
-    """A closed form: its description, its condition on scenes, and the function that makes its motions."""
+    """A closed form: its description, its condition on scenes, and a function that returns its motions."""
 
     name: str
     applies: Callable[[Scene], bool]
-    starts: Callable[[Scene], Starts]  # makes motions of a scene from initial states; they share constants
+    starts: Callable[[Scene], Starts]  # returns a function from initial states to motions that share constants
     library: str  # name of its C files, see symrot.closed_form.build; "" if it has no C files
     derivation: str  # the derivation that proves it
     axis: Callable[[Scene], int | None] = lambda scene: None  # body axis of the motion, if any
@@ -68,7 +68,7 @@ def _symmetric_about(scene: Scene, axis: int) -> bool:
 
 
 def _only_axis(vector: tuple[Fraction, ...]) -> int | None:
-    """Return the number (0, 1 or 2) of the body axis that a vector is parallel to, or None."""
+    """Return the index (0, 1 or 2) of the body axis to which a vector is parallel, or None."""
     along = [axis for axis, component in enumerate(vector) if component != 0]
     return along[0] if len(along) == 1 else None
 
@@ -112,7 +112,7 @@ def _gyrostat(scene: Scene) -> Starts:
 
 
 def torque_and_damping(scene: Scene) -> tuple[Vector, Vector]:
-    """Return the constant torque of a scene, body axes, and the coefficients of linear damping."""
+    """Return the sums of the constant torques of a scene, body components, and of its linear damping coefficients."""
     sums = []
     for kind, field in (("constant_body", "torque"), ("damping", "linear")):
         vectors = [torque.vector(field) for torque in scene.torques if torque.kind == kind]
@@ -127,10 +127,10 @@ def _is_driven(scene: Scene) -> bool:
 
 
 def _driven_axis(scene: Scene) -> int | None:
-    """Return the principal axis about which the whole motion takes place, 0 for a body at rest, or None.
+    """Return the index of the principal axis about which the body rotates at all times, or None if there is none.
 
-    This requires that the scene has only constant torques and linear damping, and that torque and angular velocity lie
-    along the axis.
+    Such an axis exists if the scene has only constant torques and linear damping, and torque and angular velocity are
+    parallel to it. For a body that stays at rest, the index is 0.
     """
     if not _is_driven(scene):
         return None
@@ -143,9 +143,9 @@ def _driven_axis(scene: Scene) -> int | None:
 
 
 def _driven_symmetry_axis(scene: Scene) -> int | None:
-    """Return the symmetry axis about which a constant torque drives the body, or None if the scene is of another kind.
+    """Return the index of the symmetry axis about which a constant torque drives the body, or None.
 
-    If the attitude is needed, a scene with damping is of another kind too.
+    The result is None for any other scene, and for a scene with damping whose output needs the attitude.
     """
     if not _is_driven(scene):
         return None
@@ -178,9 +178,9 @@ def _axial(scene: Scene) -> Starts:
 
 
 def _field_axis(name: str) -> Callable[[Scene], int | None]:
-    """Return a function from a scene to the body axis (0, 1 or 2) parallel to a vector of its only torque, or to None.
+    """Return a function from a scene to the index of the body axis parallel to the vector ``name``, or to None.
 
-    ``name`` is the field of the torque that holds the vector.
+    ``name`` is a field of the only torque of the scene.
     """
     return lambda scene: _only_axis(scene.torques[0].vector(name))
 

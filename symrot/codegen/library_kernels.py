@@ -1,4 +1,4 @@
-"""Straight-line programs of the library's kernels, made from their formulas; constants such as pi become numbers."""
+"""Straight-line programs of the library's kernels, derived from their formulas; constants such as pi become numbers."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -16,7 +16,7 @@ __all__ = ["kernel_description", "kernel_program"]
 
 @cache
 def kernel_program(name: str) -> Program:
-    """Return the straight-line program (temporaries, then outputs) of a kernel of the library, given its name."""
+    """Return the straight-line program (temporaries, then outputs) of the library kernel with the given name."""
     kernel = definition(name)
     signature = Signature(name, (*kernel.inputs, *(target for target, _ in kernel.results)))
     lowered = lower(signature, kernel.formulas, kernel.named, parameter_argument="constant_")
@@ -31,7 +31,7 @@ def kernel_program(name: str) -> Program:
 
 
 def _with(node: Node, values: Mapping[str, Node]) -> Node:
-    """Return a formula with some of its symbols replaced by formulas."""
+    """Return a formula in which the symbols that ``values`` contains are replaced by formulas."""
     if not children(node):
         return values.get(node[1], node) if node[0] == "symbol" else node
     if node[0] == "call":
@@ -44,7 +44,7 @@ def _with(node: Node, values: Mapping[str, Node]) -> Node:
 def kernel_description(kernel: Definition, target: str, errors: str = "") -> Description:
     """Return the texts in the head comment of a library kernel's file.
 
-    In C they include the ranges of the inputs (the box) and the bounds ``errors`` of rounding errors on them.
+    In C they include the ranges of the inputs (the box) and ``errors``, the bounds of rounding errors in these ranges.
     """
     known = (("Box", _box(kernel.box)), *((("Errors", errors),) if errors else ()))
     return Description(
@@ -55,7 +55,7 @@ def kernel_description(kernel: Definition, target: str, errors: str = "") -> Des
 
 
 def _box(box: Box) -> str:
-    """Return the ranges of the inputs on which rounding errors are bounded; inputs with equal ranges share an entry."""
+    """Return a text of the input ranges in which rounding errors are bounded; equal ranges share an entry."""
     names: dict[tuple[str, str], list[str]] = {}
     for name, (low, high) in box.items():
         names.setdefault((str(low), str(high)), []).append(name)

@@ -1,4 +1,4 @@
-"""Loading of emitted NumPy kernels: the text is written to a file and imported as a module, as a user would do."""
+"""Loading of emitted NumPy kernels: the text is written to a file and imported as a module, as a user would do it."""
 
 from collections.abc import Callable
 from importlib.util import module_from_spec, spec_from_file_location
@@ -18,7 +18,7 @@ _UNNAMED = Description(
 
 
 def load_numpy_kernel(program: Program) -> Callable[..., Any]:
-    """Return a program as a Python function, imported from the NumPy module that symrot emits for it."""
+    """Return the Python function of a program, imported from the NumPy module that symrot emits for the program."""
     with TemporaryDirectory(prefix="symrot-") as directory:
         path = Path(directory) / f"{program.signature.name}.py"
         path.write_text(numpy_source(program, _UNNAMED), encoding="utf-8")

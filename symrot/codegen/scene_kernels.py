@@ -1,4 +1,4 @@
-"""Kernels of a scene: the programs and the C code of its rates and other quantities, derived from its plan."""
+"""Kernels of a scene: programs and C code of its rates (time derivatives of the states) and other quantities."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -43,7 +43,7 @@ def _state_argument(equations: Equations) -> Argument:
 
 
 def rates_program(equations: Equations, name: str) -> Lowered:
-    """Return the right-hand side ``dy/dt`` of the equations of motion as a program with this name."""
+    """Return the right-hand side ``dy/dt`` of the equations of motion as the program ``name``, with parameters."""
     per_second = {"rad/s": "rad/s^2", "1": "1/s", "rad": "rad/s"}
     results = tuple((f"d{s}", per_second[_unit(s)], "time derivative of the state") for s in equations.states)
     signature = Signature(name, (TIME, _state_argument(equations), Argument("dy", "out", results)))
@@ -74,10 +74,10 @@ def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
 def derive_scene_kernel(
     structure: Structure, on_rates: Callable[[Program, str], object] = lambda rates, source: None
 ) -> SceneKernel:
-    """Derive the rates and the other quantities of a planned motion, and prove which quantities are conserved.
+    """Derive and return the kernel of a planned motion: its rates, its other quantities, and what is conserved.
 
-    ``on_rates`` is called with the rates and their C text as soon as they are derived, so that a compiler can run while
-    the rest is derived.
+    As soon as the rates are derived, ``on_rates`` is called with them and their C text, so that a compiler can run
+    while the other quantities are derived and their conservation is proven.
     """
     equations = equations_of_motion(structure)
     rates = rates_program(equations, RATES)
@@ -105,7 +105,7 @@ def rates_source(rates: Lowered) -> str:
 
 
 def with_values(program: Program, parameters: Parameters, constants: Mapping[str, Fraction]) -> Program:
-    """Return a program with the formula and value of each parameter as its description in the head comment of the C."""
+    """Return a program whose parameters have their formulas and values as descriptions, for the head comment."""
     values = bind(parameters, constants)
     described = tuple(
         (name, "", f"{text(formula)} = {value!r}") for (name, formula), value in zip(parameters, values, strict=True)
@@ -115,9 +115,9 @@ def with_values(program: Program, parameters: Parameters, constants: Mapping[str
 
 
 def scene_description(title: str, name: str, target: str, bounds: tuple[tuple[str, str], ...] = ()) -> Description:
-    """Return the texts in the head comment of the emitted file of a scene's kernel.
+    """Return the texts in the head comment of the file that is emitted for a scene's kernel.
 
-    In C they include ``bounds``, pairs of heading and text.
+    In C they include ``bounds``, pairs of a heading and a text about rounding errors.
     """
     return Description(
         title=f"equations of motion of the scene {name!r} ({title})",

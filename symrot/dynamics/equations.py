@@ -1,6 +1,6 @@
-"""Equations of motion of a plan: Euler's equations and the quaternion rates, for the variables of the plan only.
+"""Equations of motion of a plan: Euler's equations and the quaternion rates, only for the states of the plan.
 
-The equations are derived from the plan's structure (which constants are zero, equal or free):
+The equations are derived from the structure of the plan, which says which constants are zero, equal or free:
 ``I domega/dt = tau - omega x (I omega + h)`` in body axes about the centre of mass or a fixed point, and
 ``dq/dt = 1/2 q (0, omega_b)``. Proof: ``derivations/euler_equations.md``, ``derivations/quaternion_rates.md``.
 """
@@ -29,7 +29,7 @@ TENSOR_NAMES = (("I_xx", "I_xy", "I_xz"), ("I_xy", "I_yy", "I_yz"), ("I_xz", "I_
 
 @dataclass(frozen=True)
 class AngleMotion(Motion):
-    """Motion whose attitude is given by Euler angles, and by the matrix that rotates vectors by these angles."""
+    """Motion whose attitude is given by Euler angles; vectors are rotated by the matrix of these angles."""
 
     sequence: str
 
@@ -40,7 +40,7 @@ class AngleMotion(Motion):
 
 @dataclass(frozen=True)
 class Equations:
-    """First-order equations of motion, with the quantities from which they were derived."""
+    """First-order equations of motion, and the quantities from which they were derived."""
 
     states: tuple[Symbol, ...]
     rates: tuple[Expr, ...]  # d(states)/dt
@@ -49,12 +49,12 @@ class Equations:
     laws: tuple[TorqueLaw, ...]
     momentum_b: Matrix  # I omega + h, kg m^2/s, body components
     relations: tuple[Expr, ...]  # expressions that are always zero: the squared norms of unit vectors minus 1
-    modes: tuple[tuple[Symbol, Expr], ...] = ()  # modes of the guards that the motion slides along, see sliding()
-    attraction: tuple[Expr, ...] = ()  # positive while motions near these guards return to them
+    modes: tuple[tuple[Symbol, Expr], ...] = ()  # modes whose guards stay at zero while the motion slides: sliding()
+    attraction: tuple[Expr, ...] = ()  # positive while nearby motions return to the zeros of these guards
 
     @property
     def explicit_rates(self) -> tuple[Expr, ...]:
-        """Return the rates as formulas of the states alone, with all named quantities substituted."""
+        """The rates as formulas in which all named quantities are replaced by their definitions."""
         rates = self.rates
         for symbol, value in reversed(self.definitions):
             rates = tuple(rate.xreplace({symbol: value}) for rate in rates)
@@ -62,18 +62,18 @@ class Equations:
 
     @property
     def kinetic_energy(self) -> Expr:
-        """Return ``omega . I omega / 2`` in J."""
+        """The kinetic energy ``omega . I omega / 2``, J."""
         omega_b = self.motion.omega_b
         return omega_b.dot(self.motion.inertia * omega_b) / 2
 
     @property
     def potential(self) -> Expr:
-        """Return the total potential energy, J, of the torques that have a potential."""
+        """The sum of the potential energies, J, of all torques that have a potential."""
         return reduce(add, (law.potential for law in self.laws if law.potential is not None), S.Zero)
 
 
 def inertia_matrix(inertia: PrincipalInertia | InertiaTensor) -> Matrix:
-    """Return the inertia tensor of a plan in symbols; equal moments have the same symbol."""
+    """Return the inertia tensor of a plan as a matrix of symbols; equal moments have the same symbol."""
     if isinstance(inertia, PrincipalInertia):
         moments = dict(zip("ABC", symbols.principal, strict=True))
         return diag(*(moments[name] for name in inertia.moments))
@@ -101,7 +101,7 @@ def angular_acceleration(inertia: Matrix, omega_b: Matrix, torque: Matrix, momen
 
 
 def euler_equations(inertia: Any = symbols.principal, torque: Any = symbols.torque_b) -> Matrix:
-    """Return the angular acceleration of a rigid body, solved from Euler's equations in body axes.
+    """Return the angular acceleration of a rigid body: the solution of Euler's equations in body axes.
 
     Parameters
     ----------
@@ -113,12 +113,12 @@ def euler_equations(inertia: Any = symbols.principal, torque: Any = symbols.torq
     Returns
     -------
     Matrix, shape (3, 1)
-        Angular acceleration, rad/s^2, body components, in omega_1, omega_2, omega_3.
+        Angular acceleration, rad/s^2, body components, as formulas in omega_1, omega_2, omega_3.
 
     Raises
     ------
     InputError
-        For an inertia that is not 3 moments or a symmetric 3x3 tensor, or a torque without 3 components.
+        If the inertia is not 3 moments or a symmetric 3x3 tensor, or if the torque does not have 3 components.
 
     Notes
     -----
@@ -157,7 +157,7 @@ def inverse(tensor: Matrix) -> Matrix:
 
 
 def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr]]:
-    """Return the motion of a plan in symbols, its attitude states, and the relations between its states.
+    """Return the motion of a structure in symbols, its states of attitude, and the relations between its symbols.
 
     A relation is an expression that is always zero, such as the squared norm of the quaternion minus 1.
     """
@@ -187,7 +187,7 @@ def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr
 
 
 def equations_of_motion(structure: Structure) -> Equations:
-    """Return the equations of motion of a structure, which says which constants of a scene are zero, equal or free."""
+    """Return the equations of motion for a structure, which says which constants of a scene are zero, equal or free."""
     motion, attitude, relations = _motion(structure)
     laws = tuple(torque_law(torque, motion) for torque in structure.torques)
     torque = reduce(add, (law.torque for law in laws), zeros(3, 1))
@@ -217,11 +217,11 @@ def equations_of_motion(structure: Structure) -> Equations:
 def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equations:
     """Return the equations of a motion that slides along surfaces at which the torque jumps: each guard stays at zero.
 
-    A guard is the formula whose sign selects the branch of the torque, and its mode is the value of that sign. The
+    A guard is the formula whose sign the torque depends on, and its mode is the symbol that stands for this sign. The
     modes get the values that keep the guards at zero: with rates linear in the modes s, ``dg/dt = a + B s = 0`` gives
-    ``s = -B^-1 a`` (V. I. Utkin's equivalent control; for one guard, A. F. Filippov's convex combination). The rates
-    contain these modes as definitions. Motions near the surfaces return to them while all eigenvalues of B have
-    negative real parts; A. Hurwitz's determinants of B decide this.
+    ``s = -B^-1 a`` (V. I. Utkin's equivalent control; for one guard, A. F. Filippov's convex combination). The formulas
+    of these values are definitions of the result. Motions near the surfaces return to them while all eigenvalues of B
+    have negative real parts; this is decided by A. Hurwitz's determinants of B.
 
     Raises
     ------
@@ -240,7 +240,7 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
     rest = Matrix(pace).subs(dict.fromkeys(names, S.Zero))
     determinant = matrix.det().expand()
     if matrix.free_symbols & set(names) or determinant == 0:
-        raise InputError("torque: expected jumps along which the motion can slide in exactly one way, got others")
+        raise InputError("torque: expected jumps along which the motion can slide in exactly one way, got other jumps")
     modes = tuple(zip(names, -(matrix.adjugate() * rest) / determinant, strict=True))
     still = [S.Zero if state in guards else rate for state, rate in zip(equations.states, equations.rates, strict=True)]
     return replace(equations, rates=tuple(still), definitions=(*modes, *equations.definitions), modes=modes,
@@ -250,8 +250,8 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
 def hurwitz_determinants(matrix: Matrix) -> tuple[Expr, ...]:
     """Return numbers that are all positive if and only if all eigenvalues of a matrix have negative real parts.
 
-    The numbers are the leading minors of Hurwitz's matrix of the characteristic polynomial (F. R. Gantmacher, The
-    Theory of Matrices, vol. 2, ch. XV).
+    The numbers are the leading principal minors of the Hurwitz matrix of the characteristic polynomial (F. R.
+    Gantmacher, The Theory of Matrices, vol. 2, ch. XV).
 
     Examples
     --------

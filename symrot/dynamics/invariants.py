@@ -1,7 +1,8 @@
-"""Conserved quantities: candidates that symmetries suggest, such as the energy, and a proof for each.
+"""Conserved quantities: candidates that symmetries suggest, such as the energy, and a decision for each candidate.
 
-A candidate F(t, states) is conserved if and only if ``dF/dt = partial F/partial t + grad F . rates`` has normal form
-zero; no list of known integrals is used. A candidate that is not conserved is reported with the torques that change it.
+A candidate F(t, states) is conserved if and only if ``dF/dt = partial F/partial t + grad F . rates`` is zero, which is
+decided exactly; no list of known integrals is used. A candidate that is not conserved is reported with the torques that
+change it.
 """
 
 from collections.abc import Iterable, Sequence
@@ -31,7 +32,7 @@ TORQUE_PHRASES = {
 
 @dataclass(frozen=True)
 class Invariant:
-    """A candidate for a conserved quantity; ``holds`` says whether it is conserved, and ``reason`` why."""
+    """A candidate for a conserved quantity; ``holds`` says whether it is conserved, ``reason`` why or why not."""
 
     name: str
     unit: str
@@ -41,13 +42,16 @@ class Invariant:
 
 
 def rate_along(expression: Expr, equations: Equations) -> Expr:
-    """Return the rate of change of a quantity along the motion that the equations describe."""
+    """Return the time derivative of a quantity along the motion that the equations describe."""
     rates = zip(equations.states, equations.explicit_rates, strict=True)
     return expression.diff(symbols.t) + sum(expression.diff(state) * rate for state, rate in rates)
 
 
 def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield candidates for conserved quantities, as (name, unit, value, formula to differentiate)."""
+    """Yield candidates for conserved quantities, as (name, unit, value, formula to test).
+
+    The formula to test is constant if and only if the value is constant.
+    """
     momentum, energy = equations.momentum_b, equations.kinetic_energy + equations.potential
     yield "energy", "J", energy, energy
     if equations.motion.quaternion is None:
@@ -68,7 +72,7 @@ def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[st
 
 
 def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield candidates that follow from a special direction of a torque: the vertical, or the normal of an orbit."""
+    """Yield candidates for conserved quantities that follow from a special direction of a torque."""
     if not isinstance(torque, FieldTorque):
         return
     if torque.kind == "gravity" and (direction := torque.vector("direction")).count(Pattern.ZERO) < 2:
@@ -100,7 +104,7 @@ def _reason(name: str, holds: bool, equations: Equations, kinds: Sequence[str]) 
 
 
 def _listed(kinds: Sequence[str]) -> str:
-    """Return kinds of torques as words of a sentence, without repetition and joined by "and"."""
+    """Return the kinds of torques as words of a sentence, joined by "and", each kind once."""
     return " and ".join(TORQUE_PHRASES.get(kind, kind.replace("_", " ")) for kind in dict.fromkeys(kinds))
 
 

@@ -1,8 +1,8 @@
-"""The structure of a motion: which constants are zero, equal or free. It determines the equations of motion.
+"""The structure of a motion: which constants are zero, equal or free (any value). It determines the equations.
 
-The values of free constants are not part of it. A plan (:mod:`symrot.planning.plan`) finds the structure of a scene,
-and :mod:`symrot.dynamics.equations` derives its equations of motion. Scenes of the same structure share one kernel
-(compiled equations) and differ only in the values of its parameters.
+The values of free constants are not part of the structure. A plan (:mod:`symrot.planning.plan`) determines the
+structure of a scene, and :mod:`symrot.dynamics.equations` derives the equations of motion from the structure. Scenes of
+the same structure share one kernel (the code of the equations) and differ only in the values of its parameters.
 
 The parts of a structure are NamedTuples, since defining a dataclass takes six times as long at every start of symrot.
 The module uses the standard library only.
@@ -31,7 +31,7 @@ class Pattern(Enum):
 
 
 FieldPattern = Pattern | tuple[Pattern, ...]
-"""The pattern of a field of a torque: one for a number, three for a vector, four for a quaternion."""
+"""The patterns of a field of a torque: one pattern for a number, three for a vector, four for a quaternion."""
 
 
 def component_names(name: str, pattern: FieldPattern) -> list[str]:
@@ -66,16 +66,16 @@ class TorqueSwitch(NamedTuple):
 
 
 class FieldTorque(NamedTuple):
-    """The structure of a torque whose fields are numbers: every kind but ``expression``, whose fields are formulas.
+    """The structure of a torque whose fields are numbers; this is every kind except ``expression``.
 
     Attributes
     ----------
     kind : str
         A key of :data:`symrot.dynamics.torque_kinds.TORQUE_KINDS`.
     prefix : str
-        Text before the names of its constants, which makes them different from names in the other torques.
+        Text before the names of its constants, so that they differ from the names in other torques.
     fields : pairs of name and pattern
-        Its fields, in the order of the table of torques.
+        The fields of the torque, in the order of the table of torques.
     """
 
     kind: str
@@ -101,17 +101,19 @@ class FormulaTorque(NamedTuple):
     Attributes
     ----------
     prefix : str
-        Text before the names of its parameters, which makes them different from names in the other torques.
+        Text before the names of its parameters, so that they differ from the names in other torques.
     formulas : tuple of 3 str
-        Its components. Functions that switch, such as sign, are replaced by modes: constants with their present values.
+        The components of the torque. Functions that switch, such as sign, are replaced by modes: constants that have
+        the present values of the functions.
     parameters : tuple of str
-        Names in the formulas, including the modes.
+        Names of the parameters and modes in the formulas.
     frame : str
         ``"body"`` or ``"space"``: the frame of the components.
     switches : tuple of TorqueSwitch
-        Empty if the formulas are smooth, or if switches are not followed.
+        The jumps and kinks of the formulas; empty if the formulas are smooth, or if the plan was made without modes.
     choices : tuple of str
-        The formulas with all parts of each ``where``; empty without ``where``.
+        The formulas with all parts of each ``where``; empty if no ``where`` has a part that must not always be
+        evaluated.
     held : tuple of str
         Modes whose guards (arguments of the functions) stay at zero while the motion slides.
     """
@@ -131,7 +133,7 @@ class FormulaTorque(NamedTuple):
 
     @property
     def has_choices(self) -> bool:
-        """Whether a formula has a ``where`` with a part that must not be evaluated unless its condition holds."""
+        """Whether a formula contains a ``where`` with a part that may be evaluated only if the condition holds."""
         return bool(self.choices) or any(switch.choices for switch in self.switches)
 
 
@@ -143,7 +145,7 @@ MOVING = (None, None, None)
 
 @dataclass(frozen=True, slots=True)
 class Structure:
-    """The facts that determine the equations of a motion: which of its constants are zero, equal or free.
+    """The facts that determine the equations of a motion: which constants are zero, equal or free.
 
     Attributes
     ----------
@@ -154,15 +156,17 @@ class Structure:
     attitude : bool
         Whether the attitude is computed.
     planar : int, optional
-        The body axis, 0 to 2, if the body rotates about that axis alone.
+        The index, 0 to 2, of the body axis, if the body rotates only about one axis.
     initial_quaternion : tuple of 4 Pattern, optional
-        The components at the start of a planar motion with attitude, whose state is the angle since the start.
+        The components of the initial quaternion in such a rotation about one axis, whose state is the angle since the
+        start; None if the attitude is not computed.
     constant : tuple of 3
         For each component of omega_b: its pattern (zero or free) if it is constant, None if it changes.
     clock : str, optional
-        The name of the time at which the clock of the rates shows 0; None: t = 0 of the scene.
+        The name of the constant from which the rates count time (the epoch); None if they count from t = 0 of the
+        scene.
     sequence : str, optional
-        The Euler sequence whose angles are the state; None if a quaternion is.
+        The Euler sequence whose angles are the state; None if the state is a quaternion.
 
     Examples
     --------
@@ -187,20 +191,20 @@ class Structure:
 
     @property
     def moving(self) -> list[int]:
-        """The indices, 0 to 2, of the components of omega_b that are states (variables of the equations)."""
+        """The indices, 0 to 2, of the components of omega_b that are states."""
         return [i for i in range(3) if self.constant[i] is None and self.planar in (None, i)]
 
     @property
     def reductions(self) -> tuple[object, ...]:
-        """The parts of the structure that remove states: rotation about one axis, constant components of omega_b."""
+        """The facts that eliminate states: rotation about one axis, and constant components of omega_b."""
         return self.planar, self.initial_quaternion, self.constant
 
     def unreduced(self) -> "Structure":
-        """Return the structure with all states: all of omega_b and, if the attitude is computed, the quaternion."""
+        """Return the structure in which all components of omega_b and, if the attitude is computed, of q are states."""
         return replace(self, planar=None, initial_quaternion=None, constant=MOVING)
 
     def to_json(self) -> dict[str, object]:
-        """Return the structure as data for JSON; two structures are equal if and only if these data are equal."""
+        """Return the structure as data for JSON; two structures are equal if and only if their data are equal."""
         return {field.name: _plain(getattr(self, field.name)) for field in fields(self)}
 
 

@@ -1,7 +1,7 @@
 """Table of the kinds of torque that a scene may have, each with its fields, units and default values.
 
-:mod:`symrot.dynamics.torques` has the torques as formulas, with potentials and conserved quantities. The reader of
-scenes uses this table alone, which needs only the standard library.
+:mod:`symrot.dynamics.torques` contains the formulas of the torques and their potentials. The functions that read scenes
+use only this table, which needs only the standard library.
 """
 
 from fractions import Fraction
@@ -116,7 +116,7 @@ _TABLE = (
 )  # fmt: skip
 
 TORQUE_KINDS: dict[str, TorqueKind] = {entry.kind: entry for entry in _TABLE}
-"""The kinds of torque given by formulas, by name, in the order of the documents."""
+"""The kinds of torque that have formulas, by name, in the order of the documentation."""
 
 TABLE_KIND = TorqueKind(
     "table",
@@ -133,4 +133,4 @@ TABLE_KIND = TorqueKind(
     "any",
     "a torque given by samples instead of formulas",
 )  # fmt: skip
-"""The only kind not given by formulas; read by :mod:`symrot.scene.samples`; no kernel is derived from it."""
+"""The only kind of torque without a formula; :mod:`symrot.scene.samples` reads it, and no kernel is derived from it."""

@@ -1,4 +1,7 @@
-"""The torques of :mod:`symrot.dynamics.torque_kinds` as formulas: a table with one function (law) for each kind."""
+"""The torques of :mod:`symrot.dynamics.torque_kinds` as formulas: a table with one function for each kind.
+
+The function of a kind returns a torque law: the formula of the torque, its potential and its angular momentum.
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -53,7 +56,7 @@ LEVELLING = (tanh, atan, exp, log)  # functions whose doubles become equal to th
 
 @dataclass(frozen=True)
 class Motion:
-    """The quantities that a torque may depend on, all as formulas of the states."""
+    """The quantities on which a torque may depend, all as formulas in the states."""
 
     omega_b: Matrix  # rad/s, shape (3, 1)
     quaternion: tuple[Expr, ...] | None  # body to space; None when the attitude is not computed
@@ -66,7 +69,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class TorqueLaw:
-    """The formula of a torque (N m, body components) with its potential, momentum and named quantities."""
+    """The formula of a torque, N m, body components, with its potential, angular momentum and named quantities."""
 
     torque: Matrix = field(default_factory=lambda: zeros(3, 1))
     potential: Expr | None = None  # J; None if the torque has no potential
@@ -130,9 +133,9 @@ def _expression(motion: Motion, torque: Matrix, frame: str) -> TorqueLaw:
 
 
 def collected_cross(left: Matrix, right: Matrix, variables: Matrix) -> Matrix:
-    """Return ``left x right`` with products of the same two variables collected, as in (C - B) r_2 r_3.
+    """Return ``left x right`` with terms of the same two variables collected, as in (C - B) r_2 r_3.
 
-    For equal moments of inertia such a component is then zero without simplification.
+    If the moments of inertia are equal, such a component is then zero without simplification.
     """
     return _collected_cross(ImmutableMatrix(left), ImmutableMatrix(right), ImmutableMatrix(variables)).as_mutable()
 
@@ -163,10 +166,7 @@ _FUNCTIONS: dict[str, Callable[..., Expr]] = {
 
 
 def formula(node: Node, values: Mapping[str, Expr]) -> Expr:
-    """Return a formula tree as an exact SymPy expression; ``values`` gives the expression of each name.
-
-    The name pi is known.
-    """
+    """Return a formula tree as an exact SymPy expression; ``values`` holds the expression of each name except pi."""
     known = {"pi": sympy.pi, **values}
     node = _with_brackets(node, known)
     return evaluate(node, known, _FUNCTIONS, _rational)
@@ -177,10 +177,10 @@ def _rational(value: Fraction) -> Rational:
 
 
 def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
-    """Return a formula with a new name in place of each product of a number and a sum, such as 2*(1 + tanh(u)).
+    """Return a formula in which some products of a number and a sum, such as 2*(1 + tanh(u)), become new names.
 
     The values of the new names are added to ``known``. SymPy would expand such a product and combine its constant with
-    other constants, which leaves a rounding error where the sum is zero.
+    other constants, which leaves a rounding error where the sum tends to zero.
     """
     if node[0] in ("number", "symbol"):
         return node
@@ -201,7 +201,7 @@ def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
 
 
 def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:
-    """Return the formula, the potential and the other data of one torque, in the quantities of a motion."""
+    """Return the law of one torque (its formula, potential, ..) in terms of the quantities of a motion."""
     if isinstance(structure, FormulaTorque):
         values = formula_values(structure, motion)
         torque = Matrix([_finite_formula(source, values) for source in structure.formulas])
@@ -211,7 +211,7 @@ def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:
 
 
 def formula_values(structure: FormulaTorque, motion: Motion) -> dict[str, Expr]:
-    """Return the values of all names in the formulas of an ``expression`` torque, in the quantities of a motion."""
+    """Return the expressions, by name, for all names in an ``expression`` torque, in quantities of a motion."""
     values = dict(zip(EXPRESSION_NAMES[:4], (symbols.t, *motion.omega_b), strict=True))
     values.update(zip(EXPRESSION_NAMES[4:], motion.quaternion or (), strict=False))
     values.update({name: constant(f"{structure.prefix}{name}") for name in structure.parameters})
@@ -228,15 +228,16 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
     for size in () if has_switches(node) else result.atoms(sympy.Abs):  # made by SymPy, so that no switch is known
         if size.free_symbols & set().union(*(values[name].free_symbols for name in CHANGING & set(values))):
             raise InputError(
-                f"torque: expected abs where a formula bends, got {source!r}, which is a formula of abs({size.args[0]})"
+                f"torque: expected abs to be written where a formula has a kink, got {source!r}, which contains "
+                f"abs({size.args[0]}) implicitly"
             )
     return result
 
 
 def field_value(name: str, pattern: FieldPattern) -> Any:
-    """Return a field of a torque as symbols or exact numbers: a scalar, a vector or a quaternion.
+    """Return the value of a torque's field, a scalar, a vector or a quaternion, as symbols or exact numbers.
 
-    Components of a vector are numbered from 1, components of a quaternion from 0.
+    The components of a vector are numbered from 1, the components of a quaternion from 0.
     """
     if isinstance(pattern, Pattern):
         return constant(name) if pattern is Pattern.FREE else Integer(pattern.value)
@@ -244,7 +245,7 @@ def field_value(name: str, pattern: FieldPattern) -> Any:
 
 
 def torque_of_potential(law: TorqueLaw) -> Matrix:
-    """Return the torque that follows from the potential of a law, in body components: minus its rotational gradient."""
+    """Return the torque, body components, of the potential of a law: minus its gradient by rotations."""
     rates = quaternion_rates("body") * Matrix(symbols.omega_b)
     gradient = Matrix([sympy.S.Zero if law.potential is None else law.potential]).jacobian(symbols.quaternion)
     return -ImmutableMatrix((gradient * rates).jacobian(symbols.omega_b).T)

@@ -27,9 +27,9 @@ class EnsembleStats(NamedTuple):
     Attributes
     ----------
     steps, evaluations : array, shape (n,)
-        Numbers of steps and evaluations of each motion; an evaluation of a series computes all its coefficients.
+        Numbers of steps and evaluations of each motion. With Taylor series, one evaluation computes all coefficients.
     seconds : float
-        Time of the whole ensemble.
+        Time in which the whole ensemble was computed.
 
     Examples
     --------
@@ -49,15 +49,15 @@ class Ensemble:
     Attributes
     ----------
     t : array, shape (m,) or (n, m)
-        Sample times, s, as they were passed.
+        Sample times, s, in the order in which they were passed.
     omega : array, shape (n, m, 3)
         Angular velocity, body components, rad/s; NaN at times that a motion did not reach.
     status : array, shape (n,)
-        0 for a motion that reached its last time, -1 for a motion that stopped early (as in SciPy's solve_ivp).
+        0 for a motion that was followed to its last time, -1 for a motion that stopped early, as in SciPy's solve_ivp.
     messages : n texts
-        The reason why a motion stopped early, and the time at which it did; empty for the other motions.
+        For each motion that stopped early, the time at which it stopped and the reason; empty for the other motions.
     methods : n texts
-        The method by which each motion was propagated.
+        The name of the method by which each motion was computed.
     stats : EnsembleStats
         Steps, evaluations and time.
 
@@ -112,34 +112,36 @@ def propagate_ensemble(
 ) -> Ensemble:
     """Return n motions of a scene that differ in their initial states and in constants of the scene.
 
-    The samples of a motion do not depend on the other motions, their order or the number of threads, to the last bit.
-    ``auto`` uses a closed form for each motion that has one, with the same bits that :func:`symrot.propagate` returns.
-    Otherwise, or where steps were measured to be faster (:func:`symrot.ensemble.exact.choose`), it uses Taylor series
-    with one trajectory in each SIMD lane. A motion that does not reach its last time does not affect the others; its
-    ``status`` is -1 and its message says why.
+    To the last bit, the samples of a motion do not depend on the other motions, their order or the number of threads.
+    The method ``auto`` uses a closed form for each motion that has one; the samples then have the same bits as those of
+    :func:`symrot.propagate`. For other motions, and where steps were measured to be faster
+    (:func:`symrot.ensemble.exact.choose`), ``auto`` uses Taylor series with one trajectory in each SIMD lane. If a
+    motion stops before its last time, the other motions are not affected; its ``status`` is -1 and its message says
+    why.
 
     Parameters
     ----------
     scene : Scene, Propagator, str or Path
         A scene, the name of a shipped scene, the path of a scene file, or a propagator, whose tolerance is then used.
     omega : array, shape (n, 3), optional
-        Initial angular velocities, body components, rad/s; default: the value in the scene for all motions.
+        Initial angular velocities, body components, rad/s; default: the angular velocity in the scene for all motions.
     quaternion : array, shape (n, 4), optional
-        Initial attitudes, scalar first; they are normalised; default: the attitude in the scene for all motions.
+        Initial attitudes, scalar first, which are normalised; default: the attitude in the scene for all motions.
     parameters : dict of arrays, optional
-        Constants of the scene, in SI units: ``principal`` (n, 3), the moments along given principal axes, or
-        ``I_xx`` to ``I_yz`` (n,); fields of a torque by their names in the scene, such as ``weight`` (n,) or
-        ``center_of_mass`` (n, 3), or one component, ``center_of_mass_3`` (n,); parameters of an expression (n,).
-        If two torques have a name in common, the constant of the second torque is called ``torque2_weight``.
+        Values of constants of the scene, in SI units, by name. Moments of inertia: ``principal``, shape (n, 3), for a
+        body given along principal axes, or ``I_xx`` to ``I_yz``, shape (n,). Fields of a torque by their names in the
+        scene, such as ``weight``, shape (n,), or ``center_of_mass``, shape (n, 3), or one component of a vector, such
+        as ``center_of_mass_3``, shape (n,). Parameters of an expression, shape (n,). If two torques have a field of the
+        same name, the name of the second torque's field gets a prefix, as in ``torque2_weight``.
     t : array, shape (m,) or (n, m), optional
-        Sample times, s, for all motions or for each, in any order, before or after the initial time; default: the
-        sample times of the scene.
+        Sample times, s, common to all motions, shape (m,), or separate for each motion, shape (n, m); in any order,
+        before or after the initial time. Default: the sample times of the scene.
     method : str
         ``auto``, or one of :data:`symrot.propagation.method.METHODS` for all motions.
     tolerance : float, optional
         Error of each trajectory to aim for; default: the tolerance of the scene.
     workers : int
-        Number of threads that step motions.
+        Number of threads that compute motions.
 
     Returns
     -------
@@ -149,7 +151,7 @@ def propagate_ensemble(
     Raises
     ------
     InputError
-        For a scene, an array or a name that cannot be used.
+        If the scene, an array or a name cannot be used.
 
     Notes
     -----

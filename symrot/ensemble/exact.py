@@ -1,7 +1,8 @@
-"""Ensembles in closed form: each trajectory is given its closed form, and one call computes all with the same form.
+"""Ensembles in closed form: trajectories whose motions have the same closed form are computed together.
 
-Trajectories with unusual numbers (beyond 1e205, or varying products of inertia close to zero) are evaluated one by one,
-each as a single motion. If no constant varies, these motions share the constants of the body and its torques.
+A batch holds the constants of the motions of many trajectories as arrays, from which one call of C computes all
+samples. Trajectories with unusual numbers (beyond 1e205, or varying products of inertia close to zero) are computed one
+by one, each as a single motion. If no constant varies, these motions share the constants of the body and its torques.
 """
 
 from collections.abc import Callable, Hashable, Iterator, Sequence
@@ -32,17 +33,17 @@ MOST_BITS = 59  # largest number of conditions in a pattern, without the three o
 
 
 class Kind(NamedTuple):
-    """The closed form of a motion, or None, and the number of the body axis to which it refers, or None."""
+    """The closed form of a motion and the index of the body axis to which the form refers; each may be None."""
 
     form: ClosedForm | None
     axis: int | None
 
 
 def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
-    """Return the closed forms of an ensemble, each with the indices of its trajectories.
+    """Return the kinds of closed form in an ensemble, each with the indices of its trajectories.
 
-    The form depends only on which components are zero and which moments and coefficients are equal. Only one trajectory
-    is therefore examined for each such pattern.
+    The closed form depends only on which components are zero and which constants are equal. Therefore only one
+    trajectory is examined for each such pattern.
     """
     chosen: dict[Kind, list[Rows]] = {}
     known: dict[Hashable, Kind] = variation.cached("forms", dict)
@@ -59,7 +60,11 @@ def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
 
 
 def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
-    """Return groups of trajectories with the same components zero and the same constants equal, each with its code."""
+    """Return groups of trajectories, as pairs (pattern, row indices).
+
+    In all trajectories of a group, the same components are zero and the same constants are equal. The pattern is a key
+    for them; it is None if the trajectory has to be examined alone.
+    """
     columns, n = variation.columns, len(variation)
     code = (variation.omega != 0) @ np.array([1, 2, 4])
     if not columns:
@@ -83,37 +88,39 @@ def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
 
 
 ARRAYS_LOSE_BELOW = {"symmetric body driven about its axis, angular velocity alone": 1e4}
-"""Angle of rotation, rad, below which steps are faster than the closed form, if no constant varies; see ``choose``."""
+"""Angle of rotation, rad, below which steps are faster than this closed form, if no constant varies; see ``choose``."""
 
 ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
-"""Angle of rotation, rad, below which steps are faster than closed forms computed one by one; by library."""
+"""For each library of closed forms, the angle, rad, below which steps are faster than motions computed one by one."""
 
 
 class Solved(NamedTuple):
-    """Trajectories of one closed form, with the arrays of their constants; ``batch`` is None if there are none."""
+    """Trajectories of one closed form, with their constants as arrays; ``batch`` is None if computed one by one."""
 
     form: ClosedForm
     rows: Rows
     batch: "Batch | None"
-    usual: Any  # whether the arrays may be used, for each row or for all
+    usual: Any  # whether the arrays give the right bits, for each row or for all rows
 
 
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
-    """Return the trajectories to evaluate in closed form; with ``faster``, only if that is faster than steps.
+    """Return the trajectories to compute in closed form; with ``faster``, only where that is faster than steps.
 
-    Measured for 0.01 to 10^4 rad, tolerances of 1e-6 and 1e-12 and 400 trajectories of 101 samples (``python -m
-    symrot.bench.starts --ensembles`` prints the same for the scenes' own spans), in microseconds per trajectory:
+    The choice follows measured times, in microseconds per trajectory, for rotation by 0.01 to 10^4 rad, tolerances of
+    1e-6 and 1e-12, and 400 trajectories of 101 samples (``python -m symrot.bench.starts --ensembles`` prints them for
+    the spans of the scenes):
 
-    - Arrays of closed forms take 4 to 18 if only initial states vary and 4 to 29 if constants vary. Steps take 13 to 46
-      and 33 to 75 for up to 10 rad, and more for larger angles; with products of inertia that vary, 23 and 280.
+    - A batch in closed form takes 4 to 18 if only initial states vary and 4 to 29 if constants vary. Steps take 13 to
+      46 in the first case and 33 to 75 in the second for up to 10 rad, and more for larger angles. If products of
+      inertia vary, a batch takes 23 and steps take 280.
     - One exception is the angular velocity of a symmetric damped body without its attitude, if only initial states
-      vary: 12 as an array, 6 to 9 by steps, which are few because the motion ends.
-    - Motions computed one by one take 1100 with products of inertia that vary and are nearly zero, or with nearly equal
-      moments, because their principal axes are computed in fractions. They take 40 to 80 for rotation about one axis or
-      spin-up with constants so large or small that arrays cannot be used. Steps take as long at the angles of
+      vary: 12 in a batch, 6 to 9 by steps, of which there are few because the motion ends.
+    - A motion computed alone takes 1100 if products of inertia vary and are nearly zero, or if moments of inertia are
+      nearly equal, because its principal axes are computed in fractions. It takes 40 to 80 for rotation about one axis
+      or spin-up if constants are too large or too small for a batch. Steps take as long at the angles of
       :data:`ALONE_LOSES_BELOW`.
 
-    Each trajectory is judged by its own angle of rotation, so that its method does not depend on other trajectories.
+    The choice for a trajectory uses only its own angle of rotation, so that it does not depend on other trajectories.
     """
     solved: list[Solved] = []
     for kind, rows in forms_of(variation):
@@ -156,7 +163,10 @@ def follow_exact(
     variation: Variation, solved: Solved, times: Floats, start: float, omega: Floats, quaternion: Floats | None,
     workers: int,
 ) -> None:  # fmt: skip
-    """Write angular velocity and attitude of the trajectories of one closed form at times (m,) or (n, m), s."""
+    """Write the samples of the trajectories ``solved``, which share one closed form, into ``omega`` and ``quaternion``.
+
+    ``times``, s, have shape (m,) or (n, m); if ``quaternion`` is None, the attitude is not computed.
+    """
     since = times - start if start else times
     form, rows, batch, usual = solved
     whole = len(rows) == len(variation)
@@ -188,7 +198,7 @@ def follow_exact(
 def _put_starts(
     variation: Variation, rows: Rows, at_start: NDArray[np.bool_], omega: Floats, quaternion: Floats | None
 ) -> None:
-    """Set samples at the initial time to the initial states, as every method for single motions does."""
+    """Set the samples at the initial time to the exact initial states, as every method for single motions does."""
     if not at_start.any():
         return
     states = variation.initial_states
@@ -206,7 +216,10 @@ def _put_starts(
 
 
 class _Alone:
-    """Motions in closed form, computed one by one; they share the constants of the body if no constant varies."""
+    """Function from the index of a trajectory to its motion in closed form, for motions that are computed one by one.
+
+    The motions share the constants of the body if no constant of the scene varies.
+    """
 
     def __init__(self, variation: Variation, form: ClosedForm) -> None:
         self._variation, self._form = variation, form
@@ -229,7 +242,7 @@ Usual = NDArray[np.bool_] | bool
 
 
 class _Part(NamedTuple):
-    """Trajectories of one closed form that refers to the same body axis in all of them."""
+    """Trajectories whose motions have the same closed form and, in this form, the same body axis."""
 
     variation: Variation
     axis: int | None
@@ -237,12 +250,12 @@ class _Part(NamedTuple):
     omega: Floats  # (n, 3)
 
     def of(self, chosen: NDArray[np.bool_]) -> "_Part":
-        """Return the part with only those trajectories whose entry in ``chosen`` is true."""
+        """Return a part with only the trajectories whose entry in ``chosen`` is true."""
         return self._replace(rows=self.rows[chosen], omega=self.omega[chosen])
 
     @property
     def start(self) -> Floats:
-        """The initial attitudes as sums of two doubles, (n, 8), or (8,) if all are equal."""
+        """The initial attitudes as pairs hi, lo of each component, shape (n, 8), or (8,) if all are equal."""
         variation, attitudes = self.variation, self.variation.attitudes
         if attitudes is None:
             own = variation.cached("attitude", lambda: np.array(attitude(variation.scene.initial.quaternion)))
@@ -250,21 +263,20 @@ class _Part(NamedTuple):
         return attitudes if len(self.rows) == len(variation) else attitudes[self.rows]
 
     def constant(self, name: str) -> Any:
-        """Return a constant as one Fraction, or as an array with a value for each trajectory."""
+        """Return a constant: one Fraction if it does not vary, otherwise an array with one value per trajectory."""
         value = self.variation.constant(name)
         return value if isinstance(value, Fraction) else value[self.rows]
 
     def moments(self) -> tuple[Any, Any]:
-        """Return the moments of inertia across and about the symmetry axis, each as one number or as an array."""
+        """Return the moments of inertia across and about the symmetry axis, each as :meth:`constant` returns it."""
         assert self.axis is not None
         return self.constant(PRINCIPAL[self.axis - 2]), self.constant(PRINCIPAL[self.axis])
 
 
 def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
-    """Yield the trajectories of one closed form in groups: row indices, a batch, and whether it is valid for each row.
+    """Yield the trajectories of one closed form in groups: row indices, a batch, and for which rows it is valid.
 
-    A batch holds the constants of all motions of the group as arrays. It is None if the motions must be evaluated one
-    by one.
+    The batch is None if the motions of the group must be computed one by one.
     """
     make = BATCHES.get(kind.form.library) if kind.form else None
     if make is None:
@@ -290,9 +302,9 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
 
 
 def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
-    """Yield the trajectories of one closed form in groups with the same symmetry axis of the body.
+    """Yield the trajectories of one kind of closed form as one part; heavy tops may form two parts.
 
-    Heavy tops are split by the side of the fixed point on which their centre of mass lies.
+    If the height of the centre of mass varies, it is positive in the first part and negative or zero in the second.
     """
     groups = [rows]
     if kind.form and kind.form.library == "heavy_top" and variation.columns:
@@ -368,7 +380,10 @@ def _gyrostat(part: _Part) -> tuple["Batch | None", Usual]:
 
 
 def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
-    """Return the sum of one component over all torques of a kind; None if there are several torques and it varies."""
+    """Return the sum of a torque field's component over all torques of a kind.
+
+    Return None if there are several such torques and the component varies in the ensemble.
+    """
     variation = part.variation
     components = [
         part.constant(f"{variation.prefix(k)}{field}_{axis % 3 + 1}")
@@ -426,4 +441,4 @@ BATCHES: dict[str, Callable[[_Part], tuple["Batch | None", Usual]]] = {
     "axial": _driven,
     "spin_up": _spin_up,
 }
-"""For each library of closed forms, the function that puts the constants of its trajectories into arrays."""
+"""For each library of closed forms, the function that returns the batch of a part, and for which rows it is valid."""

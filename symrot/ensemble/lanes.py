@@ -1,9 +1,10 @@
-"""Taylor series with one trajectory in each SIMD lane: Python calls the C of :file:`lanes.c`.
+"""Taylor series with one trajectory in each SIMD lane: Python calls the C functions of :file:`lanes.c`.
 
-Series, step rule and compensated sums are the same as in :mod:`symrot.propagation.steppers.taylor`. A processor
-instruction advances four or eight motions, each with steps of its own size. A lane whose motion has ended takes the
-next motion. Lanes are independent: the samples of a motion do not depend on the other motions, its lane or the number
-of threads, to the last bit, and a motion that stops early does not affect the others.
+A SIMD instruction computes with two, four or eight doubles at once; a lane is the place of one of them. Series, step
+length and compensated sums are the same as in :mod:`symrot.propagation.steppers.taylor`, and each motion has steps of
+its own length. When the motion in a lane has ended, the lane takes the next motion. Lanes are independent: to the last
+bit, the samples of a motion do not depend on the other motions, on its lane or on the number of threads, and a motion
+that stops early does not affect the others. A leg is the part of a motion after its start, or the part before it.
 """
 
 import ctypes
@@ -65,7 +66,9 @@ def order_for(tolerance: float) -> int:
 def translation_unit(
     program: Program, blocks: Sequence[int], scales: Sequence[float], order: int, width: int | None = None
 ) -> str:
-    """Return the C source of a library that steps many motions in SIMD lanes, including the series of the rates.
+    """Return the C source of a library that integrates many motions in SIMD lanes.
+
+    It contains the Taylor series of the rates and the stepper.
 
     Parameters
     ----------
@@ -77,7 +80,7 @@ def translation_unit(
     Raises
     ------
     InputError
-        For a right-hand side that is not smooth, such as one with abs.
+        If the right-hand side is not smooth, for example because it contains abs.
     """
     from symrot.codegen.taylor.ensemble_source import lane_definitions
 
@@ -85,7 +88,7 @@ def translation_unit(
 
 
 def wrap_translation_unit(definitions: str, width: int | None = None) -> str:
-    """Return the C source of a library from the printed series of its rates; see :func:`translation_unit`."""
+    """Return the C source of a library from the C text of its Taylor series; see :func:`translation_unit`."""
     head = "" if width is None else "#define SYMROT_PLAIN\n" if width == 1 else f"#define SYMROT_LANES {width}\n"
     paths = ("propagation/steppers/library.h", "ensemble/lanes.h", "propagation/steppers/series.h", "ensemble/lanes.c")
     shared, operations, series, steps = map(c_text, paths)
@@ -109,9 +112,10 @@ class _Job(ctypes.Structure):
 
 
 class Outcome(NamedTuple):
-    """The states of n motions at their m times, shape (n, m, N); NaN at times that a motion did not reach.
+    """The states of n motions at their m times, shape (n, m, N), and the cost of each motion.
 
-    ``messages`` holds for each motion the reason why it stopped early, or an empty text.
+    States are NaN at times that a motion did not reach. ``messages`` holds for each motion the reason why it stopped
+    early, or an empty text.
     """
 
     states: Floats
@@ -121,7 +125,7 @@ class Outcome(NamedTuple):
 
 
 class Lanes:
-    """A loaded library with Taylor series and stepper for many motions in SIMD lanes, from :func:`translation_unit`."""
+    """A loaded library of :func:`translation_unit`: Taylor series and stepper for many motions in SIMD lanes."""
 
     def __init__(self, path: str) -> None:
         self.path = path
@@ -151,7 +155,7 @@ class Lanes:
         return coefficients
 
     def work(self, job: _Job, interrupted: Callable[[], bool] = bool) -> None:
-        """Step all motions of a job to their ends, or until ``interrupted`` returns true."""
+        """Integrate all motions of a job to their ends, or until ``interrupted`` returns true."""
         memory = ctypes.create_string_buffer(self._memory)
         self._library.symrot_lanes_clear(memory)
         while not interrupted() and self._run(memory, ctypes.addressof(job), STEPS_PER_CALL) != DONE:
@@ -160,14 +164,14 @@ class Lanes:
 
 @cache
 def lanes(path: str) -> Lanes:
-    """Return the loaded library at a path; each library is loaded once."""
+    """Return the loaded library at a path. Each library is loaded only once."""
     return Lanes(path)
 
 
 class _Legs(NamedTuple):
-    """All motions split into legs, the parts before and after t0, with times sorted by distance from t0.
+    """The legs of all motions (the parts before and after t0), and their sample times sorted by distance from t0.
 
-    See ``symrot_job`` in lanes.c.
+    ``table`` holds the sorted times, row after row. See ``symrot_job`` in lanes.c.
     """
 
     table: Floats
@@ -193,7 +197,7 @@ def _legs(t0: float, times: Floats, n: int) -> _Legs:
 
 
 class LaneIntegration:
-    """Many motions in SIMD lanes, with given parameters, initial states and times; can be run any number of times.
+    """The integration of many motions in SIMD lanes, with checked arguments; it can be run any number of times.
 
     Parameters
     ----------
@@ -204,15 +208,15 @@ class LaneIntegration:
     t0 : float
         Initial time, s.
     times : array, shape (m,) or (n, m)
-        Sample times, s, for all motions or for each; in any order, on both sides of t0.
+        Sample times, s, common to all motions or separate for each motion; in any order, before or after t0.
     tolerance : float
         Error of each trajectory to aim for, see :func:`symrot.propagation.steppers.taylor.step_tail`.
     max_steps : int
         Largest number of steps of one motion.
     workers : int
-        Number of threads. Each steps a part of the motions.
+        Number of threads; each thread integrates a part of the motions.
     epoch : float
-        Time of the scene, s, from which ``t0`` and ``times`` are counted; messages contain times of the scene.
+        Time of the scene, s, from which ``t0`` and ``times`` are counted. Times in messages are times of the scene.
     """
 
     def __init__(
@@ -231,12 +235,12 @@ class LaneIntegration:
         self._rows = self._places(("motion", "first", "count", "row"), self.legs.rows)
 
     def _places(self, names: Sequence[str], table: NDArray[Any]) -> dict[str, int]:
-        """Return the memory address of each row of a table, by name; a table has one column per leg."""
+        """Return the memory addresses of the rows of an array, by name. The array has one column per leg."""
         place = address(table)
         return {name: place + 8 * self.total * k for k, name in enumerate(names)}
 
     def run(self) -> Outcome:
-        """Step the motions through their sample times and return their states."""
+        """Integrate the motions and return their states at the sample times."""
         n, total, legs = len(self.y), self.total, self.legs
         states = np.full((n * self.samples, self.library.states), np.nan)
         measured, status = np.zeros((len(MEASURED), total)), np.full((1, total), TOO_MANY)
@@ -278,7 +282,7 @@ def follow(*arguments: Any, **options: Any) -> Outcome:
 
 
 def _share(library: Lanes, jobs: list[Any]) -> None:
-    """Run each job in its own thread; an interrupt stops all of them."""
+    """Run each job in its own thread; an interrupt stops all threads."""
     if len(jobs) == 1:
         library.work(jobs[0])
         return

@@ -1,4 +1,4 @@
-"""The motions of an ensemble, each by the fastest method: closed form, in SIMD lanes, or as a single motion."""
+"""The motions of an ensemble, each by the fastest method: in closed form, in SIMD lanes, or as a single motion."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
@@ -44,7 +44,7 @@ QUATERNION = tuple(f"q{i} of t" for i in range(4))
 
 
 class Followed(NamedTuple):
-    """The samples of n motions at m times each; NaN at times that a motion did not reach."""
+    """The samples of n motions at m times each, and the cost of each motion; NaN at times that were not reached."""
 
     omega: Floats  # (n, m, 3)
     quaternion: Floats | None  # (n, m, 4)
@@ -71,7 +71,7 @@ class Problem(NamedTuple):
 
 
 def follow(problem: Problem, method: str) -> Followed:
-    """Return the samples of all motions of a problem, by the named method or, for ``auto``, the fastest for each.
+    """Return the samples of all motions of a problem, by the named method or, for ``auto``, by the fastest one.
 
     Parameters
     ----------
@@ -119,7 +119,10 @@ def follow(problem: Problem, method: str) -> Followed:
 def _switched(
     problem: Problem, method: str, stepped: Sequence[int], omega: Floats, quaternion: Floats | None
 ) -> Followed:
-    """Return the samples of motions under torques with switches (sign, abs, ..), each computed as a single motion."""
+    """Write the samples of motions under torques with switching functions into the arrays, and return them.
+
+    Each motion is computed as a single motion. ``stepped`` holds the indices of the trajectories.
+    """
     from symrot.propagation.propagate import propagator
 
     count, messages, methods = len(stepped), list[str](), list[str]()
@@ -146,14 +149,14 @@ def _switched(
 
 
 def _solved(problem: Problem, method: str) -> list[Solved]:
-    """Return the trajectories that ``method`` evaluates in closed form."""
+    """Return the trajectories that ``method`` computes in closed form."""
     if method in ("exact", "auto"):
         return choose(problem.variation, problem.times, problem.t0, faster=method == "auto")
     return []
 
 
 def _stepping_method(problem: Problem) -> str:
-    """Return the name of the method that steps motions without a closed form."""
+    """Return the name of the method for motions without a closed form."""
     if not problem.plan.states:
         return "constant"
     if missing_compiler():
@@ -165,7 +168,7 @@ def _stepping_method(problem: Problem) -> str:
 
 
 def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
-    """Return the compiled library that steps motions of a plan in SIMD lanes; the tolerance determines its order."""
+    """Return the compiled library that integrates motions of a plan in SIMD lanes, of an order for the tolerance."""
     order = lanes.order_for(tolerance)
     key = f"lanes {order}\n{kernel_key(plan)}"
     system = library.fetch(key)
@@ -178,7 +181,7 @@ def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
 
 
 class _Stepped:
-    """The trajectories of an ensemble that are stepped, with their parameters and initial states."""
+    """The trajectories of an ensemble that are integrated numerically, with their parameters and initial states."""
 
     def __init__(self, problem: Problem, chosen: Sequence[int]) -> None:
         self.problem, self.plan, self.chosen = problem, problem.plan, chosen
@@ -197,13 +200,13 @@ class _Stepped:
             raise IntegrationStopped(self.epoch, NOT_FINITE_SENTENCE) from None
 
     def on_clock(self, times: Floats) -> Floats:
-        """Return times of the scene, s, converted to times since the epoch, which the steppers use."""
+        """Return times of the scene, s, converted to times since the epoch, from which the steppers count."""
         return times - self.epoch if self.epoch else times
 
     def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = epoch.compiled) -> Any:
-        """Return, for motion k, a function from an epoch to rates that count time from it, and their parameters.
+        """Return, for motion k, a function from an epoch, s, to rates that count time from it, and parameters.
 
-        The result is None if the rates do not depend on the time. See :func:`symrot.propagation.time_shift.clock`.
+        Return None if the rates do not depend on time. See :func:`symrot.propagation.time_shift.clock`.
         """
         if not self.kernel.rates.uses("t"):
             return None
@@ -214,7 +217,7 @@ class _Stepped:
         return epoch.clock(moving, self.numbers.constants(k), self.epoch, make)
 
     def read(self, states: Floats, omega: Floats, quaternion: Floats | None) -> None:
-        """Write angular velocity and attitude, computed from the states, into the arrays of the ensemble."""
+        """Compute angular velocity and attitude from the states, and write them into ``omega`` and ``quaternion``."""
         chosen = list(self.chosen)
         values: dict[str, Any] = dict(zip(self.plan.states, np.moveaxis(states, -1, 0), strict=True))
         values["t"] = self.times
@@ -232,7 +235,7 @@ class _Stepped:
             quaternion[chosen] /= size
 
     def _parameters_of(self, outputs: Sequence[str]) -> Any:
-        """Return the parameters of the kernel, as pairs of name and formula, on which the named outputs depend."""
+        """Return the parameters of the kernel on which the named outputs depend, as pairs (name, formula)."""
         program, parameters = self.kernel.quantities, self.kernel.quantity_parameters
         needed = set().union(*(names(node) for name, node in program.outputs if name in outputs))
         for name, node in reversed(program.temporaries):
@@ -240,7 +243,7 @@ class _Stepped:
         return tuple([(name, node) for name, node in parameters if name in needed])
 
     def one_by_one(self, integrate: Callable[[int, Floats], tuple[Floats, Any]]) -> lanes.Outcome:
-        """Return the states of all trajectories, each computed by ``integrate``, the stepper for a single motion."""
+        """Return the outcome for all trajectories; ``integrate(k, times)`` returns states and cost of trajectory k."""
         samples = self.times.shape[-1]
         states = np.full((len(self.chosen), samples, len(self.plan.states)), np.nan)
         steps, evaluations = (np.zeros(len(self.chosen), dtype=np.int64) for _ in range(2))
@@ -269,9 +272,9 @@ def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
 
 
 def _enclosed(stepped: _Stepped) -> lanes.Outcome:
-    """Return the states of motions under torques given by formulas, computed one after the other.
+    """Return the outcome for motions under torques given by formulas, which are computed one after the other.
 
-    Their steps need bounds of the rates (an enclosure) or a check, which the stepper in SIMD lanes does not support.
+    Their steps are limited by bounds of the rates or need a check; the stepper in SIMD lanes supports neither.
     """
     problem, (plan, kernel) = stepped.problem, stepped.moved
     path = taylor_library(plan, kernel, problem.tolerance, projected=False)
@@ -323,4 +326,4 @@ STEPPERS: dict[str, Callable[[_Stepped, str], lanes.Outcome]] = {
     "scipy": _scipy,
     "constant": _constant,
 }
-"""For each method, the function that computes the motions without a closed form."""
+"""For each method, the function that computes motions without a closed form."""

@@ -1,4 +1,4 @@
-"""Parameters of kernels for each trajectory of an ensemble; constants that do not vary are evaluated once."""
+"""Values of the parameters of kernels for each trajectory of an ensemble; constant ones are evaluated once."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
@@ -20,12 +20,12 @@ OMEGA = ("omega_1", "omega_2", "omega_3")
 
 
 class Numbers:
-    """The exact constants of some trajectories of an ensemble.
+    """The constants of some trajectories of an ensemble, as exact numbers.
 
     Parameters
     ----------
     variation : Variation
-        The numbers that vary in the ensemble.
+        The initial states and constants that vary in the ensemble.
     plan : Plan
         A plan that is valid for all trajectories.
     chosen : whole numbers
@@ -43,11 +43,11 @@ class Numbers:
         self._columns = {name: varying[name][self._chosen] for name in plan.constants if name in varying}
 
     def constants(self, k: int) -> dict[str, Fraction]:
-        """Return all constants of the trajectory at index k of ``chosen``, by name, as exact fractions."""
+        """Return all constants of trajectory ``chosen[k]``, by name, as exact fractions."""
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
     def bound(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
-        """Return the parameters of a kernel for each trajectory, shape (n, k), computed exactly and rounded once.
+        """Return the values of k parameters for each trajectory, shape (n, k), computed exactly and rounded once.
 
         Raises
         ------

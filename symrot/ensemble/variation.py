@@ -1,4 +1,8 @@
-"""Variations: the checked arrays that describe an ensemble, and a plan that is valid for all its trajectories."""
+"""Variations: the checked arrays that describe an ensemble, and a plan that is valid for all its trajectories.
+
+A column is the array of the values of one constant, one value per trajectory. The place of a constant says where the
+scene contains it: in the inertia tensor, or in a field of a torque.
+"""
 
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, replace
@@ -38,7 +42,7 @@ GENERAL_START = Initial(  # initial state without special values, so that no rul
     (Fraction(1, 5), Fraction(2, 5), Fraction(4, 5), Fraction(2, 5)),
 )
 BY_ZEROS = {"gravity", "rotor", "constant_body", "damping"}
-"""Kinds of torques for which the plan depends only on which of their constants are zero."""
+"""Kinds of torques whose numbers affect the plan only by being zero or not."""
 
 DISTINCT = (Fraction(4), Fraction(5), Fraction(6))  # different moments that satisfy the triangle inequalities
 
@@ -47,7 +51,7 @@ _caches: dict[int, dict[Hashable, Any]] = {}  # cached values of scenes by their
 
 
 class _Place(NamedTuple):
-    """Location of a constant in a scene: in the inertia tensor, or in a field of a torque."""
+    """Where a scene contains a constant: in the inertia tensor, or in a field of a torque."""
 
     torque: int  # -1: the inertia
     field: str
@@ -58,7 +62,7 @@ class _Place(NamedTuple):
 class Variation:
     """The variation of a scene: initial states of n trajectories, and a column of values for each constant that varies.
 
-    Constants have the names that plans use.
+    Constants have the same names as in plans.
     """
 
     scene: Scene
@@ -71,20 +75,20 @@ class Variation:
         return len(self.omega)
 
     def scene_of(self, i: int) -> Scene:
-        """Return the scene of trajectory i, with its numbers in the arrays converted to exact fractions."""
+        """Return the scene of trajectory i; values from the arrays of the variation become exact fractions."""
         return self._with(self.initial(i), {name: Fraction(float(column[i])) for name, column in self.columns.items()})
 
     def initial(self, i: int) -> Initial:
-        """Return the initial state of trajectory i, with its numbers in the arrays converted to exact fractions."""
+        """Return the initial state of trajectory i; values from the arrays of the variation become fractions."""
         x, y, z = map(Fraction, self.omega[i].tolist())
         if self.quaternion is None:
             return Initial((x, y, z), self.scene.initial.quaternion)
         return Initial((x, y, z), _unit(self.quaternion[i].tolist()))
 
     def cached(self, key: Hashable, make: Callable[[], Any]) -> Any:
-        """Return a value that depends only on the scene: the result of ``make``, stored under ``key``.
+        """Return the value stored under ``key``, or the result of ``make()``, which is then stored.
 
-        ``make`` is called once for all ensembles of the same scene.
+        The value may depend only on the scene; ``make`` is called once for all ensembles of the same scene.
         """
         place = id(self.scene)
         values = _caches.get(place)
@@ -97,7 +101,7 @@ class Variation:
 
     @cached_property
     def attitudes(self) -> Floats | None:
-        """Initial unit quaternions as sums of two doubles, shape (n, 8); None if all start at the scene's attitude."""
+        """Initial unit quaternions as pairs hi, lo of each component, shape (n, 8); None if they do not vary."""
         from symrot.closed_form.batches import attitudes
 
         return None if self.quaternion is None else attitudes(self.quaternion)
@@ -118,7 +122,7 @@ class Variation:
         return fixed and not any(self.columns[name].any() for name in self.columns if name in PRODUCTS)
 
     def constant(self, name: str) -> Fraction | Floats:
-        """Return a constant by its name in the plan: one number if it is the same for all, else an array (n,)."""
+        """Return the constant with this name in the plan: a Fraction if it does not vary, otherwise an array (n,)."""
         if name in self.columns:
             return self.columns[name]
         torque, field, entry = self.places[name]
@@ -133,7 +137,7 @@ class Variation:
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
-        """Return the constants of the same field that do not vary and are (nearly) doubles, as doubles."""
+        """Return the constants, if nearly doubles, that do not vary in the field of the constant ``name``."""
         place = self.places[name]
         same = [key for key, other in self.places.items() if other[:2] == place[:2] and key not in self.columns]
         values = {self.constant(key) for key in same if not isinstance(self.places[key].entry, str)}
@@ -141,7 +145,7 @@ class Variation:
 
     @property
     def negligible(self) -> Floats:
-        """The bound of products of inertia, kg m^2, below which the body axes count as principal, shape (n,)."""
+        """The size of products of inertia, kg m^2, below which the body axes count as principal, shape (n,)."""
         bounds: Floats = np.ldexp(abs(self.moments).max(axis=1), -number.NEGLIGIBLE_BITS)
         return bounds
 
@@ -173,7 +177,11 @@ class Variation:
         return replace(self.scene, initial=start, body=body, torques=tuple(torques))
 
     def plan(self) -> Plan:
-        """Return a plan that is valid for all trajectories: it uses a zero or an equality only if it holds in each."""
+        """Return a plan that is valid for all trajectories.
+
+        The plan makes use of a zero constant or of equal constants only if they are zero or equal in every
+        trajectory.
+        """
         values = {name: _representative(column) for name, column in self.columns.items()}
         if not PLACES.keys().isdisjoint(values):
             values |= self._representative_inertia()
@@ -192,7 +200,10 @@ class Variation:
         return make_plan(self._with(GENERAL_START, values), switched=switched(self.scene))
 
     def _representative_inertia(self) -> dict[str, Fraction]:
-        """Return the entries of an inertia tensor with only the equalities and zeros that hold in each trajectory."""
+        """Return the entries, by name, of an inertia tensor that represents all trajectories.
+
+        Its moments are equal and its products zero only if they are so in every trajectory.
+        """
         inertia = self.scene.body.inertia
         tensor: dict[str, Fraction] = {}
         for k, name in enumerate(PRINCIPAL):
@@ -214,7 +225,7 @@ class Variation:
 
 
 def _constant_place(field: str, entry: int | str | None) -> tuple[str, int | None]:
-    """Return the name of the field that contains a torque's constant, and its component if the field is a vector."""
+    """Return the name of the field that contains a constant of a torque, and the component if the field is a vector."""
     return (entry, None) if isinstance(entry, str) else (field, entry)
 
 
@@ -225,7 +236,7 @@ def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
 
 
 def _representative(column: Floats) -> Fraction:
-    """Return one value that represents a column for the planner: zero if all are zero, else a value that is not."""
+    """Return one value that represents a column for the planner: zero if all values are zero, else a nonzero value."""
     return Fraction(float(column[np.argmax(column != 0)]))
 
 
@@ -235,13 +246,13 @@ def _representative(column: Floats) -> Fraction:
 def read_variation(
     scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None, parameters: Mapping[str, ArrayLike] | None
 ) -> Variation:
-    """Return the checked variation that the arguments of an ensemble describe; None means the value in the scene.
+    """Return the variation that the arguments of an ensemble describe, after checks; None means the value in the scene.
 
     Raises
     ------
     InputError
-        For arrays of wrong shape, values that are not finite, zero quaternions, unknown names, or moments that no body
-        can have.
+        If an array has a wrong shape, a value is not finite, a quaternion is zero, a name is unknown, or no body can
+        have the moments of inertia.
     """
     if parameters is not None and not isinstance(parameters, Mapping):
         raise InputError(f"parameters: expected a dict of arrays by name, got {number.show(parameters)}")
@@ -280,8 +291,7 @@ def read_variation(
 def _check_bodies(variation: Variation) -> None:
     """Raise InputError if a trajectory has moments of inertia that no body has, or that do not determine its motion.
 
-    A check in doubles suffices for principal moments that clearly satisfy the triangle inequalities. The others are
-    checked exactly.
+    Principal moments that clearly satisfy the triangle inequalities are checked in doubles, all others exactly.
     """
     moments: Any = variation.moments
     if not variation.in_principal_axes:
@@ -300,7 +310,7 @@ def _check_bodies(variation: Variation) -> None:
 
 
 def read_times(t: ArrayLike | None, scene: Scene, n: int) -> Floats:
-    """Return the checked sample times, s, shape (m,) for all trajectories or (n, m) for each."""
+    """Return the sample times, s, after checks: shape (m,) if all trajectories share them, otherwise (n, m)."""
     if t is None:
         span = scene.span
         return np.linspace(float(span.start), float(span.stop), span.samples)
@@ -328,7 +338,7 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
 
 
 def _places(scene: Scene) -> dict[str, _Place]:
-    """Return where the constants that may vary are in a scene, by their names in the plan."""
+    """Return the places of all constants that may vary in a scene, by their names in the plan."""
     places = {name: _Place(-1, "inertia", None) for name in PLACES}
     for index, torque in enumerate(general_structure(scene).torques):
         if isinstance(torque, FormulaTorque):
@@ -342,11 +352,11 @@ def _places(scene: Scene) -> dict[str, _Place]:
 
 
 def _columns(scene: Scene, places: dict[str, _Place], name: str, values: ArrayLike) -> dict[str, Floats]:
-    """Return one column of values per constant, by name, from one entry of ``parameters``."""
+    """Return the columns of values that one entry of ``parameters`` describes, by the name of the constant."""
     if name == "principal":
         if not scene.body.principal.given_axes:
             raise InputError(
-                "principal: expected a body given along its principal axes, got one with products of inertia; vary "
+                "principal: expected a body given along its principal axes, got a body with products of inertia; vary "
                 f"{', '.join(PLACES)}"
             )
         return dict(zip(PRINCIPAL, _array(values, (3,), name, "kg m^2").T, strict=True))
@@ -375,5 +385,5 @@ def _columns(scene: Scene, places: dict[str, _Place], name: str, values: ArrayLi
 
 
 def _field(key: str, place: _Place) -> str:
-    """Return the name of the field that contains a constant, as the scene spells it."""
+    """Return the name that ``parameters`` accepts for the whole field of the constant ``key``."""
     return key.rpartition("_")[0] if isinstance(place.entry, int) else key

@@ -1,1 +1,1 @@
-"""Safe reading of files of unknown origin, and writing of files that are never left incomplete."""
+"""Safe reading of files of unknown origin, and writing that never leaves an incomplete file."""

@@ -17,17 +17,17 @@ SPECIAL = (
     (stat.S_ISCHR, "a device"),
     (stat.S_ISBLK, "a device"),
 )
-"""Kinds of special files: a test of the file's mode, and the name for an error message."""
+"""Kinds of special files: a test of the mode of the file, and the name of the kind for an error message."""
 
 
 def refuse_special(path: Path) -> os.stat_result:
-    """Return the status of a file, following links; raise OSError for a missing file and unless the file is regular.
+    """Return the status of a regular file, following links; raise OSError for a special or missing file.
 
     Raises
     ------
     OSError
-        For a folder, pipe, socket or device, or if the file does not exist. Its ``strerror`` completes a message
-        "expected .., got ..".
+        If the path is a folder, pipe, socket or device, or if the file does not exist. The attribute ``strerror``
+        completes a message "expected .., got ..".
     """
     status = path.stat()
     _refuse_mode(status.st_mode)
@@ -42,13 +42,13 @@ def _refuse_mode(mode: int) -> None:
 def read_input(path: Path, largest: int) -> bytes:
     """Return the content of a regular file of at most ``largest`` bytes.
 
-    The function checks the kind of the file before opening it, because opening alone starts some devices. It checks
-    again after opening, because the file may have been replaced in between.
+    The function checks the kind of the file before opening it, because the mere opening has an effect on some devices.
+    It checks again after opening, because the file may have been replaced in between.
 
     Raises
     ------
     OSError
-        For a special or missing file (see :func:`refuse_special`), a larger file, or a file that cannot be read.
+        If the file is special or missing (see :func:`refuse_special`), too large, or cannot be read.
     """
     try:
         refuse_special(path)

@@ -1,4 +1,4 @@
-"""Writing of files that are never left incomplete: a temporary file in the same folder is renamed when complete."""
+"""Writing that never leaves an incomplete file: a temporary file in the same folder is renamed when it is complete."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -11,12 +11,12 @@ __all__ = ["check_target", "write"]
 
 
 def check_target(path: Path, suffixes: Sequence[str], option: str) -> None:
-    """Raise InputError if a file cannot be written at a path; called early, before the content is computed.
+    """Raise InputError if a file cannot be written at a path; the check is made before the content is computed.
 
     Raises
     ------
     InputError
-        For an unknown suffix, a missing folder, a folder instead of a file, or a missing permission.
+        If the suffix is unknown, the folder is missing, the path is a folder, or a permission is missing.
     """
     if path.suffix.lower() not in suffixes:
         raise InputError(f"{option}: expected a file name that ends in {', '.join(suffixes)}, got {str(path)!r}")
@@ -40,7 +40,7 @@ def _refusal(path: Path, reason: Exception) -> InputError:
 
 
 def write(path: Path, content: Callable[[BinaryIO], object]) -> None:
-    """Call ``content`` with a temporary file, and replace the file at ``path`` by it once it is complete.
+    """Write a file at ``path``: ``content`` fills a temporary file, which is renamed to ``path`` when complete.
 
     Raises
     ------

@@ -14,7 +14,7 @@ SIGNATURES = {  # signatures of functions with more than one argument
 
 JUMPING = ("step", "sign", "min", "max", "clip", "floor", "mod", "where")
 
-_FUNCTIONS = {  # for each formula to write: the names used for it elsewhere
+_FUNCTIONS = {  # formula -> names of such a function in other languages
     "step(u)": "heaviside unitstep unit_step theta u1",
     "sign(u)": "sgn signum copysign signbit",
     "abs(u)": "fabs absolute magnitude",
@@ -89,7 +89,7 @@ MARKS = {
 
 
 def nearest(word: str, known: Collection[str]) -> str:
-    """Return the known word that is most similar to a mistyped one, or an empty text."""
+    """Return the known word that is most similar to a mistyped word, or an empty text if none is similar."""
     from difflib import get_close_matches
 
     close = get_close_matches(word.lower(), list(known), 1, 0.5)
@@ -97,7 +97,7 @@ def nearest(word: str, known: Collection[str]) -> str:
 
 
 def function_advice(name: str, known: Collection[str]) -> str:
-    """Return advice for a call of an unknown function, or with wrong arguments; an empty text if there is no advice."""
+    """Return advice (what to write instead) for an unknown function or wrong arguments, or an empty text."""
     if name in known:
         return f"write {SIGNATURES.get(name, f'{name}(u)')}"
     if name in JUMPING:
@@ -119,7 +119,7 @@ def _called(text: str) -> list[str]:
 
 
 def name_advice(name: str, known: Collection[str]) -> str:
-    """Return advice for an unknown name (what to write instead); an empty text if there is no advice."""
+    """Return advice (what to write instead) for an unknown name, or an empty text."""
     write = NAMES.get(name, "") or NAMES.get(name.lower(), "")
     if write and (write in known or "(" in write or " " in write):
         return f"write {write}"
@@ -128,7 +128,7 @@ def name_advice(name: str, known: Collection[str]) -> str:
 
 
 def mark_advice(source: str, position: int, known: Collection[str]) -> str:
-    """Return advice for a character that formulas do not use, or a missing operator; an empty text without advice."""
+    """Return advice (what to write instead) for an unknown character or a missing operator, or an empty text."""
     rest, before = source[position:], source[:position].rstrip()
     if rest[:1] in MARKS:
         return f"write {MARKS[rest[0]]}"

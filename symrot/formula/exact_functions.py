@@ -1,7 +1,7 @@
-"""Values of functions, such as exp, at exact numbers: a rational value is exact, other values are rounded once.
+"""Values of functions, such as exp, at exact numbers: rational values are exact, other values are rounded once.
 
-Roots, sines and cosines come from :mod:`symrot.formula.exact_numbers`. mpmath computes the other functions; it is
-imported by the first call that needs it.
+Roots, sines and cosines come from :mod:`symrot.formula.exact_numbers`. mpmath computes the other functions; the first
+call that needs mpmath imports it.
 """
 
 import math
@@ -20,7 +20,7 @@ MOST_BITS = 1 << 20  # largest size of an argument or a result; an exponential o
 
 
 def _transcendental(name: str, *arguments: Fraction) -> Fraction:
-    """Return the value of the named function at exact arguments, by mpmath, with a relative error below 2^-300.
+    """Return the value of the named function at exact arguments, computed by mpmath with a relative error below 2^-300.
 
     Raises
     ------
@@ -60,7 +60,7 @@ EXACT_FUNCTIONS: dict[str, Callable[..., Fraction]] = {
 
 
 def exact_value(node: Node, values: Mapping[str, Fraction]) -> Fraction | float:
-    """Return the value of a formula, given a value for each name in it; NaN if it has no real value.
+    """Return the value of a formula, given a value for each name in it; NaN if the formula has no real value.
 
     Raises
     ------

@@ -42,7 +42,7 @@ EXPECTATION = 'a number, such as 2, 0.5, "1/3", "sqrt(2)" or "pi/6"'
 
 
 def show(value: object, limit: int = 60) -> str:
-    """Return the text of ``value`` for an error message: as the user wrote it, cut to at most one line."""
+    """Return the text of ``value`` for an error message: as the user wrote it, but at most one line."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
@@ -76,7 +76,7 @@ def rounded(value: Fraction) -> Fraction:
 
 @cache
 def _pi(bits: int) -> Fraction:
-    """Return pi to an absolute error below 2^-bits (Machin: pi = 16 arctan(1/5) - 4 arctan(1/239))."""
+    """Return pi with an absolute error below 2^-bits (Machin: pi = 16 arctan(1/5) - 4 arctan(1/239))."""
     one = 1 << (bits + 16)
 
     def arctan_of_inverse(n: int) -> int:
@@ -94,7 +94,7 @@ PI: Fraction = _pi(BITS)
 
 
 def sqrt(value: Fraction) -> Fraction:
-    """Return the square root of ``value`` >= 0, exactly if it is rational, else with a relative error below 2^-320."""
+    """Return the square root of ``value`` >= 0: exact if it is rational, else with a relative error below 2^-320."""
     if value < 0:
         raise ValueError(f"the square root of the negative number {show(value)} is not real")
     numerator, denominator = isqrt(value.numerator), isqrt(value.denominator)
@@ -105,10 +105,10 @@ def sqrt(value: Fraction) -> Fraction:
 
 
 def unit(vector: Sequence[Fraction | float]) -> tuple[Fraction, ...]:
-    """Return a nonzero vector divided by its norm: exact if the norm is rational, else to a relative error of 2^-320.
+    """Return a nonzero vector divided by its norm: exact if the norm is rational, else with a relative error of 2^-320.
 
-    The computation uses integers over one common denominator; fractions would need a greatest common divisor for each
-    sum and product.
+    The computation uses integers over one common denominator; with fractions, each sum and product would need a
+    greatest common divisor.
     """
     ratios = [x.as_integer_ratio() for x in vector]
     shared = lcm(*[bottom for _, bottom in ratios])
@@ -122,7 +122,7 @@ def unit(vector: Sequence[Fraction | float]) -> tuple[Fraction, ...]:
 
 
 def _sin_first_quadrant(value: Fraction, bits: int) -> Fraction:
-    """Return sin of 0 <= value < 2 (rad) by its series in fixed point, absolute error below 2^-bits."""
+    """Return the sine of 0 <= value < 2, rad, by its series in fixed point, with an absolute error below 2^-bits."""
     one = 1 << (bits + 16)
     term = value.numerator * one // value.denominator
     square = term * term // one
@@ -139,7 +139,7 @@ _NIVEN = {Fraction(0): Fraction(0), Fraction(1, 6): Fraction(1, 2), Fraction(1, 
 
 
 def _sin_half_turns(half_turns: Fraction) -> Fraction:
-    """Return sin(half_turns * pi), exactly if it is rational."""
+    """Return sin(half_turns * pi); the result is exact if it is rational."""
     reduced = half_turns % 2
     if reduced >= 1:
         return -_sin_half_turns(reduced - 1)
@@ -149,19 +149,19 @@ def _sin_half_turns(half_turns: Fraction) -> Fraction:
 
 
 def _bits_for(value: Fraction) -> int:
-    """Return the number of bits after the binary point that give a small ``value`` a relative error of 2^-BITS."""
+    """Return the number of bits after the binary point with which a small ``value`` has a relative error of 2^-BITS."""
     return BITS + max(0, value.denominator.bit_length() - value.numerator.bit_length())
 
 
 def without_turns(value: Fraction) -> Fraction:
-    """Return an angle in rad reduced by multiples of 2 pi to between -pi and pi, with an error below 2^-300."""
+    """Return an angle, rad, reduced by a multiple of 2 pi to the range from -pi to pi, with an error below 2^-300."""
     magnitude = max(0, value.numerator.bit_length() - value.denominator.bit_length())
     turn = 2 * (PI if magnitude < 8 else _pi(BITS + magnitude))
     return value - round(value / turn) * turn
 
 
 def _sin_shifted(value: Fraction, quarter_turns: int) -> Fraction:
-    """Return sin(value + quarter_turns * pi/2), ``value`` in rad, error below 2^-300."""
+    """Return sin(value + quarter_turns * pi/2), ``value`` in rad, with an error below 2^-300."""
     if not value:
         return Fraction((0, 1, 0, -1)[quarter_turns % 4])
     magnitude = max(0, value.numerator.bit_length() - value.denominator.bit_length())
@@ -174,27 +174,27 @@ def _sin_shifted(value: Fraction, quarter_turns: int) -> Fraction:
 
 
 def sin(value: Fraction) -> Fraction:
-    """Return the sine of ``value`` (rad), error below 2^-250."""
+    """Return the sine of ``value``, rad, with an error below 2^-250."""
     return _sin_shifted(value, 0)
 
 
 def cos(value: Fraction) -> Fraction:
-    """Return the cosine of ``value`` (rad), error below 2^-250."""
+    """Return the cosine of ``value``, rad, with an error below 2^-250."""
     return _sin_shifted(value, 1)
 
 
 def tan(value: Fraction) -> Fraction:
-    """Return the tangent of ``value`` (rad)."""
+    """Return the tangent of ``value``, rad."""
     return sin(value) / cos(value)
 
 
 def equal(a: Fraction, b: Fraction) -> bool:
-    """Return whether two numbers agree to 2^-200 relative, closer than different numbers of any scene."""
+    """Return whether the relative difference of two numbers is below 2^-200, which counts as equal in a scene."""
     return a == b or abs(a - b) * NEGLIGIBLE.denominator < max(abs(a), abs(b))
 
 
 class Angle(NamedTuple):
-    """An angle ``rational + half_turns * pi``, in rad, so that a right angle has an exact sine and cosine."""
+    """An angle ``rational + half_turns * pi``, rad. In this form a right angle has an exact sine and cosine."""
 
     rational: Fraction
     half_turns: Fraction
@@ -329,7 +329,7 @@ def _in_range(value: Fraction) -> None:
 
 
 def _read(value: object, where: str, expect: str) -> Angle:
-    """Return a number in the form rational + half_turns * pi; raise InputError for a value that is not a number."""
+    """Return a number in the form ``rational + half_turns * pi``; raise InputError if the value is not a number."""
     kind = type(value)
     if not isinstance(value, bool):
         reader = _READERS.get(kind) or next((r for k, r in _READERS.items() if isinstance(value, k)), None)
@@ -365,23 +365,23 @@ def read(value: object, where: str = "", expect: str = EXPECTATION) -> Fraction:
     Parameters
     ----------
     value : int, float, Decimal, Fraction or str
-        A float is its exact binary value; a text or Decimal is the number as written: ``"0.1"`` is 1/10.
-        Text may use ``+ - * / **``, parentheses, ``pi``, ``sqrt``, ``sin``, ``cos``, ``tan``, ``abs``.
+        A float stands for its exact binary value, a text or a Decimal for the number as written: ``"0.1"`` is 1/10.
+        Text may contain ``+ - * / **``, parentheses, ``pi``, ``sqrt``, ``sin``, ``cos``, ``tan``, ``abs``.
     where : str
-        File and key, put in front of an error message.
+        File and key of the number, for error messages.
     expect : str
         The expected value, as an error message names it.
 
     Returns
     -------
     Fraction
-        Exact if the value is rational, else with a relative error below 2^-300.
+        Exact if the value is rational, otherwise with a relative error below 2^-300.
 
     Raises
     ------
     InputError
-        For NaN, an infinity, a value outside the range of a double, a boolean, a unit, or anything that is not a
-        number.
+        If the value is NaN, infinite, outside the range of doubles, true or false, a number with a unit, or not a
+        number at all.
 
     Examples
     --------

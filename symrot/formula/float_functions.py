@@ -1,4 +1,4 @@
-"""The functions that formulas of scenes call, for floats."""
+"""The functions that formulas of scenes may call, for floats."""
 
 import math
 from collections.abc import Callable

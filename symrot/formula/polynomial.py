@@ -1,8 +1,8 @@
 """Sparse polynomials with exact coefficients. Standard library only.
 
-The variables of a polynomial are called generators; all are names, or all are numbers. Integrals over solids use as
-generators the coordinates, cosines and sines of the angles, ``pi``, and for closed forms the dimensions. The auxiliary
-states of Taylor steppers are polynomials in numbered generators.
+The variables of a polynomial are called generators; all of them are names, or all of them are numbers. In integrals
+over solids the generators are the coordinates, the cosines and sines of the angles, ``pi``, and for closed forms the
+dimensions of the solid. The auxiliary states of Taylor steppers are polynomials in numbered generators.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -67,7 +67,10 @@ class Polynomial:
     __radd__, __rmul__ = __add__, __mul__
 
     def __truediv__(self, other: Operand) -> "Polynomial":
-        """Divide by a number; raise ``ValueError`` for a divisor with generators, ``ZeroDivisionError`` for zero."""
+        """Return the quotient by a number; raise ``ValueError`` if the divisor contains a generator.
+
+        Raise ``ZeroDivisionError`` if the divisor is zero.
+        """
         divisor = _lift(other)
         if not divisor:
             raise ZeroDivisionError("division by zero")
@@ -85,7 +88,7 @@ class Polynomial:
         return power
 
     def collect(self, names: Iterable[str]) -> dict[tuple[int, ...], "Polynomial"]:
-        """Return the coefficients of the powers of some generators, keyed by exponents in the order of ``names``."""
+        """Return the coefficients of the products of powers of the generators ``names``, by the tuple of exponents."""
         order = tuple(names)
         parts: dict[tuple[int, ...], dict[Monomial, Fraction]] = {}
         for monomial, coefficient in self.terms.items():
@@ -95,7 +98,10 @@ class Polynomial:
         return {exponents: Polynomial(part) for exponents, part in parts.items()}
 
     def derivative(self, name: str) -> "Polynomial":
-        """Return the partial derivative by a coordinate; the cosine and sine of an angle depend on the angle."""
+        """Return the partial derivative with respect to a coordinate.
+
+        If the coordinate is an angle, the generators that represent its cosine and sine are differentiated too.
+        """
         inner = ((generator(name), constant(1)), (cosine(name), -sine(name)), (sine(name), cosine(name)))
         total = constant(0)
         for argument, rate in inner:
@@ -106,7 +112,7 @@ class Polynomial:
         return total
 
     def value(self, values: Mapping[str, Fraction]) -> Fraction:
-        """Return the value of the polynomial; raise ``KeyError`` for a generator without a value."""
+        """Return the value of the polynomial; raise ``KeyError`` if a generator has no value."""
         total = Fraction(0)
         for monomial, coefficient in self.terms.items():
             for name, power in monomial:
@@ -115,7 +121,7 @@ class Polynomial:
         return total
 
     def symbol(self) -> str:
-        """Return the name of a polynomial that is a single generator; raise ``ValueError`` otherwise."""
+        """Return the name of the generator if the polynomial is a single generator; raise ``ValueError`` otherwise."""
         ((monomial, coefficient),) = self.terms.items()
         name: str
         ((name, power),) = monomial
@@ -134,7 +140,7 @@ def _join(left: Monomial, right: Monomial) -> Monomial:
 
 
 def products_of_monomials(left: Polynomial, right: Polynomial) -> set[Monomial]:
-    """Return the monomials of the expanded product of two polynomials, including monomials that cancel."""
+    """Return the monomials of the expanded product of two polynomials, even if their coefficients cancel."""
     return {_join(monomial, factor) for monomial in left.terms for factor in right.terms}
 
 
@@ -163,7 +169,10 @@ def sine(angle: str) -> Polynomial:
 
 
 def reduce_circular(source: Polynomial, angles: Iterable[str]) -> Polynomial:
-    """Replace ``cos^2`` by ``1 - sin^2`` in a polynomial until no cosine has a power above 1; return the result."""
+    """Return the polynomial in which ``cos^2`` of the angles is replaced by ``1 - sin^2``.
+
+    In the result no cosine has a power above 1.
+    """
     for angle in angles:
         reduced = constant(0)
         for (power,), coefficient in source.collect([f"cos({angle})"]).items():
@@ -187,7 +196,7 @@ def _term_quotient(term: Term, divisor: Term) -> Polynomial | None:
 
 
 def exact_quotient(dividend: Polynomial, divisor: Polynomial) -> Polynomial | None:
-    """Return the quotient of two polynomials, by long division, or None if it is not a polynomial."""
+    """Return the quotient of two polynomials, computed by long division, or None if it is not a polynomial."""
     order = _exponents(sorted({name for monomial in (*dividend.terms, *divisor.terms) for name, _ in monomial}))
     highest = max(divisor.terms.items(), key=order)
     quotient, rest = constant(0), dividend
@@ -200,9 +209,9 @@ def exact_quotient(dividend: Polynomial, divisor: Polynomial) -> Polynomial | No
 
 
 def square_root(source: Polynomial) -> Polynomial:
-    """Return the square root of a polynomial, with a positive lowest term; raise ``ValueError`` if it is not a square.
+    """Return the square root of a polynomial; raise ``ValueError`` if the polynomial is not a square.
 
-    The root is computed term by term from the lowest term up, as for a power series.
+    The root is computed term by term from the lowest term up, as for a power series; its lowest term is positive.
     """
     order = _exponents(sorted({name for monomial in source.terms for name, _ in monomial}))
     if not source:

@@ -1,7 +1,8 @@
 """A kernel as data: its signature, and its formulas as a straight-line program. Standard library only.
 
-The program connects derivation and computation: code generation writes it, propagation reads it, and a saved kernel is
-read back from JSON without SymPy.
+A straight-line program is a list of assignments without loops and branches: first temporaries (intermediate results),
+then outputs. It connects derivation and computation: code generation writes it, propagation reads it, and a saved
+kernel is read back from JSON without SymPy.
 """
 
 from collections import Counter
@@ -60,7 +61,7 @@ class ProgramRecord(TypedDict):
 class Program:
     """A straight-line program: temporaries in order of computation, each assigned once, then the outputs.
 
-    The formulas use component names of the input arguments and names of earlier temporaries.
+    The formulas contain component names of the input arguments and names of earlier temporaries.
     """
 
     signature: Signature
@@ -76,11 +77,11 @@ class Program:
             known.add(name)
 
     def operations(self) -> Counter[str]:
-        """Count the operations of one evaluation (see :func:`symrot.formula.tree.operations`)."""
+        """Return the numbers of operations in one evaluation, by kind (see :func:`symrot.formula.tree.operations`)."""
         return sum((operations(node) for _, node in self.temporaries + self.outputs), Counter())
 
     def vanishing(self, zeros: Collection[str]) -> frozenset[str]:
-        """Return the outputs that are zero if the given inputs are zero, as far as their formulas show directly."""
+        """Return the outputs that are zero if the inputs ``zeros`` are zero, as far as the formulas show directly."""
         known = set(zeros)
         for name, node in (*self.temporaries, *self.outputs):
             if vanishes(node, known):
@@ -88,7 +89,7 @@ class Program:
         return frozenset(name for name, _ in self.outputs if name in known)
 
     def uses(self, symbol: str, only: Collection[str] | None = None) -> bool:
-        """Return whether a symbol occurs in the program, or, given ``only``, in the computation of those outputs."""
+        """Return whether a symbol occurs in the computation of the outputs, or of the outputs ``only`` if given."""
         needed = {name for name, _ in self.outputs} if only is None else set(only)
         for name, node in reversed((*self.temporaries, *self.outputs)):
             needed |= names(node) if name in needed else set()
@@ -101,9 +102,10 @@ class Program:
         number: Callable[[Fraction], Any] = float,
         only: Collection[str] | None = None,
     ) -> dict[str, Any]:
-        """Return the outputs by name, for inputs by name: floats, arrays or Fractions (with ``number=Fraction``).
+        """Return the values of the outputs, by name, for the values of the inputs, by name.
 
-        Given ``only``, the method computes just those outputs and the temporaries that they need.
+        Values are floats, arrays or Fractions (with ``number=Fraction``). If ``only`` is given, only these outputs and
+        the temporaries that they need are computed.
         """
         outputs = [(name, node) for name, node in self.outputs if only is None or name in only]
         needed = set().union(*(names(node) for _, node in outputs))
@@ -118,7 +120,7 @@ class Program:
         return {name: evaluate(node, known, functions, number) for name, node in outputs}
 
     def to_json(self) -> ProgramRecord:
-        """Return the program as plain data for JSON; :meth:`from_json` reads them back to an equal program."""
+        """Return the program as plain data for JSON, from which :meth:`from_json` restores an equal program."""
         return {
             "name": self.signature.name,
             "arguments": [
@@ -130,7 +132,7 @@ class Program:
 
     @classmethod
     def from_json(cls, data: ProgramRecord) -> "Program":
-        """Return the program that data from :meth:`to_json` describe."""
+        """Return the program that the result of :meth:`to_json` describes."""
         arguments = tuple(
             Argument(name, role, tuple((component, unit, meaning) for component, unit, meaning in components), scalar)
             for name, role, components, scalar in data["arguments"]
@@ -157,7 +159,7 @@ def node_to_json(node: Node) -> list[Any]:
 
 
 def node_from_json(data: list[Any]) -> Node:
-    """Return the formula that nested lists from :func:`node_to_json` describe."""
+    """Return the formula that the result of :func:`node_to_json` describes."""
     kind = data[0]
     if kind == "number":
         return ("number", Fraction(data[1]))

@@ -12,10 +12,10 @@ MOST_TERMS = 60  # largest number of terms of a polynomial that is tested for be
 
 
 def square_under_root(radicand: Node) -> tuple[Node, Node] | None:
-    """Return (u, v) with radicand = u^2 v, so that its square root is abs(u) sqrt(v), or None if u is 1.
+    """Return (u, v) with radicand = u^2 v, so that the root of the radicand is abs(u) sqrt(v), or None if u is 1.
 
-    A sum such as t**2 - 2*c*t + c**2 counts as a square too if it is the square of a polynomial in its symbols and
-    functions.
+    A sum such as t**2 - 2*c*t + c**2 also counts as a square if it is the square of a polynomial in its symbols and
+    function calls.
     """
     root, rest = _split(radicand)
     if rest != ONE and (more := _root_of_sum(rest)) is not None:
@@ -24,7 +24,7 @@ def square_under_root(radicand: Node) -> tuple[Node, Node] | None:
 
 
 def _split(node: Node) -> tuple[Node, Node]:
-    """Return (u, v) with node = u^2 v; u is 1 if no factor is written as a square."""
+    """Return (u, v) with node = u^2 v; u is 1 if no factor of the formula is written as a square."""
     kind = node[0]
     if kind in ("*", "/"):
         (a, v), (b, w) = map(_split, children(node))
@@ -56,7 +56,10 @@ def _root_of_sum(node: Node) -> Node | None:
 
 
 def as_polynomial(node: Node, generators: dict[str, Node]) -> Polynomial | None:
-    """Return a formula as a polynomial in its symbols and function calls, and add these to ``generators``."""
+    """Return a formula as a polynomial in its symbols and function calls, which are added to ``generators`` by name.
+
+    Return None if the formula is not such a polynomial, or if the polynomial has too many terms.
+    """
     kind = node[0]
     if kind == "number":
         return constant(node[1])

@@ -1,8 +1,8 @@
 """Formulas with jumps or kinks, rewritten as smooth formulas that a stepper integrates from one jump to the next.
 
-A switch has a guard, which is a formula whose sign changes, and a mode, which is the number that the smooth formula
-contains instead of the jump. As long as no guard changes sign, the smooth formula with the current values of the modes
-equals the original formula:
+A switch is a place at which a formula jumps or has a kink. It has a guard, which is a formula whose sign changes there,
+and a mode, which is the number that replaces the jump in the smooth formula. As long as no guard changes sign, the
+smooth formula with the current values of the modes equals the original formula:
 
 =====================  =============================  ==========================================
 formula                smooth formula                 guard
@@ -23,7 +23,7 @@ The arc tangent of two arguments jumps across the negative x axis. For x < 0 it 
 the sign of y; this form is smooth there.
 
 In ``where(t > 1, sqrt(t - 1), 0)`` the root has no value before t = 1, and zero times an undefined value is undefined.
-So a ``where`` with such a part, or with a part whose narrow features could shorten steps, stays in the smooth formula
+So a ``where`` with such a part, or with a part whose short pulses could shorten steps, stays in the smooth formula
 until the modes are known. :func:`chosen` then replaces it by the part that applies; guards inside the other part are
 ignored.
 
@@ -50,7 +50,7 @@ CHANGING = frozenset({"t", *(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i i
 BENDING = {*SWITCHING, "abs", "atan2"}
 CONDITIONS = {"less", "and", "or", "not"}
 MODES = "switch_"  # prefix of the names of modes
-HARMLESS_DEGREE = 6  # polynomials up to this degree are defined everywhere and have no narrow feature
+HARMLESS_DEGREE = 6  # polynomials up to this degree are defined everywhere and have no short pulse
 RISKY = HARMLESS_DEGREE + 1
 
 Conditions = tuple[tuple[Node, int], ...]
@@ -58,22 +58,24 @@ Conditions = tuple[tuple[Node, int], ...]
 
 
 class Switch(NamedTuple):
-    """A discontinuity of a formula: a mode, and the guard whose sign determines it.
+    """A jump or kink of a formula: a mode, and the guard whose sign determines the mode.
 
     Attributes
     ----------
     mode : str
         Name of the mode in the smooth formulas.
     kind : str
-        ``"sign"``: the mode is the sign of the guard; ``"floor"``: the mode is the largest integer below the guard.
+        ``"sign"``: the mode is the sign of the guard; ``"floor"``: the mode is the largest integer that is not above
+        the guard.
     guard : Node
         A smooth formula, which may contain modes.
     where : Conditions
-        The switch matters only while these conditions hold.
+        The switch affects the formula only while these conditions hold.
     label : str
-        The function that jumps, as the user wrote it.
+        The call of the function that jumps, as the user wrote it.
     at_zero : int
-        Value of the mode while the guard is exactly zero: sign(0) = 0, step(0) = 0, 0 < 0 is false.
+        Value of the mode while the guard is exactly zero. It follows from sign(0) = 0 and step(0) = 0, and from 0 < 0
+        being false.
     """
 
     mode: str
@@ -87,7 +89,8 @@ class Switch(NamedTuple):
 class Smooth(NamedTuple):
     """Smooth formulas and their switches; each switch comes after the switches whose modes occur in its guard.
 
-    Formulas and guards may contain ``where(p, a, b)``, with p a formula of modes that is 1 or 0; see :func:`chosen`.
+    Formulas and guards may contain ``where(p, a, b)``, in which p is a formula of modes with the value 1 or 0; see
+    :func:`chosen`.
     """
 
     formulas: tuple[Node, ...]
@@ -106,7 +109,7 @@ def has_switches(node: Node) -> bool:
 
 
 def condition_error(node: Node) -> str:
-    """Return the expected form of the first wrong condition in a formula; an empty text if all conditions are right."""
+    """Return the form that the first wrong condition in a formula should have; an empty text if there is none."""
 
     def wrong(node: Node, condition: bool) -> str:
         if node[0] != "call" or node[1] not in CONDITIONS:
@@ -126,23 +129,20 @@ def condition_error(node: Node) -> str:
 
 
 def hold(conditions: Iterable[tuple[Node, int]], modes: Mapping[str, int], held: Collection[str] = ()) -> bool:
-    """Return whether all conditions hold for given modes; a condition with a mode in ``held`` counts as true.
-
-    A mode is the number that replaces a jump: the sign of a formula, or its integer part.
-    """
+    """Return whether all conditions hold for given modes; a condition with a mode in ``held`` counts as true."""
     return all(names(share) & set(held) or evaluate(share, modes) == value for share, value in conditions)
 
 
 def has_choices(node: Node) -> bool:
-    """Return whether a formula contains a choice ``where(p, a, b)``."""
+    """Return whether a formula contains a call ``where(p, a, b)``."""
     return node[:2] == ("call", "where") or any(map(has_choices, children(node)))
 
 
 def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> Node:
     """Return a smooth formula in which each ``where`` is replaced by the part that applies for given modes.
 
-    A mode is the number that replaces a jump, such as the sign of a formula. While a motion slides along a switch, its
-    mode is in ``held``; then both parts are blended.
+    While a motion slides along a switch (its guard stays at zero), the mode of the switch is in ``held``. A
+    ``where(p, a, b)`` whose condition p depends on this mode is replaced by the sum ``b + p (a - b)``.
     """
     if not has_choices(node):
         return node
@@ -161,7 +161,7 @@ def blended(node: Node) -> Node:
 
 
 def placed(node: Node, values: Mapping[str, Node]) -> Node:
-    """Return a formula with names replaced by the given formulas."""
+    """Return the formula in which the names in ``values`` are replaced by formulas."""
     if node[0] in ("number", "symbol"):
         return values.get(node[1], node) if node[0] == "symbol" else node
     parts = tuple(placed(child, values) for child in children(node))
@@ -169,10 +169,10 @@ def placed(node: Node, values: Mapping[str, Node]) -> Node:
 
 
 def on_line(node: Node) -> tuple[Any, int]:
-    """Return a key that proportional formulas share, and the sign of the factor between the formula and the key.
+    """Return a key that proportional formulas have in common, and the sign of the factor between formula and key.
 
-    Formulas with the same key vanish together, so one search for their zeros serves all. A formula that is no
-    polynomial of symbols and functions is its own key.
+    Formulas with the same key have the same zeros, so that one search for zeros is enough for all of them. If a formula
+    is not a polynomial in symbols and function calls, the key is the formula itself.
     """
     polynomial = as_polynomial(node, {})
     if polynomial is None or not polynomial.terms:
@@ -182,10 +182,10 @@ def on_line(node: Node) -> tuple[Any, int]:
 
 
 def between_sides(node: Node, mode: str) -> Node:
-    """Return a formula that is linear in a mode (the sign of a guard) and equal to the given one at modes 1 and -1.
+    """Return a formula that is linear in a mode and equals the formula ``node`` if the mode is 1 or -1.
 
-    A motion that slides along a switch moves with a mixture of the rates on both sides (A. F. Filippov). A formula that
-    is linear in the mode is already such a mixture and is returned unchanged.
+    The rates of a motion that slides along a switch are a mean of the rates for positive and for negative guards (A. F.
+    Filippov). A formula that is linear in the mode already describes such means and is returned unchanged.
     """
     if _is_linear(node, mode):
         return node
@@ -194,7 +194,7 @@ def between_sides(node: Node, mode: str) -> Node:
 
 
 def _is_linear(node: Node, mode: str) -> bool:
-    """Return whether a formula, as it is written, is linear in a mode (the sign of a guard)."""
+    """Return whether a formula, as it is written, is linear in a mode."""
     if mode not in names(node) or node == ("symbol", mode):
         return True
     parts = children(node)
@@ -207,9 +207,9 @@ def _is_linear(node: Node, mode: str) -> bool:
 
 
 def _degree(node: Node) -> int:
-    """Return the degree of a formula between its switches, as a polynomial that may contain sines of the time too.
+    """Return the degree of a formula between its switches, as a polynomial in time, states and sines of the time.
 
-    The result is RISKY for a formula that may be undefined, have a pole or have a narrow feature.
+    The result is RISKY if the formula may be undefined, have a pole or contain a short pulse.
     """
     kind = node[0]
     if kind in ("number", "symbol"):
@@ -258,7 +258,7 @@ class _Writer:
         self.conditions: Conditions = ()  # conditions under which the part being rewritten applies
 
     def mode(self, kind: str, guard: Node, where: Conditions = (), at_zero: int = 1) -> Node:
-        """Return the mode of a guard, the number that replaces its jump; the first call with a guard creates it."""
+        """Return the symbol of the mode of a guard; the first call with a guard creates the mode."""
         where = self.conditions + where
         for count in range(len(where) + 1):  # a mode that applies under fewer of the conditions serves as well
             if (mode := self.known.get((kind, guard, where[:count], at_zero))) is not None:
@@ -269,7 +269,7 @@ class _Writer:
         return ("symbol", name)
 
     def part(self, node: Node, share: Node, value: int) -> Node:
-        """Return a part of a ``where`` as a smooth formula; its jumps count only while ``share`` equals ``value``."""
+        """Return a part of a ``where`` as a smooth formula; its switches matter only if ``share`` equals ``value``."""
         outside = self.conditions
         self.conditions = (*outside, (share, value))
         smooth = self.smooth(node)
@@ -301,7 +301,7 @@ class _Writer:
         return getattr(self, f"_{node[1]}")(*parts)  # type: ignore[no-any-return]
 
     def share(self, condition: Node) -> Node:
-        """Return a condition as a formula of modes that is 1 if the condition holds, else 0."""
+        """Return a condition as a formula of modes with the value 1 if the condition holds, otherwise 0."""
         name, parts = condition[1], condition[2]
         if name == "less":
             left, right = map(self.smooth, parts)

@@ -1,6 +1,7 @@
-"""Formulas as text and as trees: read without ``eval``, evaluated over any kind of number. Standard library only.
+"""Formulas as text and as trees: read without ``eval``, evaluated with any kind of number. Standard library only.
 
-A node is a nested tuple. Scene texts, printed closed forms and kernels all use this form::
+A formula tree is a nested tuple, called a node. Formulas of scenes, printed closed forms and kernels all have this
+form::
 
     ("number", Fraction)   ("symbol", name)   ("neg", a)   ("call", function, (arguments,))
     ("+", a, b)   ("-", a, b)   ("*", a, b)   ("/", a, b)   ("**", a, integer)
@@ -52,7 +53,7 @@ _UNARY = 30  # -x**2 is -(x**2), -x*y is (-x)*y
 
 
 class _Reader:
-    """A parser of one formula by precedence climbing."""
+    """A parser for one formula, by precedence climbing."""
 
     def __init__(self, source: str, where: str, switching: bool) -> None:
         self.source, self.where, self.depth = source, f"{where}: " if where else "", 0
@@ -158,7 +159,7 @@ class _Reader:
         return Fraction(token)
 
     def power(self, position: int) -> int:
-        """Read an exponent: a whole number, possibly with a sign or in brackets."""
+        """Read and return an exponent: a whole number, possibly with a sign or in brackets."""
         brackets = self.peek() == "("
         if brackets:
             self.next()
@@ -183,18 +184,18 @@ def parse(source: str, where: str = "", switching: bool = False) -> Node:
     Parameters
     ----------
     source : str
-        Numbers, names, ``+ - * / **`` (whole exponents), brackets and the functions of :data:`FUNCTIONS`.
+        Text of numbers, names, ``+ - * / **`` (whole exponents), brackets and the functions of :data:`FUNCTIONS`.
     where : str
-        The place of the text (file and key), put in front of every error message.
+        File and key of the text, for error messages.
     switching : bool
-        Whether to allow the functions of :data:`SWITCHING` too, and comparisons, ``and``, ``or`` and ``not`` in the
-        condition of ``where``; these become calls of ``less``, ``and``, ``or``, ``not``. See
+        Whether the functions of :data:`SWITCHING` are allowed too, and comparisons, ``and``, ``or`` and ``not`` in the
+        condition of ``where``. In the tree these are calls of ``less``, ``and``, ``or`` and ``not``. See
         :mod:`symrot.formula.switches`.
 
     Raises
     ------
     InputError
-        For the first position that cannot be read. Nothing is skipped and nothing is evaluated.
+        If the text is not such a formula; the message names the first wrong position.
 
     Examples
     --------
@@ -223,7 +224,7 @@ def children(node: Node) -> tuple[Node, ...]:
 
 
 def rename(node: Node, symbols: Mapping[str, str] | None = None, functions: Mapping[str, str] | None = None) -> Node:
-    """Return a formula with some symbols and functions renamed; other names are unchanged."""
+    """Return the formula with symbols and functions renamed as the two mappings say; other names are unchanged."""
     kind = node[0]
     if kind == "number":
         return node
@@ -245,9 +246,9 @@ def names(node: Node) -> set[str]:
 
 
 def operations(node: Node) -> Counter[str]:
-    """Count the operations of a formula: ``add`` (and subtract), ``mul``, ``div``, ``neg`` and the functions by name.
+    """Return the numbers of operations in a formula: ``add`` (and subtract), ``mul``, ``div``, ``neg``, and functions.
 
-    A whole power n counts as ``|n| - 1`` multiplications, and one division if n is negative.
+    A power with exponent n counts as ``|n| - 1`` multiplications, and one division if n is negative.
     """
     count: Counter[str] = sum((operations(child) for child in children(node)), Counter())
     kind = node[0]
@@ -263,7 +264,7 @@ ODD = {"sqrt", "sin", "tan", "sinh", "tanh", "asin", "atan", "abs"}  # functions
 
 
 def vanishes(node: Node, zeros: Collection[str]) -> bool:
-    """Return whether a formula, as it is written, is zero if the given symbols are zero."""
+    """Return whether a formula, as it is written, is zero if the symbols ``zeros`` are zero."""
     kind = node[0]
     if kind in ("number", "symbol"):
         return node[1] == 0 if kind == "number" else node[1] in zeros
@@ -281,7 +282,7 @@ def evaluate(
     functions: Mapping[str, Callable[..., Any]] | None = None,
     number: Callable[[Fraction], Any] = lambda value: value,
 ) -> Any:
-    """Return the value of a formula over the numbers of ``values``: Fractions, floats, arrays or SymPy expressions.
+    """Return the value of a formula, given the values of its symbols: Fractions, floats, arrays or SymPy expressions.
 
     Parameters
     ----------
@@ -290,14 +291,14 @@ def evaluate(
     values : mapping of str to number
         A value for each symbol.
     functions : mapping of str to callable, optional
-        Implementations of the functions by name, for that kind of number.
+        Implementations of the functions, by name, for the kind of number in ``values``.
     number : callable
-        Converts the exact constants of the formula to that kind of number; ``float`` for arrays.
+        Converts the exact constants of the formula to this kind of number; ``float`` for arrays.
 
     Raises
     ------
     KeyError
-        If a symbol has no value or a function no implementation.
+        If a symbol has no value, or a function has no implementation.
     """
     kind = node[0]
     if kind == "number":
@@ -325,7 +326,7 @@ _INFIX = {"+": (10, " + "), "-": (10, " - "), "*": (20, "*"), "/": (20, "/")}
 def text(node: Node, binding: int = 0, literal: Callable[[Fraction], str] = str) -> str:
     """Return a formula as infix text with the fewest brackets that preserve its order of evaluation.
 
-    :func:`parse` reads the text back to the same tree (except that a fraction becomes a quotient).
+    :func:`parse` converts the text back to the same tree, except that a fraction becomes a quotient.
     """
     kind = node[0]
     if kind == "number":

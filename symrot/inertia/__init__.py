@@ -1,0 +1,1 @@
+"""Inertia of bodies: solids by exact integration, bodies of several parts, and principal axes."""

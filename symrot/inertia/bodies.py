@@ -1,6 +1,7 @@
-"""Mass properties of bodies that are moved, rotated, added or subtracted, over any kind of number. Standard library.
+"""Mass properties of bodies that are moved, rotated, added or subtracted, with any kind of number. Standard library.
 
-The same functions serve symbolic bodies (:class:`symrot.inertia.solids.Solid`) and the exact numbers of a scene.
+The same functions are used for symbolic bodies (:class:`symrot.inertia.solids.Solid`) and for the exact numbers of a
+scene.
 """
 
 from collections.abc import Iterable
@@ -15,7 +16,7 @@ _ORIGIN = (0, 0, 0)
 
 
 class HasInertia(Protocol):
-    """Anything with a mass (kg), a centre of mass (m) and an inertia tensor about it (kg m^2)."""
+    """The type of anything with a mass (kg), a centre of mass (m) and an inertia tensor about that centre (kg m^2)."""
 
     @property
     def mass(self) -> Any: ...
@@ -39,7 +40,7 @@ class MassProperties(NamedTuple):
 
 
 def place(body: HasInertia, at: Any = _ORIGIN, rotation: Any = IDENTITY) -> MassProperties:
-    """Return a body rotated by ``rotation`` about the origin, then moved by ``at`` (m), in the axes of the assembly."""
+    """Return the mass properties of a body after a rotation about the origin and a displacement ``at`` (m)."""
     turned = tensor.apply(rotation, body.center_of_mass)
     center = tuple(a + c for a, c in zip(tensor.vector(at), turned, strict=True))
     return MassProperties(body.mass, tensor.vector(center), tensor.rotate(body.inertia, rotation))
@@ -48,7 +49,7 @@ def place(body: HasInertia, at: Any = _ORIGIN, rotation: Any = IDENTITY) -> Mass
 def compose(added: Iterable[HasInertia], subtracted: Iterable[HasInertia] = ()) -> MassProperties:
     """Return the mass properties of a rigid assembly: the sum of the added bodies minus the subtracted bodies (holes).
 
-    All bodies are given in the same axes, with components of any numeric type, SymPy expressions included. The total
+    All bodies are given in the same axes. Components may have any numeric type, and may be SymPy expressions. The total
     mass must not be zero.
     """
     signed = [(1, body) for body in added] + [(-1, body) for body in subtracted]

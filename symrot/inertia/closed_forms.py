@@ -1,6 +1,6 @@
-"""Closed forms of the uniform solids, read from ``closed_forms.toml`` and evaluated exactly. Standard library only.
+"""Formulas (closed forms) of uniform solids, read from ``closed_forms.toml`` and evaluated exactly. Standard library.
 
-The file is printed by :mod:`symrot.inertia.solids`, which derives the formulas, so that a scene needs no SymPy.
+:mod:`symrot.inertia.solids` derives these formulas and prints the file, so that a scene needs no SymPy.
 """
 
 from collections.abc import Mapping
@@ -30,7 +30,10 @@ def _table() -> dict[str, dict[str, str]]:
 
 @cache
 def closed_form(shape: str) -> dict[str, Node]:
-    """Return formulas of a shape of mass ``m`` by name: ``measure``, ``center_x`` .., inertia ``xx`` .. ``yz``."""
+    """Return the formulas of a shape of mass ``m`` by name.
+
+    The names are ``measure``, ``center_x``, ``center_y``, ``center_z``, and ``xx`` to ``yz`` for the inertia tensor.
+    """
     return {key: parse(text) for key, text in _table()[shape].items()}
 
 
@@ -46,11 +49,11 @@ def uniform(
     Parameters
     ----------
     shape : Shape
-        Any shape but ``point_masses``.
+        Any shape except ``point_masses``.
     dimensions : mapping
-        As returned by :func:`symrot.inertia.shapes.check_dimensions`.
+        The dimensions as :func:`symrot.inertia.shapes.check_dimensions` returns them.
     mass, density : Fraction
-        Exactly one of them: the mass in kg, or the density in kg per m^3, m^2 or m.
+        Exactly one of the two: the mass in kg, or the density in kg per m^3, m^2 or m.
     where : str
         Place of the shape in the scene, put in front of an error message.
 

@@ -23,10 +23,10 @@ _ROTATION_TOLERANCE = Fraction(1, 10**9)  # rejects a matrix of rounded decimals
 class Part(NamedTuple):
     """A part of a body, with its entries as the scene gives them.
 
-    ``at`` is the position (m) of the part's origin in the axes of the body, ``rotation`` the 3x3 matrix that maps
-    components in the part's axes to components in the body's. A part has either a ``mass`` (kg) or a ``density`` (kg
-    per m^3, m^2 or m, or the text of a polynomial in x, y, z of the part's axes). Point masses have neither: their
-    masses are among their dimensions.
+    ``at`` is the position (m) of the part's origin in the axes of the body; ``rotation`` is the 3x3 matrix that maps
+    components in the part's axes to components in the body's axes. A part has either a ``mass`` (kg) or a ``density``
+    (kg per m^3, m^2 or m; a number, or the text of a polynomial in the part's coordinates x, y, z). Point masses have
+    neither: their masses are among their dimensions.
     """
 
     shape: str
@@ -44,7 +44,9 @@ def _prefix(where: str) -> str:
 
 def _points(part: Part, dimensions: Mapping[str, Any], where: str) -> MassProperties:
     if part.mass is not None or part.density is not None:
-        raise InputError(f"{_prefix(where)}expected no mass or density of point_masses; give their masses in 'masses'")
+        raise InputError(
+            f"{_prefix(where)}expected no mass or density of point_masses, got one; give their masses in 'masses' only"
+        )
     nothing = tensor.scale(Fraction(0), IDENTITY)
     pairs = zip(dimensions["masses"], dimensions["points"], strict=True)
     return compose([MassProperties(mass, point, nothing) for mass, point in pairs])
@@ -120,21 +122,22 @@ def mass_properties(parts: Sequence[Part], where: str = "") -> MassProperties:
     Parameters
     ----------
     parts : sequence of Part
-        At least one that is not subtracted.
+        The parts; at least one part must not be subtracted.
     where : str
-        Place of the parts in the scene, put in front of every error message, with the number of the part if
-        several.
+        Place of the parts in the scene, put in front of every error message; if there are several parts, with the
+        number of the part.
 
     Returns
     -------
     MassProperties
-        Exact for rational dimensions, except for pi (2^-320) and the rounding errors of given rotations.
+        The properties are exact for rational dimensions, except for pi (correct to 2^-320) and for the rounding errors
+        of rotations given as decimals.
 
     Raises
     ------
     InputError
-        If a part is not a valid body, if the total mass is not positive, or if no body can have the resulting
-        moments, for example because a hole is larger than the part that it is cut from.
+        If a part is not a valid body, if the total mass is not positive, or if no body can have the resulting moments
+        of inertia, for example because a hole is larger than the part from which it is cut.
     """
     if not parts:
         raise InputError(f"{_prefix(where)}expected at least one part, got none")

@@ -1,9 +1,10 @@
 """Exact integrals of polynomials over shapes such as cylinders, by a map and its Jacobian. Standard library only.
 
-A shape is described by a map from coordinates to positions. Its Jacobian is computed: the determinant for a solid, the
-root of the Gram determinant for a surface or a curve. Every integrand is a polynomial in the coordinates and in cosines
-and sines of angles, so every integral is exact: powers have polynomial antiderivatives, and products of powers of cos
-and sin over multiples of pi/2 follow from Wallis' recursion. The result is a polynomial in the dimensions and pi.
+A shape is described by a map from coordinates to positions. The Jacobian of the map is computed: the determinant for a
+solid, the root of the Gram determinant for a surface or a curve. Every integrand is a polynomial in the coordinates and
+in cosines and sines of angles, so every integral is exact: powers have polynomial antiderivatives, and integrals of
+products of powers of cos and sin, between multiples of pi/2, follow from Wallis' recursion. The result is a polynomial
+in the dimensions and pi.
 """
 
 from collections.abc import Mapping
@@ -39,7 +40,7 @@ _PI = {"pi": PI}
 
 
 class Domain(NamedTuple):
-    """A shape as a map of coordinates: position in the shape's axes (m), Jacobian, coordinates with their limits."""
+    """A shape as a map from coordinates: position in the shape's axes (m), Jacobian, coordinates with their limits."""
 
     position: tuple[Polynomial, ...]
     jacobian: Polynomial
@@ -47,7 +48,7 @@ class Domain(NamedTuple):
 
 
 class Moments(NamedTuple):
-    """Integrals of 1, x_i and x_i x_j over a shape, weighted by a density."""
+    """The moments of a shape: integrals of 1, x_i and x_i x_j over the shape, weighted by a density."""
 
     zeroth: Any
     first: tuple[Any, ...]
@@ -73,7 +74,7 @@ def _determinant(rows: list[list[Polynomial]]) -> Polynomial:
 
 
 def _jacobian(position: tuple[Polynomial, ...], coordinates: tuple[Coordinate, ...]) -> Polynomial:
-    """Return the Jacobian of a map: volume, area or length per unit of its coordinates."""
+    """Return the Jacobian of a map: volume, area or length per unit of the coordinates."""
     columns = [[component.derivative(c.name) for component in position] for c in coordinates]
     angles = [c.name for c in coordinates if c.angle]
     if len(columns) == 3:
@@ -83,9 +84,9 @@ def _jacobian(position: tuple[Polynomial, ...], coordinates: tuple[Coordinate, .
 
 
 def domain(shape: Shape, known: Mapping[str, Fraction] | None = None) -> Domain:
-    """Return the map of a shape, with the given numbers for its known dimensions and symbols for the others.
+    """Return the map of a shape, with the numbers in ``known`` for some dimensions and symbols for the others.
 
-    The keys of ``known`` are names of :func:`symrot.inertia.shapes.scalar_names`.
+    The keys of ``known`` are names from :func:`symrot.inertia.shapes.scalar_names`.
     """
     numbers = known or {}
     values = {n: constant(numbers[n]) if n in numbers else generator(n) for n in scalar_names(shape)}
@@ -98,7 +99,7 @@ def domain(shape: Shape, known: Mapping[str, Fraction] | None = None) -> Domain:
 
 @cache
 def _quarter_turn(cosines: int, sines: int) -> tuple[Fraction, int]:
-    """Return the integral of cos^a sin^b from 0 to pi/2 as (rational factor, power of pi)."""
+    """Return the integral of cos^cosines sin^sines from 0 to pi/2 as (rational factor, power of pi)."""
     if sines > 1:
         rational, power = _quarter_turn(cosines, sines - 2)
         return rational * Fraction(sines - 1, cosines + sines), power
@@ -109,7 +110,7 @@ def _quarter_turn(cosines: int, sines: int) -> tuple[Fraction, int]:
 
 
 def _circular(cosines: int, sines: int, lower: int, upper: int) -> Polynomial:
-    """Return the integral of cos^a sin^b from ``lower * pi/2`` to ``upper * pi/2``."""
+    """Return the integral of cos^cosines sin^sines from ``lower * pi/2`` to ``upper * pi/2``."""
     total = constant(0)
     for quadrant in range(lower, upper):
         cosine_sign, sine_sign = ((1, 1), (-1, 1), (-1, -1), (1, -1))[quadrant % 4]
@@ -122,7 +123,7 @@ def _circular(cosines: int, sines: int, lower: int, upper: int) -> Polynomial:
 def _quarters(limit: Polynomial) -> int:
     turns = 2 * limit.collect(["pi"]).get((1,), constant(0)).value({})
     if turns.denominator != 1:
-        raise ValueError("expected limits of an angle that are multiples of pi/2")
+        raise ValueError(f"expected multiples of pi/2 as limits of an angle, got {turns}*pi/2")
     return int(turns)
 
 
@@ -142,7 +143,7 @@ def integrate(integrand: Polynomial, limits: tuple[tuple[Coordinate, Polynomial,
 
 
 def _degree(node: Node) -> int:
-    """Return an upper bound of the degree of a formula in x, y, z without expanding it; ``ValueError`` for a call."""
+    """Return an upper bound of a formula's degree in x, y, z, without expanding it; raise ValueError for a call."""
     kind = node[0]
     if kind == "number":
         return 0
@@ -164,16 +165,16 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: 
     Parameters
     ----------
     density : Node
-        A formula in x, y, z (m, axes of the shape) and the names of ``values``.
+        A formula in x, y, z (m, axes of the shape) and the dimensions.
     values : mapping of str to Polynomial
-        x, y, z and the dimensions.
+        The values of x, y, z and of the dimensions, by name.
     source : object
         The density as the user wrote it.
 
     Raises
     ------
     InputError
-        If the density is no polynomial in x, y, z, has a degree above LARGEST_DEGREE, or uses another name.
+        If the density is no polynomial in x, y, z, has a degree above LARGEST_DEGREE, or uses an unknown name.
     """
     prefix = f"{where}: " if where else ""
     expected = f"{prefix}expected a density that is a polynomial in x, y, z, got {show(source)}"
@@ -203,10 +204,10 @@ def moments(region: Domain, density: Polynomial | None = None) -> Moments:
 
 
 def moments_per_measure(region: Domain, density: Polynomial | None = None) -> tuple[Polynomial, Moments]:
-    """Return (measure, moments per measure) of a shape: its volume, area or length, and its moments divided by it.
+    """Return the measure of a shape (its volume, area or length), and its moments divided by the measure.
 
-    The measure is replaced by 1 if it does not divide the Jacobian. Division before integration keeps a tetrahedron
-    with twelve symbols fast.
+    If the measure does not divide the Jacobian, return 1 and the moments themselves. Dividing before integrating makes
+    a tetrahedron with twelve symbols fast.
     """
     measure = integrate(region.jacobian, region.limits)
     share = exact_quotient(region.jacobian, measure)
@@ -220,7 +221,7 @@ def exact_moments(
 ) -> Moments:
     """Return the numeric moments of a shape with a polynomial density, in kg, kg m, kg m^2.
 
-    ``dimensions`` are those returned by :func:`symrot.inertia.shapes.check_dimensions`; pi is rounded to 2^-320.
+    ``dimensions`` come from :func:`symrot.inertia.shapes.check_dimensions`; pi is correct to 2^-320.
     """
     numbers = scalars(shape, dimensions)
     region = domain(shape, numbers)

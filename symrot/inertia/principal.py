@@ -1,8 +1,8 @@
-"""Principal axes and moments of an inertia tensor, its symmetry, and a test that a body can have it. Standard library.
+"""Principal axes and moments of inertia, the symmetry of a body, and the test that a body can have these moments.
 
 The symmetry (spherical, symmetric, asymmetric) is decided with 120 digits, and moments count as equal if they agree to
 2^-200. So bodies whose moments differ in the last digit of a double are distinguished, and equal moments stay equal
-after a rotation by an irrational angle.
+after a rotation by an irrational angle. Only the standard library is used.
 """
 
 from decimal import Decimal, localcontext
@@ -18,7 +18,7 @@ __all__ = ["Principal", "principal_axes", "require_admissible", "why_not_propaga
 
 DIGITS = 120
 _PAIRS = ((0, 1), (0, 2), (1, 2))
-_LARGEST_DENOMINATOR = 10**40  # a moment is tried as a fraction up to this denominator, used only if an exact root
+_LARGEST_DENOMINATOR = 10**40  # a moment is replaced by a fraction with such a denominator if that is an exact root
 
 _Work = list[list[Decimal]]
 
@@ -26,17 +26,17 @@ _Work = list[list[Decimal]]
 class Principal(NamedTuple):
     """Principal moments and axes of a body, and its kind of symmetry.
 
-    ``moments`` are in kg m^2, exact if they are rational, and exactly equal if they are equal. Column k of ``axes`` is
-    principal axis k in the given axes: ``v_given = axes * v_principal``, right-handed, orthonormal to 1e-110. If the
-    given axes are already principal, ``axes`` is the identity and the moments keep their order; otherwise each
-    principal axis gets the number and the direction of the given axis that is closest to it.
+    ``moments`` are in kg m^2; rational moments are exact, and two equal moments are the same number. Column k of
+    ``axes`` is principal axis k in the given axes: ``v_given = axes * v_principal``; the columns are right-handed, and
+    orthonormal to 1e-110. If the given axes are already principal, ``axes`` is the identity and the moments keep their
+    order; otherwise each principal axis gets the number and the direction of the closest given axis.
     """
 
     moments: tuple[Fraction, Fraction, Fraction]
     axes: Tensor
     kind: str  # spherical | symmetric | asymmetric
-    symmetry_axis: int | None  # of a symmetric body: 0, 1 or 2
-    given_axes: bool  # the given axes are principal
+    symmetry_axis: int | None  # 0, 1 or 2 for a symmetric body, otherwise None
+    given_axes: bool  # whether the given axes are principal
 
     @property
     def flat(self) -> bool:
@@ -101,7 +101,7 @@ def _eliminate(work: _Work, vectors: _Work, p: int, q: int) -> None:
 
 
 def _root(tensor: Tensor, value: Decimal) -> Fraction:
-    """Return the eigenvalue that ``value`` approximates, exactly if it is a fraction of moderate size."""
+    """Return the eigenvalue near ``value``: exact if it is a fraction of moderate size, otherwise ``value`` itself."""
     approximate = Fraction(value)
     exact = approximate.limit_denominator(_LARGEST_DENOMINATOR)
     shifted = subtract(tensor, tuple(tuple(exact * entry for entry in row) for row in IDENTITY))
@@ -113,7 +113,7 @@ def _closest_order(vectors: _Work) -> tuple[int, ...]:
 
 
 def _directed(columns: list[tuple[Fraction, ...]]) -> Tensor:
-    """Return right-handed principal axes as columns, with axis k in the direction of the given axis k if possible."""
+    """Return right-handed principal axes as columns; axis k points in the direction of the given axis k if possible."""
     for k, column in enumerate(columns):
         leading = column[k] or max(column, key=abs)
         if leading < 0:
@@ -148,15 +148,15 @@ def principal_axes(inertia: Any, where: str = "") -> Principal:
     Parameters
     ----------
     inertia : 3x3 numbers or texts, kg m^2
-        Symmetric, products with the minus sign. A tensor that no body can have is accepted.
+        A symmetric tensor, with the products of inertia negated. A tensor that no body can have is accepted.
     where : str
         Place of the tensor in the scene, put in front of an error message.
 
     Returns
     -------
     Principal
-        The double nearest to each moment and to each component of the axes is correctly rounded, even if moments
-        are nearly equal.
+        Moments and axes have far more digits than a double: converted to doubles, they are correctly rounded, even if
+        moments are nearly equal.
 
     Raises
     ------
@@ -189,8 +189,8 @@ def _listed(moments: tuple[Fraction, Fraction, Fraction]) -> str:
 def require_admissible(body: Principal, where: str = "") -> None:
     """Raise InputError unless some distribution of mass has these principal moments.
 
-    No moment may be negative or exceed the sum of the other two. Equality (a flat body) and one zero moment (a needle)
-    are allowed, with tolerance 2^-200.
+    No moment of inertia may be negative or exceed the sum of the other two. It may equal this sum (a flat body), and
+    one moment may be zero (a needle); the tolerance is 2^-200.
     """
     small, middle, large = sorted(body.moments)
     if small < 0:
@@ -207,7 +207,7 @@ def require_admissible(body: Principal, where: str = "") -> None:
 
 
 def why_not_propagable(body: Principal) -> str:
-    """Return the reason, as a clause, why Euler's equations do not determine the rates of omega; empty if they do."""
+    """Return a clause that says why Euler's equations do not determine the rates of omega; empty if they do."""
     if max(body.moments) == 0:
         return "a point has no moments of inertia, so no torque determines its angular acceleration"
     if body.needle:

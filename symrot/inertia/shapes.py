@@ -1,8 +1,8 @@
-"""The shapes of symrot as data: dimensions, conditions, axes, and the map that generates each. Standard library only.
+"""The shapes of symrot as data: dimensions, conditions, axes, and the map of each shape. Standard library only.
 
-A map gives the position, in the axes of the shape, as text in its coordinates; each coordinate has limits that are text
-in the dimensions. A coordinate inside ``cos`` and ``sin`` has multiples of pi/2 as limits. Volume, mass, centre of mass
-and inertia all follow from the map (:mod:`symrot.inertia.integration`); no formula for them is typed in.
+A map gives positions, in the axes of the shape, as formulas (texts) in coordinates; each coordinate has limits that are
+formulas in the dimensions. The limits of a coordinate inside ``cos`` and ``sin`` are multiples of pi/2. Volume, mass,
+centre of mass and inertia all follow from the map (:mod:`symrot.inertia.integration`).
 """
 
 from collections.abc import Callable, Mapping
@@ -19,11 +19,11 @@ __all__ = [
 ]  # fmt: skip
 
 DENSITY_UNITS = {"solid": "kg/m^3", "surface": "kg/m^2", "curve": "kg/m", "points": "1"}
-"""Unit of the density of each kind of shape; points have no density but masses among their dimensions."""
+"""Unit of the density for each kind of shape; points have no density, but masses among their dimensions."""
 
 
 class Dimension(NamedTuple):
-    """A dimension of a shape: a length in m, or a list of ``size`` points (m) or masses (kg), of any size if None."""
+    """A dimension of a shape: a length in m, or a list of ``size`` points (m) or masses (kg); None means any size."""
 
     name: str
     meaning: str
@@ -34,7 +34,7 @@ class Dimension(NamedTuple):
 
 
 class Coordinate(NamedTuple):
-    """One coordinate of a map, with its limits as text in the dimensions.
+    """One coordinate of a map, with its limits as formulas in the dimensions.
 
     ``s, u, v, w`` are lengths in m, ``f_1, f_2, f_3`` fractions from 0 to 1, ``theta, phi`` angles in rad.
     """
@@ -50,7 +50,7 @@ class Coordinate(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """A shape of the table: dimensions, conditions, axes and map; ``position`` is empty for separate points."""
+    """A shape of the table: dimensions, conditions, axes and map; ``position`` is empty for point masses."""
 
     name: str
     kind: str  # a key of DENSITY_UNITS
@@ -89,7 +89,7 @@ _HALF_TURN = Coordinate("theta", "0", "pi")
 
 
 def _corner(axis: str) -> str:
-    """Return a component of a point in a tetrahedron, a fraction f_1 of the way from corner 1 to the opposite face."""
+    """Return the formula of a component of a point in a tetrahedron; f_1 is 0 at corner 1, 1 on the opposite face."""
     return f"{axis}1 + f_1*({axis}2 - {axis}1 + f_2*({axis}3 - {axis}2 + f_3*({axis}4 - {axis}3)))"
 
 
@@ -197,7 +197,7 @@ _TABLE = (
 )  # fmt: skip
 
 SHAPES: dict[str, Shape] = {shape.name: shape for shape in _TABLE}
-"""Every shape by name, in reading order."""
+"""All shapes by name, in the order in which documents list them."""
 
 
 def _prefix(where: str) -> str:
@@ -205,7 +205,7 @@ def _prefix(where: str) -> str:
 
 
 def find_shape(name: object, where: str = "") -> Shape:
-    """Return the shape with a given name; raise InputError, with all names, if there is no such shape."""
+    """Return the shape with this name; raise InputError, which lists all names, if there is no such shape."""
     if not isinstance(name, str) or name not in SHAPES:
         raise InputError(f"{_prefix(where)}expected a shape, one of {', '.join(SHAPES)}; got {show(name)}")
     return SHAPES[name]
@@ -256,8 +256,8 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
     Parameters
     ----------
     shape : Shape
-        An entry of :data:`SHAPES`.
-    dimensions : mapping of str to number, text, or list of them
+        A shape of :data:`SHAPES`.
+    dimensions : mapping of str to number, text, or list of these
         Values that :func:`symrot.formula.exact_numbers.read` accepts, in m (masses in kg).
     where : str
         Place of the dimensions in the scene, put in front of every error message.
@@ -269,8 +269,8 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
     Raises
     ------
     InputError
-        If a dimension is missing or unknown, is not positive (or not of the kind that the table states instead), if a
-        condition such as ``inner < outer`` is violated, or if lists have different lengths.
+        If a dimension is missing or unknown, has a sign that the table of shapes does not allow, if a condition such as
+        ``inner < outer`` is violated, or if lists have different lengths.
     """
     check_names(shape, dimensions, where)
     dot = f"{where}." if where else ""
@@ -289,7 +289,7 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
 
 
 def scalar_names(shape: Shape) -> tuple[str, ...]:
-    """Return the names of the numbers in the map and closed forms of a shape; :func:`scalars` returns their values."""
+    """Return the names of the numbers in a shape's map and closed forms; :func:`scalars` returns their values."""
     names: list[str] = []
     for d in shape.dimensions:
         corners = [f"{axis}{n}" for n in range(1, (d.size or 0) + 1) for axis in "xyz"]
@@ -298,7 +298,7 @@ def scalar_names(shape: Shape) -> tuple[str, ...]:
 
 
 def scalars(shape: Shape, dimensions: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the dimensions as numbers by name; corner n of ``vertices`` becomes ``xn``, ``yn``, ``zn``."""
+    """Return a map from name to number for the dimensions; corner n of ``vertices`` gives ``xn``, ``yn``, ``zn``."""
     values: list[Any] = []
     for d in shape.dimensions:
         value = dimensions[d.name]

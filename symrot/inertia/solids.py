@@ -1,8 +1,8 @@
 """Mass properties of solids, symbolic in their dimensions, derived by exact integration.
 
 A shape is given only by its map (:mod:`symrot.inertia.shapes`). The Jacobian, the volume, the mass, the centre of mass
-and the inertia tensor are computed from it (:mod:`symrot.inertia.integration`) and brought to factored form.
-``python -m symrot.inertia.solids`` prints ``closed_forms.toml``.
+and the inertia tensor are computed from the map (:mod:`symrot.inertia.integration`) and factored. ``python -m
+symrot.inertia.solids`` prints ``closed_forms.toml``.
 """
 
 from collections.abc import Mapping, Sequence
@@ -77,11 +77,11 @@ class Solid:
     measure : Expr
         Volume (m^3), area (m^2), length (m), or number of points.
     density : Expr
-        In x, y, z; kg per unit of the measure.
+        The density as a function of x, y, z, in kg per unit of the measure.
     mass : Expr, kg
     center_of_mass : ImmutableMatrix, shape (3, 1), m
     inertia : ImmutableMatrix, shape (3, 3), kg m^2
-        About the centre of mass, products with the minus sign.
+        The tensor about the centre of mass, with the products of inertia negated.
 
     Examples
     --------
@@ -110,7 +110,7 @@ class Solid:
 
     @cached_property
     def position(self) -> ImmutableMatrix:
-        """The map: position in m over its coordinates, shape (3, 1); empty for separate points."""
+        """The map of the shape: position in m as a function of coordinates, shape (3, 1); empty for point masses."""
         known = {**_CONSTANTS, **_MAP_SYMBOLS, **self.dimensions}
         return ImmutableMatrix([evaluate(parse(t), known, _FUNCTIONS, _rational) for t in self.shape.position])
 
@@ -162,7 +162,7 @@ def _tidy(expression: Expr) -> Expr:
 
 
 def _tidy_measure(expression: Expr) -> Expr:
-    """Return a volume, area or length as common factors times a sum: ``pi*L*(R_2**2 - R_1**2)``."""
+    """Return a volume, area or length as common factors times a sum, such as ``pi*L*(R_2**2 - R_1**2)``."""
     return factor_terms(expand(expression))
 
 
@@ -189,7 +189,7 @@ def _mapped(name: str) -> Domain:
 
 @cache
 def _default_dimensions(name: str) -> dict[str, Symbol]:
-    """Return the default symbol of each number that the map of a shape uses."""
+    """Return a map from the name of each number in a shape's map to its default symbol."""
     shape = SHAPES[name]
     plain = {d.name: d.symbol for d in shape.dimensions if d.form == "length"}
     return {n: _DIMENSION_SYMBOLS[plain.get(n, f"{n[0]}_{n[1:]}")] for n in scalar_names(shape)}
@@ -198,10 +198,10 @@ def _default_dimensions(name: str) -> dict[str, Symbol]:
 def _properties(
     region: Domain, values: Mapping[str, Expr], density: Polynomial | None = None
 ) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
-    """Return mass, centre of mass, and inertia about it per unit mass; the default density is 1."""
+    """Return mass, centre of mass, and inertia about the centre of mass per unit mass; the default density is 1."""
     measure, specific_moments = moments_per_measure(region, density)
     if not specific_moments.zeroth:
-        raise InputError("expected a density with a positive mass, got one with a mass of 0 kg")
+        raise InputError("expected a density with a positive mass, got a density with a mass of 0 kg")
     mass = _expression(measure, values) * _expression(specific_moments.zeroth, values)
     center = [_ratio(entry, specific_moments.zeroth, values) for entry in specific_moments.first]
     second = [[_ratio(entry, specific_moments.zeroth, values) for entry in row] for row in specific_moments.second]
@@ -219,7 +219,7 @@ def _ratio(numerator: Polynomial, denominator: Polynomial, values: Mapping[str, 
 
 @cache
 def _uniform(name: str) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
-    """Return measure, centre of mass and inertia per unit mass of a uniform shape in its default symbols."""
+    """Return measure, centre of mass, and inertia per unit mass of a uniform shape, in the default symbols."""
     measure, center, specific = _properties(_mapped(name), _default_dimensions(name))
     return _tidy_measure(measure), center, specific
 
@@ -315,8 +315,8 @@ def solid(name: str, *, mass: Any = None, density: Any = None, **dimensions: Any
     mass : number, str or Expr, kg, optional
         Mass of a uniform body; the symbol ``m`` if neither mass nor density is given.
     density : number, str or Expr, optional
-        Given instead of the mass, in kg per m^3, m^2 or m: a polynomial in x, y, z (m, axes of the shape). A text
-        may use the names of the dimensions: ``"1 + z/height"``.
+        The density, instead of the mass, in kg per m^3, m^2 or m: a polynomial in x, y, z (m, axes of the shape). A
+        text may use the names of the dimensions, as in ``"1 + z/height"``.
     **dimensions : number, str or Expr, m
         Dimensions by the names in the table of shapes; an omitted dimension is the symbol in that table.
 
@@ -328,8 +328,8 @@ def solid(name: str, *, mass: Any = None, density: Any = None, **dimensions: Any
     Raises
     ------
     InputError
-        For an unknown shape or dimension, a length that is not positive, a density that is no polynomial, or both a
-        mass and a density.
+        If a shape or dimension is unknown, a length is not positive, a density is no polynomial, or both a mass and a
+        density are passed.
 
     Notes
     -----
@@ -417,7 +417,7 @@ def _point_masses(shape: Shape, mass: Any, density: Any, dimensions: Mapping[str
 
 
 def closed_forms_text() -> str:
-    """Return the text of ``closed_forms.toml``: formulas of the uniform shapes in their dimensions and mass m."""
+    """Return the text of ``closed_forms.toml``: formulas of all uniform shapes, in the dimensions and the mass m."""
     lines = [
         "# Uniform bodies: measure (m^3, m^2, m), centre of mass (m), inertia about it (kg m^2), axes of the shape.",
         "# m is the mass (kg), lengths in m. Printed by `python -m symrot.inertia.solids`; do not edit.",

@@ -1,8 +1,8 @@
 """Algebra of 3x3 tensors as nested tuples of Fractions, floats or SymPy expressions. Standard library only.
 
-The same functions serve the exact mass properties of a scene and the symbolic bodies of a derivation. Arguments may be
-nested sequences, SymPy matrices or NumPy arrays; results are tuples.
-Convention: inertia components carry the minus sign, ``I_xy = -integral of x y dm``.
+The same functions are used for the exact mass properties of a scene and for the symbolic bodies of a derivation.
+Arguments may be nested sequences, SymPy matrices or NumPy arrays; results are tuples. Convention: products of inertia
+have a minus sign, ``I_xy = -integral of x y dm``.
 """
 
 from collections.abc import Callable, Iterable
@@ -116,7 +116,7 @@ def rotate(tensor: Any, dcm: Any) -> Tensor:
 
 
 def inertia_of_second_moments(moments: Any) -> Tensor:
-    """Return the inertia tensor ``trace(M) 1 - M`` of the second moments ``M_ij = integral of x_i x_j dm``, kg m^2."""
+    """Return the inertia tensor ``trace(M) 1 - M`` from the second moments ``M_ij = integral of x_i x_j dm``."""
     total = trace(moments)
     rows = matrix(moments)
     return matrix(tuple(tuple(total - rows[i][i] if i == j else -rows[i][j] for j in range(3)) for i in range(3)))
@@ -134,10 +134,10 @@ def about_point(inertia: Any, mass: Any, offset: Any) -> Tensor:
     Parameters
     ----------
     inertia : 3x3, kg m^2
-        About the centre of mass.
+        The tensor about the centre of mass.
     mass : number, kg
     offset : 3-vector, m
-        From the point to the centre of mass, or back: the sign does not matter.
+        The vector from the point to the centre of mass, or its negative.
 
     Notes
     -----
@@ -149,6 +149,6 @@ def about_point(inertia: Any, mass: Any, offset: Any) -> Tensor:
 def about_center_of_mass(inertia: Any, mass: Any, offset: Any) -> Tensor:
     """Return the inertia tensor about the centre of mass from the tensor about a point.
 
-    ``offset`` (m) is the vector from the point to the centre of mass, or back: the sign does not matter.
+    ``offset`` (m) is the vector from the point to the centre of mass, or its negative.
     """
     return subtract(inertia, inertia_of_point(mass, offset))

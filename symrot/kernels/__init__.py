@@ -1,4 +1,4 @@
 """The library of kernels: small computations of attitude, dynamics and inertia, whose formulas symrot derives.
 
-Each kernel is a definition; :mod:`symrot.codegen` prints it as C or NumPy code.
+Each kernel has a definition, which :mod:`symrot.codegen` prints as C or NumPy code.
 """

@@ -1,4 +1,7 @@
-"""Definitions of kernels: arguments, formulas, domain, and laws (identities that the outputs obey)."""
+"""Definitions of kernels: arguments, formulas, domain, and laws (identities that the outputs satisfy).
+
+A box gives, for each input, the range of values for which rounding errors are bounded.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -16,10 +19,10 @@ Box = dict[str, tuple[Fraction, Fraction]]  # name of an input component -> smal
 
 @dataclass(frozen=True)
 class Law:
-    """An identity that a kernel's outputs obey for all inputs, such as "the norm is 1".
+    """An identity that the outputs of a kernel satisfy for all inputs, such as "the norm is 1".
 
-    The formulas ``vanishing`` are zero wherever the formulas ``relations`` (hypotheses) are zero. They contain inputs
-    and outputs by their symbols. A law describes the outputs independently of the way in which their formulas were
+    The formulas ``vanishing`` are zero wherever the formulas ``relations`` (hypotheses) are zero. Both contain the
+    symbols of inputs and outputs. A law describes the outputs independently of the way in which their formulas were
     derived; a certificate proves the law from the formulas.
     """
 
@@ -44,7 +47,7 @@ class Definition:
 
     @property
     def formulas(self) -> tuple[tuple[str, Expr], ...]:
-        """Return all formulas of the kernel as pairs (output component, formula), in the order of the outputs."""
+        """All formulas of the kernel as pairs (output component, formula), in the order of the outputs."""
         return tuple(
             (component[0], formula)
             for target, expressions in self.results
@@ -55,7 +58,7 @@ class Definition:
 def argument(name: str, role: str, components: Sequence[Symbol | str], meaning: str, unit: str = "") -> Argument:
     """Return an input or output array whose components are symbols of :mod:`symrot.symbols`, with their units.
 
-    ``unit`` is the unit of components that are plain text instead of such symbols.
+    If the components are given as text instead, ``unit`` is their unit.
     """
     described = []
     for component in components:
@@ -72,7 +75,7 @@ def scalar(component: Symbol, meaning: str) -> Argument:
 def result(
     name: str, formulas: Matrix | Sequence[Expr], components: Sequence[Symbol], meaning: str, unit: str = ""
 ) -> tuple[Argument, tuple[Expr, ...]]:
-    """Return an output argument, and the formulas of its components; a matrix is stored row by row."""
+    """Return an output argument and the formulas of its components; a matrix is stored row by row."""
     return argument(name, "out", components, meaning, unit), tuple(formulas)
 
 
@@ -82,5 +85,5 @@ def interval(low: Fraction | int | str, high: Fraction | int | str) -> tuple[Fra
 
 
 def boxed(components: Sequence[Symbol], low: Fraction | int | str, high: Fraction | int | str) -> Box:
-    """Return ranges of several inputs, by name, which are all from ``low`` to ``high``."""
+    """Return a box in which the range of each of the inputs is from ``low`` to ``high``."""
     return {str(component): interval(low, high) for component in components}

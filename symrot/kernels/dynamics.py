@@ -1,4 +1,4 @@
-"""Kernels of dynamics: Euler's equations for each symmetry of a body, rates of the state, energy, momentum."""
+"""Kernels of dynamics: Euler's equations for each symmetry of a body, rates of the state, energy, angular momentum."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -51,7 +51,7 @@ def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
 
 
 def tensor_argument(body: str = "tensor") -> Argument:
-    """Return the input argument for the inertia of a body: six tensor entries, or two or three principal moments."""
+    """Return the input argument for the inertia of a body: six entries of the tensor, or principal moments."""
     return argument("inertia", "in", _BODIES[body][0], _MEANING[body])
 
 
@@ -64,7 +64,7 @@ def _symbols(name: str, count: int = 3) -> tuple[Symbol, ...]:
 
 
 def _solved(inertia: Matrix, omega: Matrix, torque: Matrix) -> tuple[Named, Matrix]:
-    """Return the formulas of the angular acceleration, and the intermediate quantities that they use."""
+    """Return (definitions, formulas) of the angular acceleration; the formulas contain the defined symbols."""
     if inertia.is_diagonal():
         return (), angular_acceleration(inertia, omega, torque)
     momentum, moment = Matrix(_symbols("L")), Matrix(_symbols("M"))
@@ -138,7 +138,7 @@ _DISTANCE = symbols.h
 def _heavy_top(name: str, body: str) -> Definition:
     """Return the kernel of the equations of motion of a heavy top.
 
-    A symmetric top has its centre of mass on body axis 3.
+    If the top is symmetric, its centre of mass lies on body axis 3.
     """
     _, inertia = _BODIES[body]
     symmetric = body == "symmetric"
@@ -169,9 +169,9 @@ def _heavy_top(name: str, body: str) -> Definition:
 
 
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
-    """Return symbols for twice the weight times the centre of mass, and their definitions.
+    """Return symbols for twice the weight times the position of the centre of mass, and their definitions.
 
-    A zero component is 0 and gets no symbol.
+    A component that is zero has no symbol.
     """
     components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
     return Matrix(components), tuple(

@@ -1,4 +1,4 @@
-"""Kernels of Euler angles for all 24 sequences: rotation matrix, rate Jacobians and inverses, quaternions."""
+"""Kernels of Euler angles for all 24 sequences: rotation matrix, rate Jacobians and their inverses, quaternions."""
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
@@ -26,9 +26,9 @@ QUATERNION = argument("q", "in", symbols.quaternion, "attitude, body to space")
 
 
 def prefix(sequence: str) -> str:
-    """Return the beginning of the names of the kernels of an Euler sequence, such as ``"euler_zxz"``.
+    """Return the beginning of the names of the kernels for an Euler sequence, such as ``"euler_zxz"``.
 
-    Names of intrinsic and extrinsic sequences differ in more than upper and lower case.
+    The names for an intrinsic and an extrinsic sequence differ in more than upper and lower case.
     """
     return f"euler_{sequence.lower()}" if parse_sequence(sequence)[1] else f"euler_extrinsic_{sequence}"
 
@@ -52,7 +52,10 @@ def _lock(sequence: str) -> str:
 
 
 def _regular_box(sequence: str) -> Box:
-    """Return ranges of Euler angles away from gimbal lock: the middle angle is within 1.4 rad of its best value."""
+    """Return a box of Euler angles away from gimbal lock.
+
+    The middle angle differs by at most about 1.5 rad from its best value, pi/2 or 0.
+    """
     axes, _ = parse_sequence(sequence)
     proper = axes[0] == axes[2]
     return ANGLE_BOX | {"theta": interval("1/10", "304/100") if proper else interval("-7/5", "7/5")}
@@ -61,8 +64,8 @@ def _regular_box(sequence: str) -> Box:
 def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
     """Return (definitions, entries) of a matrix, with a new symbol for each product such as ``sin(phi)*cos(psi)``.
 
-    These are the products of functions of the first and the last angle. In a sum, a common factor, which depends on the
-    middle angle, is factored out.
+    The factors of such a product are functions of the first and of the last angle. In a sum, a common factor, which
+    depends on the middle angle, is factored out.
     """
     named: dict[Expr, Symbol] = {}
     formulas = []
@@ -135,8 +138,9 @@ def _rates(frame: str, name: str, sequence: str) -> Definition:
 def _solved(jacobian: RateMatrix, omega: Matrix) -> tuple[Named, list[Expr]]:
     """Return (definitions, formulas) of the rates of the Euler angles, with a single division.
 
-    One outer angle rotates about an axis of the frame. The rate of the other outer angle is computed first, by a
-    division by the determinant, and gets a symbol; the first outer rate follows from a component of omega and from it.
+    The axis of the first or of the last angle is an axis of the frame. The rate of the other one of these two angles is
+    divided by the determinant and gets a symbol; the rate of the angle about the frame's axis follows from a component
+    of omega and this symbol.
     """
     matrix, determinant = Matrix(jacobian), jacobian.determinant
     last = next(place for place in (0, 2) if not matrix[:, place].free_symbols)
@@ -165,7 +169,7 @@ def _quaternion(name: str, sequence: str) -> Definition:
 
 
 def _wrapped(angle: Expr) -> Expr:
-    """Return an angle in (-2 pi, 2 pi) reduced to the range [-pi, pi]."""
+    """Return the formula that reduces an angle between -2 pi and 2 pi to the range [-pi, pi]."""
     return select_ge(pi, angle, select_ge(angle, -pi, angle, angle + 2 * pi), angle - 2 * pi)
 
 

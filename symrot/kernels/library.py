@@ -24,7 +24,7 @@ def kernel_names() -> tuple[str, ...]:
 
 @cache
 def definition(name: str) -> Definition:
-    """Return the definition of a kernel; its formulas are derived at every call.
+    """Return the definition of a kernel; its formulas are derived on the first call and then cached.
 
     Raises
     ------

@@ -39,10 +39,11 @@ def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
 
 
 def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -> tuple[Named, ImmutableMatrix]:
-    """Return (definitions, matrix) for the rotation matrix ``1 + scalar [t] + [t][axis]``, with symbols for t.
+    """Return (definitions, matrix) of the rotation matrix ``1 + scalar [t] + [t][axis]``, with symbols for t.
 
     Here [v] is the matrix of the cross product with v, and t = ``doubled`` is parallel to the axis. For a unit
-    quaternion (q0, u), pass q0, u and 2 u. Because [t][axis] is symmetric, each of its products is computed once.
+    quaternion (q0, u), the arguments are q0, u and 2 u. As [t][axis] is symmetric, each of its products is computed
+    once.
     """
     twice = tuple(Symbol(f"twice_{i}", real=True) for i in "123")
     square = skew(twice) * skew(axis)
@@ -54,13 +55,13 @@ def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -
 
 
 def halved(omega: Sequence[Expr]) -> tuple[Named, tuple[Symbol, ...]]:
-    """Return (definitions, symbols) of the components of half an angular velocity."""
+    """Return symbols for the components of half an angular velocity, as (definitions, symbols)."""
     half = tuple(Symbol(f"half_{i}", real=True) for i in "123")
     return tuple(zip(half, (w / 2 for w in omega), strict=True)), half
 
 
 def quaternion_rate(q: Sequence[Expr], half: Sequence[Expr], frame: str = "body") -> ImmutableMatrix:
-    """Return ``dq/dt`` from half the angular velocity: q (0, omega/2) in body axes, (0, omega/2) q in space axes."""
+    """Return ``dq/dt`` from half the angular velocity: q (0, omega/2) for body components, else (0, omega/2) q."""
     return quaternion_product(q, [0, *half]) if frame == "body" else quaternion_product([0, *half], q)
 
 
@@ -126,7 +127,7 @@ def _branch(matrix: Matrix, pivot: int) -> Branch:
 
 
 def _larger(left: Branch, right: Branch) -> Branch:
-    """Return the formulas that choose, of two branches ``(4 q_k^2, 4 q_k q)``, the one with the larger ``4 q_k^2``."""
+    """Return the formulas that select the branch ``(4 q_k^2, 4 q_k q)`` with the larger ``4 q_k^2``."""
     (a, row_a), (b, row_b) = left, right
     return select_ge(a, b, a, b), [select_ge(a, b, x, y) for x, y in zip(row_a, row_b, strict=True)]
 
@@ -191,7 +192,7 @@ def _rotate(towards: str, name: str) -> Definition:
 def turned(q: Sequence[Expr], vector: Matrix) -> tuple[Named, Matrix]:
     """Return (definitions, formulas) of a vector v rotated by q = (q0, u): ``v + q0 h + u x h`` with ``h = 2 u x v``.
 
-    The definitions give each component of h a symbol. This takes fewer operations than the rotation matrix.
+    The definitions are those of symbols for the components of h. This takes fewer operations than the rotation matrix.
     """
     scalar, axis = q[0], Matrix([*q][1:])
     half = Matrix([Symbol(f"twice_cross_{i}", real=True) for i in "123"])

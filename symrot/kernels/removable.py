@@ -1,8 +1,9 @@
 """Functions with a removable singularity, such as sin(x)/x at zero, computed accurately for all numbers.
 
 ``sin(x)/x`` is accurate except at zero, where a conditional returns its limit. A difference of nearly equal terms,
-such as ``(x - sin x)/x^3``, is computed near zero as its Taylor series, with a truncation error proven below half the
-last bit, and directly elsewhere. The point between the two follows from the function; no threshold has to be chosen.
+such as ``(x - sin x)/x^3``, is computed near zero from its Taylor series, with a truncation error that is proven to be
+below half the last bit, and directly for larger x. The boundary between the two ranges is a property of the function,
+not a threshold to be chosen.
 
 Errors measured by ``python -m symrot.bench.ulps`` in double and float, with and without fused operations, in units in
 the last place (ulp):
@@ -11,7 +12,7 @@ the last place (ulp):
 - ``tangent_gap``: within 4 ulp for |x| <= pi (measured 2.3). For larger |x| the function decreases as cos(x)/x^2 and
   has zeros, the solutions of x = tan x, which are no floating-point numbers, so its relative error has no bound. Its
   absolute error is at most 4 * 2^-53/x^2, in float 4 * 2^-24/x^2, or half the least subnormal number (measured 2.5
-  for all numbers).
+  instead of 4 for all numbers).
 - ``arc_ratio``: within 4 ulp on the half circle on which quaternions lie (measured 1.6; batches 1.2).
 
 Batches compute these functions without a branch, with the sine, cosine and arc tangent of ``symrot_math.h``.
@@ -48,9 +49,8 @@ _x = Symbol("x", real=True)
 class Removable:
     """An even analytic function of x, ``numerator / x^power``, whose quotient is undefined at zero.
 
-    ``split`` is the square of the |x| below which the series is used; its terms alternate and decrease there. For
-    larger |x|, ``scaled/x/x`` is computed: the same quotient without a power of x that would overflow before the result
-    does.
+    ``split`` is the square of the |x| below which the series is used; there its terms alternate in sign and decrease.
+    For larger |x|, ``scaled/x/x`` is computed: the same quotient without a high power of x, which could overflow.
     """
 
     name: str
@@ -65,10 +65,10 @@ class Removable:
         return self.numerator.xreplace({_x: x}) / x**self.power
 
     def coefficients(self, precision: str = "binary64") -> tuple[Fraction, ...]:
-        """Return as many Taylor coefficients of the function, in powers of x^2, as a precision needs.
+        """Return as many Taylor coefficients of the function, in powers of x^2, as a floating-point precision needs.
 
-        The first omitted coefficient times its power of ``split`` is less than a quarter of a unit in the last place of
-        the smallest value there. Because the series alternates, this bounds the truncation error.
+        The first omitted term at x^2 = ``split`` is less than a quarter of a unit in the last place of the smallest
+        value of the function in this range. Because the series alternates, this bounds the truncation error.
         """
         return _summed(self, precision)
 
@@ -120,9 +120,9 @@ _EXPLICIT: dict[str, Callable[..., Any]] = {
 
 
 def explicit(expr: Expr) -> Expr:
-    """Write functions with a removable singularity, such as sinc, as quotients in an expression, and return it.
+    """Return an expression in which functions with a removable singularity, such as sinc, are written as quotients.
 
-    The quotients are valid except where their denominator is zero.
+    The quotients are valid except where their denominators are zero.
     """
     for name, formula in _EXPLICIT.items():
         expr = expr.replace(

@@ -41,9 +41,9 @@ _SQUARE = Symbol("square", real=True)  # square of the length of the parameters
 
 
 def _ray(which: Projection) -> tuple[Named, Expr]:
-    """Return (definitions, s) such that the quaternion (s, parameters), before normalisation, describes the attitude.
+    """Return (definitions, s) such that the quaternion (s, parameters), not normalised, describes the attitude.
 
-    The definitions belong to symbols in the formula of s.
+    The definitions are those of the symbols in the formula s.
     """
     if not which.centre:
         return (), Integer(1)

@@ -1,1 +1,1 @@
-"""Descriptions of attitude and their rates, derived with SymPy; ``conversions`` evaluates them with NumPy alone."""
+"""Descriptions of attitude and their rates, derived with SymPy; ``conversions`` computes them with NumPy alone."""

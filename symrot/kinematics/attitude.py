@@ -1,4 +1,4 @@
-"""Lookup of attitude descriptions (charts) by name, and the symbolic conversion from any description to any other."""
+"""Look-up of attitude descriptions (charts) by name, and the symbolic conversion from any description to any other."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -45,17 +45,17 @@ def chart(name: str) -> Chart:
 def convert(source: str, target: str, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
     """Return the parameters of one attitude description as expressions in the parameters of another, shape (n, 1).
 
-    The conversion goes through the quaternion, which every description can be converted to and from. A direction cosine
-    matrix is no description here: ``chart(name).dcm`` gives it, and
-    :func:`symrot.kinematics.quaternion.quaternion_of_dcm` or :func:`symrot.kinematics.euler.euler_of_dcm` reads it.
+    The conversion goes through the quaternion, to and from which every description can be converted. The direction
+    cosine matrix is not among the descriptions: ``chart(name).dcm`` returns it, and
+    :func:`symrot.kinematics.quaternion.quaternion_of_dcm` or :func:`symrot.kinematics.euler.euler_of_dcm` converts it.
 
     Parameters
     ----------
     source, target : str
         Names of the descriptions; see :func:`chart`.
     values : sequence of Expr, optional
-        Values of the parameters of ``source``; by default its symbols. They must satisfy its constraint, such as unit
-        norm.
+        Values of the parameters of ``source``; default: its symbols. The values must satisfy the constraint of
+        ``source``, such as unit norm.
     """
     start = chart(source)
     parameters = expressions(start.parameters if values is None else values, len(start.parameters), source)

@@ -2,7 +2,7 @@
 
 A chart describes an attitude by parameters p, such as Euler angles or a quaternion. It provides the direction cosine
 matrix, conversions to and from the unit quaternion, and in both frames the rate matrix B(p) of ``omega = B(p) dp/dt``
-with its inverse, its determinant, its singular parameters, and its condition number near them.
+with its inverse, determinant, condition number and singular parameters, at which B has no inverse.
 """
 
 from collections.abc import Callable
@@ -77,7 +77,7 @@ class SingularSet:
         return bool(self.values is S.EmptySet)
 
     def points(self) -> tuple[Expr, ...]:
-        """Return the distinct singular values in the first period of 2 pi that contains any, in increasing order."""
+        """Return the distinct singular values in the first period of 2 pi that contains one, in increasing order."""
         for turn in (Interval.Ropen(0, 2 * pi), Interval.Ropen(2 * pi, 4 * pi)):
             points = self.values.intersect(turn)
             if points is not S.EmptySet:
@@ -109,8 +109,8 @@ def condition_of(gram: Matrix) -> Expr:
 def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
     """Return the exact set of zeros of an expression in one variable.
 
-    If the numerator has period 4 pi (a function of angles and half angles) and its zeros are evenly spaced, the set is
-    one family ``first + n * spacing``; otherwise it is the result of SymPy's ``solveset``.
+    If the numerator has the period 4 pi (a function of angles and half angles) and its zeros are evenly spaced, the set
+    is one family ``first + n * spacing``; otherwise the set is the result of SymPy's ``solveset``.
 
     Parameters
     ----------
@@ -193,8 +193,8 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     """The rate matrix B(p) of ``omega = B(p) dp/dt``: an immutable SymPy matrix with its inverse and singular set.
 
     Arithmetic with a rate matrix gives plain SymPy matrices. A chart with four parameters and one constraint (unit
-    norm) has a 3 x 4 rate matrix. The inverse is then 4 x 3, and the rates that it gives preserve the constraint; its
-    determinant is that of B with the gradient of the constraint as a fourth row.
+    norm) has a 3 x 4 rate matrix. The inverse is then 4 x 3, and the rates that it gives preserve the constraint; the
+    determinant is the determinant of B with the gradient of the constraint as a fourth row.
 
     Attributes
     ----------
@@ -207,7 +207,8 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     singular_set : SingularSet
         Zeros of the determinant, solved for exactly.
     condition_number : Expr
-        Ratio of the largest to the smallest singular value (2-norm): a property, while SymPy has a method of this name.
+        Ratio of the largest to the smallest singular value (2-norm); a property, while SymPy's matrices have a method
+        of this name.
     limits : tuple of Limit
         Limits of the inverse at each singular point in one period, from both sides.
 
@@ -221,7 +222,7 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     facts: RateFacts
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Any:
-        """Return a plain matrix instead of a rate matrix, for SymPy, which rebuilds matrices with ``func(*args)``."""
+        """Return a plain matrix, not a rate matrix, because SymPy rebuilds matrices with ``func(*args)``."""
         return ImmutableDenseMatrix(*args, **kwargs)
 
     @classmethod
@@ -317,8 +318,8 @@ class Chart:
     rate_matrix : callable
         ``rate_matrix(frame)``: the :class:`RateMatrix` B of ``omega = B dp/dt``.
     unreached : Expr or None
-        An expression in :data:`symrot.symbols.quaternion` that is zero at the attitudes without parameters in this
-        chart.
+        An expression in :data:`symrot.symbols.quaternion` that is zero at the attitudes for which this chart has no
+        parameters; None if there are no such attitudes.
     about : str
         A phrase that says what the parameters are.
     """

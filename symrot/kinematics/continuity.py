@@ -1,9 +1,10 @@
 """Quaternions and Euler angles without jumps along a trajectory. NumPy alone.
 
 The samples of the trajectory follow each other along the first dimension. The functions of
-:mod:`symrot.kinematics.conversions` return each attitude in a standard range, so that neighbours may jump. Here the
-equivalent values are chosen (sign of the quaternion, multiples of 2 pi, the second set of Euler angles, the split of
-first and third angle at gimbal lock) that are close to the sample before.
+:mod:`symrot.kinematics.conversions` return each attitude in a standard range, so that neighbouring samples may jump.
+Each attitude has several equivalent values: q and -q, angles plus multiples of 2 pi, two sets of Euler angles, and at
+gimbal lock many pairs of first and third angle. The functions here choose the value that is closest to the sample
+before.
 """
 
 from typing import Any
@@ -26,16 +27,16 @@ def continuous_quaternion(q: Any) -> Array:
 
 
 def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
-    """Return Euler angles without jumps of 2 pi, shape (n, ..., 3), rad; attitudes and first sample are unchanged.
+    """Return Euler angles of the same attitudes without jumps, shape (n, ..., 3), rad; the first sample is unchanged.
 
     Parameters
     ----------
     angles : array, shape (n, ..., 3)
-        rad, in order of application, sampled so closely that no angle changes by pi/2 between samples.
+        Angles in rad, in order of application, sampled so closely that no angle changes by pi/2 between samples.
     sequence : str
     locked : bool array, shape (n, ...), optional
-        True at samples in gimbal lock, as returned together with the angles. Such a sample gets the third angle of
-        the last sample that is not locked, and the first angle that gives the same attitude.
+        Whether each sample is in gimbal lock, as returned together with the angles. Such a sample gets the third angle
+        of the last sample that is not locked, and the first angle that gives the same attitude.
 
     Notes
     -----
@@ -71,8 +72,8 @@ def _take_over(angles: Array, locked: Any, sequence: str) -> None:
     """Give each locked sample the third angle of the last unlocked sample, and adjust its first angle, in place.
 
     At lock the first and the last rotation are about the same line. If the middle rotation maps the last axis to the
-    first, the attitude depends on the sum of first and third angle; if it maps the last axis to minus the first, on
-    their difference. The adjustment preserves this sum or difference.
+    first axis, the attitude depends on the sum of first and third angle; if it maps the last axis to minus the first
+    axis, the attitude depends on their difference. The adjustment preserves this sum or difference.
     """
     if not locked.any():
         return

@@ -99,7 +99,7 @@ def _largest(components: Components) -> Array:
 
 
 def _in_range(*components: Array) -> tuple[Components, Array]:
-    """Return the samples and their squared lengths, scaled where the squares would overflow or underflow.
+    """Return the samples and their squared lengths; samples whose squares would overflow or underflow are scaled.
 
     A scaled sample is divided by its largest component. Samples that are zero, infinite or NaN become NaN.
     """
@@ -114,7 +114,7 @@ def _in_range(*components: Array) -> tuple[Components, Array]:
 
 
 def _length(*components: Array) -> Array:
-    """Return the lengths without overflow or underflow; zero for a zero sample."""
+    """Return the lengths of the samples, computed without overflow or underflow; zero for a zero sample."""
     squares = _sum_of_squares(components)
     length: Array = np.sqrt(squares)
     extreme = ~((squares > SAFE[0]) & (squares < SAFE[1]))
@@ -143,7 +143,7 @@ def _normalize(*q: Array) -> Components:
 
 
 def normalize(q: Any) -> Array:
-    """Return unit quaternions, shape (..., 4), without overflow at 1e200 or underflow at 1e-200; NaN for a bad row."""
+    """Return quaternions divided by their norms, shape (..., 4), without overflow or underflow; NaN for a bad row."""
     return _by_components(_normalize, array_of(q, 4, what="a quaternion"), 4)
 
 
@@ -191,7 +191,7 @@ def _dcm(*q: Array) -> Components:
 
 
 def quaternion_to_dcm(q: Any) -> Array:
-    """Return ``dcm_sb``, shape (..., 3, 3), of quaternions of any norm."""
+    """Return the direction cosine matrices ``dcm_sb``, shape (..., 3, 3), of quaternions of any norm."""
     q = array_of(q, 4, what="a quaternion")
     return _by_components(_dcm, q, 9).reshape(*q.shape[:-1], 3, 3)
 
@@ -213,9 +213,9 @@ def _quaternion_of_dcm(*r: Array) -> Components:
 def dcm_to_quaternion(dcm: Any) -> Array:
     """Return the unit quaternions with ``q0 >= 0``, shape (..., 4), of rotation matrices ``dcm_sb``.
 
-    The largest of the four squares ``4 q_i^2`` is the divisor, so that it is never small. A matrix that is not quite a
-    rotation gets the quaternion computed from the row of this divisor; a matrix with determinant <= 0, or one that is
-    not finite, gives NaN.
+    The formula divides by the largest of the four squares ``4 q_i^2``, so that the divisor is never small. A matrix
+    that is not quite a rotation gets the quaternion computed with this divisor; a matrix with determinant <= 0 or with
+    an entry that is not finite gives NaN.
     """
     dcm = array_of(dcm, 3, 3, what="a dcm")
     return _by_components(_quaternion_of_dcm, dcm.reshape(*dcm.shape[:-2], 9), 4)
@@ -249,7 +249,8 @@ def _logarithm(*q: Array) -> Components:
 def quaternion_to_rotation_vector(q: Any) -> Array:
     """Return rotation vectors in rad, shape (..., 3), of length at most pi (the logarithm of the quaternion).
 
-    A rotation by pi (q0 = 0) has two; the one with a positive first nonzero component is returned.
+    A rotation by pi (q0 = 0) has two rotation vectors; the vector whose first nonzero component is positive is
+    returned.
     """
     return _by_components(_logarithm, array_of(q, 4, what="a quaternion"), 3)
 
@@ -263,7 +264,7 @@ def _quaternion_of_axis_angle(n1: Array, n2: Array, n3: Array, angle: Array) -> 
 
 
 def axis_angle_to_quaternion(axis: Any, angle: Any, degrees: bool = False) -> Array:
-    """Return unit quaternions, shape (..., 4), of axes of any length and angles, broadcast together.
+    """Return unit quaternions, shape (..., 4), of rotations about axes of any length by angles, broadcast together.
 
     A zero axis gives NaN, unless its angle is zero.
     """
@@ -357,8 +358,8 @@ def quaternion_to_mrp(q: Any, shadow: bool = True) -> Array:
     ----------
     q : array, shape (..., 4)
     shadow : bool
-        Each attitude has two sets, one from q and one from -q. True: return the shorter set, of length at most 1.
-        False: return the set of q itself, which grows without bound toward q = (-1, 0, 0, 0), and is NaN there.
+        Each attitude has two sets, one from q and one from -q. If True, return the shorter set, of length at most 1. If
+        False, return the set from q itself, which grows without bound toward q = (-1, 0, 0, 0), where it is NaN.
     """
     return _by_components(_mrp_short if shadow else _mrp_of_sign, array_of(q, 4, what="a quaternion"), 3)
 
@@ -375,9 +376,9 @@ def mrp_shadow(s: Any) -> Array:
 
 @np.errstate(all="ignore")
 def mrp_switch(s: Any) -> tuple[Array, Mask]:
-    """Return, of each set and its shadow ``-s / |s|^2``, the shorter one, shape (..., 3), and a mask of switched rows.
+    """Return the shorter of each set s and its shadow ``-s / |s|^2``, shape (..., 3), and a mask of switched rows.
 
-    A propagation in modified Rodrigues parameters that switches whenever ``|s| > 1`` keeps |s| at most 1.
+    A propagation in modified Rodrigues parameters that switches whenever ``|s| > 1`` never exceeds ``|s| = 1``.
     """
     s = array_of(s, 3, what="a set of modified Rodrigues parameters")
     switched = np.asarray(_length(*np.moveaxis(np.atleast_2d(s), -1, 0)) > 1).reshape(s.shape[:-1])
@@ -400,9 +401,9 @@ def euler_to_quaternion(angles: Any, sequence: str, degrees: bool = False) -> Ar
     Parameters
     ----------
     angles : array, shape (..., 3)
-        rad, or degrees with ``degrees=True``.
+        Angles in rad, or in degrees with ``degrees=True``.
     sequence : str
-        Upper case intrinsic, lower case extrinsic.
+        Euler sequence: intrinsic in upper case, extrinsic in lower case.
     """
     (first, middle, last), order, cross, sign = places(sequence)
 
@@ -428,9 +429,9 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
     Parameters
     ----------
     q : array, shape (..., 4)
-        Of any norm.
+        Quaternions of any norm.
     sequence : str
-        Upper case intrinsic, lower case extrinsic.
+        Euler sequence: intrinsic in upper case, extrinsic in lower case.
     degrees : bool
     lock : float
         Distance of the middle angle from gimbal lock, rad, up to which a sample counts as locked.
@@ -438,10 +439,10 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
     Returns
     -------
     angles : array, shape (..., 3)
-        The middle angle in [0, pi] (proper) or [-pi/2, pi/2] (Tait-Bryan), the others in [-pi, pi].
+        The middle angle is in [0, pi] (proper) or [-pi/2, pi/2] (Tait-Bryan), the other angles are in [-pi, pi].
     locked : bool array, shape (...)
         True where only the sum or the difference of first and third angle is determined. There the third angle (in
-        order of application) is set to zero, as SciPy does, and the middle angle to its value at lock, which
+        order of application) is set to zero, as SciPy does, and the middle angle is set to its value at lock, which
         changes the attitude by at most ``lock``.
 
     Notes
@@ -483,7 +484,7 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
 
 
 def _sum(x: Array, y: Array, odd: Mask) -> Array:
-    """Return ``x + y`` for x and y in [-pi/2, pi/2], shifted by pi into [-pi, pi] where ``odd``, with one rounding."""
+    """Return ``x + y`` for x and y in [-pi/2, pi/2], rounded once; where ``odd``, the sum minus or plus pi."""
     total = x + y
     back = total - x
     error = (x - (total - back)) + (y - back)
@@ -499,5 +500,5 @@ def euler_to_dcm(angles: Any, sequence: str, degrees: bool = False) -> Array:
 
 
 def dcm_to_euler(dcm: Any, sequence: str, degrees: bool = False, lock: float = LOCK) -> tuple[Array, Mask]:
-    """Return Euler angles and a mask of gimbal lock, as :func:`quaternion_to_euler` does; NaN if dcm is no rotation."""
+    """Return Euler angles and a mask of gimbal lock, as :func:`quaternion_to_euler` does; NaN for a bad dcm."""
     return quaternion_to_euler(dcm_to_quaternion(dcm), sequence, degrees, lock)

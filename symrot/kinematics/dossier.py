@@ -1,6 +1,7 @@
 """The singularities of an Euler sequence: where gimbal lock occurs, how the rates grow there, which sequences to use.
 
-Every entry is derived from :func:`symrot.kinematics.euler.rate_jacobian`; no table is typed in.
+Every entry is derived from :func:`symrot.kinematics.euler.rate_jacobian`. A sequence is regular at an attitude where it
+is not in gimbal lock.
 """
 
 from collections.abc import Iterable
@@ -26,7 +27,7 @@ class LockedPoint:
     middle : Expr
         The angle, rad.
     silent_rates : ImmutableMatrix, shape (3, 1)
-        Angle rates that do not rotate the body: the null vector of B. First and third angle cancel each other.
+        Angle rates that do not rotate the body (the null vector of B): the first and the third rate cancel each other.
     lost_axis_b : ImmutableMatrix, shape (3, 1)
         The unit direction (body components) about which no angle rates can rotate the body: ``lost^T B = 0``.
 
@@ -60,12 +61,12 @@ class SingularityDossier:
     locked : tuple of LockedPoint
         The singular points in one period of the middle angle.
     regular_sequences : tuple of str
-        Sequences regular at every attitude where this one locks.
+        Sequences that are regular at every attitude where this sequence locks.
     partly_regular : dict of str to Set
-        Sequences that lock at some of those attitudes only. The set holds the values of phi (intrinsic) or psi
-        (extrinsic) at which they lock, with the other outer angle zero.
+        Sequences that lock at only some of those attitudes. The set contains the values of phi (intrinsic) or psi
+        (extrinsic) at which they lock, if the other outer angle is zero.
     singular_sequences : tuple of str
-        Sequences that lock wherever this one does.
+        Sequences that lock wherever this sequence locks.
 
     Examples
     --------
@@ -100,7 +101,7 @@ class SingularityDossier:
         return self.jacobian_b.limits
 
     def text(self) -> str:
-        """Return the dossier as text, byte for byte the same for the same sequence."""
+        """Return the dossier as text; a sequence always gives the same bytes."""
         kind = "intrinsic" if parse_sequence(self.sequence)[1] else "extrinsic"
         return "\n".join(
             [
@@ -170,8 +171,8 @@ def _rows(matrix: Matrix, indent: str = "  ") -> list[str]:
 def _locked_point(sequence: str, middle: Expr) -> LockedPoint:
     """Return the data of gimbal lock at a value of the middle angle: rates without effect, and the lost axis.
 
-    There the first and last axis coincide up to sign, ``b_first = s b_last``. So the rates ``1, 0, -s`` do not rotate
-    the body, and no rates rotate the body about the axis perpendicular to the last and the middle axis.
+    At gimbal lock the first and the last axis coincide up to sign, ``b_first = s b_last``. So the rates ``1, 0, -s``
+    do not rotate the body, and no rates rotate it about the axis perpendicular to the last and the middle axis.
     """
     first, _, third = symbols.angles
     jacobian = rate_jacobian(sequence, "body", (first, middle, third))

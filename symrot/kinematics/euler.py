@@ -1,9 +1,10 @@
 """Euler angles: all 12 intrinsic and 12 extrinsic sequences, from the name of the sequence.
 
-No sequence has formulas of its own: all are computed from three elementary rotations. An extrinsic sequence is the
-intrinsic one read backwards (``zyx`` with q1, q2, q3 is ``XYZ`` with q3, q2, q1), so every formula uses three factors
-from left to right, ``dcm_sb = R_first R_middle R_last``. Convention: :mod:`symrot.conventions`. Proof:
-``derivations/euler_body_rates.md``.
+No sequence has formulas of its own: all formulas are computed from three elementary rotations. An extrinsic sequence
+equals the intrinsic sequence of the reversed name (``zyx`` with q1, q2, q3 is ``XYZ`` with q3, q2, q1), so every
+formula uses three factors from left to right, ``dcm_sb = R_first R_middle R_last``. A sequence is proper if its first
+and last axis are the same (``ZXZ``), otherwise Tait-Bryan (``ZYX``). At gimbal lock, first and last rotation are about
+the same line. Convention: :mod:`symrot.conventions`. Proof: ``derivations/euler_body_rates.md``.
 """
 
 from collections.abc import Sequence
@@ -73,12 +74,12 @@ def factors(sequence: str, angles: Sequence[Any] | None = None) -> tuple[Factor,
     sequence : str
         One of :data:`symrot.conventions.SEQUENCES`.
     angles : sequence of 3 Expr, optional
-        rad, in order of application; phi, theta, psi when left out.
+        Angles in rad, in order of application; default: phi, theta, psi.
 
     Raises
     ------
     InputError
-        For an unknown sequence, or not exactly three angles.
+        If the sequence is unknown, or there are not exactly three angles.
     """
     axes, intrinsic = parse_sequence(sequence)
     angles = expressions(symbols.angles if angles is None else angles, 3, f"the Euler sequence {sequence}")
@@ -124,7 +125,7 @@ def dcm(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
 
 
 def lock_indicator(sequence: str, dcm_sb: Matrix) -> Expr:
-    """Return the entry of the dcm that is +1 or -1 exactly where the sequence is in gimbal lock.
+    """Return the entry of the dcm that is +1 or -1 exactly if the sequence is in gimbal lock.
 
     The entry ``e_first^T dcm e_last`` is the cosine of the angle between the first axis and the rotated last axis.
     """
@@ -176,7 +177,7 @@ class EulerRateMatrix(RateMatrix):
     ----------
     sequence : str
     regular_sequences : tuple of str
-        The other sequences that are regular at every attitude where this one locks.
+        The other sequences that are regular at every attitude where this sequence locks.
 
     Examples
     --------
@@ -198,7 +199,7 @@ class EulerRateMatrix(RateMatrix):
         """Return the sequences, of all 24, that are regular at the attitude with the given angles of this sequence.
 
         If some angles are symbols, a sequence is left out only if it is singular for all values of the symbols. A float
-        is taken as the exact rational number that it represents.
+        stands for the exact rational number that it represents.
         """
         own_angles = expressions(
             self.parameters if angles is None else angles, 3, f"the Euler sequence {self.sequence}"
@@ -277,12 +278,12 @@ def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> E
 
 @cache
 def sequences_at_lock(sequence: str) -> dict[str, Set]:
-    """Return, for each other sequence, at which gimbal-lock attitudes of ``sequence`` it is in gimbal lock too.
+    """Return, for each other sequence, the set of gimbal-lock attitudes of ``sequence`` at which it locks too.
 
-    In gimbal lock the first and the last rotation are about the same line, and the attitude depends on one combination
-    of their angles; so the angle of the right factor is set to zero here. Each value is a set of angles of the left
-    factor (phi if intrinsic, psi if extrinsic): empty for a sequence that is regular at all these attitudes, the reals
-    for one that locks at all of them.
+    In gimbal lock the attitude depends on one combination of the first and the last angle; so the angle of the right
+    factor is set to zero here, and an attitude is given by the angle of the left factor (phi if intrinsic, psi if
+    extrinsic). The set is empty for a sequence that is regular at all these attitudes, and contains all real numbers
+    for a sequence that locks at all of them.
     """
     left, _, _ = factors(sequence)
     chi = left.angle
@@ -305,17 +306,19 @@ def quaternion_of_euler(sequence: str, angles: Sequence[Any] | None = None) -> I
 
 
 def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-    """Return the angles of a quaternion of any norm, shape (3, 1), rad, in order of application.
+    """Return the Euler angles of a quaternion of any norm, shape (3, 1), rad, in order of application.
 
-    The middle angle is in [0, pi] (proper) or [-pi/2, pi/2] (Tait-Bryan). The other angles are in (-2 pi, 2 pi); reduce
-    them modulo 2 pi if needed. They follow from half-angle sums and differences by ``atan2``, without ``acos`` or
-    ``asin``, so they keep full accuracy up to gimbal lock.
+     The middle angle is in [0, pi] (proper) or [-pi/2, pi/2] (Tait-Bryan). The other angles are in (-2 pi, 2 pi);
+     reduce them modulo 2 pi if needed. All angles follow from half-angle sums and differences by ``atan2``, without
+     ``acos`` or ``asin``, so they keep full accuracy up to gimbal lock.
 
     Notes
     -----
-    For a proper sequence, ``q = (c + s e_i)(C + S e_j)(c' + s' e_i)``. Its components along 1, e_i, e_j, e_i x e_j are
-    cosine and sine of the half sum times C, and of the half difference times S. A Tait-Bryan sequence times a rotation
-    by pi/2 about its middle axis is a proper sequence. Source: Bernardes & Viollet, PLoS ONE 17 (2022) e0276302.
+    For a proper sequence, ``q = (c + s e_i)(C + S e_j)(c' + s' e_i)``, where c, C, c' are the cosines and s, S, s' the
+    sines of half the angles. The components of q along 1 and e_i are C times the cosine and sine of half the sum of the
+    outer angles; the components along e_j and e_i x e_j are S times the cosine and sine of half their difference. A
+    Tait-Bryan sequence times a rotation by pi/2 about its middle axis is a proper sequence. Source: Bernardes &
+    Viollet, PLoS ONE 17 (2022) e0276302.
     """
     first, middle, last = factors(sequence)
     q = expressions(q, 4, "a quaternion")
@@ -336,10 +339,10 @@ def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quate
 
 
 def euler_of_dcm(sequence: str, dcm_sb: Matrix) -> ImmutableMatrix:
-    """Return the angles of a dcm, shape (3, 1), rad, in order of application, in the range of ``atan2``.
+    """Return the Euler angles of a dcm, shape (3, 1), rad, in order of application, in the range of ``atan2``.
 
-    Each angle is an ``atan2`` of two entries: the rotated last axis gives the first and the middle angle, the first
-    axis rotated by the transpose gives the last angle.
+    Each angle is an ``atan2`` of two expressions. The image of the last axis under the dcm gives the first and the
+    middle angle; the image of the first axis under the transposed dcm gives the last angle.
     """
     first, middle, last = factors(sequence)
     proper = first.axis == last.axis

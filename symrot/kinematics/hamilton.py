@@ -13,8 +13,9 @@ __all__ = ["hamilton"]
 def hamilton(left: Sequence[Any], right: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
     """Return the Hamilton product of two quaternions, scalar first.
 
-    The components may be anything that adds, subtracts and multiplies: integers, fractions, floats of any precision,
-    arrays, dual numbers. The order of the operations is fixed, because the last bits of sums of floats depend on it.
+    The components may be of any type that has addition, subtraction and multiplication: integers, fractions, floats of
+    any precision, arrays, dual numbers. The order of the operations is fixed, because the last bits of sums of floats
+    depend on it.
 
     Examples
     --------

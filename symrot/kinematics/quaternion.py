@@ -81,12 +81,12 @@ def quaternion_product(*factors: Sequence[Any] | Matrix) -> ImmutableMatrix:
     Returns
     -------
     ImmutableMatrix, shape (4, 1), dimensionless
-        ``(1, 0, 0, 0)`` without factors.
+        The product; ``(1, 0, 0, 0)`` if there are no factors.
 
     Raises
     ------
     InputError
-        For a factor without exactly four components.
+        If a factor does not have exactly four components.
 
     Notes
     -----
@@ -145,9 +145,9 @@ def quaternion_to_dcm(q: Sequence[Any] | Matrix = symbols.quaternion, form: str 
     q : sequence of 4 Expr, optional
         Scalar first, body to space, dimensionless; the symbols q0 to q3 by default.
     form : str
-        ``"unit"``: uses ``|q|^2 = 1`` on the diagonal, ``1 - 2 (q2^2 + q3^2)`` and so on; a rotation only for unit q.
-        ``"homogeneous"``: ``q e_i q*``, quadratic in q, which is ``|q|^2`` times a rotation. ``"normalised"``:
-        homogeneous over ``|q|^2``, a rotation for every q except 0.
+        ``"unit"``: with ``1 - 2 (q2^2 + q3^2)`` and so on as diagonal; a rotation only for unit q. ``"homogeneous"``:
+        with the columns ``q e_i q*``, quadratic in q; this is ``|q|^2`` times a rotation. ``"normalised"``: the
+        homogeneous form divided by ``|q|^2``; a rotation for every q except 0.
 
     Returns
     -------
@@ -157,7 +157,7 @@ def quaternion_to_dcm(q: Sequence[Any] | Matrix = symbols.quaternion, form: str 
     Raises
     ------
     InputError
-        For another form, or not four components.
+        If the form is unknown, or q does not have four components.
 
     Notes
     -----
@@ -218,8 +218,8 @@ def _four_q_q(dcm_sb: Matrix) -> Matrix:
 def quaternion_rates(frame: str = "body", q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
     """Return the matrix M(q) of ``dq/dt = M(q) * omega``.
 
-    Its columns are the last three of L(q)/2 (body) or R(q)/2 (space), with ``q p = L(q) p`` and ``p q = R(q) p``. The
-    rates preserve the norm of q exactly, whatever that norm is.
+    Its columns are the last three columns of L(q)/2 (body) or R(q)/2 (space), with ``q p = L(q) p`` and ``p q = R(q)
+    p``. The rates preserve the norm of q exactly, whatever that norm is.
 
     Parameters
     ----------
@@ -255,7 +255,7 @@ def quaternion_rates(frame: str = "body", q: Sequence[Any] | Matrix = symbols.qu
 def quaternion_rate_jacobian(frame: str = "body", q: Sequence[Any] | Matrix = symbols.quaternion) -> RateMatrix:
     """Return the rate matrix B(q), shape (3, 4), of ``omega = B(q) * dq/dt`` for unit q: ``2 q* dq`` or ``2 dq q*``.
 
-    With the gradient of ``|q|^2`` as a fourth row, its determinant is constant: B is singular at no attitude.
+    The determinant of B with the gradient of ``|q|^2`` as a fourth row is constant, so B is never singular.
     """
     q = expressions(q, 4, "a quaternion")
     product = (left_matrix if check_frame(frame) == "body" else right_matrix)(conjugate(q))

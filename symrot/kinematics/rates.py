@@ -1,7 +1,8 @@
-"""Rates of quaternions and Euler angles from the angular velocity, and the inverse, with NumPy alone.
+"""Rates of quaternions and Euler angles from the angular velocity, and the angular velocity from them; NumPy alone.
 
-Arrays may have any leading shape; bad rows are treated as in :mod:`symrot.kinematics.conversions`. The tests compare
-the results with the formulas that :mod:`symrot.kinematics.euler` and :mod:`symrot.kinematics.quaternion` derive.
+Arrays may have any leading shape; rows without a valid attitude are treated as in :mod:`symrot.kinematics.conversions`.
+The tests compare the results with the formulas that :mod:`symrot.kinematics.euler` and
+:mod:`symrot.kinematics.quaternion` derive.
 """
 
 from typing import Any
@@ -52,9 +53,9 @@ def euler_rates(angles: Any, omega: Any, sequence: str, frame: str = "body") -> 
     Parameters
     ----------
     angles : array, shape (..., 3)
-        rad, in order of application.
+        Angles in rad, in order of application.
     omega : array, shape (..., 3)
-        rad/s, components in ``frame``.
+        Angular velocity in rad/s, components in ``frame``.
     sequence : str
     frame : str
         ``"body"`` or ``"space"``.
@@ -63,7 +64,7 @@ def euler_rates(angles: Any, omega: Any, sequence: str, frame: str = "body") -> 
     -----
     In the frame between the middle and the last rotation, the middle axis m and the last axis e are fixed, and the
     first axis is ``-sin(q2) w + cos(q2) e`` (proper) or ``sign (cos(q2) w + sin(q2) e)`` (Tait-Bryan), with w = m x e.
-    At gimbal lock its component along w is exactly zero; the rates are not finite and the mask is True.
+    At gimbal lock the first axis has no component along w; the rates are not finite and the mask is True.
     """
     (first, middle, last), order, cross, sign = places(sequence)
     angles = array_of(angles, 3, what=f"a set of {sequence} angles")

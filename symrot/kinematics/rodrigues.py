@@ -39,8 +39,8 @@ class Projection:
     def homogeneous(self, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
         """Return a quaternion h(p) of the attitude, polynomial in the parameters, of any norm, shape (4, 1).
 
-        It is ``(1, p)`` for classical and ``(1 - p^2, 2 p)`` for modified parameters. Leaving the norm free avoids the
-        square root of a unit quaternion.
+        The quaternion is ``(1, p)`` for classical and ``(1 - p^2, 2 p)`` for modified parameters. A free norm avoids
+        the square root in the unit quaternion.
         """
         p = expressions(self.parameters if values is None else values, 3, self.name)
         if self.centre == 0:
@@ -58,13 +58,13 @@ class Projection:
         return ImmutableMatrix(self.homogeneous(values) / self.norm(values))
 
     def dcm(self, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
-        """Return ``dcm_sb`` of the parameters, shape (3, 3), rational in them."""
+        """Return ``dcm_sb``, shape (3, 3), as rational functions of the parameters."""
         return _dcm(self, expressions(self.parameters if values is None else values, 3, self.name))
 
     def rate_matrix(self, frame: str = "body") -> RateMatrix:
         """Return the rate matrix B(p), shape (3, 3), with ``omega = B(p) * dp/dt``; it is never singular.
 
-        It follows from the vector part of ``omega = 2 h* dh / |h|^2``, which holds for a quaternion h of any norm.
+        B follows from the vector part of ``omega = 2 h* dh / |h|^2``, which holds for a quaternion h of any norm.
         """
         return _rate_matrix(self, check_frame(frame))
 

@@ -97,14 +97,14 @@ def dcm(vector: Sequence[Any] | Matrix = symbols.rotation_vector) -> ImmutableMa
 def jacobian(frame: str = "body", vector: Sequence[Any] | Matrix = symbols.rotation_vector) -> RateMatrix:
     """Return B(v), shape (3, 3), with ``omega = B(v) * dv/dt``: the Jacobian of the exponential map.
 
-    Body: the right Jacobian ``1 - (1 - cos a)/a^2 K + (a - sin a)/a^3 K^2`` with a = |v| and K the skew matrix of v;
-    space: the left Jacobian, its transpose. B is singular at ``a = 2 pi n`` with n > 0, where vectors of all directions
-    describe the same attitude.
+    In body components B is the right Jacobian ``1 - (1 - cos a)/a^2 K + (a - sin a)/a^3 K^2`` with a = |v| and K the
+    skew matrix of v; in space components it is the left Jacobian, the transpose of the right Jacobian. B is singular at
+    ``a = 2 pi n`` with n > 0, where vectors of all directions describe the same attitude.
 
     Raises
     ------
     InputError
-        For an unknown frame, or not three components.
+        If the frame is unknown, or the vector does not have three components.
     """
     vector = expressions(vector, 3, "a rotation vector")
     size = length(vector)
@@ -162,9 +162,10 @@ def quaternion_of_axis_angle(
 
 
 def axis_angle_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-    """Return axis and angle ``(n1, n2, n3, alpha)`` of a quaternion of any norm, shape (4, 1); undefined at zero angle.
+    """Return axis and angle, ``(n1, n2, n3, alpha)``, of a quaternion of any norm, shape (4, 1).
 
-    ``alpha = 2 atan2(|(q1, q2, q3)|, q0)`` is in [0, 2 pi] and accurate for small angles, where ``2 acos(q0)`` is not.
+    At zero angle they are undefined. ``alpha = 2 atan2(|(q1, q2, q3)|, q0)`` is in [0, 2 pi] and accurate for small
+    angles, where ``2 acos(q0)`` is not.
     """
     q0, *vector = expressions(q, 4, "a quaternion")
     size = length(vector)
@@ -174,9 +175,10 @@ def axis_angle_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion) -> 
 def axis_angle_jacobian(frame: str = "body") -> RateMatrix:
     """Return the rate matrix B, shape (3, 4), with ``omega = B * d(n1, n2, n3, alpha)/dt`` for a unit axis n.
 
-    ``omega_b = n dalpha + sin(alpha) dn - (1 - cos(alpha)) n x dn``; in space components the last sign is plus. The
-    determinant is that of B with the gradient of ``|n|^2 / 2`` as a first row; the condition number is that of B on the
-    rates that preserve ``|n| = 1``. B is singular at ``alpha = 2 pi k``, where no axis is defined.
+    In body components ``omega_b = n dalpha + sin(alpha) dn - (1 - cos(alpha)) n x dn``; in space components the last
+    sign is plus. ``determinant`` is the determinant of B with the gradient of ``|n|^2 / 2`` as a first row, and
+    ``condition_number`` is the condition number of B for rates that preserve ``|n| = 1``. B is singular at ``alpha = 2
+    pi k``, where no axis is defined.
 
     Notes
     -----

@@ -46,7 +46,7 @@ def expressions(values: Any, size: int, what: str) -> tuple[Expr, ...]:
 
 
 def axis_number(axis: int | str) -> int:
-    """Return 0, 1 or 2 for an axis that is given as such a number or as a letter X, Y, Z (either case)."""
+    """Return the number 0, 1 or 2 of an axis that is given as this number or as a letter X, Y, Z (either case)."""
     if isinstance(axis, str) and len(axis) == 1 and axis.upper() in AXES:
         return AXES.index(axis.upper())
     if isinstance(axis, int) and not isinstance(axis, bool) and 0 <= axis < 3:
@@ -117,20 +117,18 @@ def angular_velocity(dcm_sb: Matrix, parameter: Expr, frame: str = "body") -> Im
 
 
 def function_of_skew(function: Callable[[Expr], Expr], at_zero: Expr, size: Expr) -> tuple[Expr, Expr, Expr]:
-    """Return ``c0, c1, c2`` with ``function(K) = c0 + c1 K + c2 K^2`` for a skew matrix K.
-
-    K is the skew matrix of a vector of length ``size``.
+    """Return ``c0, c1, c2`` with ``function(K) = c0 + c1 K + c2 K^2`` for the skew matrix K of a vector.
 
     Because ``K^3 = -size^2 K``, the eigenvalues of K are 0 and +-i size, and the matrix function is the polynomial that
-    interpolates ``function`` there. ``function`` must have real Taylor coefficients, so that its values at +-i size are
-    conjugate.
+    agrees with ``function`` at the eigenvalues. ``function`` must have real Taylor coefficients, so that its values at
+    +-i size are conjugate.
 
     Parameters
     ----------
     function : callable of one Expr
-        e.g. ``exp``.
+        A function such as ``exp``.
     at_zero : Expr
-        Value (limit) of ``function`` at zero.
+        The value (limit) of ``function`` at zero.
     size : Expr
         Length of the vector, positive.
     """

@@ -1,4 +1,7 @@
-"""The cursor with which the tree of a LaTeX formula is read, item by item; an index or power follows its item."""
+"""The cursor with which interpreters read the tree of a LaTeX formula, item by item.
+
+An item is a node of a row: a token, a fraction, a root, a table and so on.
+"""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import ClassVar, TypeVar
@@ -15,15 +18,15 @@ Value = TypeVar("Value")
 class Cursor:
     """A position in a row of items of the LaTeX tree, from which the next item is read.
 
-    Spaces are skipped, ``\\left`` and ``\\right`` are removed from delimiters, and indices and powers follow the item
-    that they belong to.
+     Spaces are skipped, ``\\left`` and ``\\right`` are removed from delimiters, and the indices and the power of an
+     item are separate items after it.
 
     Attributes
     ----------
     source, where : str
-        The whole formula, and its place for error messages.
+        The whole formula, and the name of its place (such as a file) for error messages.
     synonyms : mapping
-        Text of a token -> the text under which the interpreter knows it.
+        A map from the text of a token to the text under which the interpreter knows the token.
     after_space : set of int
         Positions of the items that follow a LaTeX command for space.
     """
@@ -37,11 +40,11 @@ class Cursor:
         self.enter(row)
 
     def fail(self, expected: str, item: Node | None = None) -> InputError:
-        """Return the InputError that names the expected text and the position of an item (default: the next item)."""
+        """Return an InputError that names the expected text and the position of an item (default: the next item)."""
         return complaint(self.source, self.where, (item or self.peek()).start, expected)
 
     def enter(self, node: Node) -> None:
-        """Start to read another row of the LaTeX tree, or a single item as if it were a row, from its beginning."""
+        """Move to the beginning of another row of the LaTeX tree, or of a single item, read as a row."""
         self.items: list[Node] = []
         self.index = 0
         self.flatten(node.items if isinstance(node, Row) else (node,))
@@ -65,7 +68,7 @@ class Cursor:
                 space = False
 
     def inside(self, node: Node, read: Callable[[], Value], closing: str = "'}'") -> Value:
-        """Read a row or a single item of the LaTeX tree with ``read``, then go back to the position before it."""
+        """Return the value that ``read`` gives for a whole row or item of the tree; keep the position of the cursor."""
         outside = self.items, self.index, self.open_bars
         self.enter(node)
         self.open_bars = ()
@@ -76,7 +79,7 @@ class Cursor:
         return value
 
     def listed(self, read: Callable[[], Value], closing: str) -> list[Value]:
-        """Read values separated by commas, up to and including the closing bracket."""
+        """Return the values, separated by commas, up to the closing bracket, and move past the bracket."""
         bars, self.open_bars = self.open_bars, ()
         values = [read()]
         while self.take(","):
@@ -86,7 +89,7 @@ class Cursor:
         return values
 
     def barred(self, read: Callable[[], Value], bar: str) -> Value:
-        """Read a value between two bars: the cursor is behind the opening bar, and moves past the closing bar."""
+        """Return the value between two bars; the cursor is after the opening bar, and moves past the closing bar."""
         outside, self.open_bars = self.open_bars, (*self.open_bars, bar)
         value = read()
         self.expect(bar)
@@ -116,9 +119,9 @@ class Cursor:
             raise self.fail(f"'{text}'")
 
     def script(self, mark: str) -> Script | None:
-        """Return the next item and move past it if it is an index or power with this mark (``_``, ``^``).
+        """Return the next item and move past it, if it is a script with this mark (``_``, ``^`` or ``'``).
 
-        Otherwise return None.
+        Otherwise return None and stay.
         """
         item = self.items[self.index]
         if isinstance(item, Script) and item.text == mark:

@@ -1,4 +1,4 @@
-"""The parser of LaTeX, from tokens to the tree of a formula. It raises InputError with the place of any other text."""
+"""The parser of LaTeX: it turns tokens into the tree of a formula, or raises InputError with the place of a mistake."""
 
 from collections.abc import Callable, Sequence
 
@@ -15,13 +15,13 @@ AFTER = frozenset(["script", "prime", "space"])
 
 
 def read(source: str, where: str = "", pieces: Sequence[Token] = ()) -> Row:
-    """Return the tree of a LaTeX formula, or of the given tokens ``pieces`` of it.
+    """Return the tree of a LaTeX formula; ``pieces``, if passed, are the tokens to use.
 
     Raises
     ------
     InputError
-        With the position, for a group, matrix or delimiter that is not closed, a missing argument, or two indices or
-        two powers of one item.
+        If a group, matrix or delimiter is not closed, an argument is missing, or an item has two indices or two powers;
+        the message names the position.
     """
     return _Reader(source, where, pieces or tokens(source)).row("", "end")
 
@@ -35,9 +35,9 @@ class _Reader:
         return complaint(self.source, self.where, token.start, expected)
 
     def row(self, closing: str, *stops: str) -> Row:
-        """Read items of a formula up to a token whose kind or text is in ``closing``; return them as a row.
+        """Read items up to a token whose kind or text is in ``stops``, which stays unread; return the items as a row.
 
-        The closing token stays unread.
+        ``closing`` is the text that the message expects if the formula ends before.
         """
         items: list[Node] = []
         first = token = self.tokens[self.place]
@@ -53,13 +53,13 @@ class _Reader:
         return Row(tuple(items), first.start, token.start)
 
     def group(self, opening: Token, closing: str = "}") -> Row:
-        """Read a row of items of a formula and the token that closes it, such as a brace."""
+        """Read a row of items and the token that closes it, such as a brace; return the row."""
         row = self.row(closing, closing)
         self.place += 1
         return Row(row.items, opening.start, row.end)
 
     def item(self) -> Node:
-        """Read one item of a formula with its scripts (index, power and primes)."""
+        """Read an item with its scripts (index, power and primes) and return its node."""
         base = self.atom()
         scripts: dict[str, Script] = {}
         while base.kind != "space" and (mark := self.mark()):
@@ -74,7 +74,7 @@ class _Reader:
         return Scripts(base, tuple(scripts.values()), base.start)
 
     def mark(self) -> Token | None:
-        """Read the mark of an index or power (``_`` or ``^``) and the spaces before it; return None if none follows."""
+        """Return the mark of a script (index, power, primes) if it comes next, and move past it; otherwise None."""
         place = self.place
         while self.tokens[place].kind == "space":
             place += 1
@@ -85,7 +85,7 @@ class _Reader:
         return token
 
     def argument(self) -> Node:
-        """Read the argument of a command: a group in braces, a single item, or one digit of a number, as LaTeX does."""
+        """Read and return the argument of a command: a group in braces, a single item, or one digit, as in LaTeX."""
         while self.tokens[self.place].kind == "space":
             self.place += 1
         token = self.tokens[self.place]

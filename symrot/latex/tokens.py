@@ -1,4 +1,4 @@
-"""The tokens of LaTeX, with their positions. ``\\left(`` is one token, and so is ``\\begin{matrix}``."""
+"""The tokens of LaTeX, with their positions; ``\\left(`` is one token, and so is ``\\begin{matrix}``."""
 
 import re
 from typing import NamedTuple
@@ -12,7 +12,7 @@ GREEK = {
     "psi": "ψ", "omega": "ω", "Gamma": "Γ", "Delta": "Δ", "Theta": "Θ", "Lambda": "Λ", "Xi": "Ξ", "Pi": "Π",
     "Sigma": "Σ", "Upsilon": "Υ", "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω", "ell": "ℓ",
 }  # fmt: skip
-"""Greek letter -> its character; pi is missing because it is a number."""
+"""Name of a Greek letter -> its character; pi is missing, because it is a number."""
 
 _DELIMITER = r"(?:[()\[\]|/.<>]|\\[{}|]|\\(?:[lr](?:brace|brack|vert|Vert|angle|floor|ceil)|[vV]ert)(?![A-Za-z]))"
 _PRIME = r"(?:['′]|\\prime(?![A-Za-z]))"
@@ -34,7 +34,7 @@ _KINDS = {f"\\{name}": kind for kind, names in _COMMANDS.items() for name in nam
 
 
 class Token(NamedTuple):
-    """A token of LaTeX; ``kind`` is e.g. ``letter`` or ``command``, ``start`` its position in the source."""
+    """A token of LaTeX; ``kind`` is for example ``letter`` or ``command``, ``start`` the position in the source."""
 
     kind: str
     text: str
@@ -42,7 +42,7 @@ class Token(NamedTuple):
 
 
 def tokens(source: str, start: int = 0, stop: int | None = None) -> list[Token]:
-    """Return the tokens of a LaTeX text, spaces excluded; the last token has the kind ``end``.
+    """Return the tokens of a LaTeX text, without blanks; the last token has the kind ``end``.
 
     A character that belongs to no other token becomes a token of its own, so that each interpreter can report its
     position.

@@ -2,7 +2,7 @@
 
 Operators, relations and brackets such as ``(`` and ``|`` are separate tokens of a row, because only the meaning decides
 which bracket closes which and what is a product. Every node has ``start``, its position in the source, ``text``, its
-first command or mark, and ``kind``. Each class of nodes has one kind, except tokens.
+first command or mark, and ``kind``, which is the same for all nodes of a class, except for tokens.
 """
 
 from dataclasses import dataclass
@@ -15,9 +15,9 @@ __all__ = ["Accent", "Delimited", "Font", "Fraction", "Node", "Root", "Row", "Sc
 
 @dataclass(frozen=True)
 class Row:
-    """A row of items of a formula: a whole formula, a group in braces, or a cell of a table.
+    """A row of items (nodes): a whole formula, a group in braces, or a cell of a table.
 
-    ``end`` is the position of its end in the source.
+    ``end`` is the position of the row's end in the source.
     """
 
     items: tuple["Node", ...]
@@ -44,16 +44,16 @@ class Accent(Command):
 
 
 class Font(Command):
-    """An argument in a font, or words: ``\\mathbf``, ``\\mathrm``, ``\\text``, ``\\operatorname``."""
+    """A command that sets its argument in a font or as words: ``\\mathbf``, ``\\mathrm``, ``\\text``."""
 
 
 class Script(Command):
-    """An index, power or prime: ``text`` is ``_``, ``^`` or ``'``, and the content of primes is their token."""
+    """An index, power or primes, with the mark ``text`` (``_``, ``^`` or ``'``); primes contain their own token."""
 
 
 @dataclass(frozen=True)
 class Scripts:
-    """An item with its indices, primes and power: indices and primes as they are written, then the power."""
+    """An item with its scripts: first indices and primes, in the order in which they are written, then the power."""
 
     base: "Node"
     scripts: tuple[Script, ...]

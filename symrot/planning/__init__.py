@@ -1,1 +1,1 @@
-"""Plans: the smallest set of equations for each scene, and the saved kernels derived from it."""
+"""Plans: the smallest set of equations for each scene, and the saved kernels that are derived from it."""

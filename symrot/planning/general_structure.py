@@ -1,6 +1,7 @@
-"""The most general structure of a scene, from which a plan begins, and the exact values of its constants.
+"""The most general structure of a scene, from which a plan starts, and the exact values of constants.
 
-In this structure every constant is free: the full inertia tensor, all constants of the torques, the full attitude.
+In this structure every constant is free (may have any value), the inertia is a full tensor, and the full attitude is
+computed.
 """
 
 from fractions import Fraction
@@ -36,7 +37,7 @@ RESERVED = frozenset(
 
 
 def switched(scene: Scene) -> bool:
-    """Return whether a torque of a scene has a jump or a kink, such as ``sign`` or ``abs``, that may be reached."""
+    """Return whether a torque of a scene contains a function with a jump or a kink, such as ``sign`` or ``abs``."""
     return any(
         has_switches(expression.parse(formula, switching=True))
         for torque in scene.torques
@@ -56,14 +57,14 @@ def switching_function(scene: Scene) -> str:
 
 
 def general_structure(scene: Scene, switched: bool = False) -> Structure:
-    """Return the structure before any rule is applied: full tensor, free constants of every torque, full attitude."""
+    """Return the structure of a scene before any rule is applied: full tensor, free constants, full attitude."""
     names: set[str] = set(RESERVED)
     torques = [_general_torque(number, torque, names, switched) for number, torque in enumerate(scene.torques, start=1)]
     return Structure(InertiaTensor(tuple(sorted([*MOMENTS, *PRODUCTS]))), tuple(torques))
 
 
 def _general_torque(number: int, torque: Torque, known: set[str], switched: bool) -> TorqueStructure:
-    """Return the structure of one torque with all constants free; the constants' names are added to ``known``."""
+    """Return the structure of one torque with all constants free; the names of the constants are added to ``known``."""
     if torque.formulas:
         general = _formula_torque(torque, switched)
         prefix = _prefix(number, list(general.parameters), known)
@@ -109,7 +110,7 @@ def _prefix(number: int, names: list[str], known: set[str]) -> str:
 
 
 def constants_of(scene: Scene, structure: Structure) -> dict[str, Fraction]:
-    """Return the exact values of the free constants of body and torques by name."""
+    """Return the exact values of the free constants of body and torques, by name."""
     inertia, pattern = scene.body.inertia, structure.inertia
     constants: dict[str, Fraction] = {}
     if isinstance(pattern, PrincipalInertia):

@@ -1,8 +1,9 @@
 """The plan of a scene: the smallest set of equations that gives the requested output. Does not use SymPy.
 
-A plan starts from the most general structure (full inertia tensor, every constant free, full attitude) and applies the
-table of rules. The structure says which constants are zero, equal or free. It determines the kernel (the compiled
-equations): scenes of the same structure share a kernel.
+The structure of a motion says which constants of the scene are zero, equal or free (have any other value). It
+determines the equations of motion and thus the kernel, which is the code generated from them: scenes of the same
+structure share a kernel. A plan starts from the most general structure (full inertia tensor, every constant free, full
+attitude) and applies the table of rules of :mod:`symrot.planning.rules`.
 """
 
 from collections.abc import Hashable
@@ -34,14 +35,14 @@ STATES = ("omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3", "theta")
 
 @dataclass(frozen=True)
 class Plan:
-    """The smallest set of equations that gives the output of a scene, with the values of their constants.
+    """The smallest set of equations that gives the output of a scene, and the values of the constants in them.
 
     Attributes
     ----------
     scene : Scene
-        The problem.
+        The scene.
     structure : Structure
-        The constants that are zero, equal or free, which determine the equations.
+        Which constants are zero, equal or free; this determines the equations.
     rows : tuple of RuleOutcome
         The decision of each rule, with its reason.
 
@@ -58,23 +59,26 @@ class Plan:
 
     @cached_property
     def constants(self) -> dict[str, Fraction]:
-        """The physical constants of the equations by name, exact. Modes (values of sign, abs, ..) have the value 1."""
+        """The exact values of the constants in the equations, by name.
+
+        A mode, the constant that replaces a function such as sign or abs, has the value 1.
+        """
         return self.scene_constants | self.start_constants
 
     @cached_property
     def scene_constants(self) -> dict[str, Fraction]:
-        """The part of :attr:`constants` that does not depend on the initial state."""
+        """The constants among :attr:`constants` that do not depend on the initial state."""
         return constants_of(self.scene, self.structure)
 
     @property
     def start_constants(self) -> dict[str, Fraction]:
-        """The part of :attr:`constants` that belongs to the initial state."""
+        """The constants among :attr:`constants` that are numbers of the initial state."""
         initial = self.scene.initial
         return {name: initial[part][place] for name, part, place in self._start_places}
 
     @cached_property
     def _start_places(self) -> tuple[tuple[str, int, int], ...]:
-        """The names of the constants that belong to the initial state, each with its field and index in that state."""
+        """The constants that are numbers of the initial state, as (name, index of the field, index in the field)."""
         rates = enumerate(self.structure.constant)
         quaternion = enumerate(self.structure.initial_quaternion or ())
         return (
@@ -84,15 +88,15 @@ class Plan:
 
     @property
     def switches(self) -> list[str]:
-        """The functions with jumps or kinks in the torques, such as ``"sign(omega_3)"``, as the scene writes them.
+        """The calls of functions with jumps or kinks in the torques, such as ``"sign(omega_3)"``, as in the scene.
 
-        The list is empty if the plan does not follow jumps and kinks.
+        The list is empty if the plan was made without modes, see :func:`make_plan`.
         """
         return [switch.label for torque in self.structure.formula_torques for switch in torque.switches]
 
     @cached_property
     def states(self) -> tuple[str, ...]:
-        """The names of the states, in the order of the kernel: angular velocity, then attitude."""
+        """The names of the states, in the order that the kernel expects: angular velocity, then attitude."""
         structure, axis = self.structure, self.structure.planar
         names = [f"omega_{i + 1}" for i in structure.moving]
         if structure.attitude:
@@ -112,11 +116,11 @@ class Plan:
 
     @cached_property
     def _places(self) -> tuple[int, ...]:
-        """The index of each state in the list omega_1..3, q0..3, angle of a planar rotation."""
+        """The index of each state in :data:`STATES`."""
         return tuple([STATES.index(name) for name in self.states])
 
     def from_start(self, initial: Initial) -> "Plan":
-        """Return the plan of the same scene and structure for another initial state, without applying the rules again.
+        """Return the plan of the same scene and structure for another initial state; the rules are not applied again.
 
         ``initial`` must have the same :func:`structure_key` as the initial state of this plan.
         """
@@ -127,7 +131,7 @@ class Plan:
 
     @cached_property
     def _shared(self) -> dict[str, Any]:
-        """The attributes, by name, that do not change if only the initial state of the plan changes."""
+        """The attributes, by name, that stay the same if only the initial state of the plan changes."""
         names = ("structure", "rows", "scene_constants", "states", "_places", "_start_places")
         attributes: dict[str, Any] = {name: getattr(self, name) for name in names}
         attributes["_shared"] = attributes
@@ -142,32 +146,33 @@ def make_plan(
     Parameters
     ----------
     scene : Scene
-        The problem.
+        The scene.
     initial : Initial, optional
-        Initial state to use instead of the scene's.
+        Initial state; default: the initial state of the scene.
     external_torque : bool
-        Whether a torque without a formula acts too: the plan then keeps everything that such a torque could change.
+        Whether a torque without a formula acts too: the plan then contains every state that such a torque could change.
     switched : bool
-        Whether the plan may have modes: values of functions such as sign, which change when the motion passes a switch.
+        Whether the plan may have modes: constants that replace functions such as sign, and change their values when the
+        motion passes a jump or kink (switch).
 
     Raises
     ------
     InputError
-        If a torque has switches (step, sign, min, ..) and ``switched`` is false, because no single set of equations
-        holds throughout. If the scene has a table of samples and ``external_torque`` is false, because a kernel needs
-        formulas.
+        If a torque has jumps or kinks (step, sign, min, ..) and ``switched`` is false, because no single set of
+        equations describes the whole motion. If the scene has a table of samples and ``external_torque`` is false,
+        because a kernel needs formulas.
     """
     if scene.table is not None and not external_torque:
         raise InputError(
-            f"{scene.name}: expected torques that are formulas, got one of kind table: samples have no equations to "
-            "emit, certify, vary or compare; symrot run and symrot.propagator follow them"
+            f"{scene.name}: expected torques that are formulas, got a torque of kind table: samples have no equations "
+            "to emit, certify, vary or compare; use symrot run or symrot.propagator"
         )
     if initial is not None:
         scene = replace(scene, initial=initial)
     if not switched and (name := switching_function(scene)):
         raise InputError(
             f"{scene.name}: expected torques without switches (jumps or kinks), got the function {name}: the equations "
-            "change from one mode to the next; symrot run, symrot.propagator and symrot.propagate_ensemble follow them"
+            "change at a switch; use symrot run, symrot.propagator or symrot.propagate_ensemble"
         )
     structure = general_structure(scene, switched)
     rows = []
@@ -182,10 +187,10 @@ def make_plan(
 
 
 def structure_key(scene: Scene, initial: Initial) -> Hashable:
-    """Return a key that is equal for initial states whose plans differ only in numbers.
+    """Return a key; two initial states have equal keys if their plans differ only in numbers.
 
     The key says which components of omega are zero. If the body may rotate about a single axis, it also says which
-    components of the attitude are zero or one, and along which body axes the torques fixed in space lie.
+    components of the quaternion are 0, 1 or -1, and which body components of torques fixed in space are zero.
     """
     rotates_about = tuple([x.numerator != 0 for x in initial.omega_b])
     if rotates_about.count(True) > 1:

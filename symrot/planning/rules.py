@@ -1,7 +1,7 @@
 """The rules by which a plan simplifies the structure of a scene, each with its reason.
 
 Each rule examines exact numbers, simplifies the structure or leaves it unchanged, and names the derivation that
-justifies the change.
+justifies the change. :mod:`symrot.planning.plan` applies the rules.
 """
 
 from collections.abc import Callable
@@ -42,7 +42,7 @@ UNIT_FIELDS = ("direction", "attitude")  # fields in which a component equal to 
 
 
 class RuleOutcome(NamedTuple):
-    """The decision of one rule of a plan, printed as one line when a plan is explained.
+    """The decision of one rule of a plan; the explanation of a plan contains one line for each decision.
 
     Attributes
     ----------
@@ -51,11 +51,11 @@ class RuleOutcome(NamedTuple):
     skipped : bool
         Whether the rule removed something from the equations.
     why : str
-        The reason.
+        The reason for the decision.
     derivation : str
-        Name of the derivation that justifies the decision; empty if the requested output alone decides.
+        Name of the derivation that justifies the decision; empty if no derivation is needed.
     item : str
-        The subject of the rule, from the table of rules; empty in the outcome that the rule itself returns.
+        The subject of the rule, from the table of rules; empty in the outcome that the function of the rule returns.
 
     Examples
     --------
@@ -134,7 +134,7 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
-    """Return a list with one sentence that names the axes about which formulas give no torque, or an empty list."""
+    """Return a list of one sentence, which names the axes about which the formulas give no torque, or an empty list."""
     axes = [str(i + 1) for i, formula in enumerate(scene_torque.formulas) if _is_zero(formula)]
     if not axes:
         return []
@@ -173,12 +173,12 @@ def _attitude(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _only_along(vector: tuple[Pattern, ...], axis: int) -> bool:
-    """Return whether a vector lies along a body axis: its other two components are zero."""
+    """Return whether a vector is parallel to a body axis: the components along the other two axes are zero."""
     return all(vector[i] is ZERO for i in range(3) if i != axis)
 
 
 def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque: Torque) -> bool:
-    """Return whether a torque always lies along a body axis while the body rotates about that axis alone."""
+    """Return whether a torque is always parallel to a body axis while the body rotates only about this axis."""
     if isinstance(torque, FormulaTorque):
         return False
     if torque.kind == "constant_body":
@@ -194,7 +194,7 @@ def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque
 
 
 def _in_body(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[Fraction, ...]:
-    """Return the body components of a vector, given in space components, at the initial attitude."""
+    """Return the body components, at the initial attitude, of a vector that is given in space components."""
     q0, *q = initial.quaternion
     twice = [2 * sum(a * b for a, b in zip(q, vector_s, strict=True)) * c for c in q]
     turned = (
@@ -213,7 +213,7 @@ def _negligible(value: Fraction, vector: tuple[Fraction, ...]) -> bool:
 
 
 def small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[bool, ...]:
-    """Return which body components of a vector are zero, to 2^-200, at the initial attitude.
+    """Return, for each body component of a vector, whether it is zero (to 2^-200) at the initial attitude.
 
     The vector is given in space components.
     """
@@ -224,9 +224,9 @@ def small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[
 
 
 def _all_large(vector_s: tuple[Fraction, ...], initial: Initial) -> bool:
-    """Return whether double precision suffices to prove that no body component of a vector is zero.
+    """Return whether a computation in doubles proves that no body component of a vector is zero.
 
-    The test takes a tenth of the time of exact arithmetic.
+    It takes a tenth of the time of exact arithmetic.
     """
     ratios = [x.as_integer_ratio() for x in (*initial.quaternion, *vector_s)]
     q0, q1, q2, q3, x, y, z = [top / bottom for top, bottom in ratios]
@@ -290,7 +290,7 @@ def _constant_spin(scene: Scene, structure: Structure) -> RuleOutcome:
 def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None, Pattern | None]:
     """Return, for each component of omega_b, its pattern (zero or free) if it is constant, otherwise None.
 
-    ``axes`` are the indices of the constant components.
+    ``axes`` holds the indices of the components that are constant.
     """
     first, second, third = (
         pattern(w, unit=False) if axis in axes else None for axis, w in enumerate(scene.initial.omega_b)
@@ -321,7 +321,7 @@ RULES: tuple[tuple[str, Callable[[Scene, Structure], RuleOutcome]], ...] = (
     ("rotation out of one axis", _one_axis),
     ("rate of spin", _constant_spin),
 )
-"""The rules in the order of their application: (subject, rule)."""
+"""The rules in the order in which they are applied, as pairs (subject, function)."""
 
 
 def _whole_motion(scene: Scene, structure: Structure) -> RuleOutcome:

@@ -1,7 +1,7 @@
-"""Kernels of a plan (its equations, ready to be evaluated) as saved data: programs and C text.
+"""Kernels of plans as saved data: a kernel consists of the equations of a plan as programs, and of their C text.
 
-:mod:`symrot.codegen.scene_kernels` derives them, the cache stores them as JSON, and the propagator gives values to
-their parameters. This module does not use SymPy.
+:mod:`symrot.codegen.scene_kernels` derives the kernels, the cache stores them as JSON, and the propagator assigns
+values to their parameters. This module does not use SymPy.
 """
 
 from collections.abc import Mapping
@@ -27,13 +27,13 @@ class Conserved(NamedTuple):
     Attributes
     ----------
     name, unit : str
-        Its name and SI unit.
+        Name and SI unit of the quantity.
     output : str
-        Name of the kernel's output with its value; empty if it is not conserved.
+        Name of the output of the kernel that is its value; empty if the quantity is not conserved.
     holds : bool
-        Whether it is conserved.
+        Whether the quantity is conserved.
     reason : str
-        The reason why it is conserved or not.
+        The reason why the quantity is conserved or not.
     """
 
     name: str
@@ -47,7 +47,7 @@ SavedParameters = list[tuple[str, list[Any]]]  # name, formula as nested lists
 
 
 class KernelRecord(TypedDict):
-    """The data of a :class:`SceneKernel` as stored in the cache, as JSON."""
+    """The data of a :class:`SceneKernel`, which the cache stores as JSON."""
 
     rates: ProgramRecord
     rate_parameters: SavedParameters
@@ -58,7 +58,7 @@ class KernelRecord(TypedDict):
 
 
 class SceneKernel:
-    """The equations of a structure, ready to be evaluated: derived once and used for every scene of that structure.
+    """The equations of a structure, ready to be evaluated: derived once and used for every scene of the structure.
 
     Programs are restored from the saved data on first use: a propagation in C never needs the program of the rates.
 
@@ -77,7 +77,7 @@ class SceneKernel:
         cls, rates: Program, rate_parameters: Parameters, quantities: Program, quantity_parameters: Parameters,
         conserved: tuple[Conserved, ...], source: str,
     ) -> "SceneKernel":  # fmt: skip
-        """Return the kernel that consists of newly derived programs."""
+        """Return the kernel that consists of the given programs, parameters, conserved quantities and C text."""
         return cls(
             {
                 "rates": rates.to_json(),
@@ -101,22 +101,22 @@ class SceneKernel:
 
     @cached_property
     def rate_parameters(self) -> Parameters:
-        """The parameters of the rates: their names, and formulas in the constants of the scene."""
+        """The parameters of the rates, as pairs (name, formula in terms of the constants of the scene)."""
         return _loaded(self.record["rate_parameters"])
 
     @cached_property
     def quantities(self) -> Program:
-        """Angular velocity, attitude, momentum, energy and conserved quantities as functions of time and states."""
+        """The program that computes omega, attitude, momentum, energy and conserved quantities from the states."""
         return Program.from_json(self.record["quantities"])
 
     @cached_property
     def quantity_parameters(self) -> Parameters:
-        """The parameters of the quantities: their names, and formulas in the constants of the scene."""
+        """The parameters of the quantities, as pairs (name, formula in terms of the constants of the scene)."""
         return _loaded(self.record["quantity_parameters"])
 
     @cached_property
     def conserved(self) -> tuple[Conserved, ...]:
-        """The candidates for conserved quantities, the conserved ones first."""
+        """The candidates for conserved quantities; those that are conserved come first."""
         return tuple(Conserved(*item) for item in self.record["conserved"])
 
     @property
@@ -134,6 +134,6 @@ def _loaded(saved: SavedParameters) -> Parameters:
 
 
 def bind(parameters: Parameters, constants: Mapping[str, Fraction]) -> list[float]:
-    """Return the values of a kernel's parameters from the constants of a scene, computed exactly and rounded once."""
+    """Return the values of the parameters of a kernel, computed exactly from a scene's constants and rounded once."""
     values = {"pi": number.PI, **constants}
     return [float(evaluate(node, values, EXACT_FUNCTIONS)) for _, node in parameters]

@@ -1,7 +1,8 @@
 """Derivations: sequences of equations, each proven when it is added.
 
-A :class:`Derivation` is built step by step. A step whose two sides are not equal by the exact normal form
-(:mod:`symrot.exact`) raises :class:`ProofError`, so every equation of a finished derivation has been proven.
+A :class:`Derivation` is built step by step. A step states that the two sides of an equation are equal; if the exact
+normal form (:mod:`symrot.exact`) shows that they are not, :class:`ProofError` is raised. So every equation of a
+finished derivation has been proven. Its page is the text, with formulas, that a reader sees.
 """
 
 from collections.abc import Mapping, Sequence
@@ -37,7 +38,7 @@ __all__ = ["Derivation", "Passage", "PrintedPage", "ProofError", "Section", "Ste
 
 
 class ProofError(SymrotError):
-    """Error raised if a step of a derivation does not hold.
+    """Error that is raised if a step of a derivation does not hold.
 
     Examples
     --------
@@ -49,7 +50,7 @@ class ProofError(SymrotError):
 
 @dataclass
 class PrintedPage(Page):
-    """Page of a derivation with methods that print it; its fields are those of :class:`symrot.proof.page.Page`."""
+    """Page of a derivation with methods that print the page; the fields are those of the class ``Page``."""
 
     def markdown(self) -> str:
         """Return the page as Markdown, with the formulas in ``$$``."""
@@ -60,13 +61,13 @@ class PrintedPage(Page):
         return latex_document(self)
 
     def html(self) -> str:
-        """Return the page as one HTML file with native MathML; it needs no network."""
+        """Return the page as one HTML file with native MathML, which needs no network."""
         return html_document(self)
 
     def part(self, number: int, detail: bool = False) -> "PrintedPage":
         """Return a page with one step, counted from 1.
 
-        With ``detail``, it shows every expression between the two sides.
+        With ``detail``, the page shows every expression between the two sides of the step's equation.
 
         Raises
         ------
@@ -84,9 +85,9 @@ class Derivation(PrintedPage):
     Parameters
     ----------
     assumed : list of Expr
-        Expressions that the page states once to be nonzero (:meth:`nonzero`).
+        Expressions that the page states, once, to be nonzero (:meth:`nonzero`).
     names, rates : dict
-        The meaning of names on the page, and the rates of variables (:meth:`notation`).
+        The meanings of names on the page, and the rates of variables (:meth:`notation`).
 
     The other parameters are those of :class:`symrot.proof.page.Page`.
 
@@ -102,14 +103,15 @@ class Derivation(PrintedPage):
     rates: dict[Expr, Expr] = field(default_factory=dict)
 
     def notation(self, names: Mapping[str, Any], rates: Mapping[Expr, Expr] | None = None) -> None:
-        """Declare the meaning of names, so that the LaTeX of later steps can be read back and proven.
+        """Declare the meanings of names, so that the LaTeX of later steps can be parsed and proven.
 
         Parameters
         ----------
         names : mapping
-            LaTeX of a name -> Expr, Matrix, or a function of the arguments in parentheses after the name.
+            A map from the LaTeX of a name to its meaning: Expr, Matrix, or a function that takes the arguments in
+            parentheses after the name.
         rates : mapping, optional
-            Variable -> its rate, the meaning of dots and time derivatives.
+            A map from a variable to its rate, which is the meaning of dots and time derivatives.
         """
         self.names |= {key(name): meaning for name, meaning in names.items()}
         self.rates |= rates or {}
@@ -121,7 +123,7 @@ class Derivation(PrintedPage):
     def passage(self, text: str, *equations: tuple[Any, Any]) -> None:
         """Add a paragraph of assumptions or definitions to the page, optionally with equations ``(left, right)``.
 
-        A side that is a str is LaTeX.
+        A str as ``left`` or ``right`` is LaTeX.
         """
         self.items.append(Passage(text, tuple(equations)))
         for left, right in equations:
@@ -160,26 +162,26 @@ class Derivation(PrintedPage):
         claim : str
             The statement of the step, a sentence.
         left, right : Expr or Matrix
-            Of equal shape; 0 stands for a zero matrix.
+            The two sides of the equation, of equal shape; 0 stands for a zero matrix.
         because : str
-            The reason, for the reader.
+            The reason, as the page prints it.
         relations : sequence of Expr or Eq
-            Hypotheses, e.g. unit norm.
+            Hypotheses, such as unit norm.
         named : str
             LaTeX to display instead of the left side.
         display : str, Expr or Matrix
-            An equal form of the right side to display, written for a reader.
+            An equal form of the right side, to display in its place.
         source : str
             Book and page, if the step is printed elsewhere.
         via : sequence of (str, Expr, Expr)
-            Intermediate equations, proven too, for the page in detail.
+            Intermediate equations (words, left, right), proven too, for the page that shows the step in detail.
 
         Raises
         ------
         ProofError
             If left - right does not reduce to zero; the message has the residual and a point where the sides differ.
         InputError
-            For expressions that :func:`symrot.exact.decide.decide` does not accept.
+            If an expression is not accepted by :func:`symrot.exact.decide.decide`.
         """
         verdict = self._proven(claim, left, right, relations)
         for words, before, after in via:
@@ -203,7 +205,7 @@ class Derivation(PrintedPage):
         Raises
         ------
         ProofError
-            If it does not follow from the signs of the terms and factors.
+            If ``expression > 0`` does not follow from the signs of its terms and factors.
         """
         reduced = factor(normal_form(expression))
         if reduced.is_positive is not True:
@@ -224,12 +226,12 @@ class Derivation(PrintedPage):
     def _is_read_back(
         self, claim: str, display: Any, side: Any, sides: tuple[Any, Any], relations: Sequence[Any]
     ) -> bool:
-        """Prove that the LaTeX displayed for a side is equal to the side; return False if the LaTeX cannot be read.
+        """Return whether the form displayed for one side of an equation could be parsed and proven equal to that side.
 
         Raises
         ------
         ProofError
-            If the displayed form can be read and is not equal to the side.
+            If the displayed form can be parsed and is not equal to the side.
         """
         if display is None:
             return True
@@ -246,7 +248,7 @@ class Derivation(PrintedPage):
         return True
 
     def _read(self, text: str, sides: tuple[Any, Any] = (S.Zero, S.Zero)) -> list[Any]:
-        """Return the values of a LaTeX text that is displayed for one side: two or more if it is a chain ``X = Y``."""
+        """Return the values of the LaTeX displayed for a side of an equation: several for a chain ``X = Y``."""
         used = {symbol for side in sides for symbol in side.free_symbols}
         names = {key(formula(symbol)): symbol for symbol in used} | self.names
         chains = parts(text)
@@ -269,7 +271,7 @@ class Derivation(PrintedPage):
         return values
 
     def _note(self, left: Any, right: Any) -> None:
-        """Record that the name ``left`` stands for ``right`` in the printed derivation, if ``right`` is a formula."""
+        """Record in ``names`` that the name ``left`` stands for ``right``, if ``right`` is a formula."""
         if isinstance(right, str):
             try:
                 right = self._read(right)[-1]
@@ -293,7 +295,7 @@ class Derivation(PrintedPage):
 
 
 def _tidied(conditions: Sequence[Any]) -> list[Any]:
-    """Return the conditions of a step, split into factors and without repetitions.
+    """Return the conditions of a step without repetitions; a product that is not zero gives one condition per factor.
 
     The condition that a root is not zero becomes the condition that its radicand is not zero.
     """
@@ -313,7 +315,7 @@ def _tidied(conditions: Sequence[Any]) -> list[Any]:
 
 
 def _factors(expression: Expr) -> list[Expr]:
-    """Return the factors that must all be nonzero for an expression to be nonzero; or the expression itself."""
+    """Return the factors of a polynomial that has several; otherwise return the expression alone, in a list."""
     plain = not expression.is_number and expression.is_polynomial(*expression.free_symbols)
     factors = [base for base, _ in factor_list(expression)[1]] if plain else []
     return factors if len(factors) > 1 else [expression]
@@ -324,9 +326,9 @@ def _shape(side: Any) -> Any:
 
 
 def _as_side(display: Any, side: Any) -> Any:
-    """Return a displayed value in the shape of its side.
+    """Return a displayed value in the shape of ``side``, the side of the equation for which it is displayed.
 
-    Where the side is a square matrix, a number becomes that multiple of the identity matrix.
+    If the side is a square matrix, a number becomes that multiple of the identity matrix.
     """
     display = _frozen(display)
     if isinstance(side, MatrixBase) and not isinstance(display, MatrixBase):

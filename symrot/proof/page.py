@@ -32,7 +32,7 @@ class Step:
     claim : str
         The statement, a sentence.
     left, right : Expr or Matrix
-        The sides as the derivation built them, not simplified.
+        The sides of the relation as the derivation built them, not simplified.
     reason : str
         The reason, the end of a sentence that begins with "because".
     relation : str
@@ -42,16 +42,17 @@ class Step:
     conditions : tuple
         Denominators that must not vanish, radicands that must not be negative.
     named : str
-        LaTeX to display instead of the left side where its formula is long; empty otherwise.
+        LaTeX to display instead of the left side, if its formula is long; otherwise empty.
     display : Any
-        The right side as displayed (LaTeX, or for example an unevaluated product) where it differs; None otherwise.
+        The form in which the right side is displayed (LaTeX, or for example an unevaluated product), if it differs from
+        ``right``; otherwise None.
     source : str
-        Book and page, where the step is printed elsewhere.
+        Book and page, if the step is printed elsewhere.
     via : tuple of (str, Expr, Expr)
-        Proven intermediate equations (words, left, right), for the page in detail.
+        Proven intermediate equations (words, left, right), for the page that shows the step in detail.
     printed : (bool, bool)
-        For each side: True if the page displays the proven expression itself, or a form that was read back and proven
-        equal to it; False if it displays a name or words in LaTeX instead.
+        For each side: True if the page displays the proven expression itself, or a form that was parsed and proven
+        equal to the expression; False if the page displays a name or words instead.
 
     Examples
     --------
@@ -81,12 +82,12 @@ class Page:
     Parameters
     ----------
     name : str
-        The name of the catalogue file, e.g. ``"symmetric_top"``.
+        The name of the catalogue file, such as ``"symmetric_top"``.
     title : str
     source : str
         Books and pages that treat the subject.
     about : str
-        The subject and its use, one paragraph.
+        One paragraph about the subject and its use.
     items : list
         Headings, passages and steps, in order.
     first : int

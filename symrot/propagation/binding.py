@@ -1,7 +1,9 @@
 """Numerical values of the parameters of kernels, for many initial states of one scene.
 
-Most parameters depend on the scene alone: masses, moments, torques. They are evaluated once. Only parameters whose
-formulas contain a number of the initial state, such as a constant spin, are evaluated again for another initial state.
+A kernel is the generated code that computes the rates (time derivatives) of the states, or the output quantities. Most
+of its parameters depend on the scene alone: masses, moments of inertia, torques. They are evaluated once. Only
+parameters whose formulas contain a number of the initial state, such as a constant spin, are evaluated again for
+another initial state.
 """
 
 from collections.abc import Callable, Mapping
@@ -24,12 +26,14 @@ def one_double(top: int, bottom: int) -> tuple[float, ...]:
 
 
 def two_doubles(top: int, bottom: int) -> tuple[float, ...]:
-    """Return two doubles whose sum is nearest to the ratio top/bottom: the nearest double and the rounded remainder."""
+    """Return two doubles whose sum approximates the ratio top/bottom: the nearest double, and the rounded remainder."""
     return quotient(top, bottom)
 
 
 class Binding:
-    """Parameters of a kernel as functions of the initial state; all other numbers are evaluated once.
+    """Function that returns the parameter values of a kernel for a plan with any initial state of its scene.
+
+    Values that do not depend on the initial state are computed once.
 
     Parameters
     ----------
@@ -38,14 +42,14 @@ class Binding:
     plan : Plan
         Plan of the scene, with any initial state.
     rounded : function
-        Takes numerator and denominator of a value, returns the doubles that represent it.
+        Takes the numerator and denominator of a value, and returns the doubles that represent the value.
     known : mapping
-        Values of further names in the formulas, in addition to the constants of the plan.
+        Values of names that occur in the formulas and are not constants of the plan.
 
     Raises
     ------
     OverflowError
-        If a parameter exceeds the range of doubles. A call raises it too.
+        If the value of a parameter exceeds the range of doubles; a call raises the same error.
     """
 
     def __init__(
@@ -77,9 +81,9 @@ class Binding:
 
 
 class _Moving:
-    """A formula that depends on the initial state.
+    """A formula that depends on the initial state, evaluated exactly.
 
-    A monomial in a single number of the initial state is evaluated with integers, which is faster than with Fractions.
+    A monomial in one name, such as ``3*omega_1**2``, is evaluated with integers, which is faster than with Fractions.
     """
 
     def __init__(self, formula: Node) -> None:
@@ -95,7 +99,7 @@ class _Moving:
 
 
 def _monomial(node: Node) -> tuple[int, int, str, int] | None:
-    """Return a monomial as (numerator, denominator, name, power >= 1), or None if the formula is not a monomial."""
+    """Return a monomial in one name as (numerator, denominator, name, power >= 1), or None for any other formula."""
     if node[0] == "symbol":
         return 1, 1, node[1], 1
     if node[0] == "neg" and (inner := _monomial(node[1])):
@@ -117,7 +121,7 @@ def value_of(formula: Node, constants: Mapping[str, Fraction]) -> Fraction:
     Raises
     ------
     InputError
-        If it has no real value, such as the logarithm of a negative number.
+        If the formula has no real value, such as the logarithm of a negative number.
     """
     value = exact_value(formula, constants)
     if value != value:
@@ -126,7 +130,7 @@ def value_of(formula: Node, constants: Mapping[str, Fraction]) -> Fraction:
 
 
 def folded(node: Node, known: Mapping[str, Fraction]) -> Node:
-    """Return a formula with every part that contains only numbers and known constants replaced by its value."""
+    """Return the formula in which each part made of numbers and ``known`` constants only is replaced by its value."""
     if names(node) <= known.keys():
         return ("number", value_of(node, known))
     if node[0] == "call":

@@ -1,7 +1,8 @@
-"""Kernels of plans: loaded from the cache, or derived, emitted, compiled and stored there.
+"""Kernels of plans: loaded from the cache, or derived, printed as C, compiled and stored in the cache.
 
-The key in the cache consists of the structure of the plan and the version of symrot's own files. It does not contain
-the numbers of the scene. While the compiler works on the rates, the conserved quantities are proven.
+A kernel is the generated code for the rates (time derivatives) of the states and for the output quantities. Its key in
+the cache consists of the structure of the plan and the version of symrot's own files, without the numbers of the scene.
+While the compiler works on the rates, symrot proves which quantities are conserved.
 """
 
 import json
@@ -45,14 +46,14 @@ FOLDERS = ("codegen", "dynamics", "exact", "formula", "kernels", "kinematics")
 FILES = (
     "planning/scene_kernel.py", "symbols.py", "propagation/invariants.py", "propagation/steppers/taylor.py",
     *taylor.FILES.values(),
-)  # fmt: skip  # kept together with the recurrences
+)  # fmt: skip  # the text of these files is cached together with the recurrences
 ATTITUDE_SCALE = 1.0  # a quaternion has unit norm; an error of an angle counts in rad
 RATE_SCALE = 0.0  # an error of omega counts relative to omega
 
 
 @cache
 def _version() -> str:
-    """Return names, sizes and times of the files that derive kernels: the text changes whenever these files change."""
+    """Return a text of names, sizes and times of the files that derive kernels; it changes whenever a file changes."""
     states = [(file, (PACKAGE / file).stat()) for file in FILES]
     folders = [str(PACKAGE / folder) for folder in FOLDERS]
     for folder in folders:  # the loop appends to this list
@@ -78,7 +79,8 @@ def _structure_text(structure: Structure) -> str:
 def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda rates, source: None) -> SceneKernel:
     """Return the kernel of a plan, from the cache or newly derived.
 
-    ``on_rates`` is called with the rates and their C text as soon as they are derived, but not for a cached kernel.
+    As soon as the rates are derived, ``on_rates`` is called with them and their C text; for a cached kernel it is not
+    called.
     """
     saved = library.fetch(kernel_key(plan))
     if saved is not None:
@@ -122,15 +124,15 @@ def _parameter_count(rates: Program) -> int:
 
 
 def motion_library(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the path of the compiled library that steps the motion of a plan by DOP853 (Dormand-Prince 8(5,3))."""
+    """Return the path of the compiled library that integrates the motion of a plan by DOP853, Dormand-Prince 8(5,3)."""
     return library.build(library_source(plan, kernel), "motion")
 
 
 def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected: bool = True) -> Path:
-    """Return the path of the compiled library that steps the motion of a plan by Taylor series.
+    """Return the path of the compiled library that integrates the motion of a plan by Taylor series.
 
-    The order of the series suits the tolerance. ``projected`` says whether the library projects the motion onto its
-    conserved quantities.
+    The order of the series is chosen for the tolerance. ``projected`` says whether the library corrects the states
+    after steps so that conserved quantities keep their values.
 
     Raises
     ------
@@ -151,9 +153,10 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected:
 
 
 def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
-    """Return the edges and scales of the blocks of states (omega, attitude) that have separate error norms.
+    """Return the edges and scales of the blocks of states, omega and attitude, whose errors are measured separately.
 
-    Errors are relative to the scale of their block. A scale of 0 means relative to the size of the block itself.
+    Block k consists of the states from edge k up to edge k + 1. Its error is relative to its scale; if the scale is 0,
+    the error is relative to the norm of the block.
     """
     rates = sum(name.startswith("omega") for name in plan.states)
     count = len(plan.states)
@@ -162,7 +165,7 @@ def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
 
 
 def library_source(plan: Plan, kernel: SceneKernel) -> str:
-    """Return the C text of the library that steps the motion of a plan by DOP853: the kernel and the stepper."""
+    """Return the C text of the library that integrates the motion of a plan by DOP853: the kernel and the stepper."""
     return _unit(plan, kernel.source, len(kernel.rate_parameters), lambda: kernel.rates)
 
 
@@ -173,15 +176,15 @@ def _unit(plan: Plan, source: str, parameters: int, rates: Callable[[], Program]
 
 
 def has_formulas(plan: Plan) -> bool:
-    """Return whether a torque of the plan is given by formulas, whose narrow features a step may miss."""
+    """Return whether a torque of the plan is given by formulas; a long step may miss a short pulse in such a torque."""
     return any(plan.structure.formula_torques)
 
 
 def grows_late(plan: Plan) -> bool:
-    """Return whether a torque given by formulas may move a body from rest as a high power of time, 3 or more.
+    """Return whether a torque given by formulas may make a motion from rest grow as a power of time of 3 or more.
 
-    The first Taylor coefficients of such a motion are zero and do not show how large the motion becomes. Its steps are
-    therefore checked in single motions.
+    The first Taylor coefficients of such a motion are zero and do not show how large the motion becomes. An ensemble
+    therefore checks its steps one motion at a time.
     """
     formulas = [text for torque in plan.structure.formula_torques for text in torque.formulas]
     return any(_degree(parse(text)) >= 3 for text in formulas)
@@ -200,10 +203,10 @@ def _degree(node: Node) -> int:
 
 
 def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[str, float]], Deviations] | None":
-    """Return a function from the parameters of the rates to bounds that limit steps in Python.
+    """Return a function from the parameters of the rates to bounds that limit the steps of SciPy's methods.
 
-    The bounds say how far the torque formulas can deviate inside a step. The result is None if no formula can have a
-    feature that a step misses, or if the rates have no Taylor series.
+    The bounds say how far the torque formulas can deviate from their values at the start of a step. Return None if no
+    formula can have a pulse that a step misses, or if the rates have no Taylor series.
     """
     if not has_formulas(plan):
         return None
@@ -219,7 +222,7 @@ def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[st
 
 
 def enclosure_text(plan: Plan, rates: Callable[[], Program], edges: Sequence[int]) -> str:
-    """Return C code that bounds the rates of a plan on discs of the complex plane, from the cache or newly printed.
+    """Return C code that bounds the rates of a plan on discs of the complex plane, from the cache or newly generated.
 
     The bounds limit the steps of DOP853.
     """

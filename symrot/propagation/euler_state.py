@@ -1,8 +1,8 @@
-"""Euler angles as state variables, for teaching: their singularity, and a change of sequence that avoids it.
+"""Euler angles as state variables, for teaching: their singularity, and a change of Euler sequence that avoids it.
 
-The states are omega_b and the three angles of a sequence, with ``dq/dt = B(q)^-1 omega_b``. B is singular at gimbal
-lock: near it the angles change ever faster and steps shrink; at gimbal lock the motion cannot be followed. With
-switching, the motion changes well before the lock to angles of another sequence, which is regular there
+The states are omega_b and the three angles q of an Euler sequence, with ``dq/dt = B(q)^-1 omega_b``. B is singular at
+gimbal lock: near it the angles change ever faster and steps shrink; at gimbal lock the motion cannot be followed. With
+switching, the states change well before gimbal lock to the angles of another sequence, which is regular there
 (:func:`partner`).
 
 The result is an ordinary trajectory whose quaternion is computed from the angles, so that it can be compared with any
@@ -51,11 +51,11 @@ NAMES = ("phi", "theta", "psi")
 
 
 def partner(sequence: str) -> str:
-    """Return the Euler sequence to change to near gimbal lock: the same first two axes, another third axis.
+    """Return the Euler sequence to use near gimbal lock of the given one: same first two axes, another third axis.
 
-    Each of the two sequences is singular where one entry of the attitude matrix is 1 or -1. The two entries lie in the
-    same row (extrinsic: column), so that their squares add up to at most 1. Where one sequence is singular, the other
-    therefore has ``|det B| = 1``, and one of them always has ``|det B| >= sqrt(1/2)``.
+    Each sequence is singular where a certain entry of the attitude matrix is 1 or -1. The entries of the two sequences
+    lie in the same row (extrinsic: column), so that their squares add up to at most 1. Where one sequence is singular,
+    its partner therefore has ``|det B| = 1``; everywhere, at least one of the two has ``|det B| >= sqrt(1/2)``.
     """
     axes, intrinsic = parse_sequence(sequence)
     other = ({0, 1, 2} - {axes[1], axes[2]}).pop()
@@ -63,9 +63,9 @@ def partner(sequence: str) -> str:
 
 
 def regularity(sequence: str, angles: ArrayLike) -> Floats:
-    """Return ``|det B|`` of the rate matrix B of an Euler sequence: 0 at gimbal lock, at most 1.
+    """Return ``|det B|``, shape (...), of the rate matrix B of an Euler sequence: 0 at gimbal lock, at most 1.
 
-    ``angles`` has shape (..., 3).
+    ``angles``, rad, has shape (..., 3).
     """
     axes, _ = parse_sequence(sequence)
     middle = np.asarray(angles, dtype=np.float64)[..., 1]
@@ -74,10 +74,10 @@ def regularity(sequence: str, angles: ArrayLike) -> Floats:
 
 
 def angles_of(quaternion: Floats, sequence: str) -> Floats:
-    """Return Euler angles, rad, shape (3,), whose quaternion equals the given one including its sign.
+    """Return Euler angles, rad, shape (3,), whose quaternion equals the given quaternion including its sign.
 
-    A full rotation about the first axis is added if the sign needs it. Torques that are odd in q depend on the sign, so
-    that every change of sequence must preserve it.
+    If the signs differ, a full rotation about the first axis is added. The sign has to be preserved since a torque
+    formula may contain odd powers of the quaternion components.
     """
     angles: Floats = conversions.quaternion_to_euler(quaternion, sequence)[0]
     if conversions.euler_to_quaternion(angles, sequence) @ quaternion < 0.0:
@@ -86,7 +86,7 @@ def angles_of(quaternion: Floats, sequence: str) -> Floats:
 
 
 class _Kernel(NamedTuple):
-    """Equations of motion in the angles of one Euler sequence, compiled with a stepper, and their parameters."""
+    """The compiled equations of motion in the angles of one Euler sequence, with a stepper, and their parameters."""
 
     library: Path
     parameters: list[float]
@@ -94,7 +94,10 @@ class _Kernel(NamedTuple):
 
 
 class _Block(NamedTuple):
-    """Part of a motion in one Euler sequence: its first and last time, s, and its states as omega and quaternion."""
+    """Part of a motion in which one Euler sequence is used: its first and last time, s, and a function of time.
+
+    The function takes times, s, and returns omega and quaternion, shape (n, 7).
+    """
 
     first: float
     last: float
@@ -105,7 +108,7 @@ class _Block(NamedTuple):
 class EulerMotion(Motion):
     """Motion of a scene whose attitude is stepped as Euler angles instead of a quaternion.
 
-    Times are those of the scene, not counted from the start: a change of sequence leaves the time as it is.
+    All times are scene times, not times since the start, so that they stay the same when the Euler sequence changes.
     """
 
     def __init__(self, plan: Plan, method: str, tolerance: float, sequence: str, switching: bool) -> None:
@@ -180,7 +183,7 @@ class EulerMotion(Motion):
         )
 
     def _blocks(self, end: float) -> Iterator[_Block]:
-        """Yield the motion from its start to ``end`` in parts with one Euler sequence each, and count their cost."""
+        """Yield the parts of the motion up to ``end`` that use one Euler sequence each, and add up their cost."""
         count, t, sequence = self._moving, self.start, self.sequence
         whole = np.array(self.plan.initial_state)
         while t != end:
@@ -198,7 +201,7 @@ class EulerMotion(Motion):
                 whole = block.states(np.array([t]))[0]
 
     def _steps(self, integration: Integration, sequence: str, end: float) -> Iterator[tuple[float, float, Floats]]:
-        """Yield the recorded steps of an integration up to ``end``, or until the Euler sequence has to be changed."""
+        """Yield (first time, last time, recorded steps) of groups of steps, to ``end`` or a change of the sequence."""
         count, broken = self._moving, None
         try:
             with closing(integration.runs(end)) as runs:
@@ -225,7 +228,7 @@ class EulerMotion(Motion):
             self._count[:3] = (a + b for a, b in zip(self._count, integration.stats()[:3], strict=False))
 
     def _with_hint(self, error: PropagationError, sequence: str) -> PropagationError:
-        hint = f"the Euler angles {sequence} are the state, which are singular at gimbal lock"
+        hint = f"the state consists of the Euler angles {sequence}, which are singular at gimbal lock"
         return PropagationError(f"{error} ({hint}{'' if self.switching else '; switching=True avoids it'})")
 
     def _states_of(self, integration: Integration, sequence: str, rows: Floats) -> Callable[[Floats], Floats]:
@@ -255,7 +258,7 @@ class EulerMotion(Motion):
         return states, Stats(accepted, rejected, evaluations, perf_counter() - began, switches)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return omega and quaternion as a function of time over a span."""
+        """Return a function from times in a span, s, to omega and quaternion, shape (n, 7)."""
         sides = [list(self._blocks(end)) if end != self.start else [] for end in span]
 
         def at(times: Floats) -> Floats:
@@ -273,7 +276,7 @@ class EulerMotion(Motion):
 
 
 def _derived(structure: Structure) -> KernelRecord:
-    """Return the saved form of the equations of motion in Euler angles, derived from a structure."""
+    """Return the equations of motion in Euler angles, derived from a structure, in the form that the cache stores."""
     from symrot.codegen.scene_kernels import RATES, rates_program, rates_source
     from symrot.dynamics.equations import equations_of_motion
 
@@ -282,7 +285,7 @@ def _derived(structure: Structure) -> KernelRecord:
 
 
 class EulerPropagator(Propagator):
-    """Propagator of a scene with Euler angles as state; made by :func:`symrot.propagator` with ``state``."""
+    """Propagator of a scene whose states are Euler angles; :func:`symrot.propagator` with ``state`` returns it."""
 
     def __init__(self, scene: Scene, method: str, tolerance: float, sequence: str, switching: bool) -> None:
         try:

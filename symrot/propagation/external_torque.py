@@ -1,8 +1,9 @@
 """Torques without a formula: a function in Python or C, or a table of samples, with declared switching times.
 
-Such a torque acts in addition to the torques of the scene. Dormand and Prince's method steps the motion. A step
-ends exactly at every switching time and the method restarts there, so that a jump costs no accuracy and no rejected
-steps.
+Such a torque acts in addition to the torques of the scene. The motion is integrated by Dormand and Prince's method. A
+step ends exactly at every switching time and the method restarts there, so that a jump costs no accuracy and no
+rejected steps. A feature of the torque is a short part that differs from its surroundings, such as a pulse; a long step
+may pass over it.
 """
 
 import ctypes
@@ -62,9 +63,9 @@ class TorqueSource(ABC):
     longest_step, most_steps : float, int
         Longest step, s, and largest number of steps.
     knots : sequence of float
-        Times, s, at which a step ends since a derivative of the torque jumps there.
+        Times, s, at which a derivative of the torque jumps, so that a step has to end there.
     user : array or None
-        The argument ``user`` of the function in C.
+        The array that the C function receives as its argument ``user``.
     """
 
     samples: ClassVar[bool] = False
@@ -75,7 +76,7 @@ class TorqueSource(ABC):
 
     @abstractmethod
     def pointer_in(self, library: Path) -> Any:
-        """Return the torque as a C function; that of a table is part of the compiled ``library`` of the motion."""
+        """Return the torque as a C function; for a table, this is a function of the ``library`` of the motion."""
 
     @abstractmethod
     def check(self, low: float, high: float) -> None:
@@ -88,7 +89,7 @@ class TorqueSource(ABC):
 
 @final
 class _Function(TorqueSource):
-    """A torque that is a Python function, called from C. An exception that it raises is stored and ends the motion."""
+    """A torque that is a Python function, called from C. If it raises an exception, the motion ends."""
 
     def __init__(self, function: Callable[[float, Floats, Floats], ArrayLike]) -> None:
         self.function = function
@@ -119,7 +120,7 @@ class _Function(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Clear the stored exception of the previous motion. All times are accepted."""
+        """Delete the exception stored during the previous motion. All times are accepted."""
         self.error = None
 
     def failure(self) -> BaseException | None:
@@ -129,7 +130,7 @@ class _Function(TorqueSource):
 
 @final
 class _CFunction(TorqueSource):
-    """A torque that is a C function: ``int (double, const double[3], const double[4], double[3], void *)``."""
+    """A torque that is a C function of type ``int (double, const double[3], const double[4], double[3], void *)``."""
 
     def __init__(self, function: Any) -> None:
         self.pointer = function
@@ -162,12 +163,14 @@ class _Table(TorqueSource):
                 f"{t.shape} and {values.shape}"
             )
         if not (np.isfinite(t).all() and np.isfinite(values).all()):
-            raise InputError("torque: expected a table of finite numbers, got some that are infinite or not numbers")
+            raise InputError(
+                "torque: expected a table of finite numbers, got a table with infinite or undefined numbers"
+            )
         repeated = t[1:][np.diff(t) == 0]
         if (np.diff(t) < 0).any() or not set(repeated.tolist()) <= set(switching) or (np.diff(repeated) == 0).any():
             raise InputError(
-                "torque: expected a table of rising times, twice the same at switching times alone (the samples before "
-                "and after the jump)"
+                "torque: expected a table of increasing times; only a switching time may occur twice, for the samples "
+                "before and after the jump"
             )
         self.span = float(t[0]), float(t[-1])
         self.longest_step = SAMPLES_PER_STEP * float(np.diff(t).max())
@@ -181,7 +184,9 @@ class _Table(TorqueSource):
         """Raise InputError for times beyond the table."""
         if low < self.span[0] or high > self.span[1]:
             beyond = low if low < self.span[0] else high
-            raise InputError(f"torque: the table covers {self.span[0]} to {self.span[1]} s, got the time {beyond} s")
+            raise InputError(
+                f"torque: expected times from {self.span[0]} to {self.span[1]} s, the span of the table, got {beyond} s"
+            )
 
     def failure(self) -> BaseException | None:
         """Return None: the interpolation of a table raises no exceptions."""
@@ -189,9 +194,10 @@ class _Table(TorqueSource):
 
 
 def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floats, list[float]]:
-    """Return the splines of a table, as one array for the C function ``symrot_table_torque``, and the ends of steps, s.
+    """Return the splines of a table as one array for the C function ``symrot_table_torque``, and its knots, s.
 
-    A separate spline is fitted between any two consecutive switching times.
+    A separate spline is fitted between any two consecutive switching times. Knots are the times at which a derivative
+    of a spline jumps.
     """
     from scipy.interpolate import CubicSpline
 
@@ -215,24 +221,21 @@ def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floa
 
 
 def _check_overshoot(spline: Any, largest: float) -> None:
-    """Raise InputError if a spline far exceeds the largest sample, as happens for very uneven spacing."""
+    """Raise InputError if a spline far exceeds the largest sample, which happens for very unevenly spaced samples."""
     starts, gaps = spline.x[:-1], np.diff(spline.x)
     reach = np.max([np.abs(spline(starts + part * gaps)).max(axis=1) for part in (0.25, 0.5, 0.75)], axis=0)
     worst = int(np.argmax(reach))
     before, after = map(float, spline.x[worst : worst + 2])
     if not reach[worst] <= OVERSHOOT * largest:
         raise InputError(
-            f"torque: expected samples that a cubic spline follows, got samples of at most {largest:.3g} N m that "
-            f"send it to {reach[worst]:.3g} N m between {before!r} and {after!r} s; a jump is a switching time with "
-            "two samples, before and after"
+            f"torque: expected samples that a cubic spline can follow, but samples of at most {largest:.3g} N m give "
+            f"a spline that reaches {reach[worst]:.3g} N m between {before!r} and {after!r} s; if the torque jumps, "
+            "give a switching time and two samples at it, before and after the jump"
         )
 
 
 def _bends(spline: Any) -> list[float]:
-    """Return the sample times, s, at which the third derivative of a spline jumps.
-
-    It does not jump inside a stretch of samples on a straight line.
-    """
+    """Return the sample times, s, at which the third derivative of a spline jumps by more than a rounding error."""
     gaps, cubic = np.diff(spline.x)[:, None], spline.c[0]
     jumps = np.abs(np.diff(cubic, axis=0)) * np.minimum(gaps[1:], gaps[:-1]) ** 3
     bends: list[float] = spline.x[1:-1][(jumps > BEND * np.abs(spline.c[3]).max(axis=0)).any(axis=1)].tolist()
@@ -240,7 +243,7 @@ def _bends(spline: Any) -> list[float]:
 
 
 def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
-    """Return the source of a torque from one of the forms that :func:`symrot.propagator` accepts."""
+    """Return the TorqueSource for a torque in one of the forms that :func:`symrot.propagator` accepts."""
     if isinstance(torque, ctypes._CFuncPtr):  # type: ignore[attr-defined]
         return _CFunction(torque)
     if callable(torque):
@@ -251,7 +254,7 @@ def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
 
 
 def _bits(address: int) -> float:
-    """Return the double whose 64 bits are an address, so that an address can be a parameter of a kernel."""
+    """Return the double with the same 64 bits as an address, so that a kernel parameter can hold the address."""
     return ctypes.c_double.from_buffer_copy(ctypes.c_uint64(address)).value
 
 
@@ -262,7 +265,7 @@ def _address(pointer: Any) -> int:
 @final
 @dataclass(frozen=True, eq=False)
 class ExternalSetup:
-    """Parts that all motions under one torque without a formula share, whatever their initial states.
+    """Everything that motions under one torque without a formula have in common, whatever their initial states.
 
     Attributes
     ----------
@@ -273,9 +276,10 @@ class ExternalSetup:
     source : TorqueSource
         The source of the torque.
     torque_parameters : tuple of float
-        Parameters of the kernel that follow the scene's: two addresses, the frame, the inverse of the inertia.
+        Parameters of the kernel after the parameters of the scene: the addresses of the torque function and of
+        ``user``, the frame (1 for space), and the nine entries of the inverse inertia tensor.
     breaks : tuple of float
-        Times at which a step ends, s: switching times, and times at which a derivative of a table's spline jumps.
+        Times, s, at which a step ends: the switching times, and the knots of a table.
     longest_step : float
         Longest step, s.
     """
@@ -291,7 +295,7 @@ class ExternalSetup:
 def external_setup(
     plan: Plan, tolerance: float, source: TorqueSource, in_space: bool, switching: Sequence[float], max_step: float
 ) -> ExternalSetup:
-    """Return the shared parts of motions under a torque without a formula.
+    """Return what all motions under a torque without a formula have in common.
 
     Kernel, torque and stepper are compiled into one library.
     """
@@ -337,7 +341,10 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         self._shared = shared
 
     def from_start(self, initial: Initial) -> "ExternallyDrivenMotion":
-        """Return the motion from another initial state of the same structure; nothing is derived or compiled again."""
+        """Return the motion from another initial state, for which the equations have the same form.
+
+        Nothing is derived or compiled again.
+        """
         return ExternallyDrivenMotion(self._shared, self.setup.plan.from_start(initial))
 
     @cached_property
@@ -350,7 +357,7 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         )  # fmt: skip
 
     def _guarded(self, low: float, high: float, run: Callable[[], Result]) -> Result:
-        """Return the result of ``run``, or raise the exception with which the torque's function ended it."""
+        """Return the result of ``run()``; if the torque function raised an exception during it, raise that."""
         source = self._shared.source
         source.check(min(low, self.start), max(high, self.start))
         try:
@@ -367,12 +374,12 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         return self._guarded(low, high, lambda: self.stepping.restarted().sample(times))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return the states as a function of time over a span."""
+        """Return a function from times in a span, s, to states."""
         return self._guarded(*span, lambda: self.stepping.restarted().record(span))
 
 
 class ExternallyDrivenPropagator(Propagator):
-    """Propagator of a scene under a torque without a formula; made by :func:`symrot.propagator` with ``torque``."""
+    """Propagator of a scene under a torque without a formula; :func:`symrot.propagator` with ``torque`` returns it."""
 
     def __init__(
         self, scene: Scene, tolerance: float, torque: Any, switching_times: ArrayLike = (), frame: str = "body",

@@ -1,6 +1,7 @@
-"""Conserved quantities of a motion for the Taylor stepper, which projects onto them: C text and parameter values.
+"""Conserved quantities for the Taylor stepper, which corrects the states so that these quantities stay constant.
 
-The derivation of the kernel proves which quantities are conserved; the norm of the quaternion is added.
+The module provides their C text and the values of their parameters. The derivation of the kernel proves which
+quantities are conserved; the norm of the quaternion is added.
 """
 
 from collections.abc import Sequence
@@ -16,7 +17,7 @@ __all__ = ["invariant_parameters", "invariant_source"]
 
 
 def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
-    """Return C code that computes the conserved quantities, onto which the Taylor stepper projects the motion."""
+    """Return C code that computes the conserved quantities, whose values the Taylor stepper keeps constant."""
     from symrot.codegen.taylor.invariant_source import invariant_definitions
 
     outputs = [item.output for item in kernel.conserved if item.holds]
@@ -24,7 +25,7 @@ def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
 
 
 def invariant_parameters(kernel: SceneKernel, plan: Plan) -> list[float]:
-    """Return the parameters of the conserved quantities, each as two doubles: the nearest one and its rounded error."""
+    """Return the parameters of the conserved quantities, each as two doubles: the nearest one and the rounded rest."""
     values = {"pi": number.PI, **plan.constants}
     pairs: list[float] = []
     for _, node in kernel.quantity_parameters:

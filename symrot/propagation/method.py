@@ -18,11 +18,11 @@ METHODS = {
     "dop853": "Dormand-Prince 8(5,3), stepped in C around the emitted kernel",
     "scipy": "SciPy around the emitted NumPy kernel",
 }
-"""Every method by name, with a description; ``scipy`` means SciPy's DOP853, ``scipy:NAME`` another of its methods."""
+"""The name and description of every method; ``scipy`` means SciPy's DOP853, ``scipy:NAME`` another method of SciPy."""
 
 
 class Choice(NamedTuple):
-    """The chosen method, the reason for it and, for the method ``exact``, the closed form of the motion."""
+    """The chosen method, the reason for the choice, and the closed form of the motion if the method is ``exact``."""
 
     method: str
     reason: str
@@ -47,11 +47,11 @@ def _automatic(plan: Plan) -> Choice:
 
 
 EXTERNAL_TORQUE = Choice("dop853", "a torque without a formula has no Taylor series")
-"""The method for motions under a torque that is no formula."""
+"""The method for motions under a torque without a formula."""
 
 
 def choose_method(plan: Plan, method: str = "auto") -> Choice:
-    """Return the method for a plan: for ``"auto"`` the first that can follow its motion, otherwise the named method.
+    """Return the method for a plan: for ``"auto"`` the first one that can follow its motion, else the named method.
 
     Raises
     ------

@@ -1,7 +1,11 @@
-"""Motions: a plan with numbers and one initial state, which returns the states at any times by the chosen method.
+"""Motions: a plan with numbers and one initial state, from which the states at any times can be computed.
 
-A :class:`Motion` begins at one initial state of a scene. Its :class:`Setup` holds the parts that all initial states of
-the same structure share: the method, the kernel, the numbers of the scene. Each method has its own subclass.
+A :class:`Motion` starts from one initial state of a scene. Its :class:`Setup` holds what it shares with the motions
+from other initial states: the method, the kernel and the numbers of the scene. Each method has its own subclass.
+
+Words used here: the *rates* are the time derivatives of the states. The *clock* of a motion is the time that its
+stepper counts; the *epoch* is the time of the scene at which this clock shows 0. Two initial states have the same
+*structure* if their equations have the same form (:func:`symrot.planning.plan.structure_key`).
 """
 
 from abc import ABC, abstractmethod
@@ -46,7 +50,7 @@ Floats = NDArray[np.float64]
 
 
 def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
-    """Return the rates of a plan as a function ``f(t, y, p)``: the emitted NumPy kernel."""
+    """Return the rates of a plan as a NumPy function ``f(t, y, p)``, generated from the kernel."""
     from symrot.codegen.numpy_kernel import load_numpy_kernel
 
     function = load_numpy_kernel(kernel.rates)
@@ -54,7 +58,7 @@ def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
 
 
 def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
-    """Return the plan for a motion in closed form, which keeps the full state, since nothing has to be stepped."""
+    """Return the plan for a motion in closed form: no state is eliminated, since nothing has to be integrated."""
     structure = plan.structure.unreduced()
     rows, before = [], structure.reductions
     for row in plan.rows:
@@ -72,12 +76,12 @@ def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
 @final
 @dataclass(frozen=True, eq=False)
 class Setup:
-    """Parts that all motions of one plan share, whatever their initial states: method, kernel, numbers of the scene.
+    """What all motions of one plan have in common, whatever their initial states: method, kernel, numbers of the scene.
 
     Attributes
     ----------
     plan : Plan
-        The plan of the scene, with any initial state of the same structure; each motion has its own plan.
+        The plan of the scene with one initial state of the structure; each motion also has its own plan.
     choice : Choice
         The method, and the reason for it.
     tolerance : float
@@ -85,13 +89,13 @@ class Setup:
     start : float
         Initial time, s, on the clock of the motions.
     load_kernel : function
-        Returns the kernel; called when the kernel is first needed. A motion in closed form may never need it.
+        Returns the kernel. It is called when the kernel is first needed; a motion in closed form may never need it.
     epoch : float
         Time of the scene, s, at which the clock of the motions shows 0.
     allows_time_shift : bool
-        Whether the origin of time of stepped motions may be moved.
+        Whether the stepper may count time from another origin than the scene does.
     warnings : tuple of str
-        Sentences about accuracy that cannot be guaranteed.
+        Sentences that say which accuracy cannot be guaranteed.
     """
 
     plan: Plan
@@ -115,17 +119,17 @@ class Setup:
 
     @cached_property
     def moves_clock(self) -> bool:
-        """Whether the origin of time in the kernel moves with the steps, so that phases (a*t) keep their digits."""
+        """Whether the kernel counts time from an origin that moves with the steps, so that phases keep their digits."""
         return self.allows_time_shift and self.kernel.rates.uses("t")
 
     @cached_property
     def rate_binding(self) -> Binding:
-        """The parameters of the rates as functions of the initial state, one double per parameter."""
+        """Function from a plan with any initial state to the parameters of the rates, one double per parameter."""
         return Binding(self.kernel.rate_parameters, self.plan, known={EPOCH: Fraction(self.epoch)})
 
     @cached_property
     def quantity_binding(self) -> Binding:
-        """The parameters of the output quantities as functions of the initial state, two doubles per parameter."""
+        """Function that returns the parameters of the output quantities for a plan: two doubles per parameter."""
         return Binding(self.kernel.quantity_parameters, self.plan, two_doubles)
 
     @cached_property
@@ -135,11 +139,11 @@ class Setup:
 
     @cached_property
     def deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
-        """A function from parameters of the rates to bounds that limit steps in Python; None if no limit is needed."""
+        """Function from parameters of the rates to bounds that limit SciPy's steps; None if no limit is needed."""
         return formula_deviations(self.plan, self.kernel)
 
     def shifted(self) -> tuple[Plan, SceneKernel]:
-        """Return plan and kernel with time counted from an epoch, a parameter that can be changed between steps."""
+        """Return plan and kernel in which time is counted from an epoch, a parameter that can change between steps."""
         is_shifted = self.plan.structure.clock is not None
         return (self.plan, self.kernel) if is_shifted else time_shift.time_shifted(self.plan, self.kernel)
 
@@ -152,14 +156,14 @@ class Setup:
 
 @final
 class SteppedSetup:
-    """Parts that all motions of one plan share if they are stepped in C: setup, and library of kernel and stepper."""
+    """What all motions of one plan integrated in C have in common: the setup, and the library of kernel and stepper."""
 
     def __init__(self, setup: Setup, library: Path) -> None:
         self.setup, self.library = setup, library
 
     @cached_property
     def integration(self) -> Integration:
-        """The integration from the initial state of the setup's plan, with its input checked."""
+        """The integration from the initial state of the setup's plan; its arguments are checked."""
         setup, plan = self.setup, self.setup.plan
         parameters, state = setup.rate_binding(plan), plan.initial_state
         if setup.choice.method == "dop853":
@@ -184,14 +188,14 @@ def _stepped_on_own_clock(setup: Setup) -> SteppedSetup:
 
 @final
 class ClosedFormSetup:
-    """Parts that all motions of one plan in closed form share: the setup, and the class of closed forms."""
+    """What all motions of one plan in closed form have in common: the setup and the kind of closed form."""
 
     def __init__(self, setup: Setup, form: ClosedForm) -> None:
         self.setup, self.form = setup, form
 
     @cached_property
     def starts(self) -> Starts:
-        """A function from initial states to motions in closed form, for the body and torques of the plan."""
+        """Function from initial states to motions in closed form, for the body and the torques of the plan."""
         return self.form.starts(self.setup.plan.scene)
 
 
@@ -199,7 +203,7 @@ class ClosedFormSetup:
 
 
 class Motion(ABC):
-    """A plan with its kernel, its numbers and one initial state; its clock shows 0 at the scene's time ``epoch``.
+    """A plan with its kernel, its numbers and one initial state; its clock shows 0 at the scene time ``epoch``.
 
     ``has_external_torque`` says whether a torque without a formula acts on the body.
     """
@@ -231,7 +235,7 @@ class Motion(ABC):
 
     @property
     def kernel(self) -> SceneKernel:
-        """The kernel, which computes rates and quantities. A motion in closed form needs it for quantities alone."""
+        """The kernel, which computes rates and output quantities. A motion in closed form needs only the quantities."""
         return self.setup.kernel
 
     @property
@@ -258,7 +262,7 @@ class Motion(ABC):
         return dict(zip(names, self.setup.quantity_binding(self.plan)[::2], strict=True))
 
     def evaluate(self, t: Floats, states: Floats, names: Sequence[str]) -> Floats:
-        """Return output quantities, shape (n, len(names)), from states of shape (n, N) at n times."""
+        """Return the named output quantities, shape (n, len(names)), from states of shape (n, N) at n times."""
         columns = [name.removesuffix(" of t") for name in names]
         if set(columns) <= set(self.plan.states):  # every quantity is a state
             return states[:, [self.plan.states.index(name) for name in columns]]
@@ -290,7 +294,7 @@ class Motion(ABC):
 
     @abstractmethod
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return the states as a function of time over a span, s."""
+        """Return a function from times in a span, s, to states, shape (n, N)."""
 
     def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the states at the times in one array, shape (n, N), and the cost of the motion; see :meth:`follow`."""
@@ -298,9 +302,9 @@ class Motion(ABC):
         return np.concatenate(states, axis=1) if isinstance(states, tuple) else states, stats
 
     def solution(self, times: Floats, with_attitude: bool) -> Callable[[ArrayLike], Floats]:
-        """Return omega, with the quaternion if ``with_attitude``, as a function of time.
+        """Return a function from times, s, to omega, and to the quaternion if ``with_attitude``; shape (3 or 7, n).
 
-        The function is defined from the earliest to the latest of the start and the times.
+        It is defined on the shortest interval that contains the start and all ``times``.
         """
         span = (
             (min(self.start, float(times.min())), max(self.start, float(times.max())))
@@ -326,7 +330,7 @@ class Motion(ABC):
 
 
 class RestartableMotion(Motion):
-    """A motion that can restart from another initial state of the same structure without any new derivation.
+    """A motion that can restart from another initial state of the same structure; nothing is derived again.
 
     Initial states have the same structure if they have the same :func:`symrot.planning.plan.structure_key`.
     """
@@ -337,16 +341,16 @@ class RestartableMotion(Motion):
 
 
 class SteppedInC(ABC):
-    """The interface of motions that a stepper in C follows."""
+    """Interface of motions that are integrated by a stepper in C."""
 
     @property
     @abstractmethod
     def stepping(self) -> Integration:
-        """The integration of the motion, with its input checked; it can be sampled any number of times."""
+        """The integration of the motion, with checked arguments; it can be sampled any number of times."""
 
 
 class ShiftableMotion(RestartableMotion):
-    """A stepped motion that can count time from the zero of the scene or from its own start."""
+    """A numerically integrated motion whose clock can show 0 at the scene's t = 0 or at the motion's own start."""
 
     @property
     @abstractmethod
@@ -360,7 +364,7 @@ class ShiftableMotion(RestartableMotion):
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the states at times of the scene, shape (n, N), and the cost of the motion.
 
-        The motion is stepped on the clock that loses the fewest digits.
+        The stepper uses the clock on which times lose the fewest digits.
         """
         if not self._shifts(times):
             return self.steps(times, in_order)
@@ -371,20 +375,20 @@ class ShiftableMotion(RestartableMotion):
             raise error.later(motion.epoch) from None
 
     def _shifts(self, times: Floats) -> bool:
-        """Return whether a clock that shows 0 at the start loses fewer digits for such times."""
+        """Return whether these times lose fewer digits on a clock that shows 0 at the start."""
         if not (self.start and self.setup.allows_time_shift and len(times)):
             return False
         return time_shift.starts_far(self.start, float(times.min()), float(times.max()))
 
 
 def on_clock(motion: Motion, times: Floats) -> Motion:
-    """Return the motion on the clock that suits the times: the present clock, or one that shows 0 at the start."""
+    """Return the motion on the clock that loses the fewest digits of the times: its own, or one from its start."""
     return motion.on_own_clock if isinstance(motion, ShiftableMotion) and motion._shifts(times) else motion
 
 
 @final
 class ConstantMotion(RestartableMotion):
-    """A motion in which every state keeps its value, so that the plan leaves no state to integrate."""
+    """A motion in which every state is constant, so that the plan leaves no state to integrate."""
 
     def from_start(self, initial: Initial) -> "ConstantMotion":
         """Return the motion from another initial state of the same structure."""
@@ -401,7 +405,7 @@ class ConstantMotion(RestartableMotion):
 
 @final
 class ClosedFormMotion(RestartableMotion):
-    """A motion in closed form, which is evaluated at each time independently."""
+    """A motion in closed form, whose states at each time are computed without the states at other times."""
 
     def __init__(self, shared: ClosedFormSetup, plan: Plan) -> None:
         super().__init__(shared.setup, plan)
@@ -413,7 +417,7 @@ class ClosedFormMotion(RestartableMotion):
 
     @property
     def form(self) -> ClosedForm:
-        """The closed form of the motion, such as that of a free body or a heavy top."""
+        """The kind of closed form, for example of a free body or a heavy top."""
         return self._shared.form
 
     @cached_property
@@ -422,7 +426,10 @@ class ClosedFormMotion(RestartableMotion):
         return self._shared.starts(self.plan.scene.initial)
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[tuple[Floats, ...], Stats]:
-        """Return angular velocity (n, 3) and, if it is computed, attitude (n, 4) at the times, and the cost."""
+        """Return the states at the times and the cost of the motion.
+
+        The states are the arrays of angular velocity, shape (n, 3), and attitude, shape (n, 4), if it is computed.
+        """
         attitude, exact = self.plan.structure.attitude, self.exact
         began, start = perf_counter(), self.setup.start
         omega, quaternion = exact.evaluate(times - start if start else times, quaternion=attitude)
@@ -441,13 +448,13 @@ class ClosedFormMotion(RestartableMotion):
         return (omega,) if quaternion is None else (omega, quaternion), Stats(0, 0, 0, perf_counter() - began)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return the states as a function of time."""
+        """Return a function from times, s, to states, shape (n, N)."""
         return lambda t: self.integrate(t)[0]
 
 
 @final
 class SteppedMotion(ShiftableMotion, SteppedInC):
-    """A motion that a stepper in C follows, by Taylor series or by Dormand and Prince's method."""
+    """A motion integrated by a stepper in C, with Taylor series or with Dormand and Prince's method."""
 
     def __init__(self, shared: SteppedSetup, plan: Plan) -> None:
         super().__init__(shared.setup, plan)
@@ -475,7 +482,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def stepping(self) -> Integration:
-        """The integration of the motion by its stepper in C, with its input checked."""
+        """The integration of the motion by its stepper in C, with checked arguments."""
         state = self.plan.initial_state
         if self.choice.method == "taylor":  # the Taylor stepper holds the time in two doubles and moves no clock
             parameters = self.taylor_parameters
@@ -488,7 +495,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def _clock(self) -> dop853.Clock:
-        """A function from an epoch, s, to the compiled rates that count time from the epoch, and their parameters."""
+        """Function from an epoch, s, to the library of rates that count time from the epoch, and their parameters."""
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
@@ -496,7 +503,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
         return self.stepping.sample_sorted(times, in_order)
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return the states as a function of time over a span, s."""
+        """Return a function from times in a span, s, to states, shape (n, N)."""
         recording = self.stepping.restarted().record(span)
         recording.epoch = self.epoch
         return recording
@@ -504,7 +511,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
 @final
 class SciPyMotion(ShiftableMotion):
-    """A motion that is stepped by one of SciPy's methods."""
+    """A motion integrated by one of SciPy's methods."""
 
     def from_start(self, initial: Initial) -> "SciPyMotion":
         """Return the motion from another initial state of the same structure."""
@@ -518,11 +525,11 @@ class SciPyMotion(ShiftableMotion):
 
     @cached_property
     def _clock(self) -> Callable[[float], Any]:
-        """A function from an epoch, s, to rates in Python that count time from the epoch, and their parameters."""
+        """Function from an epoch, s, to Python rates whose time is counted from the epoch, and their parameters."""
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch, python_rates)
 
     def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
-        """Return the bounds that limit SciPy's steps, for given parameters of the rates; None if no limit is needed."""
+        """Return the bounds that limit SciPy's steps for given parameters of the rates; None if no limit is needed."""
         if self.setup.deviations is None:
             return None
         names = [name for name, _ in self.kernel.rate_parameters]
@@ -545,7 +552,7 @@ class SciPyMotion(ShiftableMotion):
         return fallback.integrate(self.rates, *start, times, self.tolerance, self.options(self.rate_parameters))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return the states as a function of time over a span, s."""
+        """Return a function from times in a span, s, to states, shape (n, N)."""
         from symrot.propagation.steppers import fallback
 
         start = (self.rate_parameters, self.plan.initial_state, self.start)
@@ -555,13 +562,13 @@ class SciPyMotion(ShiftableMotion):
 
 
 class MotionInParts(Motion):
-    """Interface of a motion under torques that jump or bend: it is smooth between their switches."""
+    """Interface of a motion under torques that jump or bend at certain times (switches) and are smooth in between."""
 
     @abstractmethod
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to ``end``, once as polynomials and once as a function of time.
+        """Return the motion from its start to ``end``, s, as polynomials and as a function from times to states.
 
-        An error that ends the motion early is appended to ``broken``.
+        If an error ends the motion early, it is appended to ``broken``.
         """
 
 
@@ -569,7 +576,7 @@ class MotionInParts(Motion):
 
 
 def make_motion(plan: Plan, choice: Choice, tolerance: float) -> RestartableMotion:
-    """Return the motion of a plan by the chosen method, from the start of the plan's scene."""
+    """Return the motion of a plan by the chosen method, from the initial state of the plan's scene."""
     if choice.form is not None:
         choice.form.begin()
         plan = with_full_state(plan, choice.form)
@@ -585,7 +592,7 @@ def _setup(plan: Plan, choice: Choice, tolerance: float) -> Setup:
 
 
 def stepped_motion(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion:
-    """Return the motion of a plan by a stepper in C."""
+    """Return the motion of a plan, integrated by a stepper in C."""
     if choice.method == "taylor":
         kernel = scene_kernel(plan)
         library = taylor_library(plan, kernel, tolerance)
@@ -596,9 +603,9 @@ def stepped_motion(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotio
 
 
 def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion | SciPyMotion:
-    """Return the stepped motion of a plan on a clock that shows 0 at its start.
+    """Return the numerically integrated motion of a plan, on a clock that shows 0 at its start.
 
-    The epoch is a parameter of its rates. If the rates do not depend on the time, the clock of the scene is used.
+    The epoch is a parameter of the rates. If the rates do not depend on time, the clock of the scene is used.
     """
     setup = _setup(plan, choice, tolerance)
     timed, steps_in_c = setup.kernel.rates.uses("t"), choice.method in ("taylor", "dop853")

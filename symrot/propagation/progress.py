@@ -1,4 +1,4 @@
-"""Progress reports of long motions to a function that displays them, for example on the command line."""
+"""Progress of long motions, reported to a function that displays it, for example on the command line."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -7,16 +7,16 @@ from contextvars import ContextVar
 __all__ = ["report", "reporting", "within"]
 
 Reporter = Callable[[float, float, float], object]
-"""Function of the time reached, the start and the end, s; it is called every few hundredths of a second."""
+"""Function that is called every few hundredths of a second with the time reached, the start and the end, s."""
 
 _whole: ContextVar[tuple[float, float, Callable[[], float]] | None] = ContextVar("whole", default=None)
 _reporter: ContextVar[Reporter | None] = ContextVar("reporter", default=None)
 
 
 def report(t: float, start: float, stop: float) -> None:
-    """Report that a motion from ``start`` to ``stop``, s, has reached the time ``t``; without a reporter, do nothing.
+    """Report that a motion from ``start`` to ``stop``, s, has reached the time ``t``; do nothing if no reporter is set.
 
-    Inside :func:`within`, the span of the whole motion is reported instead of the span of its part.
+    Inside :func:`within`, the times are reported on the clock and span of the whole motion.
     """
     reporter = _reporter.get()
     if reporter is not None:
@@ -29,9 +29,9 @@ def report(t: float, start: float, stop: float) -> None:
 
 @contextmanager
 def within(start: float, stop: float, zero: Callable[[], float] = lambda: 0.0) -> Iterator[None]:
-    """Inside the block, report the progress of every motion as part of one motion from ``start`` to ``stop``, s.
+    """Context manager: report each motion inside the block as a part of one whole motion from ``start`` to ``stop``, s.
 
-    ``zero`` returns the time on the clock of the whole motion at which the clock of the part shows 0.
+    ``zero`` returns the time in the whole motion at which the clock of the part shows 0.
     """
     token = _whole.set(_whole.get() or (start, stop, zero))
     try:
@@ -42,7 +42,7 @@ def within(start: float, stop: float, zero: Callable[[], float] = lambda: 0.0) -
 
 @contextmanager
 def reporting(reporter: Reporter) -> Iterator[None]:
-    """Inside the block, report the progress of every motion to the function ``reporter``."""
+    """Context manager: report the progress of each motion inside the block to the function ``reporter``."""
     token = _reporter.set(reporter)
     try:
         yield

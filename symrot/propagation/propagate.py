@@ -1,4 +1,4 @@
-"""The functions propagator() and propagate(): they check the options and choose the class of propagator."""
+"""The functions propagator() and propagate(), which check the options and choose the class of propagator."""
 
 from math import inf
 from pathlib import Path
@@ -29,7 +29,9 @@ def propagator(
     switching: bool = True,
     max_step: float = inf,
 ) -> Propagator:
-    """Return the propagator of a scene: a function from times to the motion, derived and compiled or from the cache.
+    """Return the propagator of a scene: a function from times to the motion.
+
+    Its equations are derived and compiled, or loaded from the cache.
 
     Parameters
     ----------
@@ -38,18 +40,20 @@ def propagator(
     method : str
         One of :data:`symrot.propagation.method.METHODS`, or a method of SciPy such as ``"scipy:LSODA"``.
     tolerance : float, optional
-        Error of the trajectory to aim for: attitude in rad, angular velocity relative to its size; default: the
-        tolerance of the scene.
+        Error of the trajectory to aim for, in rad for the attitude and relative to its size for the angular velocity;
+        default: the tolerance of the scene.
     torque : optional
         An additional torque, N m, without a formula: a function of (t, omega, quaternion) that returns three numbers;
         a C function of ctypes, ``int (double t, const double omega[3], const double quaternion[4], double torque[3],
-        void *user)``, which returns 0, with ``user`` null; or a table (times, samples of shape (n, 3)), which is
-        interpolated by cubic splines between the switching times. The method is then ``dop853``.
+        void *user)``, which returns 0 and is called with a null pointer as ``user``; or a table (times, samples of
+        shape (n, 3)), which is interpolated by cubic splines between the switching times. The method is then
+        ``dop853``.
     switching_times : array, optional
-        Times, s, at which that torque jumps: the motion is stepped exactly to each and restarted. A function is
-        called just before and just after; a table has two samples at each time, before and after the jump.
+        Times, s, at which the additional torque jumps: a step ends exactly there, and the integration restarts. A
+        function is called just before and just after each of these times; a table has two samples there, before and
+        after the jump.
     torque_frame : str
-        ``"body"`` or ``"space"``: the frame of the components of that torque.
+        ``"body"`` or ``"space"``: the frame of the components of the additional torque.
     state : str
         ``"quaternion"``, or an Euler sequence such as ``"ZXZ"`` to step its angles instead, for teaching; see
         :mod:`symrot.propagation.euler_state`.
@@ -57,8 +61,8 @@ def propagator(
         Whether Euler angles change to another, regular sequence before they reach gimbal lock; ``stats`` counts the
         changes.
     max_step : float
-        Longest step, s, under that torque; choose it shorter than the narrowest feature of the torque. Formulas need no
-        such limit; the limit for a table follows from its samples.
+        Longest step, s, under an additional torque that is a function; choose it shorter than the shortest pulse of the
+        torque. Formulas need no such limit; for a table it follows from the samples.
 
     Returns
     -------
@@ -68,7 +72,7 @@ def propagator(
     Raises
     ------
     InputError
-        For a scene or an option that cannot be used.
+        If the scene or an option cannot be used.
     CompilerError
         If the method needs a compiler and no compiler is installed, or if the compiler rejects the kernel.
 
@@ -113,7 +117,7 @@ def propagator(
         raise InputError(f"method: expected 'auto' or 'dop853' for a torque without a formula, got {method!r}")
     if switched(scene):
         raise InputError(
-            "torque: expected no further torque, since a formula of the scene jumps or bends (abs, sign, ..), "
+            "torque: expected no additional torque, since a formula of the scene jumps or bends (abs, sign, ..), "
             f"got {number.show(torque)}"
         )
     from symrot.propagation.external_torque import ExternallyDrivenPropagator
@@ -162,9 +166,9 @@ def propagate(
     Raises
     ------
     InputError
-        For a scene or an option that cannot be used.
+        If the scene or an option cannot be used.
     PropagationError
-        If the motion cannot be propagated to its last time; its ``trajectory`` holds the samples before.
+        If the motion cannot be followed to the last sample time; ``trajectory`` of the error holds the samples before.
     CompilerError
         If the method needs a compiler and no compiler is installed.
 

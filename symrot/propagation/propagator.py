@@ -30,9 +30,9 @@ Floats = NDArray[np.float64]
 
 
 class Propagator:
-    """Function from sample times to the motion of one scene; made by :func:`symrot.propagator`.
+    """Function from sample times to the motion of one scene; :func:`symrot.propagator` returns it.
 
-    Derivation and compilation are done when it is made; a call only computes the motion.
+    The equations are derived and compiled when the propagator is created; a call only computes the motion.
 
     Attributes
     ----------
@@ -62,8 +62,8 @@ class Propagator:
     def motion_from(self, initial: Initial) -> Motion:
         """Return the motion from another initial state.
 
-        The first initial state of each structure is planned and prepared like a new scene. Later initial states change
-        only the numbers that depend on them.
+        Initial states have the same structure if their equations have the same form. The first initial state of each
+        structure is planned and prepared like a new scene; for later ones, only numbers change.
         """
         if not isinstance(self._motion, RestartableMotion):
             return self._prepare(self._planned(initial))
@@ -95,7 +95,7 @@ class Propagator:
         return self._motion.kernel
 
     def prepare(self) -> None:
-        """Prepare the first call: derive the kernel, and let a closed form compile meanwhile."""
+        """Prepare the first call: derive the kernel, and meanwhile compile the closed form if the motion has one."""
         self._motion.kernel  # noqa: B018
         if isinstance(self._motion, ClosedFormMotion):
             self._motion.exact  # noqa: B018
@@ -121,19 +121,20 @@ class Propagator:
         t : array, shape (n,), optional
             Sample times in s, in any order, before or after the initial time; default: the sample times of the scene.
         omega : array, shape (3,), optional
-            Another initial angular velocity, body components, rad/s.
+            Initial angular velocity, body components, rad/s; default: the value in the scene.
         quaternion : array, shape (4,), optional
-            Another initial attitude, scalar first; it is normalised.
+            Initial attitude, scalar first; it is normalised. Default: the value in the scene.
         events : sequence, optional
-            Formulas whose zeros are located: text, :class:`symrot.propagation.events.events.Event` or mappings with its
-            fields; see ``t_events`` of the trajectory. A terminal event is the last sample.
+            Formulas whose zeros are located, each as text, as a :class:`symrot.propagation.events.events.Event`, or as
+            a mapping with the fields of an Event. The times are ``t_events`` of the trajectory; at a terminal event the
+            trajectory ends.
 
         Raises
         ------
         InputError
-            For times or states that are not finite or have the wrong shape.
+            If times or states are not finite or have a wrong shape.
         PropagationError
-            If the motion cannot be followed to the last time; its ``trajectory`` holds the samples before.
+            If the motion cannot be followed to the last time; ``trajectory`` of the error holds the samples before.
         """
         times = self.sample_times if t is None else _times(t)
         in_order = _in_order(times)
@@ -162,7 +163,7 @@ class Propagator:
         return trajectory
 
     def _with_samples(self, error: BaseException, motion: Motion, times: Floats, began: float) -> BaseException:
-        """Return the exception that ends a motion early, with the samples before it attached as ``trajectory``."""
+        """Return the exception that ended a motion early; its ``trajectory`` holds the samples before that time."""
         samples: Samples | None = getattr(error, "samples", None)
         part: Trajectory | None = getattr(error, "trajectory", None)
         ended: BaseException = error
@@ -186,7 +187,7 @@ def _times(t: ArrayLike) -> Floats:
 
 
 def _in_order(times: Floats) -> bool:
-    """Return whether times never decrease; raise InputError if one is not finite."""
+    """Return whether the times never decrease; raise InputError if a time is not finite."""
     if not len(times):
         return True
     if isfinite(times.item(0)) and isfinite(times.item(-1)) and is_sorted(times):
@@ -205,12 +206,12 @@ def _vector(values: ArrayLike, size: int, name: str, unit: str) -> list[float]:
 
 
 def _exact(value: float, name: str) -> Fraction:
-    """Return the exact value of a finite double; raise InputError for a subnormal double, as scenes do."""
+    """Return the exact value of a finite double; raise InputError for a subnormal double, as for numbers of a scene."""
     return _lowest(*value.as_integer_ratio()) if abs(value) >= SMALLEST or not value else number.read(value, name)
 
 
 def _lowest(top: int, bottom: int) -> Fraction:
-    """Return the fraction of two coprime integers, without the search for a common divisor that Fraction makes."""
+    """Return the fraction top/bottom of two coprime integers, without the search for a common divisor in Fraction()."""
     fraction: Any = object.__new__(Fraction)
     fraction._numerator, fraction._denominator = top, bottom  # as Fraction._from_coprime_ints of Python 3.12 does
     return fraction  # type: ignore[no-any-return]
@@ -219,8 +220,8 @@ def _lowest(top: int, bottom: int) -> Fraction:
 def _unit(q: list[float]) -> tuple[Fraction, ...]:
     """Return a quaternion of doubles divided by its norm, as exact fractions.
 
-    Equals :func:`symrot.formula.exact_numbers.unit`, with the same accuracy of 2^-320, in half the time: all
-    denominators are powers of two.
+    The function does the same as :func:`symrot.formula.exact_numbers.unit`, with the same accuracy of 2^-320, in half
+    the time, since all denominators are powers of two.
     """
     ratios = [x.as_integer_ratio() for x in q]
     shared = max([bottom for _, bottom in ratios])  # all are powers of two
@@ -243,9 +244,9 @@ def _unit(q: list[float]) -> tuple[Fraction, ...]:
 
 
 def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None) -> Initial:
-    """Return the exact initial state for a call of a propagator.
+    """Return the initial state for a call of a propagator, in exact numbers.
 
-    An argument that is None is replaced by the value in the scene.
+    For an argument that is None, the value in the scene is used.
     """
     initial = scene.initial
     if omega is not None:

@@ -1,4 +1,4 @@
-"""Conversion of arguments to arrays of doubles; values that NumPy would silently convert raise an error."""
+"""Conversion of arguments to arrays of doubles; an error is raised for values that are not numbers."""
 
 from typing import Any
 
@@ -37,8 +37,8 @@ def real_array(values: Any, place: str, expected: str, ndmin: int = 0) -> NDArra
     Raises
     ------
     InputError
-        For dates, differences of dates, complex numbers, true and false, text, objects that are not real numbers
-        (fractions are accepted), and values that do not form an array.
+        If the values are dates, differences of dates, complex numbers, true or false, text, or objects that are not
+        real numbers (fractions are accepted), or do not form an array.
     """
     try:
         array = np.asarray(values)

@@ -1,14 +1,16 @@
 """Clocks that show 0 at the start, for motions that start far from t = 0.
 
-Times in the steppers are then small: neither phases such as ``a*t + b`` nor the ends of short steps lose digits. The
-clock is moved only if all times lie between half the start and twice the start, where their differences from the start
-are exact. A motion that goes farther loses no more digits than a motion of that length from t = 0. Long motions from 0
-keep the digits of their phases in other ways: Taylor steps hold the time in two parts, DOP853 moves the clock of the
-rates repeatedly (:mod:`symrot.propagation.steppers.dop853`), and SciPy restarts on a moved clock where its steps are
-short (:mod:`symrot.propagation.steppers.fallback`).
+The clock of a motion is the time that its stepper counts; the epoch is the time of the scene at which the clock shows
+0. With an epoch at the start, times in the steppers are small: neither phases such as ``a*t + b`` nor the ends of short
+steps lose digits. The clock is moved only if all times lie between half the start and twice the start, where their
+differences from the start are exact. A motion that goes farther loses no more digits than a motion of that length from
+t = 0. Long motions from 0 keep the digits of their phases in other ways: Taylor steps hold the time in two doubles,
+DOP853 moves the clock of the rates repeatedly (:mod:`symrot.propagation.steppers.dop853`), and SciPy restarts on a
+moved clock where its steps are short (:mod:`symrot.propagation.steppers.fallback`).
 
-A torque without a formula is evaluated at the times of the scene, so that motions under it use the clock of the scene,
-on which a phase ``a*t`` has an error of up to ``1e-16*|a*t|`` rad. Motions in Euler angles start on that clock too.
+A torque without a formula is evaluated at the times of the scene, so that motions under such a torque use the clock of
+the scene, on which a phase ``a*t`` has an error of up to ``1e-16*|a*t|`` rad. Motions in Euler angles start on the
+clock of the scene too.
 """
 
 import json
@@ -34,18 +36,18 @@ __all__ = ["ShiftedParameters", "clock", "compiled", "starts_far", "time_shifted
 
 
 def starts_far(start: float, low: float, high: float) -> bool:
-    """Return whether a motion over times from ``low`` to ``high``, s, needs a clock that shows 0 at its start.
+    """Return whether a motion over times from ``low`` to ``high``, s, should use a clock that shows 0 at its start.
 
-    It does if all times lie between half the start and twice the start, where differences from the start are exact.
+    It should if all times lie between half the start and twice the start, where differences from the start are exact.
     """
     nearest, farthest = sorted((0.5 * start, 2.0 * start))
     return start != 0.0 and nearest <= low and high <= farthest  # time - start is exact there (Sterbenz)
 
 
 def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
-    """Return a plan and its kernel with time counted from an epoch, which becomes a constant of the plan.
+    """Return a plan and its kernel in which time is counted from an epoch, a new constant of the plan.
 
-    They are returned unchanged if the rates do not depend on the time.
+    If the rates do not depend on time, plan and kernel are returned unchanged.
     """
     if not kernel.rates.uses("t"):
         return plan, kernel
@@ -61,14 +63,14 @@ def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
 
 
 class ShiftedParameters:
-    """Parameters of formulas as functions of the epoch, the time at which a moved clock shows 0.
+    """Values of formulas as functions of the epoch, the time of the scene at which a clock shows 0.
 
     The parts that do not depend on the epoch are computed once.
 
     Parameters
     ----------
     parameters : pairs of name and formula
-        For example the parameters of the rates of a kernel that :func:`time_shifted` returns.
+        Formulas of the epoch, for example the parameters of the rates of a kernel that :func:`time_shifted` returns.
     constants : mapping
         Constants of the scene, by name.
     start : float
@@ -83,7 +85,7 @@ class ShiftedParameters:
         self._lines = [_line(node) for node in self._formulas]
 
     def parameters(self, epoch: float | Fraction) -> list[float]:
-        """Return the parameters for an epoch, s, on the clock of the motion, each computed exactly and rounded once."""
+        """Return the values for an epoch, s, on the clock of the motion, each computed exactly and rounded once."""
         time = self._start + Fraction(epoch)
         top, bottom, values = time.numerator, time.denominator, {EPOCH: time}
         try:
@@ -98,7 +100,7 @@ class ShiftedParameters:
 
 
 def _line(node: Node) -> tuple[int, int, int] | None:
-    """Return integers a, b, c if a formula equals (a + b*epoch)/c and evaluates with one rounding; otherwise None."""
+    """Return integers a, b, c if a formula equals (a + b*epoch)/c, otherwise None."""
     values = _coefficients(node)
     if values is None:
         return None
@@ -108,7 +110,7 @@ def _line(node: Node) -> tuple[int, int, int] | None:
 
 
 def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
-    """Return a and b if a formula equals a + b*epoch; otherwise None."""
+    """Return the numbers a and b if a formula equals a + b*epoch, otherwise None."""
     if node[0] == "number":
         return None if node[1] != node[1] else (Fraction(node[1]), Fraction(0))
     if node == ("symbol", EPOCH):
@@ -131,7 +133,7 @@ def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
 
 
 def compiled(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the path of the compiled library (kernel and DOP853 stepper) for a plan whose clock is moved."""
+    """Return the path of the library (kernel and DOP853 stepper) for a plan whose time is counted from an epoch."""
     return motion_library(plan, kernel)
 
 
@@ -141,11 +143,11 @@ def clock(
     start: float = 0.0,
     make: Callable[[Plan, SceneKernel], Any] = compiled,
 ) -> Callable[[float], tuple[Any, list[float]]]:
-    """Return a function from an epoch, s, to rates that count time from the epoch, and their parameters.
+    """Return a function of an epoch, s, that returns rates which count time from the epoch, and their parameters.
 
     ``moving`` returns plan and kernel as :func:`time_shifted` does; it is called on first use. ``constants`` and
-    ``start`` are arguments of :class:`ShiftedParameters`. ``make`` returns the library that DOP853 calls, or the
-    function in Python that SciPy calls.
+    ``start`` are arguments of :class:`ShiftedParameters`. ``make`` converts plan and kernel to the rates: to the
+    library that DOP853 calls, or to the Python function that SciPy calls.
     """
 
     @cache
@@ -157,7 +159,7 @@ def clock(
 
 
 def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:
-    """Return a formula with every part that does not contain the epoch replaced by its value."""
+    """Return the formula in which each part that does not contain the epoch is replaced by its value."""
     if node == ("symbol", EPOCH):
         return node
     if EPOCH not in names(node):

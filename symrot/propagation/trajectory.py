@@ -1,4 +1,4 @@
-"""Trajectories: the states of a motion at the sample times, and quantities computed from them on first use."""
+"""Trajectories: the states of a motion at the sample times, and quantities that are computed from them on first use."""
 
 from collections.abc import Callable
 from functools import cached_property
@@ -28,12 +28,13 @@ class Invariant(NamedTuple):
     Attributes
     ----------
     name, unit, reason : str
-        Its name, its SI unit, and the reason why it is conserved.
+        Name of the quantity, its SI unit, and the reason why it is conserved.
     values : array, shape (n,)
-        Its values at the sample times.
+        Values of the quantity at the sample times.
     scale : float
-        Largest magnitude along the trajectory: of energy and kinetic energy for an energy, of the whole vector for a
-        component of the angular momentum, of the spin for a spin. 1 for the norm of the quaternion.
+        Largest magnitude along the trajectory, by which the drift is divided. For an energy it is the largest magnitude
+        of energy and kinetic energy; for a component of the angular momentum, of the whole vector; for a spin, of the
+        spin. For the norm of the quaternion it is 1.
     drift : float
         Largest change since the start, relative to ``scale``.
 
@@ -53,26 +54,26 @@ class Invariant(NamedTuple):
 
 
 class Trajectory:
-    """Motion of a scene at the sample times, as a propagator returns it. Conventions: :mod:`symrot.conventions`.
+    """The motion of a scene at the sample times, returned by a propagator. Conventions: :mod:`symrot.conventions`.
 
     Attributes
     ----------
     t : array, shape (n,)
-        The requested sample times, s, up to a terminal event.
+        The requested sample times, s; after a terminal event there are no samples.
     y : array, shape (N, n)
-        The integrated states, in the order of ``states``, laid out as by solve_ivp.
+        The integrated states, in the order of ``states``; same layout as in solve_ivp.
     method, stats : str, Stats
         The method, and the cost of the motion: steps, evaluations, seconds.
     status, message, success : int, str, bool
-        As in solve_ivp: 1 if a terminal event ended the motion, else 0. A motion that cannot be followed raises a
-        PropagationError; its ``trajectory`` holds the samples before, with status -1 and ``success`` false.
+        As in solve_ivp: status is 1 if a terminal event ended the motion, else 0. If a motion cannot be followed, a
+        PropagationError is raised; its ``trajectory`` holds the samples before, with status -1 and ``success`` false.
     warnings : tuple of str
-        Sentences about missing guarantees: the accuracy under a torque without a formula, or an event whose formula
-        comes nearer to zero than the error of the motion.
+        Sentences that say what cannot be guaranteed: the accuracy under a torque without a formula, or whether an event
+        takes place if its formula comes nearer to zero than the error of the motion.
     t_events, y_events : list of arrays or None
-        Per requested event: its times, s, shape (k,), and the states at these times, shape (k, N).
+        For each requested event: its times, s, shape (k,), and the states at these times, shape (k, N).
     event_kinds : list of lists of str, or None
-        Per event: ``"rising"``, ``"falling"`` or ``"touching"`` for each of its times.
+        For each event and each of its times: ``"rising"``, ``"falling"`` or ``"touching"``.
 
     Examples
     --------
@@ -109,7 +110,7 @@ class Trajectory:
 
     @property
     def success(self) -> bool:
-        """Whether the motion reached its last sample time or a terminal event."""
+        """Whether the motion was followed to its last sample time or to a terminal event."""
         return self.status >= 0
 
     @property
@@ -143,12 +144,12 @@ class Trajectory:
         return self._states.T
 
     def _evaluate(self, *names: str) -> Floats:
-        """Return output quantities by name at the sample times, shape (n, len(names)); the kernel computes them."""
+        """Return the named output quantities at the sample times, shape (n, len(names)), computed by the kernel."""
         return self._motion.evaluate(self.t, self._states, names)
 
     @property
     def has_attitude(self) -> bool:
-        """Whether the attitude was computed; the plan skips it if neither a torque nor the output needs it."""
+        """Whether the attitude was computed; the plan leaves it out if neither a torque nor the output needs it."""
         return self._motion.plan.structure.attitude
 
     def _need_attitude(self) -> None:
@@ -181,7 +182,7 @@ class Trajectory:
     def euler(self, sequence: str, degrees: bool = False) -> Floats:
         """Return Euler angles in order of application, shape (n, 3), rad.
 
-        At gimbal lock (see :meth:`gimbal_lock`) only a sum or difference of two angles is defined;
+        At gimbal lock (see :meth:`gimbal_lock`) only the sum or the difference of two angles is defined;
         :func:`symrot.kinematics.conversions.quaternion_to_euler` says which values are returned there.
         """
         return conversions.quaternion_to_euler(self.quaternion, sequence, degrees=degrees)[0]
@@ -211,12 +212,12 @@ class Trajectory:
 
     @cached_property
     def angular_momentum_body(self) -> Floats:
-        """Angular momentum including a rotor's, body components, kg m^2/s, shape (n, 3)."""
+        """Angular momentum, including that of a rotor, body components, kg m^2/s, shape (n, 3)."""
         return self._evaluate("momentum_1", "momentum_2", "momentum_3")
 
     @cached_property
     def angular_momentum_space(self) -> Floats:
-        """Angular momentum including a rotor's, space components, kg m^2/s, shape (n, 3)."""
+        """Angular momentum, including that of a rotor, space components, kg m^2/s, shape (n, 3)."""
         return self._to_space(self.angular_momentum_body)
 
     @cached_property
@@ -231,18 +232,18 @@ class Trajectory:
 
     @property
     def axis_number(self) -> int:
-        """Index of the body axis that :attr:`axis` follows, from 0: the symmetry axis, or 2 if no body axis is one."""
+        """Index, from 0, of the body axis whose direction is :attr:`axis`: the symmetry axis, or 2 if there is none."""
         principal = self.scene.body.principal
         return 2 if principal.symmetry_axis is None or not principal.given_axes else int(principal.symmetry_axis)
 
     @cached_property
     def axis(self) -> Floats:
-        """The symmetry axis of the body (its third axis if it has none), space components, shape (n, 3)."""
+        """Direction of the symmetry axis (without one: of the third body axis), space components, shape (n, 3)."""
         return self.dcm[:, :, self.axis_number]
 
     @cached_property
     def invariants(self) -> list[Invariant]:
-        """The conserved quantities along the trajectory; conservation was proven when the kernel was derived."""
+        """The conserved quantities along the trajectory; their conservation was proven when the kernel was derived."""
         invariants = []
         conserved = [item for item in self._motion.kernel.conserved if item.holds]
         for item in conserved:
@@ -273,7 +274,8 @@ class Trajectory:
     def sol(self, t: ArrayLike) -> Floats:
         """Return omega and quaternion at any m times of the span, shape (7, m), as ``sol`` of solve_ivp does.
 
-        Without attitude the shape is (3, m). A single time gives shape (7,). Steps are recorded on the first call.
+        If the attitude is not computed, the shape is (3, m). For a single time the shape is (7,) or (3,). On the first
+        call the motion is integrated again and its steps are recorded.
         """
         return self._solution(t)
 

@@ -16,7 +16,10 @@ Survey = list[tuple[Document, list[Finding]]]
 def survey(
     names: Sequence[str] = DOCUMENTS, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Survey:
-    """Decide the claims of some textbooks and return the verdicts, with corrections of claims that do not hold."""
+    """Decide the claims of the named textbooks; return (textbook, findings about its claims) for each textbook.
+
+    With ``repair``, a finding about a claim that does not hold contains a correction.
+    """
     documents = []
     for name in names:
         source = document(name)
@@ -31,7 +34,7 @@ def _total(items: Sequence[Finding]) -> str:
 
 
 def lines(survey: Survey) -> list[str]:
-    """Return the findings as lines of text: one line per claim, more if the claim is not true, and a summary."""
+    """Return the findings as lines of text: one line for a claim that holds, more for another claim, and a summary."""
     text: list[str] = []
     for source, items in survey:
         text += [f"{source.title} [{source.name}]", ""]
@@ -74,7 +77,7 @@ def facts(survey: Survey) -> list[dict[str, Any]]:
 
 
 def page(survey: Survey) -> str:
-    """Return the text of ``errata.md``: the claims that do not hold, with correction, reason and proof, by textbook."""
+    """Return the text of ``errata.md``: for each textbook, the claims that do not hold, with correction and reason."""
     text = [
         "# Errata",
         "",

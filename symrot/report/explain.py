@@ -18,7 +18,7 @@ FREE = frozenset({"neg"})  # a minus sign counts as part of its addition or mult
 
 
 def _operations(structure: Structure) -> Counter[str]:
-    """Return the numbers of operations, by kind, in one evaluation of the equations of motion of a structure."""
+    """Return the number of operations of each kind in one evaluation of a structure's equations of motion."""
     from symrot.codegen.scene_kernels import rates_program
     from symrot.dynamics.equations import equations_of_motion
 
@@ -32,7 +32,7 @@ def _row(item: str, skipped: bool, why: str, derivation: str = "", operations: C
 
 
 def _ladder(plan: Plan) -> "list[PlanRow]":
-    """Return one table row for each rule of a plan: operations that remain after it, and operations that it saves."""
+    """Return a table row for the general motion and for each rule of a plan: operations after it, operations saved."""
     from symrot.planning.general_structure import general_structure
 
     general = _operations(general_structure(plan.scene, bool(plan.switches)))
@@ -73,7 +73,7 @@ BENDS = frozenset({"abs", "min", "max", "clip"})
 
 
 def _formulas(plan: Plan, method: str) -> "list[PlanRow]":
-    """Return the table rows on torques given by formulas: how steps notice their narrow features and switches."""
+    """Return the table rows about torques given by formulas: how steps notice short pulses, jumps and kinks in them."""
     from symrot.propagation.compiled_models import has_formulas
 
     if not has_formulas(plan):
@@ -116,7 +116,7 @@ def _switches(functions: list[str]) -> "PlanRow":
 
 
 def _samples(plan: Plan) -> "list[PlanRow]":
-    """Return the table row about a torque that is a table of samples, whose operations are not counted."""
+    """Return the table row about a torque given by samples, in a list of one row; empty if there is no such torque."""
     table = plan.scene.table
     if table is None:
         return []
@@ -129,7 +129,8 @@ def _samples(plan: Plan) -> "list[PlanRow]":
 def facts(plan: Plan) -> "PlanReport":
     """Return the explained plan as data for JSON.
 
-    In each row, ``operations`` counts the remaining operations by kind, and ``saved`` is the number saved by the row.
+    In each row, ``operations`` counts the remaining operations by kind, and ``saved`` is the number of operations that
+    the row's rule saves.
     """
     scene = plan.scene
     ladder = _ladder(plan)
@@ -153,7 +154,7 @@ def _counts_text(counts: dict[str, int] | None) -> str:
 
 
 def lines(report: "PlanReport") -> list[str]:
-    """Return the explained plan, data from :func:`facts`, as lines of text; the first line is the title."""
+    """Return lines of text about an explained plan, from the data of :func:`facts`; the first line is the title."""
     rows = [HEAD]
     for row in report["rows"]:
         changed = row["saved"] != 0

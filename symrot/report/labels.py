@@ -1,4 +1,4 @@
-"""The output quantities of a trajectory as labelled columns, with meaning, unit and frame."""
+"""The output quantities of a trajectory with labels: names of components, meaning, unit and frame."""
 
 from typing import Any, NamedTuple
 
@@ -35,7 +35,7 @@ FRAMES = {
 class Labelled(NamedTuple):
     """One quantity of a trajectory with its labels: name, components, unit, frame and meaning.
 
-    Its values have the shape (n,) or (n, ...) for n samples.
+    ``values`` has the shape (n,) or (n, ...) for n samples.
     """
 
     name: str
@@ -56,8 +56,8 @@ def _euler(output: Output) -> tuple[tuple[str, ...], str, str]:
 def labelled(trajectory: Any) -> list[Labelled]:
     """Return the time and the output quantities of a trajectory, each with its labels.
 
-    Euler angles are followed by the column :data:`LOCK`. It is true where the sequence is in gimbal lock, so that only
-    the sum or the difference of two angles is defined.
+    Euler angles are followed by the quantity :data:`LOCK`. It is true for samples in gimbal lock, where only the sum or
+    the difference of two angles is defined.
     """
     output = trajectory.scene.output
     quantities = [Labelled("t", trajectory.t, ("t",), "s", "", "time")]

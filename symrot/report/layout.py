@@ -1,4 +1,4 @@
-"""Layout of text for people: single lines, numbers, durations, aligned columns, bold text in terminals."""
+"""Layout of text for terminals: single lines, numbers, durations, aligned columns, bold text."""
 
 import math
 import os
@@ -13,10 +13,10 @@ __all__ = ["WIDTH", "apart", "columns", "duration", "emphasis", "exact", "fields
 WIDTH = 110
 NARROWEST = 40  # smallest width, in characters, to which text is wrapped
 MARGIN = 2  # columns of a terminal that stay free, because lines may be indented later
-LEAST = 20  # smallest width of the column that is wrapped first, before other columns are wrapped
+LEAST = 20  # smallest width of the column that is wrapped first; after that, other columns are wrapped
 LONGEST_DENOMINATOR = 10**12
 DIGITS = 17  # digits that distinguish any two doubles
-SEEN = 0.001  # rounding of the two ends of an interval, relative to its length
+SEEN = 0.001  # largest rounding error of printed numbers, relative to the distance of the closest two
 
 
 def one_line(text: str) -> str:
@@ -30,7 +30,7 @@ def number_text(value: float | Fraction, digits: int = 6) -> str:
 
 
 def apart(*values: float) -> list[str]:
-    """Return numbers as text, with enough digits to distinguish the two closest numbers."""
+    """Return numbers as text, with enough digits to distinguish the closest two of them."""
     ordered = sorted({float(value) for value in values})
     nearest = min((after - before for before, after in pairwise(ordered)), default=math.inf)
     digits = 6
@@ -53,13 +53,13 @@ def duration(seconds: float) -> str:
 
 
 def emphasis(text: str, stream: TextIO) -> str:
-    """Return text in bold if the stream is a terminal and NO_COLOR is not set (https://no-color.org)."""
+    """Return text, in bold if the stream is a terminal and NO_COLOR is not set (https://no-color.org)."""
     bold = stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
     return f"\x1b[1m{text}\x1b[0m" if bold else text
 
 
 def room(most: int = WIDTH) -> int:
-    """Return the width for lines of text: the width of the terminal, at most ``most``; for a pipe or file ``most``."""
+    """Return the width of lines in characters: the terminal's width, at most ``most``; ``most`` for a pipe or file."""
     if not sys.stdout.isatty():
         return most
     from shutil import get_terminal_size  # imported here: slow, and not needed for a pipe
@@ -74,7 +74,10 @@ def _wrapped(text: str, width: int) -> list[str]:
 
 
 def fields(rows: Iterable[tuple[str, str]], width: int | None = None) -> list[str]:
-    """Return pairs (name, text) as aligned, wrapped lines; a pair with an empty name continues the previous pair."""
+    """Return pairs (name, text) as lines in which the texts are aligned and wrapped.
+
+    A pair with an empty name continues the pair before it.
+    """
     rows, width = list(rows), room() if width is None else width
     first = max((len(name) for name, _ in rows), default=0) + 2
     return [
@@ -92,12 +95,12 @@ def columns(
     Parameters
     ----------
     rows : sequence of rows of text
-        The first row may be the head.
+        The first row may contain the titles of the columns.
     width : int, optional
         Width of a line. Columns of text are wrapped to fit; a table of numbers that is too wide continues in a
         second part below the first. Default: the width that :func:`room` returns.
     wrap : int
-        Index of the column that is wrapped first; other columns are wrapped only if that is not enough.
+        Index of the column that is wrapped first; other columns are wrapped only if this is not enough.
     right : sequence of int
         Indices of right-aligned columns: numbers, which are never wrapped.
     """
@@ -122,7 +125,7 @@ def columns(
 
 
 def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequence[int]) -> list[int]:
-    """Return the widths of a table's columns: the length of the longest text, but less for wrapped columns."""
+    """Return the widths of a table's columns: the length of the longest text, or less if a column must be wrapped."""
     count = len(rows[0])
     widths = [max(len(row[i]) for row in rows) for i in range(count)]
     left = width - 2 * (count - 1) - sum(size for i, size in enumerate(widths) if i != wrap)

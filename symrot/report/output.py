@@ -1,4 +1,4 @@
-"""Writing of trajectories to NPZ or CSV files with labels, units, conventions and the name of their scene.
+"""Writing of trajectories to NPZ or CSV files, with labels, units, conventions and the name of the scene.
 
 Equal motions give files with equal bytes.
 """
@@ -86,13 +86,13 @@ def _csv(stream: BinaryIO, arrays: list[Labelled], about: "FileRecord") -> None:
 
 
 def _printed(item: Labelled, part: slice) -> list[list[str]]:
-    """Return a quantity as columns of numbers in text, with enough digits to restore the same doubles."""
+    """Return the numbers of a quantity as text, one list per component, with enough digits to restore the doubles."""
     values = item.values[part].reshape(-1, len(item.components)).T
     return [[str(int(x)) if item.name == LOCK else repr(x) for x in column] for column in values.tolist()]
 
 
 FORMATS: dict[str, Callable[[BinaryIO, list[Labelled], "FileRecord"], None]] = {".npz": _npz, ".csv": _csv}
-"""Suffix -> writer."""
+"""The suffix of a file -> the function that writes this format."""
 
 
 def save(trajectory: "Trajectory", path: Path, tolerance: float) -> list[str]:
@@ -105,11 +105,11 @@ def save(trajectory: "Trajectory", path: Path, tolerance: float) -> list[str]:
     Parameters
     ----------
     trajectory : Trajectory
-        The motion.
+        The motion to write.
     path : Path
-        Its suffix, one of :data:`FORMATS`, decides the format.
+        The file to write; its suffix, one of :data:`FORMATS`, decides the format.
     tolerance : float
-        The tolerance of the propagation.
+        The tolerance of the propagation, which is noted in the file.
     """
     arrays = labelled(trajectory)
     about = metadata(trajectory, arrays, tolerance)

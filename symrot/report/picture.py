@@ -1,6 +1,6 @@
-"""The style of all matplotlib figures, and writing of them to PDF, SVG or PNG files, without a date.
+"""The style of all matplotlib figures, and functions that write figures to PDF, SVG or PNG files without a date.
 
-A palette makes PNG files small.
+A PNG file with a palette of few colours is small.
 """
 
 from collections.abc import Callable
@@ -37,7 +37,7 @@ def literal(text: str) -> str:
 
 
 def draw(figure: Callable[[], Any], path: Path, dpi: int = 150, few_colours: bool = True) -> None:
-    """Write the figure that a function returns to a file, in symrot's style; for the rest see :func:`save_page`."""
+    """Write the figure that a function draws and returns to a file, in symrot's style; see :func:`save_page`."""
     import matplotlib
 
     with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
@@ -63,7 +63,7 @@ def save_page(page: Any, path: Path, dpi: int, few_colours: bool = True) -> None
 
 
 def _palette(page: Any, dpi: int, stream: BinaryIO) -> None:
-    """Write a figure as a PNG with few colours, using Pillow, which matplotlib requires anyway."""
+    """Write a figure as a PNG with few colours; it uses Pillow, which matplotlib requires anyway."""
     from PIL import Image
     from PIL.PngImagePlugin import PngInfo
 

@@ -1,6 +1,7 @@
 """The figure of one motion: angular velocity, attitude, conserved quantities, and paths on the sphere.
 
-It uses matplotlib's objects and the Agg canvas: no window, no global state. Equal motions give equal bytes.
+The module uses matplotlib's objects and the Agg canvas, without a window or global state. Equal motions give files with
+equal bytes.
 """
 
 from importlib.util import find_spec
@@ -23,7 +24,7 @@ SUFFIXES = (".png", ".pdf", ".svg")
 FEWEST, MOST, PER_STEP = 1500, 20_000, 6  # limits of the number of samples in a plot, and samples per step
 WIDTHS = (2.0, 1.6, 1.2, 0.9)  # later curves are thinner and drawn on top, so that equal curves all stay visible
 TIMES = ((4 * 86400.0, 86400.0, "days"), (4 * 3600.0, 3600.0, "h"), (0.0, 1.0, "s"))  # least span, factor, unit
-QUIET = 0.01  # a component that changes by less than this part of its size may be described instead of drawn
+QUIET = 0.01  # a component that changes by less than this fraction of its size may be written as text, not drawn
 
 
 def require_matplotlib() -> None:
@@ -58,7 +59,7 @@ def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -
 
 
 def _unwrapped(angles: Floats, turn: float) -> Floats:
-    """Return angles with NaN at each jump by a full rotation, so that the curve is interrupted there."""
+    """Return angles with NaN at each jump by more than half a rotation (``turn``), where the curve is interrupted."""
     gaps = np.zeros_like(angles, dtype=bool)
     gaps[1:] = np.abs(np.diff(angles)) > 0.5 * turn
     return np.where(gaps, np.nan, angles)
@@ -119,10 +120,7 @@ def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
 
 
 def _body_sphere(axes: Any, trajectory: Any) -> None:
-    """Draw the path of the angular momentum of a free body among its possible paths.
-
-    For another body, draw the path of its axis of rotation.
-    """
+    """Draw the path of a free body's angular momentum among other possible paths, or any other body's rotation axis."""
     torques = trajectory.scene.torques
     if any(kind != "rotor" for kind in trajectory.scene.torque_kinds):
         draw_directions(axes, trajectory.omega, ("1", "2", "3"))
@@ -188,14 +186,14 @@ def _words(page: Any, trajectory: Any, tolerance: float) -> None:
 
 
 def save(propagator: Any, trajectory: Any, path: Path) -> None:
-    """Draw a motion into a file; if the scene has too few or too many samples for a plot, propagate it again.
+    """Draw a motion into a file; if the scene has too few or too many samples for a plot, propagate the motion again.
 
     Parameters
     ----------
     propagator, trajectory : Propagator, Trajectory
-        The propagator, and its motion at the times of the scene.
+        The propagator, and the trajectory that it returned for the times of the scene.
     path : Path
-        Its suffix, one of :data:`SUFFIXES`, decides the format.
+        The file to write; its suffix, one of :data:`SUFFIXES`, decides the format.
     """
     count = min(max(FEWEST, len(trajectory), PER_STEP * trajectory.stats.accepted), MOST)
     if count != len(trajectory):

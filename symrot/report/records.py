@@ -1,6 +1,6 @@
 """Types of the JSON records that commands print with ``--json`` and write into files.
 
-Only type checkers read this module, so that no command waits for it.
+Only type checkers import this module, so that no command waits for it.
 """
 
 from typing import NotRequired, TypedDict
@@ -34,11 +34,11 @@ BodyRecord = TypedDict(
         "mass": str | None,
     },
 )
-"""A body: principal moments, kg m^2, and mass, kg, as exact text."""
+"""A body: its principal moments of inertia (kg m^2) and its mass (kg) as exact text, and other properties."""
 
 
 class InitialRecord(TypedDict):
-    """The initial state of a run: angular velocity omega (rad/s) as exact text, and the quaternion."""
+    """The initial state of a run: angular velocity ``omega`` (rad/s) as exact text, and the quaternion."""
 
     omega: list[str]
     quaternion: list[float]
@@ -80,7 +80,7 @@ class CostRecord(TypedDict):
 
 
 class SwitchingRecord(TypedDict):
-    """One switching of a function in a torque, see :class:`symrot.propagation.steppers.stepping.Switching`."""
+    """One switching of a function in a torque; see :class:`symrot.propagation.steppers.stepping.Switching`."""
 
     t: float
     function: str
@@ -107,7 +107,7 @@ class LostRecord(TypedDict):
 
 
 class FinalRecord(TypedDict):
-    """The last sample of a motion: t (s), omega (rad/s), and the quaternion if it was computed."""
+    """The last sample of a motion: ``t`` (s), ``omega`` (rad/s), and the quaternion if it was computed."""
 
     t: float
     omega: list[float]
@@ -115,7 +115,7 @@ class FinalRecord(TypedDict):
 
 
 class WrittenRecord(TypedDict):
-    """A file that a run wrote; for a file of samples, also their number and the names of the arrays."""
+    """A file that a run wrote; for a file of samples, also the number of samples and the names of the arrays."""
 
     file: str
     samples: NotRequired[int]
@@ -150,7 +150,7 @@ class RunReport(TypedDict):
 class PlanRow(TypedDict):
     """A row of the table that explains a plan: an item computed or skipped, and the operations saved.
 
-    ``operations`` counts the remaining operations by kind, ``saved`` is the number saved by the row.
+    ``operations`` counts the remaining operations by kind; ``saved`` is the number of operations that the row saves.
     """
 
     item: str
@@ -162,7 +162,7 @@ class PlanRow(TypedDict):
 
 
 class OperationsRecord(TypedDict):
-    """Operations in one evaluation of the rates: of the general equations, and of those that the plan simplified."""
+    """Numbers of operations in one evaluation of the rates: by the general and by the plan's simplified equations."""
 
     general: int
     specialised: int

@@ -1,4 +1,4 @@
-"""The figure of the operations and the time that a kernel specialised to its scene saves against a general kernel."""
+"""The figure of the operations and the time that kernels specialised to their scenes save."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -19,7 +19,7 @@ LEAST = 0.6  # position on the logarithmic axis of a motion without any operatio
 
 
 def figure(ladder: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of the savings that :func:`symrot.bench.skip.measure` measured, kernel by kernel."""
+    """Return a matplotlib Figure of the savings that :func:`symrot.bench.skip.measure` measured, one row per kernel."""
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 

@@ -1,4 +1,4 @@
-"""Drawing of the path of a direction on a sphere seen from far away, or on its tangent plane if the path is small."""
+"""Drawing of a direction's path on a sphere seen from far away, or on a tangent plane if the path is small."""
 
 from collections.abc import Callable
 from typing import Any
@@ -22,7 +22,7 @@ MOST_VECTORS = 6000  # largest number of segments drawn as vectors in a PDF or S
 
 
 def prefixed(size: float, unit: str) -> tuple[float, str]:
-    """Return a divisor that makes numbers of a given size easy to read, and the resulting unit, such as mm for m."""
+    """Return a divisor that makes numbers of about ``size`` easy to read, and their unit after it, such as mm for m."""
     factor, prefix = next((pair for pair in PREFIXES if size >= 0.1 * pair[0]), PREFIXES[-1])
     return (factor, f"{prefix}{unit}") if size > 0 else (1.0, unit)
 
@@ -130,7 +130,7 @@ def draw_directions(
     Parameters
     ----------
     axes : matplotlib Axes
-        The axes to draw into; they lose their frame when a sphere is drawn.
+        The matplotlib axes to draw into; their frame is removed when a sphere is drawn.
     vectors : array, shape (n, 3)
         Vectors of any length; zero vectors are left out.
     labels : tuple of 3 str

@@ -31,9 +31,9 @@ def facts(propagator: "Propagator", trajectory: "Trajectory", preparation: float
     Parameters
     ----------
     propagator, trajectory : Propagator, Trajectory
-        The propagator, and its motion at the times of the scene.
+        The propagator, and the trajectory that it returned for the times of the scene.
     preparation : float
-        Seconds to derive and compile the kernel, or to load it.
+        The time in seconds that it took to derive and compile the kernel, or to load it.
     """
     scene, plan, stats = trajectory.scene, propagator.plan, trajectory.stats
     body = scene.body
@@ -146,9 +146,9 @@ def _settings(report: "RunReport") -> list[tuple[str, str]]:
 
 
 def _switches(times: list[float], switchings: "list[SwitchingRecord]", start: str, stop: str) -> list[tuple[str, str]]:
-    """Return a row of text for each function with jumps or kinks, with the times at which it switched.
+    """Return a row (label, text) for each function with jumps or kinks: the times at which it switched.
 
-    At such a time the motion crosses the switch, begins to slide along it, or leaves it.
+    At such a time the motion crosses the jump or kink, begins to slide along it, or leaves it.
     """
     by_function: dict[str, list[tuple[float, str]]] = {}
     for item in switchings:
@@ -187,7 +187,7 @@ def _conserved(report: "RunReport") -> list[str]:
 
 
 def _lost(candidates: "list[LostRecord]") -> list[tuple[str, str]]:
-    """Return rows of text about candidates that are not conserved, one row for each reason."""
+    """Return a row (label, text) for each reason: the quantities that are not conserved, and this reason."""
     names: dict[str, list[str]] = {}
     for item in candidates:
         names.setdefault(item["reason"], []).append(item["name"])
@@ -218,7 +218,7 @@ def _holding(item: "WrittenRecord") -> str:
 
 
 def summary(report: "RunReport") -> list[str]:
-    """Return the report of a run, data from :func:`facts`, as lines of text; the first line is the title."""
+    """Return lines of text about a run, from the data of :func:`facts`; the first line is a title."""
     scene = report["scene"]
     source = [f"  {line}" for line in fields([("", one_line(scene["source"]))])] if scene["source"] else []
     settings = [f"  {line}" for line in fields(_settings(report) + _skipped(report))]

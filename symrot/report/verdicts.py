@@ -1,4 +1,4 @@
-"""Verdicts on claims as text: one claim in full, or a file of claims as a list with a count."""
+"""Verdicts on claims as text: in full for one claim, as a list with a count for a file of claims."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -46,7 +46,7 @@ def check(
 
 
 def _units(words: Sequence[str]) -> dict[str, str]:
-    """Return the units of quantities, by name, from texts like ``F=kg m/s^2``."""
+    """Return a map from the name of each quantity to its unit, from texts such as ``F=kg m/s^2``."""
     pairs = [word.partition("=") for word in words]
     for word, (name, sign, unit) in zip(words, pairs, strict=True):
         if not (name.strip() and sign and unit.strip()):

@@ -1,4 +1,7 @@
-"""Work-precision studies (time against error for several methods) as text, and the comparison of two studies."""
+"""Work-precision studies as text, and the comparison of two studies.
+
+A work-precision study measures the time and the error of several methods on one scene.
+"""
 
 import json
 import math
@@ -25,7 +28,7 @@ def _number(value: float) -> str:
 
 
 def _decades(study: Mapping[str, Any]) -> list[str]:
-    """Return a study as a table with one column per decade of the error: the shortest time, and the ratios to it."""
+    """Return a table of a study as lines: per power of ten of the error, the shortest time, and all ratios to it."""
     table = study["decades"]
     names = list(dict.fromkeys(name for row in table for name in row["methods"]))
     rows = [["error <=", *(f"{row['error']:.0e}" for row in table)]]
@@ -73,7 +76,7 @@ def _against(study: Mapping[str, Any]) -> list[str]:
 
 
 def lines(study: Mapping[str, Any]) -> list[str]:
-    """Return a study of :func:`symrot.bench.comparison.work_precision.study` as lines of text.
+    """Return lines of text about a study of :func:`symrot.bench.comparison.work_precision.study`.
 
     The first line is the title.
     """
@@ -129,13 +132,13 @@ def read_study(path: Path) -> dict[str, Any]:
         whole = False
     if not whole:
         raise InputError(
-            f"{label}: expected a whole study of `symrot bench`, got one with missing parts or impossible numbers"
+            f"{label}: expected a whole study of `symrot bench`, got a study with missing parts or impossible numbers"
         )
     return study
 
 
 def _positive(study: Mapping[str, Any]) -> bool:
-    """Return whether all times of a study are positive and all errors are zero or positive."""
+    """Return whether all times of a study are positive and finite, and no error is negative."""
     times = [cell["seconds"] for row in study["decades"] for cell in (row, *row["methods"].values())]
     errors = [run["error"] for run in study["runs"]] + [row["error"] for row in study["decades"]]
     times += [run["seconds"] for run in study["runs"]]
@@ -143,12 +146,12 @@ def _positive(study: Mapping[str, Any]) -> bool:
 
 
 def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the ratios of the times of two studies by decade of the error, and the least errors.
+    """Return the ratios of the times of two studies, by method and power of ten of the error, and the least errors.
 
     Raises
     ------
     InputError
-        If the studies are of different scenes, or have no method and decade of the error in common.
+        If the studies are of different scenes, or have no method in common at the same power of ten of the error.
     """
     names = [study["scene"]["name"] for study in (first, second)]
     if names[0] != names[1]:
@@ -191,7 +194,7 @@ def _least_errors(study: Mapping[str, Any]) -> dict[str, float]:
 
 
 def lines_of_comparison(comparison: Mapping[str, Any]) -> list[str]:
-    """Return the comparison of two studies, data from :func:`compared`, as lines of text."""
+    """Return lines of text about the comparison of two studies, from the data of :func:`compared`."""
     errors = sorted(
         {error for item in comparison["ratios"].values() for error in item["decades"]}, key=float, reverse=True
     )

@@ -1,7 +1,7 @@
 """The figure of a work-precision study: time against error, one curve for each method, labelled at its end.
 
-Both axes are logarithmic; the error grows to the left, so that better is right and faster is down. A curve joins the
-runs for which no other run of the same method is both faster and more accurate; the other runs are faint points.
+Both axes are logarithmic; errors become smaller to the right, and times become shorter downward. A curve joins the runs
+for which no other run of the same method is both faster and more accurate; the other runs are faint points.
 """
 
 from collections.abc import Mapping, Sequence
@@ -56,13 +56,13 @@ METHOD_LABELS = {
 
 
 def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
-    """Return the runs that no other run beats in both error and time, sorted by error, and then the other runs."""
+    """Return two lists of points (error, time): the runs that no other run beats in both, by error; the other runs."""
     points = sorted((max(float(run["error"]), LEAST_ERROR), float(run["seconds"])) for run in runs)
     points = [point for point in points if point[0] < OUTERMOST]
     best: list[tuple[float, float]] = []
     rest: list[tuple[float, float]] = []
     least = float("inf")
-    for point in points:  # by rising error: each point must be faster than all before it
+    for point in points:  # in order of increasing error: each point must be faster than all before it
         (best if point[1] < least else rest).append(point)
         least = min(least, point[1])
     return best, rest
@@ -162,6 +162,6 @@ def save(study: Mapping[str, Any], path: Path) -> None:
     study : mapping
         The result of :func:`symrot.bench.comparison.work_precision.study`, or the content of its file.
     path : Path
-        Its suffix, ``.png``, ``.pdf`` or ``.svg``, decides the format.
+        The file to write; its suffix, ``.png``, ``.pdf`` or ``.svg``, decides the format.
     """
     draw(lambda: figure(study), path)

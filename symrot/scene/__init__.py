@@ -1,1 +1,1 @@
-"""Scenes: problems of rotation as data, read from files, checked, and stored as exact numbers."""
+"""Scenes: descriptions of a body, its torques and its initial state, read from files and checked."""

@@ -1,7 +1,7 @@
-"""Attitudes in scenes, read exactly: quaternion, Euler sequence, axis and angle, or direction cosine matrix.
+"""Attitudes in scenes, read exactly: quaternion, Euler angles, axis and angle, or direction cosine matrix.
 
-All numbers are Fractions, so that a right angle rotates a part of a body by exactly a right angle, and the quaternion
-of an initial attitude has unit norm to 2^-200 for any input. Conventions: :mod:`symrot.conventions`.
+All numbers are Fractions, so that a right angle rotates a part of a body by exactly a right angle. The norm of the
+quaternion of an initial attitude differs from 1 by at most 2^-200. Conventions: :mod:`symrot.conventions`.
 """
 
 from collections.abc import Callable, Mapping
@@ -17,7 +17,7 @@ from symrot.scene.reader import Entry, Reader, fail, flag, number, read_table, t
 __all__ = ["ORTHOGONAL", "Attitude", "read_attitude", "read_sequence", "to_body", "to_space"]
 
 ORTHOGONAL = Fraction(1, 10**9)
-"""Largest allowed difference of R R^T from the identity for a matrix R in a scene; an exact rotation replaces R."""
+"""Largest allowed deviation of R R^T from the unit matrix, for a matrix R in a scene; an exact rotation replaces R."""
 
 FORMS = '{quaternion = [..]}, {sequence = "ZXZ", angles = [..]}, {axis = [..], angle = ..} or {dcm = [[..], ..]}'
 
@@ -27,7 +27,10 @@ Matrix = tuple[Vector, Vector, Vector]
 
 
 class Attitude(NamedTuple):
-    """An attitude as a unit quaternion and as the matrix ``dcm_sb``; the matrix is exact if the angles are."""
+    """An attitude as a unit quaternion and as the matrix ``dcm_sb``.
+
+    The matrix is exact if the sines and cosines of the angles in the scene are rational.
+    """
 
     quaternion: Quaternion
     dcm: Matrix
@@ -60,7 +63,7 @@ def _unit(q: Quaternion) -> Quaternion:
 
 
 def _dcm(q: Quaternion) -> Matrix:
-    """Return the matrix ``dcm_sb`` of a quaternion of any length except zero; rational numbers stay rational."""
+    """Return the matrix ``dcm_sb`` of a quaternion of any norm except zero; the result is exact."""
     w, x, y, z = q
     s = 2 / sum(map(Fraction.__mul__, q, q), Fraction(0))
     return (
@@ -71,7 +74,7 @@ def _dcm(q: Quaternion) -> Matrix:
 
 
 def _about(axis: Vector, angle: Angle) -> Attitude:
-    """Return the rotation by an angle about an axis, which need not be a unit vector (Rodrigues' formula)."""
+    """Return the attitude after a rotation by an angle about an axis of any length (Rodrigues' formula)."""
     x, y, z = axis
     square = x * x + y * y + z * z
     length = sqrt(square)
@@ -101,9 +104,10 @@ def _of_sequence(name: str, angles: tuple[Angle, ...]) -> Attitude:
 
 
 def _of_dcm(rows: Matrix, value: object, where: str) -> Attitude:
-    """Return the attitude that a matrix in a scene describes, as a quaternion and its exact matrix.
+    """Return the attitude that a matrix in a scene describes.
 
-    The quaternion is computed from its largest component (Shepperd's method).
+    The quaternion is computed without loss of digits (Shepperd's method); the matrix of the result is the exact matrix
+    of this quaternion.
     """
     product = _matrix_product(rows, tuple(zip(*rows, strict=True)))  # type: ignore[arg-type]
     worst = max(abs(product[i][j] - (i == j)) for i in range(3) for j in range(3))
@@ -143,7 +147,7 @@ def _four(value: Any, where: str) -> Quaternion:
 
 
 def _read_quaternion(value: Any, where: str) -> Attitude:
-    """Return the attitude of a quaternion (q0, q1, q2, q3) in a scene: scalar first, and not zero."""
+    """Return the attitude that a quaternion (q0, q1, q2, q3) in a scene describes; it must not be zero."""
     q = _four(value, where)
     return Attitude(_unit(q), _dcm(q))
 
@@ -157,7 +161,7 @@ def _rows(value: Any, where: str) -> Matrix:
 
 
 def read_sequence(value: Any, where: str) -> str:
-    """Return the name of an Euler sequence in a scene, such as ``"ZXZ"``; raise InputError for any other value."""
+    """Return the value if it is the name of an Euler sequence, such as ``"ZXZ"``; raise InputError otherwise."""
     try:
         parse_sequence(value)
     except InputError:
@@ -221,7 +225,7 @@ _FORMS: dict[str, Callable[[Mapping[str, Any], str], Attitude]] = {
 
 
 def read_attitude(value: Any, where: str) -> Attitude:
-    """Return the attitude that a table of a scene describes by exactly one of quaternion, angles, axis or matrix."""
+    """Return the attitude that a table of a scene describes: quaternion, Euler angles, axis and angle, or matrix."""
     entries = table(value, where, f"an attitude: {FORMS}")
     form = next((reader for key, reader in _FORMS.items() if key in entries), None)
     if form is None:

@@ -1,8 +1,8 @@
-"""Bodies of scenes: inertia from exactly one source, point of rotation, and a check that such a body can exist.
+"""Bodies of scenes: the inertia, the point of rotation, and a check that such a body can exist.
 
-The sources are ``shape`` with dimensions and mass or density; ``[[body.part]]``, a body composed of parts;
-``principal`` moments; and ``inertia``, the tensor. The result is exact (Fractions) and in the axes in which the body
-was given.
+The inertia is given in exactly one of four ways: by ``shape`` with dimensions and mass or density; by
+``[[body.part]]``, the parts of which the body is composed; by its ``principal`` moments; or by ``inertia``, the tensor.
+The result consists of exact numbers (Fractions) and refers to the axes in which the body was given.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -38,7 +38,7 @@ _UNTURNED: Matrix = (
 
 
 class Body(NamedTuple):
-    """A rigid body about its point of rotation, in the axes in which it was given.
+    """A rigid body: its inertia about the point of rotation, in the axes in which the body was given.
 
     Attributes
     ----------
@@ -51,9 +51,9 @@ class Body(NamedTuple):
     about : str
         The point of rotation: ``"center_of_mass"`` or ``"fixed_point"``.
     description : str
-        How the scene describes the body.
+        Name of the body in the scene, or a short description such as ``"cuboid"``.
     principal : Principal
-        Class of the body, principal moments, kg m^2, and axes.
+        Symmetry class of the body, principal moments, kg m^2, and principal axes.
     parts : tuple of Part
         The shapes of which the body consists, for pictures; empty if only its inertia is known.
     origin : tuple of 3 Fraction
@@ -83,8 +83,8 @@ def read_body(value: Any, where: str) -> Body:
     Raises
     ------
     InputError
-        For no or several sources of the inertia, unknown shapes and keys, dimensions out of range, an inertia that no
-        body has, or a body without three positive moments (a needle, a point). The message names file, key and value.
+        If the inertia is not given in exactly one way, a shape or key is unknown, a dimension is out of range, no body
+        has the inertia, or a principal moment is zero (a needle, a point). The message names file, key and value.
     """
     entries = table(value, where, f"a table with {EXPECTED_SOURCE}")
     sources = [way for way in INERTIA_SOURCES if way in entries]
@@ -102,7 +102,7 @@ def _nearest_source(entries: Mapping[str, Any]) -> str:
 
 
 def _settled(inertia: Matrix) -> Matrix:
-    """Return an inertia tensor with negligible products of inertia, which are rounding errors, replaced by zero."""
+    """Return an inertia tensor in which negligible products of inertia (rounding errors) are replaced by zero."""
     limit = max(abs(inertia[i][i]) for i in range(3)) * NEGLIGIBLE
     first, second, third = (tuple(Fraction(0) if abs(x) <= limit else x for x in row) for row in inertia)
     return first, second, third  # type: ignore[return-value]
@@ -148,7 +148,7 @@ def _tensor(value: Any, where: str) -> Matrix:
 
 
 def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return a body from moments of inertia in a scene; they refer to the point about which the body rotates."""
+    """Return the body with the moments of inertia of a scene, which refer to the point of rotation."""
     about, center = values["about"], values["center_of_mass"]
     if about == "center_of_mass":
         if center is not None and any(center):
@@ -176,8 +176,8 @@ def _read_tensor(value: Mapping[str, Any], where: str) -> Body:
 
 def _no_fixed_point(value: Mapping[str, Any], where: str) -> None:
     if "fixed_point" in value:
-        fail(f"{where}.fixed_point", 'a body given by shapes; typed moments are about the fixed point itself '
-                 'already, write only about = "fixed_point"', value["fixed_point"])  # fmt: skip
+        fail(f"{where}.fixed_point", 'a body given by shapes; moments of inertia in a scene already refer to '
+                 'the fixed point, write only about = "fixed_point"', value["fixed_point"])  # fmt: skip
 
 
 # --- shapes -----------------------------------------------------------------------------------------------------------
@@ -196,9 +196,9 @@ def _any_value(value: Any, where: str) -> Any:
 
 
 def _amount(shape: Shape) -> dict[str, Entry]:
-    """Return the readers of the keys mass and density of a shape.
+    """Return the entries for the keys ``mass`` and ``density`` of a shape.
 
-    The shape of point masses has no such keys: each point has its own mass.
+    For the shape ``points`` there are no such keys, since each point has its own mass.
     """
     if shape.kind == "points":
         return {}
@@ -209,7 +209,7 @@ def _amount(shape: Shape) -> dict[str, Entry]:
 
 
 def _density(unit: str) -> Reader:
-    """Return a reader of a density: a positive number, or a polynomial in x, y, z, which is returned as text."""
+    """Return a reader for densities: a positive number, or a polynomial in x, y, z, which is returned as text."""
     uniform = number(f"a density in {unit}", "positive")
 
     def reader(value: Any, where: str) -> Any:
@@ -258,7 +258,7 @@ _length = number("a number in m")
 
 
 def _bounded(value: Any, where: str) -> None:
-    """Raise InputError if a dimension, or any number in a list of them, is not a number or is out of range."""
+    """Raise InputError if a dimension, or an item of a list of dimensions, is not a number or is out of range."""
     if isinstance(value, list | tuple):
         for index, item in enumerate(value):
             _bounded(item, f"{where}[{index}]")
@@ -267,7 +267,7 @@ def _bounded(value: Any, where: str) -> None:
 
 
 def _placed(parts: Sequence[Part], values: Mapping[str, Any], where: str, source: str, of_parts: str) -> Body:
-    """Return a body of shapes about its centre of mass, or about a fixed point given in the axes of the body.
+    """Return a body composed of shapes, with its inertia about its centre of mass or about the fixed point.
 
     ``source`` describes the body; ``of_parts`` is the place of its parts in the scene, for errors.
     """
@@ -280,8 +280,8 @@ def _placed(parts: Sequence[Part], values: Mapping[str, Any], where: str, source
             point,
         )
     if about == "fixed_point" and point is None:
-        fail(f"{where}.fixed_point", "three numbers [x, y, z] in m, in the axes of the body: it rotates "
-                 "about a fixed point, the key is missing")  # fmt: skip
+        fail(f"{where}.fixed_point", "the point about which the body rotates, three numbers [x, y, z] in m, in the "
+                 "axes of the body; the key is missing")  # fmt: skip
     inertia, center, origin = properties.inertia, _ZERO, properties.center_of_mass
     if about == "fixed_point":
         x, y, z = (c - p for c, p in zip(properties.center_of_mass, point, strict=True))

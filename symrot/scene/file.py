@@ -1,4 +1,4 @@
-"""Scene files: find a file by name or path, check that it contains TOML text, and return its table."""
+"""Scene files: functions that find a file by name or path, check that it contains TOML text, and return its table."""
 
 import re
 from decimal import Decimal
@@ -16,7 +16,7 @@ __all__ = ["LARGEST_FILE", "SHIPPED", "find_scene", "names_with_kernels", "read_
 
 SHIPPED = Path(__file__).parent / "shipped"
 LARGEST_FILE = 1_000_000
-"""Bytes of the largest scene file that is read."""
+"""Largest size, in bytes, of a scene file."""
 
 MOST_PARTS = 100
 _KEY = re.compile(r"[A-Za-z0-9_-]+|\"[^\"\n]*\"|'[^'\n]*'")
@@ -30,8 +30,9 @@ def shipped_names() -> list[str]:
 def names_with_kernels() -> list[str]:
     """Return the names of the shipped scenes that have one set of equations of motion.
 
-    They can be printed as C (``symrot emit``) and certified. A scene with a table of samples has no formula for its
-    torque. A scene with jumps or kinks has different equations on both sides of each.
+    The equations can be printed as C (``symrot emit``) and certified. Scenes of two other kinds are left out: a scene
+    with a table of samples has no formula for its torque, and a scene with jumps or kinks has different equations
+    before and after each of them.
     """
     return [name for name in shipped_names() if all(map(_has_kernel, _torques(name)))]
 
@@ -49,13 +50,14 @@ def _has_kernel(torque: dict[str, Any]) -> bool:
 def find_scene(source: str | Path) -> Path:
     """Return the path of a scene file, from the name of a shipped scene or from a path.
 
-    Text without a suffix and without a folder is first taken for the name of a shipped scene, then for a file in the
-    current folder.
+    A text without a suffix and without a folder is the name of a shipped scene if there is one of this name, otherwise
+    a file in the current folder.
 
     Raises
     ------
     InputError
-        If there is no such scene or it is a folder; the message lists the shipped scenes and the nearest name.
+        If there is no such scene, or if the path is a folder; the message lists the shipped scenes and the most similar
+        name.
     """
     if not isinstance(source, str | Path) or not str(source).strip() or "\0" in str(source):
         raise InputError(f"expected the name of a scene or the path of a scene file, got {str(source)[:60]!r}")
@@ -77,22 +79,22 @@ def find_scene(source: str | Path) -> Path:
 
 
 def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
-    """Return the table of a TOML file; numbers with a decimal point are Decimals, exactly as written.
+    """Return the table of a TOML file, in which numbers with a decimal point are Decimals, exactly as written.
 
     Parameters
     ----------
     path : Path
         The file.
     label : str
-        The file as an error names it.
+        Name of the file in error messages.
     what : str
-        What the file should hold, for errors.
+        Name of the content in error messages, such as ``"scene"``.
 
     Raises
     ------
     InputError
-        For a file that cannot be read, is not a regular file, is larger than 1 MB, is empty, is not UTF-8 text or is
-        not TOML; the message then names the line.
+        If the file cannot be read, is not a regular file, is larger than 1 MB, is empty, is not UTF-8 text, or is not
+        TOML; in the last case the message names the line.
     """
     try:
         content = read_input(path, LARGEST_FILE)
@@ -112,7 +114,7 @@ def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
 def _longest_key(text: str) -> int:
     """Return the number of parts of the longest dotted key in TOML text.
 
-    tomllib needs time and memory quadratic in this number.
+    The time and memory that tomllib needs are quadratic in this number.
     """
     longest = run = 0
     for part in text.split("."):

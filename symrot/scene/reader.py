@@ -1,7 +1,8 @@
 """Readers of the values and tables of a scene; every error names the place of the value.
 
-A reader is a function ``(value, where) -> result`` that raises :class:`symrot.errors.InputError` with one sentence:
-file, key, expectation, value. ``where`` is a place such as ``"tumbling.toml: body.mass"``. Standard library only.
+A reader is a function ``(value, where) -> result`` that checks a value of a scene and converts it, or raises
+:class:`symrot.errors.InputError` with one sentence: file, key, expectation, value. ``where`` is the place of the value,
+such as ``"tumbling.toml: body.mass"``. Standard library only.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -29,7 +30,7 @@ __all__ = [
 Reader = Callable[[Any, str], Any]
 
 LARGEST = Fraction(10) ** 100
-"""Largest magnitude of a quantity in a scene, and inverse of the smallest, so that products are finite doubles."""
+"""Largest magnitude of a quantity in a scene; the smallest is its inverse. Products are then finite doubles."""
 
 
 class Entry(NamedTuple):
@@ -41,7 +42,7 @@ class Entry(NamedTuple):
 
 
 def key_path(where: str, key: str) -> str:
-    """Return the place of a key in a table, such as ``"f.toml: body.mass"`` for mass in ``"f.toml: body"``."""
+    """Return the place of a key in the table at ``where``: ``"f.toml: body.mass"`` for mass in ``"f.toml: body"``."""
     printable = str(key)[:80] if str(key).isprintable() else repr(key)[:80]
     return f"{where}{printable}" if where.endswith(": ") or not where else f"{where}.{printable}"
 
@@ -54,7 +55,7 @@ def fail(where: str, expectation: str, value: object = ..., reason: str = "") ->
 
 
 def nearest(word: object, known: Iterable[str]) -> str:
-    """Return ``"did you mean 'x'?"`` for the known word nearest to a mistyped one, or an empty text."""
+    """Return ``"did you mean 'x'?"``, where x is the known word most similar to a mistyped word, or an empty text."""
     from difflib import get_close_matches  # only on the way to an error
 
     matches = get_close_matches(str(word)[:80], list(known), 1, 0.5)
@@ -69,7 +70,10 @@ def table(value: object, where: str, expectation: str = "a table") -> Mapping[st
 
 
 def read_table(value: object, where: str, entries: Mapping[str, Entry], what: str = "a table") -> dict[str, Any]:
-    """Return the values of a table by key, with defaults; raise InputError for unknown or missing keys."""
+    """Return the values of a table by key; a missing key has its default.
+
+    Raise InputError if a key is unknown, or if a key that ``entries`` requires is missing.
+    """
     entries_by_key = table(value, where, f"{what} with the keys {', '.join(entries)}")
     for key in entries_by_key:
         if key not in entries:
@@ -85,7 +89,7 @@ def read_table(value: object, where: str, entries: Mapping[str, Entry], what: st
 
 
 def number(expectation: str = "a number", sign: str = "any") -> Reader:
-    """Return a reader of one number; ``sign`` is "any", "positive" or "nonnegative".
+    """Return a reader for numbers; ``sign`` is "any", "positive" or "nonnegative".
 
     The text ``expectation``, for error messages, begins with "a ".
     """
@@ -107,9 +111,9 @@ def number(expectation: str = "a number", sign: str = "any") -> Reader:
 
 
 def vector(unit: str, sign: str = "any") -> Reader:
-    """Return a reader of three numbers; ``sign`` is "any", "nonzero" or "nonnegative".
+    """Return a reader for lists of three numbers; ``sign`` is "any", "nonzero" or "nonnegative".
 
-    "nonzero" excludes the zero vector alone; "nonnegative" applies to each component.
+    With "nonzero" only the zero vector is refused; "nonnegative" applies to each component.
     """
     expectation = f"three numbers [x, y, z] in {unit}" if unit != "1" else "three numbers [x, y, z]"
     component = number(f"a number in {unit}" if unit != "1" else "a number", "any" if sign == "nonzero" else sign)
@@ -143,7 +147,7 @@ def flag(value: Any, where: str) -> bool:
 
 
 def choice(*options: str) -> Reader:
-    """Return a reader that accepts any one of the given words."""
+    """Return a reader that accepts each of the given words and refuses all other values."""
 
     def reader(value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in options:

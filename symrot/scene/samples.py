@@ -1,4 +1,4 @@
-"""Torques given by samples: a table in the scene itself, or a CSV file in its folder."""
+"""Torques given by samples: by a table in the scene itself, or by a CSV file in the folder of the scene."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
@@ -18,7 +18,7 @@ COLUMNS = ("t", "M1", "M2", "M3")
 """The first line of a file of samples: time in s, components of the torque in N m."""
 
 LARGEST_FILE = 20_000_000
-"""Bytes of the largest file of samples that is read."""
+"""Largest size, in bytes, of a file of samples."""
 
 MOST_SAMPLES = 200_000
 
@@ -28,14 +28,15 @@ _STEEPEST = 1e100
 class Table(NamedTuple):
     """A torque given by samples.
 
-    Between switching times a cubic spline interpolates the samples. Outside their times the torque is not defined.
+    Between switching times a cubic spline interpolates the samples. Before the first and after the last sample the
+    torque is not defined.
 
     Attributes
     ----------
     times : tuple of float
-        Times of the samples, s, increasing; each switching time twice.
-    moments : tuple of 3 float each
-        Components of the torque, N m.
+        Times of the samples, s, in increasing order; each switching time occurs twice.
+    moments : tuple of tuples of 3 floats
+        Components of the torque at these times, N m.
     frame : str
         ``"body"`` or ``"space"``: the frame of the components.
     switching_times : tuple of float
@@ -64,7 +65,7 @@ _moment = vector("N m")
 
 
 def _plain(value: Any) -> bool:
-    """Return whether a value is a float in the usual range, which needs no further check."""
+    """Return whether a value is a float of usual size, so that no further check is needed."""
     return type(value) is float and (1e-99 < abs(value) < 1e99 or value == 0.0)
 
 
@@ -110,9 +111,9 @@ def read_samples(
     value : mapping
         The table of the scene.
     folder : Path
-        Folder of the scene. A file of samples must be there or in a folder below, after links are followed.
+        Folder of the scene. A file of samples must be in this folder or below it, after links are followed.
     where : str
-        The place in the scene, for error messages.
+        File and key of the torque, for error messages.
     span : 2 Fractions
         First and last time of the scene, s.
     table_folders : str, Path or sequence of them
@@ -121,8 +122,8 @@ def read_samples(
     Raises
     ------
     InputError
-        For an unknown key, a file in another folder, a file that cannot be read, or samples that are not numbers, are
-        too few, are not in order, or do not cover the span.
+        If a key is unknown, the file is in another folder or cannot be read, or the samples are not numbers, are too
+        few, are not in order, or do not cover the span.
     """
     values = read_table(value, where, _ENTRIES, "a torque of kind table")
     written = [key for key in ("t", "moment") if values[key] is not None]
@@ -153,9 +154,9 @@ def read_samples(
 
 
 def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, rows: int) -> None:
-    """Raise InputError unless the times increase, with at least two samples between consecutive switching times.
+    """Raise InputError unless the times increase, with two samples or more between consecutive switching times.
 
-    A switching time occurs twice: for the torque before and after its jump.
+    A switching time occurs twice: for the torque before the jump and after it.
     """
     if len(times) < 2:
         fail(place, f"two samples or more, got {len(times)}")
@@ -163,10 +164,10 @@ def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, r
     for index, (before, after) in enumerate(pairwise(times), start=1):
         at = f"{place}, line {index + rows}" if rows else f"{place}[{index}]"
         if after < before:
-            fail(at, f"rising times, got {after!r} s after {before!r} s")
+            fail(at, f"increasing times, got {after!r} s after {before!r} s")
         if after == before and after not in switching:
-            fail(at, "rising times, twice the same only where it is one of switching_times (the samples before and "
-                     f"after the jump), got {after!r} s twice")  # fmt: skip
+            fail(at, "increasing times; only a switching time may occur twice, for the samples before and after the "
+                     f"jump, got {after!r} s twice")  # fmt: skip
         if after == before and length < 2:
             fail(at, f"two samples or more between switching times, got one at {after!r} s")
         length = 1 if after == before else length + 1
@@ -186,8 +187,8 @@ def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ..
 def _allowed_file(file: str, folder: Path, table_folders: str | Path | Sequence[str | Path], where: str) -> Path:
     """Return the path of the file of samples that a scene names; raise InputError if it is outside the allowed folders.
 
-    Links are followed before the check. A scene may come from an untrusted source: it must not make symrot open, and
-    quote, another file of the user.
+    Links are followed before the check. A scene may come from an untrusted source, and must not make symrot open any
+    other file of the user and quote it in a message.
     """
     if isinstance(table_folders, str | Path):
         table_folders = (table_folders,)
@@ -205,7 +206,7 @@ def _allowed_file(file: str, folder: Path, table_folders: str | Path | Sequence[
 
 
 def _read_file(path: Path, place: str) -> tuple[tuple[float, ...], tuple[tuple[float, float, float], ...]]:
-    """Return times and moments of a CSV file whose first line is ``t, M1, M2, M3``."""
+    """Return the times, s, and the torques, N m, of a CSV file whose first line is ``t, M1, M2, M3``."""
     expectation = f"a CSV file with the columns {', '.join(COLUMNS)}"
     try:
         content = read_input(path, LARGEST_FILE)
@@ -214,11 +215,11 @@ def _read_file(path: Path, place: str) -> tuple[tuple[float, ...], tuple[tuple[f
     try:
         lines = content.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError as reason:
-        fail(place, f"UTF-8 text, got another byte at position {reason.start}")
+        fail(place, f"UTF-8 text, got a byte of another encoding at position {reason.start}")
     if not any(line.strip() for line in lines):
         fail(place, f"{expectation}, got an empty file")
     if tuple(cell.strip() for cell in lines[0].split(",")) != COLUMNS:
-        fail(f"{place}, line 1", f"the columns {', '.join(COLUMNS)}, got another line")
+        fail(f"{place}, line 1", f"the columns {', '.join(COLUMNS)}, got other text")
     rows = [_row(line, f"{place}, line {index}") for index, line in enumerate(lines[1:], start=2) if line.strip()]
     if len(rows) > MOST_SAMPLES:
         fail(place, f"at most {MOST_SAMPLES} samples, got {len(rows)}")

@@ -1,4 +1,7 @@
-"""Scenes: problems of rotation as data, read from a TOML file (or a dict) into exact numbers. Does not use SymPy."""
+"""Scenes: a body, its initial state, its torques and the requested output, read from a TOML file or a dict.
+
+All numbers are exact. This module does not use SymPy.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -49,7 +52,7 @@ class Initial(NamedTuple):
     omega_b : tuple of 3 Fraction
         Angular velocity, body components, rad/s.
     quaternion : tuple of 4 Fraction
-        Attitude, scalar first, body to space; unit to 2^-200.
+        Attitude, scalar first, body to space; its norm differs from 1 by at most 2^-200.
 
     Examples
     --------
@@ -71,7 +74,7 @@ class Span(NamedTuple):
     start, stop : Fraction
         First and last time, s.
     samples : int
-        Number of times, both ends included.
+        Number of times, including the first and the last one.
 
     Examples
     --------
@@ -87,7 +90,7 @@ class Span(NamedTuple):
 
 
 class Output(NamedTuple):
-    """The quantities in the output of a scene, and the form of its Euler angles.
+    """The quantities in the output of a scene, and the sequence and unit of its Euler angles.
 
     Attributes
     ----------
@@ -96,7 +99,7 @@ class Output(NamedTuple):
     sequence : str or None
         Euler sequence of the quantity ``"euler"``.
     degrees : bool
-        Whether these angles are in degrees rather than rad.
+        Whether the Euler angles are in degrees instead of rad.
 
     Examples
     --------
@@ -113,14 +116,14 @@ class Output(NamedTuple):
 
 @dataclass(frozen=True)
 class Scene:
-    """A rigid body, its initial state, the torques on it, and the output of its motion. All numbers are exact.
+    """A rigid body, its initial state, the torques on it, and the requested output. All numbers are exact.
 
     Attributes
     ----------
     name, title, source : str
-        Short name, title, and origin of the problem.
+        Short name of the scene, its title, and the source of the problem, such as a textbook.
     path : str or None
-        File of the scene.
+        Path of the scene file, or None for a scene from a dict.
     body : Body
         Inertia, kg m^2, in the axes in which it was given.
     initial : Initial
@@ -132,9 +135,9 @@ class Scene:
     output : Output
         The quantities to write.
     tolerance : Fraction
-        Error of the trajectory to aim for: attitude in rad, angular velocity relative to its size.
+        Error of the trajectory to aim for, in rad for the attitude and relative to its size for the angular velocity.
     table : Table or None
-        A torque given by samples, which acts in addition.
+        A torque given by samples, which acts in addition to ``torques``.
 
     Examples
     --------
@@ -158,7 +161,7 @@ class Scene:
 
     @property
     def torque_kinds(self) -> tuple[str, ...]:
-        """The kinds of all torques: first those given by formulas, then the table."""
+        """The kinds of all torques: first of the torques given by formulas, then of the table."""
         table = () if self.table is None else (self.table.kind,)
         return (*(torque.kind for torque in self.torques), *table)
 
@@ -171,17 +174,17 @@ class Scene:
         Parameters
         ----------
         content : mapping
-            Keys and values as in ``docs/scene_format.md``; numbers may be int, Fraction, Decimal, text, or float (its
-            exact binary value).
+            Keys and values as in ``docs/scene_format.md``; numbers may be int, Fraction, Decimal, text, or float (which
+            stands for its exact binary value).
         where : str
-            Name of the scene, with which every error message begins.
+            Name of the scene; every error message begins with this name.
         table_folders : str, Path or sequence of them
             Folders, in addition to the current folder, whose files a torque of kind table may name.
 
         Raises
         ------
         InputError
-            For content that is not a valid scene; the message names key, expectation and value.
+            If the content is not a valid scene; the message names key, expectation and value.
         """
         return _read_scene(content, where, where, None, table_folders)
 
@@ -194,7 +197,7 @@ def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str |
     source : str or Path
         Name of a shipped scene, or path of a file.
     table_folders : str, Path or sequence of them
-        Folders, in addition to that of the scene, whose files a torque of kind table may name.
+        Folders, in addition to the folder of the scene, whose files a torque of kind table may name.
 
     Returns
     -------
@@ -204,7 +207,7 @@ def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str |
     Raises
     ------
     InputError
-        For a file that is not a valid scene; the message names file, key, expectation and value.
+        If the file is not a valid scene; the message names file, key, expectation and value.
 
     Notes
     -----
@@ -223,7 +226,7 @@ def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str |
 def shipped_scenes() -> list[tuple[str, str, str]]:
     """Return the name, the title and the source of every scene that comes with symrot.
 
-    The other parts of the scene files, such as bodies and torques, are not checked.
+    Other parts of the scene files, such as bodies and torques, are not checked.
 
     Returns
     -------
@@ -350,7 +353,7 @@ TOP: dict[str, Entry] = {
     "output": Entry(_read_output, default=Output(("omega", "quaternion"), None, False)),
     "accuracy": Entry(_read_accuracy, default=Fraction(1, 10**12)),
 }
-"""The tables and keys of a scene file; torques are read last, since they may take values from the body."""
+"""The tables and keys of a scene file; torques are read last, since some of their values may come from the body."""
 
 
 def _read_torques(

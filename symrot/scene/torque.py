@@ -1,6 +1,6 @@
-"""Torques of scenes, read with the table of :mod:`symrot.dynamics.torque_kinds`.
+"""Torques of scenes, read by means of the table in :mod:`symrot.dynamics.torque_kinds`.
 
-Values that a torque does not specify, such as the weight, come from the body.
+If a torque does not specify a value such as the centre of mass, the value of the body is used.
 """
 
 import math
@@ -37,14 +37,15 @@ class Torque(NamedTuple):
     kind : str
         Name in the table of torques.
     values : mapping
-        The constants by name, in SI units: the parameters of a torque given by formulas (with pi, if a formula contains
-        it), otherwise all fields in the table of torques. An attitude is a unit quaternion, and ``linear`` of a damping
-        is a vector. Gravity has ``weight``, ``center_of_mass`` and a unit ``direction``.
+        The constants by name, in SI units. For a torque given by formulas they are its parameters, and pi if a formula
+        contains it; otherwise they are all fields of its kind in the table of torques. An attitude is a unit
+        quaternion, and ``linear`` of a damping is a vector. Gravity has ``weight``, ``center_of_mass`` and a unit
+        vector ``direction``.
     formulas : tuple of str
         The components of a torque given by formulas, as text for :func:`symrot.formula.tree.parse`; they may contain
         functions with jumps or kinks.
     frame : str
-        ``"body"`` or ``"space"``: the frame of these components.
+        ``"body"`` or ``"space"``: the frame of the components.
 
     Examples
     --------
@@ -71,10 +72,7 @@ class Torque(NamedTuple):
         return value
 
     def constant(self, name: str, component: int | None) -> Fraction:
-        """Return a number among the constants of the torque.
-
-        ``component`` is an index into a vector, or None for a constant that is a number.
-        """
+        """Return a constant that is a number (``component`` is None), or the component with this index of a vector."""
         return self.number(name) if component is None else self.vector(name)[component]
 
     def with_constant(self, name: str, component: int | None, value: Fraction) -> "Torque":
@@ -107,7 +105,7 @@ def _rest(value: Any, where: str) -> tuple[Fraction, ...]:
 
 
 def _depth(node: expression.Node) -> int:
-    """Return the depth of a formula tree, computed without recursion, since a long sum is very deep."""
+    """Return the depth of a formula tree, computed without recursion, since the tree of a long sum is very deep."""
     depth, level = 0, [node]
     while level:
         depth, level = depth + 1, [child for parent in level for child in expression.children(parent)]
@@ -115,7 +113,7 @@ def _depth(node: expression.Node) -> int:
 
 
 def _formula(value: Any, where: str) -> str:
-    """Return one component of a torque as the text of a formula; the scene may give a formula or a number."""
+    """Return one component of a torque as the text of a formula; in the scene it is a formula or a number."""
     if not isinstance(value, str):
         return str(read(value, where, 'a formula as text, such as "-k*omega_1", or a number'))
     if len(value) > LONGEST_FORMULA:
@@ -131,7 +129,7 @@ def _formula(value: Any, where: str) -> str:
 
 
 def _divides_by_zero(node: expression.Node) -> bool:
-    """Return whether a formula contains a division by a number that is zero."""
+    """Return whether a formula contains a division by the number zero."""
     if any(map(_divides_by_zero, expression.children(node))):
         return True
     divisor = node[2] if node[0] == "/" else node[1] if node[0] == "**" and node[2] < 0 else None
@@ -164,8 +162,8 @@ def _parameters(value: Any, where: str) -> dict[str, Fraction]:
             or len(name) > 40
             or name in reserved
         ):
-            fail(key_path(where, name), "a parameter named by letters, digits and underscores, and not as what a "
-                     f"formula knows already ({', '.join(sorted(reserved))})", name)  # fmt: skip
+            fail(key_path(where, name), "a parameter whose name consists of letters, digits and underscores and is "
+                     f"not a name that formulas know already ({', '.join(sorted(reserved))})", name)  # fmt: skip
     return {name: _parameter(item, f"{where}.{name}") for name, item in entries.items()}
 
 
@@ -192,7 +190,7 @@ def _entries(kind: TorqueKind) -> dict[str, Entry]:
 
 
 def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
-    """Return weight, centre of mass and unit direction of gravity; missing values are taken from the body."""
+    """Return the weight, the centre of mass and the unit vector of gravity; missing values are taken from the body."""
     weight, acceleration, center = values["weight"], values["gravity"], values["center_of_mass"]
     if weight is not None and acceleration is not None:
         fail(f"{where}.gravity", "weight or gravity, not both", acceleration)
@@ -207,8 +205,8 @@ def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, An
     if center is None:
         center = body.center_of_mass
     if center is None:
-        fail(f"{where}.center_of_mass", "three numbers [x, y, z] in m from the fixed point: the moments of the "
-                 "body were typed, its centre of mass is unknown")  # fmt: skip
+        fail(f"{where}.center_of_mass", "three numbers [x, y, z] in m from the fixed point: the body is given by "
+                 "its moments of inertia, so its centre of mass is unknown")  # fmt: skip
     if not any(center):
         fail(where, "a fixed point away from the centre of mass, since the weight has no torque about that centre",
                  [float(item) for item in center])  # fmt: skip
@@ -228,9 +226,9 @@ def _fit_damping(values: dict[str, Any], body: Body, where: str) -> dict[str, An
 
 
 def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
-    """Return the values of an ``expression`` torque after checking that its formulas contain known names only.
+    """Return the values of an ``expression`` torque after a check that its formulas contain only known names.
 
-    The number pi becomes a parameter, so that a formula contains no other numbers.
+    If a formula contains pi, it becomes a parameter.
     """
     parameters = dict(values["parameters"])
     known = {*EXPRESSION_NAMES, *parameters, "pi"}
@@ -252,7 +250,7 @@ def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str,
 
 
 def _check_clips(node: expression.Node, values: Mapping[str, float], where: str, index: int) -> None:
-    """Raise InputError for a ``clip(u, low, high)`` with low > high, if both limits are numbers or parameters."""
+    """Raise InputError if a formula contains ``clip(u, low, high)`` with low > high, both numbers or parameters."""
     for child in expression.children(node):
         _check_clips(child, values, where, index)
     if node[0] != "call" or node[1] != "clip":
@@ -284,12 +282,13 @@ _ABOUT_ADVICE = {
 
 
 def read_torque(value: Any, body: Body, where: str) -> Torque:
-    """Return the torque that one table ``[[torque]]`` describes, with missing values filled in from the body.
+    """Return the torque that one table ``[[torque]]`` describes; missing values are taken from the body.
 
     Raises
     ------
     InputError
-        For an unknown kind, key or name in a formula, a value out of range, or a torque that the body cannot feel.
+        If a kind, a key or a name in a formula is unknown, a value is out of range, or a torque of this kind cannot act
+        on the body, such as gravity on a body that rotates about its centre of mass.
     """
     kinds = (*TORQUE_KINDS, TABLE_KIND.kind)
     entries = table(value, where, f"a table with a kind, one of {', '.join(kinds)}")

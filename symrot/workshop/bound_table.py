@@ -1,8 +1,8 @@
 """The table of rounding-error bounds that comes with symrot; ``python -m symrot.workshop.bound_table`` writes it.
 
-Two processes compute bounds again only for kernels that changed, or for all kernels if the sources of the method
-changed. With ``--check`` nothing is written, and the exit code is 1 if the table is incomplete, if another version of
-the method made it, or if a bound is smaller than the error computed at one point of its box.
+A bound is computed again only if its kernel changed, or if the source files that compute bounds (the method) changed.
+With ``--check`` nothing is written, and the exit code is 1 if the table is incomplete, if another version of the method
+made it, or if a bound is smaller than the error computed at one point of its box.
 """
 
 import sys
@@ -27,12 +27,12 @@ SPARE = 1e-9  # relative tolerance: versions of NumPy may add numbers in differe
 
 
 def _texts() -> dict[str, str]:
-    """Return the C text of each kernel without the comment at its head, which would state the bounds."""
+    """Return a map from kernel name to C text, without the comment at its head, which would state the bounds."""
     return {name: c_functions(kernel_program(name), (DOUBLE, FLOAT), near=True) for name in kernel_names()}
 
 
 def library_tasks() -> dict[str, BoundTask]:
-    """Return the tasks to bound the kernels of the library, by the keys under which the table stores the bounds."""
+    """Return a map from the table's key of each bound of a library kernel to the task that computes the bound."""
     by_key: dict[str, BoundTask] = {}
     for name, text in _texts().items():
         for operations in operations_of(name, text):
@@ -75,10 +75,12 @@ def _is_consistent(task: BoundTask, search: SearchResult | None) -> bool:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Write the table of bounds, or with ``--check`` only check it; return the exit code."""
-    parser = ArgumentParser(prog="python -m symrot.workshop.bound_table", description="Bounds of the library.")
-    parser.add_argument("--check", action="store_true", help="compare only")
-    parser.add_argument("--workers", type=int, default=2, help="processes (2)")
+    """Write the table of bounds, or with ``--check`` only check the table; return the exit code."""
+    parser = ArgumentParser(
+        prog="python -m symrot.workshop.bound_table", description="Write the bounds of the library."
+    )
+    parser.add_argument("--check", action="store_true", help="only check the table")
+    parser.add_argument("--workers", type=int, default=2, help="number of processes (default: 2)")
     options = parser.parse_args(arguments)
     if options.check:
         faults = table_faults()

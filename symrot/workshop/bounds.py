@@ -1,4 +1,4 @@
-"""Bounds of the rounding errors of a kernel of the library or of a scene, for the command `symrot bound`."""
+"""Bounds of the rounding errors of a library kernel or of a scene's kernel, for the command `symrot bound`."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -33,16 +33,16 @@ PRECISIONS = {"double": "", "float": "f"}
 def rounding_problem(
     kernel: KernelText, ranges: Sequence[str], precision: str
 ) -> tuple[Operations, RoundingProblem, dict[str, Any]]:
-    """Return the operations of a kernel, the problem of bounding their rounding errors, and the box of its inputs.
+    """Return the operations of a kernel, the data for bounding their rounding errors, and the box of the inputs.
 
     Parameters
     ----------
     kernel : KernelText
         A kernel of the library or the kernel of a scene.
     ranges : sequence of str
-        ``NAME=LOW:HIGH``, in place of the kernel's own range of an input. NAME is a component ("theta"), an index
-        ("angles[1]") or a physical constant of a scene ("A"); the range of a constant determines the ranges of the
-        parameters that depend on it.
+        ``NAME=LOW:HIGH``, a range that replaces the kernel's own range of an input. NAME is a component ("theta"), an
+        index ("angles[1]") or a physical constant of a scene ("A"); the range of a constant determines the ranges of
+        the parameters that depend on it.
     precision : str
         ``"double"`` or ``"float"``; the kernel of a scene has only ``"double"``.
 
@@ -107,7 +107,7 @@ def _known_text(kernel: str) -> KernelText:
 
 
 def section(kernel: KernelText, ranges: Sequence[str]) -> dict[str, Any]:
-    """Return the section of a kernel's certificate about rounding errors, in all precisions.
+    """Return the section ``rounding`` of a kernel's certificate, for double and, in the library, float.
 
     The parameters are as for :func:`rounding_problem`.
     """
@@ -119,7 +119,7 @@ def section(kernel: KernelText, ranges: Sequence[str]) -> dict[str, Any]:
 
 @contextmanager
 def _in_scene_names(kernel: KernelText) -> Iterator[None]:
-    """Replace the index texts of states in error messages, such as "y[2]", by the names that the scene gives them."""
+    """Replace index texts, such as "y[2]", by the scene's names in errors raised inside a ``with`` block."""
     try:
         yield
     except InputError as reason:
@@ -140,7 +140,7 @@ def facts(kernel: str, ranges: Sequence[str], precision: str) -> dict[str, Any]:
     Raises
     ------
     InputError
-        As :func:`rounding_problem`, and for an unknown kernel or a box on which an output has no bound.
+        In the cases of :func:`rounding_problem`, and for an unknown kernel or a box on which an output has no bound.
     """
     text = _known_text(kernel)
     operations, kernel_problem, box = rounding_problem(text, ranges, precision)
@@ -150,7 +150,7 @@ def facts(kernel: str, ranges: Sequence[str], precision: str) -> dict[str, Any]:
 
 
 def _names(kernel: KernelText) -> dict[str, str]:
-    """Return the scene's names of a kernel's inputs and outputs by index text, such as "y[2]"."""
+    """Return a map from index text, such as "y[2]", to the scene's name; empty for a library kernel."""
     if not isinstance(kernel, SceneText):
         return {}
     return {place: symbol for place, (symbol, _) in kernel.inputs.components.items()}
@@ -177,7 +177,7 @@ def _region_lines(section: Mapping[str, Any]) -> list[str]:
 
 
 def lines(section: Mapping[str, Any]) -> list[str]:
-    """Return bounds of rounding errors, data from :func:`facts`, as lines of text."""
+    """Return lines of text about bounds of rounding errors, from the data of :func:`facts`."""
     part = section["precisions"][0]
     names = section["names"]
     unit = f"2^-{DIGITS[part['precision']]}"
@@ -200,7 +200,7 @@ def lines(section: Mapping[str, Any]) -> list[str]:
 def target_facts(
     kernel: str, ranges: Sequence[str], precision: str, target: float, variables: Sequence[str]
 ) -> dict[str, Any]:
-    """Return the largest box on which no error of a kernel is larger than a target.
+    """Return, as plain data for JSON, the largest box on which no error of a kernel is larger than a target.
 
     Parameters
     ----------
@@ -209,8 +209,8 @@ def target_facts(
     target : float
         The largest error that is allowed, in the unit of the output.
     variables : sequence of str
-        Inputs whose ranges are resized. If it is empty: all inputs of a kernel of the library; of a scene, all inputs
-        with a range of nonzero finite width that are not components of its quaternion.
+        The inputs whose ranges are resized. If the sequence is empty, all inputs of a library kernel are resized; for a
+        scene, all inputs with a range of nonzero finite width, except the components of the quaternion.
     """
     text = _known_text(kernel)
     operations, kernel_problem, box = rounding_problem(text, ranges, precision)
@@ -241,7 +241,7 @@ def _free(kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fra
 
 
 def target_lines(resized: Mapping[str, Any]) -> list[str]:
-    """Return the largest box, data from :func:`target_facts`, as lines of text."""
+    """Return lines of text about the largest box, from the data of :func:`target_facts`."""
     return [
         f"{resized['kernel']}: no error is larger than {resized['target']:g}",
         f"for {_box_text(resized['box'], resized['names'])}", *_region_lines(resized),

@@ -1,6 +1,6 @@
 """Comparison of a kernel's files on disk with the emitted ones, to explain a failed hash.
 
-A hash tells only that a file changed. The comparison names the first changed line, and the first output that is no
+A hash shows only that a file changed. The comparison names the first changed line, and the first output that is no
 longer computed by its formula.
 """
 
@@ -19,7 +19,7 @@ from symrot.workshop.kernel_text import kernel_text, scene_kernel_name
 
 __all__ = ["difference", "kernel_of"]
 
-LONGEST = 200  # largest number of characters of a reason
+LONGEST = 200  # largest number of characters of a line or reason in a message
 
 
 def kernel_of(name: str) -> str | None:
@@ -30,9 +30,9 @@ def kernel_of(name: str) -> str | None:
 
 
 def difference(certificate: Path) -> str:
-    """Return ": " and the first difference between the files on disk next to a certificate and the emitted files.
+    """Return ": " and a description of the first difference between the files next to a certificate and emitted files.
 
-    The text is empty if the files are equal.
+    The text is empty if the files are equal, or if symrot has no kernel of this name.
     """
     name = certificate.name.removesuffix(".cert.json")
     kernel = kernel_of(name)
@@ -63,9 +63,9 @@ def _first_line(text: str, emitted: str) -> str:
 
 
 def _meaning(text: str, emitted: KernelUnderTest) -> str:
-    """Return, in brackets, how an edited C text differs: no longer the kernel's formulas, or other operations.
+    """Return a remark in brackets: that an edited C text has lost the kernel's formulas, or performs other operations.
 
-    The result is empty if the text has the same operations.
+    The remark is empty if the text performs the same operations.
     """
     file = f"{emitted.name}.c"
     symbols = {place: symbol for place, (symbol, _) in emitted.places.items()}

@@ -1,4 +1,7 @@
-"""Public functions for certificates of kernels and bounds of rounding errors: certify, audit, bound, largest_box."""
+"""The public functions that certify and audit kernels and bound their rounding errors.
+
+The functions are certify, audit, bound and largest_box; each returns a frozen dataclass that ``print`` shows as text.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -41,7 +44,7 @@ class Certificate:
     title : str
         What the kernel computes.
     laws : tuple of str
-        The laws that are proven from its formulas.
+        The laws that are proven from the kernel's formulas.
     proofs : tuple of str
         The kinds of proof that the certificate contains, among ``"laws"``, ``"Coq"``, ``"C text"``, ``"rounding"`` and
         ``"object code"``.
@@ -85,9 +88,9 @@ class Audit:
     Attributes
     ----------
     statements : mapping of str to tuple of str
-        Path of each certificate -> the statements that were checked.
+        A map from the path of each certificate to the statements that were checked and hold.
     flags : tuple of str
-        The statements that hold under the given compiler flags; empty without flags.
+        What still holds under the compiler flags passed to the audit; empty if no flags were passed.
 
     Examples
     --------
@@ -110,15 +113,15 @@ class OutputError:
     Attributes
     ----------
     output : str
-        Index of the output, such as ``"dq[0]"``.
+        Index text of the output, such as ``"dq[0]"``.
     bound : float
-        Largest possible difference between the computed and the exact value on the box, in the unit of the output.
+        No computed value on the box differs by more than this from the exact value; in the unit of the output.
     pointwise : float
         The largest bound found at a single point of the box. The method cannot give a ``bound`` below this number.
     converged : bool
         Whether ``bound`` is about as small as this method can make it.
     modulo_turns : bool
-        Whether the error is measured modulo multiples of 2 pi.
+        Whether the error is measured modulo 2 pi.
 
     Examples
     --------
@@ -145,7 +148,7 @@ class RoundingBounds:
     precision : str
         ``"double"`` or ``"float"``.
     box : mapping of str to (float, float)
-        Index of each input -> its range, in the unit of the input.
+        A map from the index text of each input to its range, in the unit of the input.
     outputs : tuple of OutputError
     assumptions : tuple of str
         The assumptions under which the bounds hold.
@@ -169,7 +172,7 @@ class RoundingBounds:
 
     @property
     def largest(self) -> float:
-        """The largest bound of all outputs."""
+        """The largest of the outputs' error bounds."""
         return max(output.bound for output in self.outputs)
 
     def __str__(self) -> str:
@@ -187,11 +190,11 @@ class LargestBox:
     target : float
         The largest error that is allowed, in the unit of the outputs.
     size : float
-        Width of the box relative to the box that the search started from.
+        Width of the box, relative to the width of the box from which the search started.
     box : mapping of str to (float, float)
-        Index of each input -> its range, in the unit of the input.
+        A map from the index text of each input to its range, in the unit of the input.
     error : float
-        The largest bound of an output on that box.
+        The largest error bound of an output on that box.
     data : mapping
         The same results as plain data.
 
@@ -230,14 +233,14 @@ def certify(
     kernel : str or Path
         A kernel of the library, a scene, or a file NAME.c or NAME.cert.json exactly as symrot emits it.
     box : mapping or sequence of str
-        Ranges of inputs on which rounding errors are bounded, as for :func:`bound`. All other ranges are the kernel's
-        own. The kernel of a scene is bounded only if ``box`` is not empty.
+        Ranges of inputs for which rounding errors are bounded, as for :func:`bound`. All other inputs have the kernel's
+        own ranges. The errors of a scene's kernel are bounded only if ``box`` is not empty.
     directory : str or Path, optional
         Folder for the kernel and its certificate; without it no file is written.
     objects : bool
-        Whether the kernel is compiled by each installed compiler and the object code compared with the C text.
+        Whether to compile the kernel with each installed compiler and compare the object code with the C text.
     rounding : bool
-        Whether rounding errors are bounded now; otherwise the certificate of a kernel of the library contains the
+        Whether to compute bounds of rounding errors now; if not, the certificate of a library kernel contains the
         bounds that come with symrot.
     progress : callable
         Called with a line of text as each part of the work begins.
@@ -280,20 +283,21 @@ def audit(
     coq: bool = False,
     progress: Progress = _silent,
 ) -> Audit:
-    """Check that certificates hold for the kernels in their folders, by proving every statement again.
+    """Check that certificates hold for the kernels in their folders; every statement is proven again.
 
     Parameters
     ----------
     *paths : str or Path
         Certificates NAME.cert.json, each in the folder with the files that it names.
     object_file : str or Path, optional
-        NAME.o as your compiler made it; the audit compares each of its roundings with the C text.
+        NAME.o as your compiler made it; the audit compares each rounding in its code with the C text.
     flags : str, optional
-        Compiler and flags, ``"gcc -O3 -mfma"``: the audit fails if they void the certificate.
+        Compiler and flags, such as ``"gcc -O3 -mfma"``; the audit fails if these flags void the certificate.
     rerun_bounds : bool
-        Whether bounds of rounding errors are computed again; otherwise they are compared with the stored ones.
+        Whether to compute the bounds of rounding errors again. If not, the bounds in the certificate are compared with
+        bounds computed before, if there are any.
     coq : bool
-        Whether Coq checks the theorem about the kernel.
+        Whether Coq must check the theorem about the kernel.
     progress : callable
         Called with a line of text as each part of the work begins.
 
@@ -304,9 +308,9 @@ def audit(
     Raises
     ------
     InputError
-        For no path, a file that cannot be read, or an unknown flag.
+        If no path is passed, a file cannot be read, or a flag is unknown.
     CertificateError
-        For the first statement that does not hold.
+        If a statement does not hold; the message names the first such statement.
 
     Notes
     -----
@@ -338,8 +342,8 @@ def bound(kernel: str | Path, box: Ranges = (), precision: str = "double") -> Ro
         A kernel of the library, the name of a shipped scene, or the path of a scene file.
     box : mapping or sequence of str
         Ranges of inputs, in their units: ``{"theta": (-1.4, 1.4)}`` or ``["theta=-1.4:1.4"]``. A name is a component
-        (``"theta"``), an index (``"angles[1]"``) or a physical constant of a scene (``"A"``). A float means its exact
-        binary value, a text its decimal value. Inputs that are not named have the kernel's own ranges.
+        (``"theta"``), an index (``"angles[1]"``) or a physical constant of a scene (``"A"``). A float stands for its
+        exact binary value, a text for its decimal value. Inputs that are not named have the kernel's own ranges.
     precision : str
         ``"double"`` or ``"float"``; the kernel of a scene has ``"double"`` only.
 
@@ -384,7 +388,7 @@ def largest_box(
     *,
     variables: Sequence[str] = (),
 ) -> LargestBox:
-    """Return the largest box, resized about its middle, on which no rounding error of a kernel exceeds a target.
+    """Return the largest box, with the same middle as ``box``, on which no rounding error exceeds a target.
 
     Parameters
     ----------
@@ -403,7 +407,7 @@ def largest_box(
     Raises
     ------
     InputError
-        As for :func:`bound`, for an unknown variable, and for a target that no box of that shape meets.
+        In the cases of :func:`bound`, for an unknown variable, and for a target that no box of that shape meets.
 
     Notes
     -----
@@ -427,7 +431,7 @@ def _check_precision(precision: str) -> None:
 
 
 def _ranges(box: Ranges) -> Sequence[str]:
-    """Return the ranges of inputs as texts NAME=LOW:HIGH; a float is written as the fraction that it represents."""
+    """Return the ranges of inputs as texts NAME=LOW:HIGH; each float is written as an exact fraction."""
     if isinstance(box, str):
         raise InputError(f"box: expected a mapping or a list of texts NAME=LOW:HIGH, got one text, {box[:60]!r}")
     if not isinstance(box, Mapping):

@@ -35,7 +35,7 @@ __all__ = [
     "refuted",
 ]
 
-PROOFS = {  # in order from the derivation to the object code; the names label the lines of a certificate
+PROOFS = {  # kinds of proof, from the derivation to the object code; they label the lines of a printed certificate
     "laws": "proven of the formulas", "Coq": "a theorem about the formulas (`symrot prove`)",
     "C text": "proven equal to the formulas", "rounding": "errors bounded on a box",
     "object code": "equal to the C text (--objects)",
@@ -45,9 +45,9 @@ MANY = 12  # smallest number of certificates that several processes audit at onc
 
 
 def _proven_statement(data: Data) -> Data | None:
-    """Return the section of a certificate that symrot can prove for this kernel; None for an unknown kernel.
+    """Return the statements that symrot proves about the kernel of a certificate; None for an unknown kernel.
 
-    The section is derived and proven once, then stored in the cache under the digest of the programs.
+    They are derived and proven once, then stored in the cache under the hash of symrot's source files.
     """
     name = data["kernel"]
     scene = str(data["regenerate"]).removeprefix("symrot emit ").removesuffix(" --target c")
@@ -86,11 +86,12 @@ def audit_file(
     path : Path
         NAME.cert.json, in the folder with the files that it names.
     object_file : Path, optional
-        The compiled NAME.c; each of its roundings is compared with the C text.
+        The compiled NAME.c; each rounding in its code is compared with the C text.
     rerun : bool
-        Whether bounds of rounding errors are computed again; otherwise they are compared with the stored ones.
+        Whether to compute the bounds of rounding errors again. If not, the bounds in the certificate are compared with
+        bounds computed before, if there are any.
     coq : bool
-        Whether Coq checks the theorem about the kernel.
+        Whether Coq must check the theorem about the kernel.
 
     Raises
     ------
@@ -116,12 +117,12 @@ def audit_files(
     paths: Sequence[Path], object_file: Path | None = None, rerun: bool = False, coq: bool = False,
     progress: Callable[[str], object] = lambda text: None,
 ) -> dict[str, list[str]]:  # fmt: skip
-    """Audit certificates, many of them in several processes; return the lines of :func:`audit_file` for each path.
+    """Audit certificates; return a map from each path to the lines of :func:`audit_file`. Many paths share processes.
 
     Raises
     ------
     CertificateError
-        For the first certificate, in the order of ``paths``, that does not hold.
+        If a certificate does not hold; the message is about the first such certificate in ``paths``.
     """
     if len(paths) < MANY:
         return {str(path): audit_file(path, object_file, rerun, coq, progress) for path in paths}
@@ -146,7 +147,7 @@ def _recomputed_bounds(data: Data, text: str, progress: Callable[[str], object])
 
 
 def flag_lines(flags: str) -> list[str]:
-    """Return a list of one line: the statements of any certificate that hold under given compiler flags.
+    """Return a list of one line, which says what still holds of any certificate under these compiler flags.
 
     Raises
     ------
@@ -181,27 +182,27 @@ def certify(
     kernel: str, ranges: Sequence[str] = (), directory: Path | None = None, objects: bool = False,
     bounds: bool = True, progress: Callable[[str], object] = lambda text: None,
 ) -> tuple[Data, list[Path]]:  # fmt: skip
-    """Return the certificate of a kernel and the paths of the files written; parts of it may come from the cache.
+    """Return the certificate of a kernel, parts of which may come from the cache, and the paths of the written files.
 
     Parameters
     ----------
     kernel : str
         A kernel of the library, a scene, or a file NAME.c or NAME.cert.json exactly as symrot emits it.
     ranges : sequence of str
-        ``NAME=LOW:HIGH`` for the box on which rounding errors are bounded; other ranges are the kernel's own. A scene
-        has ranges of its own only for its parameters, its time and its quaternion; its errors are bounded only if
-        ``ranges`` is not empty.
+        ``NAME=LOW:HIGH``, ranges of inputs for which rounding errors are bounded. Other inputs have the kernel's own
+        ranges, which a scene has only for parameters, time and quaternion; its errors are bounded only if ``ranges``
+        is not empty.
     directory : Path, optional
         Folder for the kernel and its certificate; without it no file is written.
     objects : bool
-        Whether the kernel is compiled by each installed compiler and the object code compared with the C text.
+        Whether to compile the kernel with each installed compiler and compare the object code with the C text.
     bounds : bool
-        Whether rounding errors are bounded.
+        Whether to bound rounding errors.
 
     Raises
     ------
     InputError, CertificateError
-        For an unknown kernel, an edited file, an impossible box or a proof that fails.
+        For an unknown kernel, an edited file, an impossible box, or a proof that fails.
     """
     from symrot.workshop.bounds import require_known, section
 
@@ -231,17 +232,17 @@ def certify(
 def certify_all(
     directory: Path | None = None, objects: bool = False, progress: Callable[[str], object] = lambda text: None,
 ) -> tuple[dict[str, Data], list[Path]]:  # fmt: skip
-    """Return the certificates of the library and of the shipped scenes' kernels, and the paths of the files written.
+    """Return the certificates of all kernels of the library and of shipped scenes, and the paths of the written files.
 
-    Several processes share the work. Certificates made by the same version of symrot come from the cache, unless files
-    are written or object code is compared.
+     Several processes share the work. Certificates from the same version of symrot come from the cache, unless files
+     are written or object code is compared.
 
     Parameters
     ----------
     directory : Path, optional
-        Folder for kernels and certificates, those of scenes in its subfolder ``scenes``; without it no file is written.
+        Folder for kernels and certificates, with a subfolder ``scenes`` for scenes; without it no file is written.
     objects : bool
-        Whether the kernels are compiled by each installed compiler and the object code compared with the C text.
+        Whether to compile the kernels with each installed compiler and compare the object code with the C text.
     """
     if objects:
         object_code.require_compiler()
@@ -270,7 +271,7 @@ def _certified(name: str, directory: Path | None, objects: bool) -> tuple[Data, 
 
 
 def all_lines(certificates: Mapping[str, Data]) -> list[str]:
-    """Return a line for each kernel with the kinds of proof in its certificate, then the count of each kind."""
+    """Return lines of text: for each kernel the kinds of proof in its certificate, then the count of each kind."""
     by_kernel = {name: proofs(data) for name, data in certificates.items()}
     width = max(map(len, by_kernel))
     text_lines = [
@@ -305,7 +306,7 @@ def _emitted(path: str) -> str:
     kernel = kernel_of(name)
     if kernel is None:
         hint = nearest(name, [*kernel_names(), *map(scene_kernel_name, names_with_kernels())])
-        message = f"{path}: expected a file that symrot emits of a kernel of the library or a shipped scene"
+        message = f"{path}: expected a file that symrot emits for a kernel of the library or a shipped scene"
         raise InputError(
             f"{message} ({hint})" if hint else f"{message}; `symrot audit` takes the certificate of any kernel"
         )
@@ -325,10 +326,10 @@ def _emitted(path: str) -> str:
 
 
 def lines(data: Data, compared: bool = True) -> list[str]:
-    """Return a certificate as lines of text.
+    """Return lines of text about a certificate.
 
-    ``compared`` states that object code was compared in this call; otherwise its results are from an earlier call, and
-    the text only mentions them.
+    ``compared`` says whether object code was compared in this call. If not, the verdicts on object code are from an
+    earlier call, and the text only mentions them.
     """
     rows = [("domain", data["domain"]), *(("laws", f"{law['law']}: proven") for law in data["laws"])]
     if data["coq"]:

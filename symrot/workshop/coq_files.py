@@ -1,4 +1,4 @@
-"""Coq files of theorems: writing them, checking them with Coq, and reporting the result with the axioms used."""
+"""Coq files of theorems: writing the files, checking them with Coq, and reporting the result and the axioms used."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -16,9 +16,9 @@ MISSING = "coqc is not on the path (Debian package coq)"
 
 
 def prove(directory: Path, demanded: bool, progress: Callable[[str], object]) -> tuple[list[Path], CoqResult | None]:
-    """Write all Coq files into a folder and check them with Coq; return the changed files and Coq's result.
+    """Write all Coq files into a folder and check them with Coq; return the files that changed and Coq's result.
 
-    If Coq is not installed, the files are written and the result is None.
+     If Coq is not installed, the files are written, and None is returned in place of Coq's result.
 
     Raises
     ------
@@ -35,7 +35,7 @@ def prove(directory: Path, demanded: bool, progress: Callable[[str], object]) ->
 
 
 def facts(directory: Path, written: list[Path], result: CoqResult | None) -> dict[str, Any]:
-    """Return Coq's result on the theorems, from :func:`prove`, as data for JSON."""
+    """Return the theorems and Coq's result, both from :func:`prove`, as data for JSON."""
     report: dict[str, Any] = {
         "directory": str(directory),
         "files": [f"{name}.v" for name in (RULES, *coq_file_names(), ASSUMPTIONS)],
@@ -53,7 +53,7 @@ def facts(directory: Path, written: list[Path], result: CoqResult | None) -> dic
 
 
 def lines(directory: Path, result: CoqResult | None) -> list[str]:
-    """Return Coq's result on the theorems, from :func:`prove`, as lines of text."""
+    """Return lines of text about Coq's result, from :func:`prove`."""
     if result is None:
         count = sum(len(coq_file(name).theorems) for name in coq_file_names())
         return [f"{count} theorems written to {directory}, not checked: {MISSING}"]

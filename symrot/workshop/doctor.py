@@ -1,4 +1,4 @@
-"""Check of this installation: versions, extras, compiler, cache, and whether a small kernel compiles and runs."""
+"""The check of this installation: versions, extras, compiler, cache, and whether a small kernel compiles and runs."""
 
 import os
 import sys
@@ -45,7 +45,7 @@ def _first_line(command: tuple[str, ...]) -> str:
 
 @contextmanager
 def _empty_cache() -> Iterator[None]:
-    """Replace the cache by an empty one inside a ``with`` block, so that the compiler really runs."""
+    """Use an empty cache inside a ``with`` block, so that the compiler really runs."""
     from tempfile import TemporaryDirectory
 
     before = os.environ.get("SYMROT_CACHE")
@@ -155,7 +155,7 @@ def _compiler_text(compiler: CompilerRecord | None) -> str:
     return (
         f"{compiler['command']}: {compiler['version']}"
         if compiler
-        else "none; scenes are stepped by SciPy, much slower"
+        else "none; SciPy integrates scenes, much more slowly"
     )
 
 
@@ -169,7 +169,7 @@ ROWS: tuple[tuple[str, Callable[[DoctorReport], str]], ...] = (  # label -> text
 
 
 def lines(report: DoctorReport) -> list[str]:
-    """Return the state of this installation, data from :func:`facts`, as lines of text."""
+    """Return lines of text about the state of this installation, from the data of :func:`facts`."""
     rows = [(name, text(report)) for name, text in ROWS]
     for extra, versions in report["extras"].items():
         hint = "" if all(versions.values()) else f" (pip install 'symrot[{extra}]')"

@@ -29,7 +29,7 @@ class Emitted(_Texts):
 
     In NumPy the function has the name of the kernel; in C its name is ``function``, with the prefix ``symrot_``.
 
-    ``certificate`` is the text of the kernel's certificate, which is proven at the first access. The certificate of a
+    ``certificate`` is the text of the kernel's certificate, which is proven when it is first read. The certificate of a
     library kernel contains the bounds of its rounding errors on its own box; the certificate of a scene's kernel
     contains the bounds that were passed to :func:`emit`.
 
@@ -133,7 +133,7 @@ def explain(scene: Scene | str | Path) -> str:
 
 
 def emit(kernel: Scene | str | Path, target: str = "c", bounds: Mapping[str, Any] | None = None) -> Emitted:
-    """Return the text of a kernel of the library, or of a scene's own kernel, the same bytes on every machine.
+    """Return the text of a library kernel, or of a scene's own kernel; it is the same on every machine.
 
     Parameters
     ----------
@@ -143,13 +143,14 @@ def emit(kernel: Scene | str | Path, target: str = "c", bounds: Mapping[str, Any
     target : str
         ``"c"`` (C99, valid C++), ``"numpy"`` or ``"js"`` (a JavaScript module).
     bounds : mapping, optional
-        Bounds of the rounding errors of a scene's kernel on a box of your choice, for the head comment of its C and for
-        its certificate (:func:`symrot.workshop.bounds.section`); a kernel of the library has its own.
+        Bounds of the rounding errors of a scene's kernel on a box of your choice, from
+        :func:`symrot.workshop.bounds.section`. They are stated in the head comment of its C text and in its
+        certificate. A library kernel needs none: it states the bounds on its own box.
 
     Returns
     -------
     Emitted
-        ``.name``, ``.source`` and ``.header``; ``.certificate`` is proven at the first access.
+        It has ``.name``, ``.source`` and ``.header``; ``.certificate`` is proven when it is first read.
 
     Raises
     ------

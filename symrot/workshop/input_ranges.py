@@ -20,14 +20,14 @@ FORM = "expected NAME=LOW:HIGH, such as theta=-1.4:1.4"
 
 
 def input_box(kernel_problem: RoundingProblem, inputs: SceneInputs | None, ranges: Sequence[str]) -> dict[str, Ends]:
-    """Return the box of a kernel: the user's range of an input, or the kernel's own range if there is none.
+    """Return the box of a kernel: for each input the user's range or, if the user gives none, the kernel's own range.
 
     Parameters
     ----------
-    kernel_problem : Problem
+    kernel_problem : RoundingProblem
         The kernel's own box and the names of its inputs.
     inputs : SceneInputs, optional
-        The parameters of a scene's kernel as formulas; None for a kernel of the library.
+        The parameters of a scene's kernel as formulas; None for a library kernel.
     ranges : sequence of str
         ``NAME=LOW:HIGH``, where NAME is a component ("theta"), an index ("angles[1]") or a constant in a scene's
         parameters.
@@ -42,7 +42,7 @@ def input_box(kernel_problem: RoundingProblem, inputs: SceneInputs | None, range
         name, ends = _range(text)
         place = _place(kernel_problem, inputs, name, text)
         if place in by_place:
-            raise InputError(f"--box {text[:60]}: expected one range of {name}, got {by_place[place][0][:60]!r} too")
+            raise InputError(f"--box {text[:60]}: expected one range of {name}, got also {by_place[place][0][:60]!r}")
         by_place[place] = text, ends
     box = {**kernel_problem.box} | {
         place: ends for place, (_, ends) in by_place.items() if place in kernel_problem.symbols
@@ -75,7 +75,7 @@ def _range(text: str) -> tuple[str, Ends]:
 
 def _check_finite(name: str, ends: Ends, text: str) -> None:
     if max(map(abs, ends)) > LARGEST:
-        raise InputError(f"--box {text[:60]}: expected a range of {name} within the range of a double, up to 1.8e308")
+        raise InputError(f"--box {text[:60]}: expected a range of {name} within the range of a double, at most 1.8e308")
 
 
 def _place(kernel_problem: RoundingProblem, inputs: SceneInputs | None, name: str, text: str) -> str:

@@ -25,9 +25,15 @@ from symrot.workshop.workers import workers
 
 __all__ = ["certificate_files", "kernel_files", "kernel_lines", "stale", "stored_bounds", "write_all", "write_files"]
 
+<<<<<<< HEAD
 SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",), "js": (".js",)}
 RECHECK = "recheck.py"  # re-checks certificates without symrot
 SCENES = "scenes"  # subfolder of each target's folder for the kernels of shipped scenes; the library is directly in it
+=======
+SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",)}
+RECHECK = "recheck.py"  # the program that checks certificates without symrot
+SCENES = "scenes"  # subfolder for the kernels of shipped scenes; library kernels are directly in the target's folder
+>>>>>>> main
 
 
 def kernel_lines() -> list[str]:
@@ -37,10 +43,10 @@ def kernel_lines() -> list[str]:
 
 
 def kernel_files(kernel: KernelText, target: str, bounds: Mapping[str, Any] | None = None) -> dict[str, str]:
-    """Return the files of a kernel of the library or of a scene, as a mapping from file name to text.
+    """Return the files of a library kernel or of a scene's kernel, as a map from file name to text.
 
-    In C the header comes first. ``bounds`` are the rounding bounds for the comment at the head of a scene's C file (see
-    :func:`symrot.emit`).
+    In C the header comes first. ``bounds`` are the rounding bounds for the comment at the head of a scene's C file
+    (see :func:`symrot.emit`).
     """
     return kernel.files(target, bounds)
 
@@ -48,10 +54,10 @@ def kernel_files(kernel: KernelText, target: str, bounds: Mapping[str, Any] | No
 def certificate_files(
     kernel: KernelText, directory: Path, bounds: Mapping[str, Any] | None = None
 ) -> dict[str, str]:  # fmt: skip
-    """Return the certificate file of a kernel, as a mapping from file name to text.
+    """Return the certificate file of a kernel, as a map from file name to text.
 
-    Verdicts on object code from the certificate on disk are kept if they still hold. Bounds of rounding errors are on
-    the kernel's own box; for a scene, they are ``bounds``.
+    Verdicts on object code are copied from the certificate on disk if they still hold. Bounds of rounding errors are
+    on the kernel's own box; for a scene, they are ``bounds``.
     """
     name, certificate = f"{kernel.name}.cert.json", kernel.certificate(bounds)
     own = json.loads(certificate).get("rounding")
@@ -59,10 +65,10 @@ def certificate_files(
 
 
 def stored_bounds(kernel: KernelText, directory: Path | None) -> Mapping[str, Any] | None:
-    """Return the rounding bounds of a scene's kernel from its certificate in a folder, after an audit of them.
+    """Return the rounding bounds of a scene's kernel, read from its certificate in a folder and checked.
 
-    The result is None for a kernel of the library, which has its own bounds. It is also None if there is no
-    certificate, or if its bounds are missing, belong to other operations, or fail the check.
+    The result is None for a library kernel, which has bounds of its own. It is also None if there is no certificate,
+    or if the bounds in it are missing, belong to other operations, or fail the check.
     """
     if directory is None or not isinstance(kernel, SceneText):
         return None
@@ -79,7 +85,7 @@ def stored_bounds(kernel: KernelText, directory: Path | None) -> Mapping[str, An
 
 
 def _slots(path: Path) -> dict[str, Any]:
-    """Return the certificate on disk, to reuse its bounds and verdicts; an empty dict if there is no certificate."""
+    """Return the certificate on disk, whose bounds and verdicts are used again; an empty dict if there is none."""
     try:
         certificate = json.loads(read_input(path, LARGEST))
     except (OSError, ValueError, RecursionError):
@@ -88,7 +94,7 @@ def _slots(path: Path) -> dict[str, Any]:
 
 
 def _files_of(name: str, subfolder: str, targets: Sequence[str], directory: Path) -> dict[str, str]:
-    """Return all files of one kernel, its certificate included, as a mapping from path to text."""
+    """Return all files of one kernel, including its certificate, as a map from path to text."""
     kernel, files = kernel_text(name), dict[str, str]()
     for target in targets:
         bounds = stored_bounds(kernel, directory / target / subfolder) if target == "c" else None
@@ -100,7 +106,7 @@ def _files_of(name: str, subfolder: str, targets: Sequence[str], directory: Path
 
 
 def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str], object]) -> dict[str, str]:
-    """Return all files of the library and of the shipped scenes' kernels, as a mapping from path to text.
+    """Return all files of the library and of the shipped scenes' kernels, as a map from path to text.
 
     Several processes share the work.
     """
@@ -124,7 +130,7 @@ def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str]
 
 
 def _printed_before(directory: Path, targets: Sequence[str]) -> list[str]:
-    """Return the paths of all kernel files on disk, also of kernels that symrot no longer has."""
+    """Return the paths of all kernel files on disk, even of kernels that symrot no longer has."""
     return [
         path.relative_to(directory).as_posix()
         for target in targets
@@ -135,7 +141,7 @@ def _printed_before(directory: Path, targets: Sequence[str]) -> list[str]:
 
 
 def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
-    """Write texts into a folder, which is created if necessary, and return the paths that changed.
+    """Write texts into a folder, which is created if necessary, and return the paths of the files that changed.
 
     Raises
     ------

@@ -40,7 +40,7 @@ Bounds = Mapping[str, Any]
 
 
 class KernelText(ABC):
-    """The texts of one kernel; ``bounds``, where they are an argument, are those of :func:`symrot.emit`."""
+    """The texts of one kernel; an argument ``bounds`` is the one of :func:`symrot.emit`."""
 
     name: str
     folders: ClassVar[Mapping[str, str]]  # target -> its folder, relative to the folder of the certificate
@@ -61,7 +61,7 @@ class KernelText(ABC):
 
     @abstractmethod
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
-        """Return the kernel with its texts, as the object that a certificate is made for."""
+        """Return the kernel with its texts, as the object from which its certificate is made."""
 
     def rounding(self, bounds: Bounds | None) -> Bounds | None:
         """Return the section ``rounding`` of the certificate, or None."""
@@ -73,7 +73,7 @@ class KernelText(ABC):
         return with_sections(text, {"rounding": section}) if isinstance(section, dict) else text
 
     def c_files(self, bounds: Bounds | None = None) -> dict[str, str]:
-        """Return the files in C as a mapping from name to text, the header first."""
+        """Return the C files as a map from name to text; the header comes first."""
         source, header = self.c(bounds)
         shared = {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in source else {}
         return {f"{self.name}.h": header, f"{self.name}.c": source} | shared
@@ -89,7 +89,7 @@ class KernelText(ABC):
         return self.c_files(bounds) if target == "c" else {f"{self.name}{SUFFIX[target]}": self.source(target)}
 
     def _certified_files(self, bounds: Bounds | None) -> dict[str, str]:
-        """Return the files that a certificate is about, in the order of its list: the C source comes first."""
+        """Return the files that a certificate lists, in its order: the C source comes first."""
         files, source = self.c_files(bounds), f"{self.name}.c"
         others = {
             f"{folder}/{file}": text
@@ -121,7 +121,9 @@ class LibraryText(KernelText):
 
     @cached_property
     def _c(self) -> tuple[str, str]:
-        """The head states the bounds of the operations below it, so the operations are printed and bounded first."""
+        """Return the C source and its header; operations are printed and bounded first, because the head states their
+        bounds.
+        """
         program = kernel_program(self.name)
         description = kernel_description(self._definition, "c", bounds_sentence(self.name, self._section))
         return with_head(program, description, self._functions), c_header(program, description, (DOUBLE, FLOAT))

@@ -1,4 +1,4 @@
-"""Comparison of object code with a kernel's C text, for the compilers of this machine or a user's object file."""
+"""Comparison of object code with a kernel's C text, compiled on this machine or taken from a user's object file."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -34,12 +34,12 @@ def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
     Parameters
     ----------
     texts : mapping of str to str
-        File name -> text: the kernel and the headers that it includes.
+        A map from file name to text: the kernel and the headers that it includes.
     source : str
         The name of the C file in ``texts``.
     programs : str
-        The digest of symrot's sources. The section comes from the cache if the digest, the texts and the versions
-        of the compilers are unchanged.
+        The hash of symrot's source files. The section comes from the cache if this hash, the texts and the versions of
+        the compilers are unchanged.
     """
     versions = [compiler_version(compiler) for compiler in COMPILERS]
     key = f"objects of {json.dumps([source, dict(texts), versions])} by {programs}"
@@ -80,7 +80,7 @@ def table(sections: Mapping[str, Data | None]) -> list[str]:
 
 
 def object_lines(text: str, path: Path, where: str) -> list[str]:
-    """Compare each function in an object file with the C text, and return one line for each.
+    """Compare each function in an object file with the C text; return one line for each function.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def _objects(section: Data | None) -> Iterator[Data]:
 
 
 def _verdict(item: Data) -> str:
-    """Return the verdict on one object file as text; for a rejected file, the first reason."""
+    """Return the verdict on one object file as text; for a rejected file, with the reason for its first function."""
     verdicts = {function["verdict"] for function in item["functions"]}
     if item["accepted"]:
         return f"the C text, {HOLDS[IDENTICAL if verdicts == {IDENTICAL} else CONTRACTED]}"

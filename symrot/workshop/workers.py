@@ -1,4 +1,4 @@
-"""Pools of processes for long work, which end immediately when the command is interrupted."""
+"""A pool of processes for long work; it ends immediately when the command is interrupted."""
 
 import os
 import signal
@@ -19,7 +19,7 @@ def _ignored(arguments: object) -> None:
 
 @contextmanager
 def workers() -> Iterator[ProcessPoolExecutor]:
-    """Yield a pool of processes; an exception in the block, Ctrl-C included, kills them at once.
+    """Yield a pool of processes; an exception in the ``with`` block, such as Ctrl-C, kills the processes at once.
 
     The processes write files under temporary names and rename them (:func:`symrot.files.writing.write`,
     :mod:`symrot.build.cache`), so that no incomplete file remains. They ignore Ctrl-C; the main process ends them.

@@ -1,6 +1,6 @@
-"""The benchmark's own laws: references agree, errors are what they are said to be, tables and comparisons add up.
+"""Laws of the benchmark: references agree, measured errors are true errors, tables and comparisons add up.
 
-No test looks at a time: those are of the machine.
+No test depends on a measured time, because times depend on the machine.
 """
 
 import json
@@ -66,7 +66,9 @@ def found():
     ids=["free", "expression", "gyrostat"],
 )
 def test_the_references_share_nothing_and_agree(more):
-    """Series in 40 digits, Runge-Kutta in long double on unspecialised equations, and the closed form where there is one."""
+    """The references are a series in 40 digits, Runge-Kutta steps in long double on general equations, and the closed
+    form.
+    """
     result = reference(Problem(scene(**more)))
     assert result.others
     assert all(difference < 1e-15 for _, difference in result.others)
@@ -74,7 +76,7 @@ def test_the_references_share_nothing_and_agree(more):
 
 
 def test_a_reference_starts_from_the_exact_numbers():
-    """A moment of 1/3 is no double: the reference must see the third, not its rounding."""
+    """The moment of inertia 1/3 is no double; the reference must use 1/3 itself, not the rounded number."""
     thirds = scene(body={"principal": ["4/3", "5/3", "7/3"]}, initial={"omega": ["1/3", "1/7", "5/11"]})
     scaled = scene(body={"principal": [4, 5, 7]}, initial={"omega": ["1/3", "1/7", "5/11"]})
     ends = [reference(Problem(one)).states for one in (thirds, scaled)]  # only ratios of moments matter
@@ -91,7 +93,9 @@ def test_a_rough_torque_has_no_series_and_says_so(monkeypatch):
 
 
 def test_a_motion_without_series_has_two_references_that_share_no_coefficient():
-    """Dormand and Prince on general equations, Gragg's extrapolated midpoints on the scene's own."""
+    """They are Dormand-Prince steps on general equations, and Gragg's extrapolated midpoints on the scene's own
+    equations.
+    """
     result = reference(Problem(scene(torque=[{"kind": "damping", "quadratic": "1/10"}])))
     assert "DOP853 in long double" in result.name
     ((name, difference),) = result.others
@@ -107,7 +111,7 @@ AT_REST = {"initial": {"omega": [0, 0, 0]}, "span": {"t": [0, 5], "samples": 2}}
 @pytest.mark.parametrize("computed", [item[1] for item in REFERENCES if item[0] != "closed form"],
                          ids=["taylor", "dop853", "midpoints"])  # fmt: skip
 def test_no_reference_steps_over_a_pulse(computed):
-    """The momentum of a body at rest after a Gauss pulse is its area, sqrt(pi), and only after the pulse."""
+    """A body at rest gets the momentum sqrt(pi), the area of the Gaussian pulse, and gets it only after the pulse."""
     problem = Problem(scene(torque=[PULSE], **AT_REST))
     states = computed(problem, lambda text: None, 60.0)
     assert [problem.ends[0] < 1.99, problem.ends[1] > 2.01] == [True, True]
@@ -117,7 +121,7 @@ def test_no_reference_steps_over_a_pulse(computed):
 
 
 def test_two_fixed_step_references_do_not_agree_on_having_missed_a_pulse():
-    """With air drag there is no series: both references left take fixed steps, and neither may pass the pulse."""
+    """Air drag has no Taylor series, so both references take fixed steps; neither may step over the pulse."""
     air = {"kind": "damping", "quadratic": "1/10"}
     problem = Problem(scene(torque=[{**PULSE, "parameters": {"w": "1/100000"}}, air], **AT_REST))
     result = reference(problem)
@@ -136,7 +140,9 @@ def test_the_path_of_the_stability_study_does_not_step_over_a_pulse():
 
 
 def test_a_body_that_a_pulse_has_yet_to_set_going_is_measured_by_its_later_motion():
-    """Before the pulse it moves at 1e-40 rad/s, of which no digit matters; a wrong motion after it is seen."""
+    """Before the pulse the body rotates at 1e-40 rad/s, where errors do not matter; after it a wrong motion is
+    detected.
+    """
     slow, fast = (State(np.array([0, 0, omega]), None) for omega in (1e-40, 1.0))
     off = State(np.array([0, 0, 2e-40]), None)
     assert Problem.worst([off, fast], [slow, fast]) < 1e-30
@@ -146,7 +152,7 @@ def test_a_body_that_a_pulse_has_yet_to_set_going_is_measured_by_its_later_motio
 
 @pytest.mark.parametrize("wrong", [0, 1])
 def test_a_wrong_reference_is_refused(wrong, monkeypatch):
-    """Whichever of two is wrong, in one component, by 1e-5: errors against it would mean nothing."""
+    """If one of two references is wrong by 1e-5 in one component, the study ends with an error."""
     table = list(REFERENCES[:2])
     name, true = table[wrong]
 
@@ -168,7 +174,7 @@ def test_a_reference_that_is_no_number_confirms_nothing(monkeypatch):
 
 
 def test_every_reference_is_refused_by_the_measure_when_it_is_wrong():
-    """The measure of errors sees a wrong sign, a swapped component, a turn by 1e-9 rad."""
+    """The measure of errors detects a wrong sign, a swapped component and a rotation by 1e-9 rad."""
     exact = reference(Problem(scene())).states[-1]
     q = exact.quaternion
     turned = np.array([q[0], q[1], q[2], q[3]]) + 0.5e-9 * np.array([-q[1], q[0], q[3], -q[2]])
@@ -192,7 +198,7 @@ def test_references_cover_what_a_study_needs():
 
 
 def test_the_kernel_for_scipy_is_the_emitted_one():
-    """Narrowed to one state it returns the same numbers, sin and sqrt among them."""
+    """The kernel rewritten for one state returns the same numbers, also for sine and square root."""
     torque = [{"kind": "expression", "torque": ["sin(t)*sqrt(2+q0)", "atan2(q1, 2)", "exp(-t)*tanh(omega_3)"]}]
     problem = Problem(scene(torque=torque))
     whole, narrow = load_numpy_kernel(problem.kernel.rates), scalar_kernel(problem.kernel.rates)
@@ -219,7 +225,9 @@ def test_tighter_tolerances_give_less_error(found):
 
 
 def test_a_motion_seen_as_one_angle_is_compared_as_a_rotation():
-    """The plan integrates omega_3 and an angle; the closed form returns all; both are one state."""
+    """The plan integrates omega_3 and an angle, the closed form returns omega and quaternion; both are compared as one
+    state.
+    """
     planar = scene(initial={"omega": [0, 0, 1]}, torque=[{"kind": "damping", "linear": "1/10"}])
     problem = Problem(planar)
     assert problem.plan.states == ("omega_3", "theta")
@@ -287,7 +295,7 @@ RUNS = [made("taylor", 1e-4, 1.0), made("taylor", 1e-9, 2.0), made("heyoka", 1e-
 
 
 def test_decades_take_the_fastest_that_is_good_enough():
-    """A looser run that is slower never counts; no curve is extended."""
+    """A run with a looser tolerance that is slower never counts, and no curve is extrapolated."""
     rows = {row["error"]: row for row in decades(RUNS)}
     assert set(rows) == {error for error in DECADES if error >= 1e-9}
     assert rows[1e-3]["methods"]["heyoka"]["seconds"] == 4.0
@@ -333,7 +341,7 @@ def test_studies_of_two_scenes_are_not_compared(found):
 
 
 def test_the_digest_is_that_of_the_motion():
-    """A title changes nothing, a moment does."""
+    """Another title does not change the digest; another moment of inertia does."""
     base, titled, heavier = (
         digest(Problem(scene(**more))) for more in ({}, {"title": "other"}, {"body": {"principal": [1, 2, "5/2"]}})
     )
@@ -373,7 +381,7 @@ def test_a_file_that_is_no_study_is_refused(tmp_path, content, said):
 
 
 def test_the_general_kernel_follows_the_same_motions(monkeypatch):
-    """Full tensor and all torques, those that do not act at zero: the ends agree."""
+    """The final states agree, although the general kernel has a full tensor and all torques, some of which are zero."""
     whole = skip.rungs()
     kept = {name: whole[name] for name in ("full_tensor_all_torques", "free_symmetric", "constant")}
     monkeypatch.setattr(skip, "rungs", lambda: kept)
@@ -393,7 +401,7 @@ def test_no_rung_of_the_ladder_costs_more_than_the_one_above():
 
 
 def test_a_wrong_general_kernel_would_be_seen(monkeypatch):
-    """A torque that should be zero and is not moves the end, and the row says so."""
+    """If a torque that should be zero is not zero, the final state differs and the row of the table says so."""
     true = skip._nothing
 
     def wrong(kind):
@@ -437,7 +445,7 @@ def test_the_suite_writes_its_files(tmp_path, monkeypatch):
 
 
 def test_an_interrupted_suite_goes_on(tmp_path, monkeypatch, found):
-    """What was finished is kept; the files of an earlier suite stay whole; other options begin anew."""
+    """Finished studies are kept and files of an earlier suite stay complete; with other options the suite starts again."""
     studied, broken = [], True
 
     def pretended(one, *rest):
@@ -488,8 +496,8 @@ def test_the_command_studies_compares_and_draws(tmp_path, capsys):
         (["tumbling_prism", "--methods", "euler"], "'euler'"),
         (["tumbling_prism", "--tolerances", "1e-3,nan"], "'1e-3,nan'"),
         (["tumbling_prism", "--tolerances", "-1"], "'-1'"),
-        (["tumbling_prism", "--tolerances", "1e-9,1e-3"], "expected falling numbers"),
-        (["tumbling_prism", "--tolerances", ""], "expected falling numbers"),
+        (["tumbling_prism", "--tolerances", "1e-9,1e-3"], "expected decreasing numbers"),
+        (["tumbling_prism", "--tolerances", ""], "expected decreasing numbers"),
         (["tumbling_prism", "--rounds", "0"], "at least 1, got 0"),
         (["--skip", "--rounds", "3"], "does not accept --rounds"),
         (["--suite", "-o", "/dev/null/x"], "cannot be created"),

@@ -1,4 +1,4 @@
-"""What the report on stability rests on: a truth that is true, errors that are seen, laws that hold and are derived."""
+"""Laws of the report on stability: the reference is right, errors are detected, and the laws hold and are proven."""
 
 import json
 import math
@@ -27,7 +27,7 @@ def plate(omega=stability.STARTS[0]):
 
 @pytest.fixture(scope="module")
 def track():
-    """Three revolutions to fifty."""
+    """Return a track of three to fifty revolutions."""
     revolutions = 10.0 ** np.linspace(0.5, 1.7, 10)
     size = math.sqrt(sum(float(Fraction(w)) ** 2 for w in stability.STARTS[0]))
     return growth.Track(plate(), revolutions * 2 * math.pi / size, periodic=True), revolutions
@@ -65,7 +65,9 @@ def test_a_motion_that_never_comes_back_is_refused(monkeypatch):
 
 
 def test_methods_are_told_apart(track):
-    """Closed form at rounding, Taylor series next, RK4 last; projection holds the invariants; q alone hides nothing."""
+    """The closed form has the smallest error, then the Taylor series, and RK4 the largest; projection reduces the
+    drift.
+    """
     curves = {curve.method: curve for curve in growth.growth(track[0])}
     assert list(curves) == [method.name for method in growth.METHODS]
     last = {name: curve.attitude[-1] for name, curve in curves.items()}
@@ -106,7 +108,9 @@ def test_the_laws_of_tangent_and_secant_are_decided():
 
 
 def test_a_body_grows_along_tangents_by_the_law_and_keeps_along_secants():
-    """Points across a steady rotation grow by sqrt(1 + (omega h)^2) a step, to the last digits."""
+    """Points at right angles to a steady rotation move outward by the factor sqrt(1 + (omega h)^2) per step, to the
+    last digits.
+    """
     scene = stability._scene("steady", {"principal": [1, 2, 3]}, (0, 0, 2))
     found = {each.scheme: each for each in points.carried(scene, 3.0, (0.01,), (1.0, 2.0, 0.0))}
     assert found["tangent"].growth == pytest.approx((1 + 0.02**2) ** 150, rel=1e-13)
@@ -142,6 +146,6 @@ def test_the_report_of_a_scene(tmp_path, capsys, monkeypatch):
 
 @pytest.mark.parametrize("name", ["friction_wheel", "thruster_train"])
 def test_a_motion_with_switches_is_refused(name):
-    """Series go on beyond a switch with the equations before it: a truth that would call every right motion wrong."""
+    """The reference series would continue past a switch with the old equations, and reject every correct motion."""
     with pytest.raises(InputError, match="expected torques without switches"):
         stability.stability(load_scene(name))

@@ -1,4 +1,4 @@
-"""Compiled kernels are kept, found again and never trusted blindly."""
+"""Laws of the kernel cache: compiled kernels are stored, loaded again, and checked before they are used."""
 
 import ctypes
 import errno
@@ -21,7 +21,7 @@ SOURCE = "double answer(void) { return 42.0; }\n"
 
 @pytest.fixture(autouse=True)
 def own_cache(tmp_path, monkeypatch):
-    """Give every test a cache of its own, and no temporary directory of another test."""
+    """Give every test its own cache, and no temporary directory of another test."""
     monkeypatch.setenv("SYMROT_CACHE", str(tmp_path / "cache"))
     temporary = library._Temporary()
     monkeypatch.setattr(library, "_temporary", temporary)
@@ -32,7 +32,7 @@ def own_cache(tmp_path, monkeypatch):
 
 @pytest.fixture
 def no_compiling(monkeypatch):
-    """Fail if a program is run."""
+    """Make the test fail if any program is run."""
 
     def refuse(*arguments, **options):
         raise AssertionError("a program was run")
@@ -41,7 +41,9 @@ def no_compiling(monkeypatch):
 
 
 def answer(path):
-    """Return what the library computes; a copy is loaded, since the loader keeps what it has seen under a name."""
+    """Return the number that a library computes; a copy of the file is loaded, because the loader caches libraries by
+    name.
+    """
     copy = path.with_name(f"loaded-{os.urandom(4).hex()}")
     shutil.copy(path, copy)
     function = ctypes.CDLL(str(copy)).answer
@@ -123,7 +125,7 @@ def test_a_damaged_entry_is_built_anew(damage):
 
 
 def test_processes_that_build_at_once_do_not_disturb_each_other(own_cache):
-    """Eight of them, twice; each loads what it got, and nothing half-written is left."""
+    """Eight processes build at once, twice; each loads what it built, and no partial file remains."""
     program = (
         "import ctypes, sys; from symrot.build import cache as library\n"
         "for number in range(2):\n"
@@ -201,12 +203,14 @@ def test_a_program_that_is_no_program_is_one_sentence(monkeypatch, tmp_path):
 def test_a_hanging_compiler_is_given_up(monkeypatch, tmp_path):
     monkeypatch.setenv("CC", str(fake_compiler(tmp_path, "exec sleep 60")))
     monkeypatch.setattr(library, "SECONDS_TO_COMPILE", 0.2)
-    with pytest.raises(CompilerError, match=r"no answer within 0\.2 s"):
+    with pytest.raises(CompilerError, match=r"did not end within 0\.2 s"):
         library.build(SOURCE, "answer")
 
 
 def ended(process: int, within: float) -> bool:
-    """Whether a process is gone, or a zombie, within so many seconds: one that was killed runs until it is scheduled."""
+    """Return whether a process ends, or is a zombie, within some seconds; a killed process still runs until it is
+    scheduled.
+    """
     limit = monotonic() + within
     while monotonic() < limit:
         try:
@@ -220,11 +224,13 @@ def ended(process: int, within: float) -> bool:
 
 
 def test_what_a_hanging_compiler_started_is_stopped_too(monkeypatch, tmp_path):
-    """Else its output stays open, and whoever reads it waits; it is asked once, not once for each set of flags."""
+    """Otherwise the output stays open and its reader waits for ever; the compiler is asked once, not once per set of
+    flags.
+    """
     script = f"echo asked >> {tmp_path}/asked\nsleep 60 &\necho $! > {tmp_path}/child\nsleep 60"
     monkeypatch.setenv("CC", str(fake_compiler(tmp_path, script)))
     monkeypatch.setattr(library, "SECONDS_TO_COMPILE", 0.5)
-    with pytest.raises(CompilerError, match=r"no answer within 0\.5 s"):
+    with pytest.raises(CompilerError, match=r"did not end within 0\.5 s"):
         library.build(SOURCE, "answer", (*library.FLAGS, *library.TUNING))
     assert (tmp_path / "asked").read_text() == "asked\n"
     assert ended(int((tmp_path / "child").read_text()), within=10)
@@ -236,7 +242,7 @@ def test_compilers_can_be_stopped_from_another_thread(monkeypatch, tmp_path):
     while not (tmp_path / "started").exists():
         pass
     library.stop_compilers()
-    with pytest.raises(CompilerError, match="was killed before it was done"):
+    with pytest.raises(CompilerError, match="was killed before it had finished"):
         building.path()
 
 
@@ -329,7 +335,7 @@ def foreign_parent(room, monkeypatch):
 
 
 def link_in_an_open_folder(room, monkeypatch):
-    """The folder that a link leads to is private; the link may be exchanged."""
+    """Return a cache path through a link that other users can replace; the link's target is a private folder."""
     private, shared = room.parents[1] / "private", room.parents[1] / "shared"
     private.mkdir()
     shared.mkdir()
@@ -377,14 +383,14 @@ def test_an_unusable_cache_is_replaced_for_this_process(trouble, reason, own_cac
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="the system has no owners of files")
 def test_a_cache_in_a_sticky_folder_is_used(own_cache, tmp_path):
-    """As below /tmp: nobody but its owner can rename it there."""
+    """In a folder like /tmp only the owner of a file can rename it."""
     own_cache.mkdir(parents=True)
     tmp_path.chmod(0o1777)
     assert library.cache() == (own_cache, "")
 
 
 def test_the_folders_of_a_new_cache_are_private(own_cache, monkeypatch, tmp_path):
-    """Whatever the umask of the process."""
+    """They are private whatever the umask of the process is."""
     before = os.umask(0)
     try:
         monkeypatch.setenv("SYMROT_CACHE", str(tmp_path / "a" / "b"))

@@ -1,4 +1,4 @@
-"""A cache that another process clears between the compiler and the loader is filled again."""
+"""If another process clears the cache between compiling and loading, the library is built again."""
 
 from symrot.build import cache as library
 from symrot.closed_form import build as closed_forms

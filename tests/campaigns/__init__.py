@@ -1,1 +1,3 @@
-"""Campaigns of random problems against truths that share no code with symrot; run by hand, not by pytest."""
+"""Campaigns: long searches for mistakes with random problems whose truth shares no code with symrot; run by hand, not
+by pytest.
+"""

@@ -1,4 +1,6 @@
-"""A slice of the campaign: generated claims, no wrong verdict. ``python -m tests.campaigns.checker.identities`` runs more of it."""
+"""A slice of the campaign of generated claims: no wrong verdict. ``python -m tests.campaigns.checker.identities`` runs
+more.
+"""
 
 import re
 from random import Random
@@ -38,13 +40,13 @@ LETTERS = {
 
 
 def filled(side):
-    """Put formulas for the capital letters of a rule."""
+    """Return a side of a rule with formulas in place of its capital letters."""
     return read_expression(re.sub(r"\b[ABXYZFHJUVPQ]\b", lambda letter: LETTERS[letter[0]], side))
 
 
 @pytest.mark.parametrize(("left", "right"), RULES)
 def test_every_rule_holds_exactly(left, right):
-    """The rules of the generator, with formulas for their letters, over the rationals."""
+    """The rules of the generator hold over the rationals, with formulas for their letters."""
     assert truth_under(filled(left), filled(right), (), Random(1)) is True
 
 
@@ -72,7 +74,7 @@ def test_points_obey_every_hypothesis_of_the_table(seed):
 ])  # fmt: skip
 @workdps(30)
 def test_wider_values_agree_with_thirty_digits(formula, function):
-    """Inverse functions, exponentials and roots over the rationals, against mpmath at the same point."""
+    """Rational values of inverse functions, exponentials and roots agree with mpmath at the same point."""
     for seed in range(4):
         point = wider_point(Random(seed))
         k, n = (mp.mpf(point.values[name].numerator) / point.values[name].denominator for name in "kl")
@@ -97,7 +99,7 @@ def test_values_that_are_not_rational_are_undefined(formula):
 @pytest.mark.parametrize("seed", range(6))
 @workdps(30)
 def test_the_exact_values_agree_with_fifty_digits(seed):
-    """Claims evaluated over the rationals and, independently, in double precision at the same point."""
+    """Rational values of claims agree with independent ones in double precision at the same point."""
     source = Random(seed)
     for claim, given, _ in claims(8, seed):
         if given or any(name in claim for name in (*WIDER, "sqrt", "abs")):
@@ -131,7 +133,7 @@ def test_truth_tells_true_from_false_and_undefined():
 
 
 def test_a_wrong_engine_is_caught(monkeypatch):
-    """Every verdict turned round is reported, and the command fails."""
+    """If every verdict is reversed, each is reported, and the command fails."""
     from symrot.checker.verdict import Verdict
     from tests.campaigns.checker import identities as module
 

@@ -1,4 +1,4 @@
-"""The campaign over real functions: a slice of it, and judges that refuse wrong verdicts."""
+"""The campaign over real functions: a slice of it, and tests that its judges reject wrong verdicts."""
 
 import json
 from dataclasses import asdict, replace
@@ -197,7 +197,7 @@ def test_an_answer_that_never_comes_is_given_up(monkeypatch):
 
 
 def test_values_beyond_the_largest_are_values():
-    """The judge cannot compare exp(exp(100)), but knows that it is there."""
+    """The judge cannot compare exp(exp(100)), but knows that it has a value."""
     with pytest.raises(Large):
         value("sin(exp(exp(100)))")
     claim = "sin(exp(sinh(exp(x**4 - x + 5)))) == sin(2*exp(sinh(exp(x**4 - x + 5))) - exp(sinh(exp(x**4 - x + 5))))"
@@ -223,7 +223,7 @@ def test_a_formula_of_large_numbers_has_none(formula):
 
 
 def test_a_number_that_only_seems_zero_has_no_root():
-    """cosh(exp(-exp(x))) is larger than 1 by less than 60 digits show."""
+    """cosh(exp(-exp(x))) exceeds 1 by less than 60 digits show."""
     claim = "acos(cosh(asin(exp(-exp(x))))) == 3"
     assert fault(claim, "the sides are not real numbers: -1 >= 0 does not hold", Random(1)) == ""
 

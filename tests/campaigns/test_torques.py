@@ -1,4 +1,4 @@
-"""The campaign of random torques judges itself: two ways to the same truth, and wrong trajectories seen as wrong."""
+"""Tests of the campaign of random torques: two ways to the same truth agree, and wrong trajectories are found wrong."""
 
 import os
 import time
@@ -62,13 +62,13 @@ def test_momentum_and_work_agree_with_the_reference():
 
 @pytest.mark.parametrize("problem", [PULSE, TUMBLING, BUMP], ids=["pulse", "tumbling", "bump"])
 def test_a_reference_that_steps_over_a_feature_contradicts_the_law(problem):
-    """The mutant takes the torque for zero, as a reference that was not told would."""
+    """The mutant takes the torque for zero, like a reference that is not told of the feature."""
     blind = reference(replace(problem, texts=("0", "0", "0"), features=[]))
     assert contradiction(problem, blind, again=True)
 
 
 def test_backwards_is_the_way_back():
-    """From the state at the end, the reference returns to the start."""
+    """From the final state, the reference returns to the start."""
     there = reference(TUMBLING).motion([4.0])[0]
     w, q = [float(x) for x in there[:3]], [float(x) for x in there[3:]]
     back = replace(TUMBLING, omega=tuple(w), quaternion=tuple(q), t0=4.0)
@@ -96,7 +96,7 @@ def test_collocation_refuses_what_it_cannot_follow(monkeypatch):
 
 
 def obeys(motion, acceleration, low, high):
-    """Whether omega is the rate of the angle, and its own rate the acceleration, away from jumps."""
+    """Return whether omega is the rate of the angle, and ``acceleration`` the rate of omega, away from jumps."""
     t = np.sort(np.random.default_rng(4).uniform(low, high, 400)).astype(np.longdouble)
     h = np.longdouble(1e-5) * (high - low)
     (w, x), (w1, x1), (w0, x0) = motion(t), motion(t + h), motion(t - h)
@@ -163,7 +163,7 @@ def test_soft_friction_is_an_inverse_hyperbolic_sine():
 
 
 def answer(truth, tolerance, rate=0.0, turn=0.0, sentence="", sign=1):
-    """The truth, with an error of so many tolerances in omega and in attitude at one dense time."""
+    """Return the truth with an error of so many tolerances in omega and in attitude at one dense time."""
     times = np.linspace(0.5, 4.0, 30)
     states = truth.motion(times)
     states[17, 2] += rate * tolerance * truth.omega_scale
@@ -203,7 +203,7 @@ def test_growth_excuses_no_more_than_itself(truth):
 
 
 def test_a_missed_pulse_is_wrong(truth):
-    """The answer of a method that steps over the pulse: at rest."""
+    """A method that steps over the pulse answers that the body stays at rest."""
     times = np.linspace(0.5, 4.0, 30)
     states = np.zeros((30, 7))
     states[:, 3] = 1
@@ -217,7 +217,7 @@ def test_states_that_are_no_numbers_are_wrong_and_silence_too(truth):
 
 
 def test_the_rounding_of_a_narrow_pulse_is_small_beside_the_tolerance(truth):
-    """What doubles cannot resolve excuses little: 1e-13 of omega here, where the pulse is 1/400 of the span wide."""
+    """The limits of doubles excuse little: 1e-13 of omega here, for a pulse of 1/400 of the span."""
     assert truth.rounding[0] < 1e-13 * truth.omega_scale * 30
 
 
@@ -272,7 +272,7 @@ def test_the_report_lists_every_wrong_one():
 
 
 def test_an_interrupted_campaign_goes_on_where_it_stopped(tmp_path):
-    """Its own results count again, those of another seed or cut off in their line do not."""
+    """Results of the same seed count again; results of another seed or in a cut line do not."""
     path = tmp_path / "results"
     result = Result("angle:1", "angle", "taylor", "bump", "wrong", "omega off by 1 rad/s", 1e6, 1.0, 0.1)
     torques.Record(str(path), 5, ("taylor",)).add(result)

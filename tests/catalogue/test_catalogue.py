@@ -1,4 +1,4 @@
-"""The catalogue: every derivation derives, none is vacuous, and the printed pages are current."""
+"""Laws of the catalogue: every derivation can be derived, no step is vacuous, and the printed pages are up to date."""
 
 import os
 import re
@@ -65,7 +65,7 @@ def test_an_unknown_derivation_is_refused():
 
 @pytest.mark.parametrize("name", catalogue.names())
 def test_no_step_would_hold_with_an_error(derived, name):
-    """With a small amount added to one side, every equation fails under the same hypotheses: none is vacuous."""
+    """With a small amount added to one side, every equation fails under the same hypotheses, so no step is vacuous."""
     steps = [step for step in derived[name].steps if step.relation == "="]
     assert steps
     error = Rational(1, 10**9) * Symbol("error", positive=True)
@@ -96,13 +96,15 @@ IN_WORDS = {  # right sides that are typed in words or names beside what was pro
 
 @pytest.mark.parametrize("name", catalogue.names())
 def test_what_is_shown_is_what_was_proven(derived, name):
-    """A side of an equation is printed from the proof, or its LaTeX is read back and decided when it is built."""
+    """Each side of an equation is printed from the proof, or its LaTeX is parsed and proven equal when the step is
+    added.
+    """
     words = [step.display for step in derived[name].steps if not step.printed[1]]
     assert len(words) <= IN_WORDS.get(name, 2), words
 
 
 def test_a_tampered_page_cannot_be_derived(monkeypatch):
-    """One sign changed in what a catalogue page shows, and in nothing that it proves."""
+    """The test changes one sign in a displayed formula, but nothing in the proven formulas."""
     add = Derivation.step
 
     def tampered(page, claim, left, right, *, display=None, **others):
@@ -121,7 +123,7 @@ def test_every_sequence_has_its_rates(derived):
 
 
 def test_the_coefficient_of_a_power_is_that_of_the_product():
-    """Of polynomials with numbers in them, multiplied out and differentiated by SymPy."""
+    """The reference is a product of polynomials, expanded and differentiated by SymPy."""
     x, k = Symbol("x"), Symbol("k")
     series = {"a": [2, -3, 5, 7, 0, 1], "b": [1, 4, -2, 0, 3, 9]}
     factors = {"a": {0: x**2 - 3, 1: 2 * x, 2: x**3 + 1}, "b": {0: 4 * x, 1: 1 - x**2}}
@@ -146,7 +148,7 @@ def test_what_the_planner_and_the_docstrings_cite_exists():
 
 
 def test_the_committed_pages_are_current(printed):
-    """Run `symrot derive --all` when this fails."""
+    """If this test fails, run `symrot derive --all`."""
     directory = ROOT / "derivations"
     assert {path.name for path in directory.glob("*.md")} == set(printed)
     for name, text in printed.items():
@@ -170,7 +172,7 @@ def test_check_finds_what_is_stale_missing_and_left_over(tmp_path, printed, monk
 
 
 def test_a_page_does_not_depend_on_hashing(derived, printed):
-    """Another process has another seed of hashes than this one."""
+    """The page is printed again in a process with another hash seed."""
     program = (
         "from symrot.catalogue import derivation; import sys; names = sys.argv[1:];"
         "sys.stdout.write(''.join(derivation(n).markdown() for n in names));"

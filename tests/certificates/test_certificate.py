@@ -1,4 +1,4 @@
-"""Certificates: what they say is proven, re-checked without symrot, audited; and whatever is altered is refused."""
+"""Certificates: their statements are proven, checked again without symrot, and audited; any change is refused."""
 
 import ast
 import json
@@ -41,7 +41,7 @@ RECHECK = Path(recheck.__file__)
 
 @pytest.fixture(scope="module")
 def kernels(tmp_path_factory):
-    """Some kernels in a folder, as they are emitted."""
+    """Emit some kernels into a folder and return it."""
     directory = tmp_path_factory.mktemp("kernels")
     return {name: Files(directory, kernel_text(name).under_test(), emit(name).certificate) for name in SLICE}
 
@@ -58,7 +58,7 @@ def dcm(kernels):
 
 
 def refused(files, said, *options):
-    """All checkers refuse the files; the audit says why."""
+    """Check that all checkers refuse the files, and that the audit's message contains ``said``."""
     with pytest.raises(Exception):  # noqa: B017 - whatever it is, it is a refusal
         recheck.check(files.path)
     with pytest.raises(exact_check.REFUSALS):
@@ -80,7 +80,7 @@ def test_a_certificate_holds_and_is_rechecked_without_symrot(kernels, name):
 
 
 def test_recheck_imports_nothing_of_symrot(kernels, tmp_path):
-    """It runs where there is neither symrot nor any package, from a copy."""
+    """A copy of the program runs in a process without symrot or any other package."""
     shutil.copy(RECHECK, tmp_path)
     nodes = list(ast.walk(ast.parse(RECHECK.read_text(encoding="utf-8"))))
     modules = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
@@ -134,7 +134,7 @@ def test_laws_are_proven_in_every_case(name):
 
 
 def test_a_proof_by_what_vanishes_itself_is_refused(dcm):
-    """Times a relation anything is a multiple of the relation: neither factors nor cofactors may hide one."""
+    """Any expression times a relation is a multiple of the relation, so factors and cofactors must not hide a relation."""
     norm = "q0**2 + q1**2 + q2**2 + q3**2 - 1"
     (law,) = [law for law in dcm.data["laws"] if law["given"]][:1]
     forgeries = (
@@ -146,7 +146,7 @@ def test_a_proof_by_what_vanishes_itself_is_refused(dcm):
         case = {"case": [], "steps": [], "relations": [norm]} | forgery
         wrong = law | {"law": "q0 vanishes", "vanishing": ["q0"], "cases": [case]}
         resealed(dcm, laws=[*dcm.data["laws"], wrong])
-        refused(dcm, "'q0 vanishes' does not follow|division|cofactor|schema")
+        refused(dcm, "expected the law 'q0 vanishes' to follow|division|cofactor|schema")
     right = law | {"vanishing": [f"q0*({norm})"], "cases": [
         {"case": [], "steps": [], "relations": [norm], "entries": [["1", [[0, "q0"]]]]}]}  # fmt: skip
     resealed(dcm, laws=[*dcm.data["laws"], right])
@@ -253,7 +253,9 @@ COUNTS = [40, pytest.param(300, marks=pytest.mark.campaign)]
 
 @pytest.mark.parametrize("count", COUNTS)
 def test_corrupted_c_files_are_refused(kernels, count):
-    """With their hash put right and the certificate sealed anew: the meaning of the text alone refuses them."""
+    """The hash of the file is corrected and the certificate sealed again, so only the meaning of the C text can refuse
+    it.
+    """
     campaign = corrupted_c(list(kernels.values()), count, Random(11))
     assert campaign.survivors == []
     assert campaign.same.total() < count / 10 and len(campaign.tried) > 9
@@ -269,7 +271,7 @@ def test_tampered_certificates_are_refused(kernels, count):
 
 @pytest.mark.skipif(not shutil.which("cc"), reason="needs a C compiler")
 def test_what_computes_the_same_bits(kernels):
-    """-x where only its square counts."""
+    """The text computes -x instead of x where only the square of x is used."""
     files, draw = kernels["rotation_vector_body_rates"], Random(3)
     for text in (files.source.replace(" + ", " - ", 1), files.source.replace("0.5*", "0.25*", 1), "void f(void) {"):
         assert not files.same_bits(text, draw)
@@ -277,7 +279,7 @@ def test_what_computes_the_same_bits(kernels):
 
 
 def test_what_claims_the_same(kernels):
-    """The judge of campaigns proves what it lets pass: a law times -1 or weakened; no other law, formula or input."""
+    """The campaigns accept a changed certificate only if it states the same: a law times -1, or a weaker law."""
     files = kernels["torque_gravity"]
     data, spec, (law, *laws) = files.data, files.data["spec"], files.data["laws"]
     text = law["vanishing"][0]
@@ -301,7 +303,7 @@ def test_what_claims_the_same(kernels):
 
 
 def test_arguments_that_a_kernel_does_not_take_are_refused(kernels):
-    """What no formula needs is read all the same: places are those of arguments, parameters those of inputs."""
+    """Even inputs that no formula uses must be arguments of the kernel, and parameters must be inputs."""
     files = kernels["euler_zyx_body_rates"]
     (first, *described), *inputs = files.data["inputs"]
     assert first == "angles[0]"
@@ -318,7 +320,7 @@ def test_arguments_that_a_kernel_does_not_take_are_refused(kernels):
     ("euler_zyx_body_rates", r"omega\[2\]", "1e20"), ("rotation_vector_body_jacobian", r"v\[2\]", "1e9"),
 ])  # fmt: skip
 def test_recheck_refuses_a_text_that_rounds_more_than_it_says(name, term, huge, tmp_path):
-    """``(x + 1e20) - 1e20`` is x in exact arithmetic, and nearly always 0 in C."""
+    """``(x + 1e20) - 1e20`` is x in exact arithmetic, but nearly always 0 in C."""
     files = Files(tmp_path, kernel_text(name).under_test(), emit(name).certificate)
     head = files.source.index("{\n", files.source.index(f"void symrot_{name}("))
     place = re.compile(term).search(files.source, head)
@@ -334,7 +336,7 @@ def test_recheck_refuses_a_text_that_rounds_more_than_it_says(name, term, huge, 
 
 
 def test_recheck_refuses_functions_without_the_prefix_of_symrot(tmp_path):
-    """A kernel that is consistent under other names is no kernel of symrot."""
+    """A kernel that is consistent under other names is not a kernel of symrot."""
     name = "quaternion_dcm"
     files = Files(tmp_path, kernel_text(name).under_test(), emit(name).certificate)
     texts = {
@@ -351,7 +353,7 @@ def test_recheck_refuses_functions_without_the_prefix_of_symrot(tmp_path):
 
 
 def test_recheck_computes_as_c_does_in_float():
-    """Sums and products of floats, each rounded: 2^24 + 1 is no float."""
+    """Each sum and product of floats is rounded: 2^24 + 1 is not a float."""
     floats, doubles = recheck.Machine(recheck.c_float), recheck.Machine(recheck.c_double)
     for machine, lost in ((floats, 1.0), (doubles, 0.0)):
         total = machine.operate("+", 16777216.0, 1.0)
@@ -365,7 +367,7 @@ def test_recheck_computes_as_c_does_in_float():
 
 
 def test_bounds_are_those_of_their_box(kernels):
-    """On a box that is widened by a hair, or another region, the bounds of the kernel's own are no proof."""
+    """On a slightly larger box or another region, the bounds of the kernel's own box prove nothing."""
     files = kernels["quaternion_dcm"]
     bounds = files.data["rounding"]
     low, high = bounds["box"]["q[2]"]
@@ -418,7 +420,7 @@ def test_certify_and_audit(tmp_path, capsys, monkeypatch):
 
 
 def test_certify_all(tmp_path, capsys, monkeypatch):
-    """The table of proofs, here for one kernel and one scene; the files are those of `symrot certify KERNEL -o`."""
+    """The table of proofs is made for one kernel and one scene; the files are those of `symrot certify KERNEL -o`."""
     monkeypatch.setattr(certificates, "kernel_names", lambda: ("quaternion_dcm",))
     monkeypatch.setattr(certificates, "names_with_kernels", lambda: ("heavy_top_loops",))
     for options in ([], ["-o", str(tmp_path)]):
@@ -441,7 +443,7 @@ KERNELS = Path(__file__).parents[2] / "generated" / "c"
     ["quaternion_dcm.c", "quaternion_dcm.cert.json", "scenes/t_handle_rates.c", "scenes/t_handle_rates.cert.json"],
 )
 def test_a_kernel_may_be_named_by_what_was_emitted_of_it(path, tmp_path, capsys):
-    """An unchanged file of it stands for a kernel or a shipped scene, one that was edited for nothing."""
+    """An unchanged file stands for its kernel or shipped scene; an edited file is refused."""
     assert main(["certify", str(KERNELS / path)]) == 0
     assert f"{Path(path).name.partition('.')[0]}: " in capsys.readouterr().out
     for file in (KERNELS / path).parent.glob(f"{Path(path).name.partition('.')[0]}.*"):
@@ -506,7 +508,7 @@ def test_what_is_no_kernel_is_refused_in_one_sentence(arguments, said, capsys):
 
 
 def test_nothing_is_half_written(tmp_path, capsys):
-    """A file that cannot take its place is found before the others are written."""
+    """If one file cannot be written, no other file is written."""
     (tmp_path / "quaternion_dcm.cert.json").mkdir()
     for command in ("certify", "emit"):
         assert main([command, "quaternion_dcm", "-o", str(tmp_path)]) == 2
@@ -524,7 +526,7 @@ def test_bounds_of_other_operations_are_not_kept():
 
 
 def test_certificates_are_the_same_bytes_whatever_the_seed_of_hashes():
-    """A process with a seed of its own and no cache prints what this one does."""
+    """A process with another hash seed and an empty cache prints the same certificate."""
     code = "import sys, symrot; print(*(symrot.emit(name).certificate for name in sys.argv[1:]), sep='')"
     names = ("euler_zyx_body_rates", "heavy_top_loops")
     seed = "2" if os.environ.get("PYTHONHASHSEED") == "1" else "1"
@@ -535,7 +537,7 @@ def test_certificates_are_the_same_bytes_whatever_the_seed_of_hashes():
 
 @pytest.mark.parametrize("name", ["sin", "cos", "sqrt", "atan2", "sinc", "sine_gap", "tangent_gap", "arc_ratio", "pi"])
 def test_recheck_evaluates_functions_to_what_mpmath_finds(name, kernels):
-    """To 80 digits of 90: laws are refused from 60 on."""
+    """The values agree to 80 digits; laws need 60."""
     jacobian = json.loads(emit("rotation_vector_body_jacobian").certificate)
     defined = [
         each

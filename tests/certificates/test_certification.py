@@ -1,4 +1,4 @@
-"""Certify, audit and bound from Python: the same results as the commands, and errors for wrong arguments."""
+"""Certify, audit and bound from Python: the results equal those of the commands, and wrong arguments raise errors."""
 
 import dataclasses
 import json

@@ -1,4 +1,6 @@
-"""The theorems of Coq: printed from the derived formulas, complete, deterministic; true ones hold, wrong ones do not."""
+"""Coq theorems: printed from the derived formulas, complete and deterministic; Coq accepts true ones and refuses wrong
+ones.
+"""
 
 import json
 import os
@@ -76,7 +78,7 @@ def test_what_assumes_is_seen_but_not_in_comments(text):
 
 
 def read_back(text, names):
-    """The SymPy expression of a text over R, where application binds tighter than every operation."""
+    """Return the SymPy expression of a Coq text over R, in which application binds more tightly than any operation."""
     text = re.sub(r"\b(sin|cos|sqrt) (\w+)", r"\1(\2)", text).replace("^", "**")
     return sympify(text, locals={str(symbol): symbol for symbol in names})
 
@@ -132,7 +134,7 @@ def replaced(text, old, new):
     ],
 )  # fmt: skip
 def test_wrong_formulas_are_refused(wrong, old, new, proven, refused):
-    """A flipped sign, sine for cosine, a wrong factor in the file of ZXZ; and a theorem without a proof."""
+    """Coq refuses a flipped sign, sine for cosine, a wrong factor in the file of ZXZ, and a theorem without proof."""
     texts = coq_texts(("euler_zxz",))
     texts = {"rotation.v": texts["rotation.v"], f"{wrong}.v": replaced(texts["euler_zxz.v"], old, new)}
     texts["skipped.v"] = "Theorem skipped : 0 = 1.\nProof.\nAdmitted.\n"

@@ -1,4 +1,4 @@
-"""The C text is the formula: proven for every kernel, refused for every corrupted text."""
+"""The equality of C text and formula is proven for every kernel, and refused for every corrupted text."""
 
 import random
 import re
@@ -58,7 +58,7 @@ SWAPS = {"+": "-", "-": "+", "*": "/", "/": "*", "sin": "cos", "cos": "sin", "0.
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", SLICE)
 def test_a_corrupted_text_is_refused(name):
-    """One token of the one-sample function, or of a function that it calls, is another."""
+    """One token is changed in the one-sample function or in a function that it calls."""
     text = text_of(name)
     for start, end in (m.span(1) for m in re.finditer(r"(?:double|void) \w+\([^)]*\)\n\{(.*?)\n\}", text, re.DOTALL)):
         head = text[text.rfind("\n", 0, text.rfind("(", 0, start)) : start]

@@ -1,4 +1,4 @@
-"""Under which flags of a compiler a certificate holds."""
+"""The compiler flags under which a certificate holds."""
 
 from pathlib import Path
 
@@ -64,7 +64,7 @@ def test_a_flag_or_a_compiler_that_nobody_knows_is_refused_in_one_sentence(flag)
      ("i686-linux-gnu-gcc -O2 -ffp-contract=off", NOTHING), ("i686-linux-gnu-gcc -mfpmath=sse -ffp-contract=off", BITS)],
 )  # fmt: skip
 def test_compilers_are_known_by_their_names(flags, holds):
-    """One for a processor with x87 keeps more digits than a type has, unless it is told to use SSE."""
+    """A compiler for a processor with x87 keeps more digits than the type has, unless SSE2 is requested."""
     assert classify_flags(flags).holds == holds
 
 

@@ -1,7 +1,7 @@
-"""Forged kernels that `recheck.py` alone has to refuse, each in one sentence that says where and what it expected.
+"""Forged kernels that `recheck.py` alone must refuse, each in one sentence that says where and what it expected.
 
-A forger edits a text or a certificate, puts the hashes right and seals the certificate again. The forgeries that all
-checkers refuse are in :mod:`tests.certificates.test_hostile_texts`.
+A forger edits a text or a certificate, corrects the hashes and seals the certificate again. Forgeries that all checkers
+refuse are in :mod:`tests.certificates.test_hostile_texts`.
 """
 
 import json
@@ -22,7 +22,7 @@ VECTOR, ANGLES_OF, PLATE = "rotation_vector_body_rates", "euler_zxz_of_quaternio
 
 
 class Forgery:
-    """Files of a kernel in a folder, to be edited and certified again."""
+    """The files of a kernel in a folder, which a test edits and certifies again."""
 
     def __init__(self, name, folder, source=GENERATED):
         self.name, self.folder = name, folder
@@ -39,20 +39,20 @@ class Forgery:
         (self.folder / f"{self.name}{end}").write_text(text, encoding="utf-8")
 
     def edit(self, old, new, behind="\nvoid ", end=".c"):
-        """Replace a text at its first place behind another one."""
+        """Replace the first occurrence of a text after another text."""
         text = self.read(end)
         start = text.index(old, text.index(behind))
         self.write(end, text[:start] + new + text[start + len(old) :])
 
     def seal(self):
-        """Put all hashes right and seal the certificate."""
+        """Correct all hashes and seal the certificate."""
         for end in (".c", ".h"):
             text = (self.folder / f"{self.name}{end}").read_bytes()
             self.data["files"][f"{self.name}{end}"] = sha256(text).hexdigest()
         self.path.write_text(certificate_json(self.data), encoding="utf-8")
 
     def refusal(self):
-        """Return the sentence that refuses the certificate; it comes soon, and is one line."""
+        """Return the sentence that refuses the certificate; the check must be quick and the message one line."""
         start = process_time()
         with pytest.raises(ValueError) as caught:
             recheck.check(self.path)
@@ -69,7 +69,7 @@ def forgery(tmp_path):
 
 @pytest.mark.parametrize("name", [ATTITUDE, TOP, ANGLES, VECTOR, ANGLES_OF, PLATE])
 def test_what_is_not_forged_is_accepted(forgery, name):
-    """Otherwise the refusals below would mean nothing. A comment and a blank line change nothing either."""
+    """Otherwise the refusals below would prove nothing. An added comment or blank line changes nothing either."""
     files = forgery(name)
     files.edit("\nvoid ", "\n\n/* a remark */\nvoid ")
     files.seal()
@@ -112,10 +112,10 @@ TEXTS = {  # what it is: kernel, text, what takes its place, behind which text, 
     "operands of a choice": (ATTITUDE, "(q0_term_3, q0_term_4, q0_term_3, q0_term_4)", "(q0_term_4, q0_term_3, q0_term_3, q0_term_4)", "\nvoid ", f"{ATTITUDE} does not compute its formulas"),
     "ways of a choice": (ATTITUDE, "(q0_term_3, q0_term_4, q0_term_3, q0_term_4)", "(q0_term_3, q0_term_4, q0_term_4, q0_term_3)", "\nvoid ", f"{ATTITUDE} does not compute its formulas"),
     "choice with an argument less": (ATTITUDE, "(q0_term_3, q0_term_4, q0_term_3, q0_term_4)", "(q0_term_3, q0_term_4, q0_term_3)", "\nvoid ", "expected 4 arguments of symrot_select_ge"),
-    "index beyond the array": (TOP, "q[3]", "q[4]", "\nvoid ", "expected an index below 4 of q"),
+    "index beyond the array": (TOP, "q[3]", "q[4]", "\nvoid ", "expected an index of q below 4, got 4"),
     "index one less": (TOP, "q[3]", "q[2]", "\nvoid ", "heavy_top does not compute its formulas"),
-    "output one further": (TOP, "dq[3]", "dq[4]", "\nvoid ", "expected an index below 4 of dq"),
-    "index in the batch": (TOP, "q[3*n + k]", "q[4*n + k]", BATCH, r"heavy_top\.c, line \d+: expected an index below 4 of q"),
+    "output one further": (TOP, "dq[3]", "dq[4]", "\nvoid ", "expected an index of dq below 4, got 4"),
+    "index in the batch": (TOP, "q[3*n + k]", "q[4*n + k]", BATCH, r"heavy_top\.c, line \d+: expected an index of q below 4, got 4"),
     "array of another size": (TOP, "const double q[4]", "const double q[5]", "\nvoid ", "heavy_top.h holds more than prototypes"),
     "index that is computed": (TOP, "q[3*n + k]", "q[3*n + k + 0]", BATCH, r"expected `\]`"),
     "index of the next sample": (TOP, "q[3*n + k]", "q[n + k + 2*n]", BATCH, r"expected `\]`"),
@@ -177,7 +177,7 @@ def formula(change):
 
 
 def part(change, *way):
-    """Return a forger that changes a part of a certificate."""
+    """Return a forger that changes one part of a certificate."""
 
     def changed(data):
         for key in way[:-1]:
@@ -260,7 +260,7 @@ def test_what_is_no_certificate_is_refused(forgery, text, sentence):
 
 
 def renamed(files, name, folder, *kept):
-    """Write a kernel under another name, all hashes right, but for the parts of it that keep the old name."""
+    """Write a kernel under another name with correct hashes; some parts of it keep the old name."""
 
     def changed(text, what):
         return text if what in kept else text.replace(files.name, name).replace(files.name.upper(), name.upper())
@@ -280,14 +280,14 @@ def renamed(files, name, folder, *kept):
 
 @pytest.mark.parametrize("kept", ["banner", "code", "header", "command", "certificate", ("banner", "command")])
 def test_a_kernel_that_keeps_its_name_anywhere_is_not_renamed(forgery, tmp_path, kept):
-    """Where all files agree on a wrong name, only the audit can tell: it knows what kernels of that name compute."""
+    """If all files agree on a wrong name, only the audit can refuse, because it knows the kernel of that name."""
     files = forgery(TOP)
     files.path = renamed(files, "light_top", tmp_path, *([kept] if isinstance(kept, str) else kept))
     assert files.refusal()
 
 
 def test_a_formula_and_a_text_that_are_wrong_alike_break_a_law(forgery):
-    """Formulas alone say nothing of mechanics: the law does."""
+    """Formulas alone do not prove anything about mechanics; the law does."""
     files = forgery(TOP)
     for text in ("q0*q1 + q2*q3",) * 4:
         for behind in (f"void symrot_{TOP}(", BATCH, FLOAT, f"void symrot_{TOP}f_batch("):

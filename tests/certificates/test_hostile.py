@@ -1,4 +1,4 @@
-"""Forged certificates, hashes and seals put right: `audit`, `certify` and ``recheck.py`` end with a sentence each."""
+"""Forged certificates with correct hashes and seals: `audit`, `certify` and ``recheck.py`` refuse each in one sentence."""
 
 import copy
 import json
@@ -31,7 +31,7 @@ STRANGE = [
 
 
 def renamed(old, new, folder):
-    """Write the files of a kernel under the name of another one, all hashes right; return the certificate."""
+    """Write the files of a kernel under another kernel's name, with correct hashes; return the certificate."""
 
     def changed(text):
         return text.replace(old, new).replace(old.upper(), new.upper())
@@ -56,7 +56,7 @@ def test_a_kernel_under_the_name_of_another_one_is_refused(old, new, tmp_path, c
 
 
 def places(node, place=()):
-    """Yield the place of every value in a certificate."""
+    """Yield the path to every value in a certificate."""
     items = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
     for key, value in items:
         yield (*place, key)
@@ -64,7 +64,7 @@ def places(node, place=()):
 
 
 def changed_somewhere(data, chance):
-    """Return a certificate with one value, of a part drawn first, left out, doubled or replaced by something strange."""
+    """Return a certificate in which one random value is removed, doubled or replaced by a strange value."""
     data = copy.deepcopy(data)
     part = chance.choice([key for key in data if key != "seal"])
     *way, key = chance.choice([place for place in places(data) if place[0] == part])
@@ -99,7 +99,7 @@ def changed_somewhere(data, chance):
     ],
 )
 def test_a_strange_value_anywhere_in_a_certificate_gets_one_sentence(name, seed, count, tmp_path, capsys):
-    """Whatever it is: no other error gets out of the audit, of certify, or of ``recheck.py``."""
+    """No other exception leaves the audit, certify or ``recheck.py``."""
     source = KERNELS / f"{name}.cert.json"
     chance, data = random.Random(name + seed), json.loads(source.read_text(encoding="utf-8"))
     for file in (
@@ -125,7 +125,7 @@ def test_a_strange_value_anywhere_in_a_certificate_gets_one_sentence(name, seed,
 
 
 def test_a_section_of_another_type_is_named_with_the_expected_one(tmp_path):
-    """For every section, those that may be null included; null itself is refused in the others."""
+    """This holds for every section; null is accepted only in sections that may be null."""
     data = json.loads((KERNELS / "mrp_shadow.cert.json").read_text(encoding="utf-8"))
     path = tmp_path / "mrp_shadow.cert.json"
     for name in data:

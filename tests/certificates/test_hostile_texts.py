@@ -1,7 +1,7 @@
-"""Texts that C and a careless reader read differently, certified anew as a forger would: each is refused by a sentence.
+"""C texts that C and a careless reader read differently, certified again by a forger: each is refused in one sentence.
 
-Their hash in the certificate is put right and the certificate is sealed anew, so that the meaning of the text alone can
-refuse them. Some are no C at all, or C that would compute the same: kernels have one way to say a thing.
+The hash in the certificate is corrected and the certificate is sealed again, so that only the meaning of the text can
+refuse it. Some texts are not C at all, or are C that computes the same: a kernel may be written in one way only.
 """
 
 import json
@@ -132,7 +132,7 @@ HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
 
 @pytest.fixture(scope="module")
 def kernels(tmp_path_factory):
-    """Some kernels in a folder, as they are emitted."""
+    """Emit some kernels into a folder and return it."""
     directory = tmp_path_factory.mktemp("kernels")
     return {
         name: Files(directory, kernel_text(name).under_test(), emit(name).certificate) for name in (R, S, V, T, Q, Z)
@@ -141,7 +141,7 @@ def kernels(tmp_path_factory):
 
 @pytest.fixture
 def refused(kernels):
-    """Write a text and a certificate of a kernel; all checkers have to refuse them, in one sentence each."""
+    """Return a function that writes a text and its certificate and checks that all checkers refuse it in one sentence."""
     written = []
 
     def refused(name, text, **changes):
@@ -178,7 +178,7 @@ def test_a_text_that_c_reads_differently_is_refused(kernels, refused, what):
 
 
 def test_angles_beyond_the_range_are_computed_again_by_the_c_library(kernels, refused):
-    """The second loop of a block may not take the functions of the first, nor may what functions of the file call."""
+    """The second loop of a block must not call functions of limited range, not even through functions of the file."""
     text = kernels[R].source
     at = text.index("k < again")
     for function in ("sin", "cos"):
@@ -193,7 +193,7 @@ def test_angles_beyond_the_range_are_computed_again_by_the_c_library(kernels, re
 
 
 def test_angles_are_asked_for_before_anything_is_computed_again(kernels, refused):
-    """A sum that is built in the second loop, or a first loop that computes nothing, leaves samples as they are."""
+    """A test of angles in the second loop, or a first loop that computes nothing, would leave samples wrong."""
     text = kernels[R].source
     at = text.index("k < again")
     end = text.index("        }\n", at)
@@ -234,7 +234,7 @@ def test_a_certificate_of_other_constants_or_series_is_refused(kernels, refused,
 
 
 def test_an_output_may_not_take_the_name_of_an_input(kernels, refused):
-    """Laws would be about it, where they seem to be about the input."""
+    """Otherwise a law about the output would seem to be about the input."""
     spec = kernels[R].data["spec"]
     for symbol in ("omega_1", "phi", "pi", spec["formulas"][1][1], *(name for name, _ in spec["named"][:1])):
         (place, _, text), *formulas = spec["formulas"]
@@ -256,7 +256,10 @@ def test_what_is_given_is_a_rotation_or_of_length_one(kernels, refused, given):
     changed = [law | {"given": given(law["given"])} if len(law["given"]) > 1 else law for law in laws]
     assert changed != laws
     said = refused(Q, kernels[Q].source, laws=changed)
-    assert re.match(r"the law .* does not follow|.* is already in use|the law .*: expected names", said)
+    assert re.match(
+        r"expected the law .* to follow|the law .* does not follow|.* is already in use|the law .*: expected a list of names",
+        said,
+    )
 
 
 def test_a_law_of_nothing_is_refused(kernels, refused):
@@ -274,7 +277,7 @@ def test_an_input_is_a_name_and_a_parameter_has_its_own_place(kernels, refused):
 
 
 def test_a_name_that_a_certificate_says_twice_is_refused(kernels):
-    """Who reads it sees the first, programs the last."""
+    """A person reads the first value, programs use the last."""
     files = kernels[R]
     text = files.path.read_text(encoding="utf-8")
     files.path.write_text(text.replace('"laws":', '"laws": [],\n "laws":', 1), encoding="utf-8")

@@ -1,4 +1,6 @@
-"""Object code = C text: what compilers make of kernels is accepted, what computes something else is refused."""
+"""Object code equals C text: code that compilers make from kernels is accepted, code that computes something else is
+refused.
+"""
 
 import shutil
 import subprocess
@@ -23,7 +25,7 @@ SOME = ("quaternion_of_dcm", "rotation_vector_of_quaternion", "inertia_rotated",
 
 
 def verdicts(directory, text, compiler="gcc", flags=("-O2", *STRICT), against=None):
-    """Compile a text and compare it with itself, or with another."""
+    """Compile a text and return the verdicts of comparing it with itself, or with the text ``against``."""
     source, target = directory / "kernel.c", directory / "kernel.o"
     source.write_text(text)
     compile_object(compiler, (*flags, "-I", str(KERNELS)), source, target)
@@ -41,7 +43,7 @@ def verdicts(directory, text, compiler="gcc", flags=("-O2", *STRICT), against=No
     [*SOME[:3], *(pytest.param(name, marks=pytest.mark.campaign) for name in SOME[3:])],  # branches, series, fused
 )
 def test_compiled_kernels_are_accepted(name, compiler):
-    """Strict flags give identical operations for SSE2; with AVX2 and FMA the contracted ones are named as such."""
+    """Strict flags give identical operations for SSE2; with AVX2 and FMA, contracted functions are reported as such."""
     section = objects_section(KERNELS / f"{name}.c", compilers=[compiler])
     assert len(section["objects"]) == len(FLAGS)
     for item in section["objects"]:
@@ -57,7 +59,7 @@ def test_compiled_kernels_are_accepted(name, compiler):
 @needs_avx2
 @pytest.mark.parametrize("compiler", HERE)
 def test_what_is_not_identical_gives_other_bits(compiler, tmp_path):
-    """gcc 12 fuses a*b + c at -O3 though -ffp-contract=off is given (vfmsubadd): found here, and seen in the bits."""
+    """At -O3 gcc 12 fuses a*b + c (vfmsubadd) despite -ffp-contract=off; the verdict says so, and the bits differ."""
     source, good, other = KERNELS / "inertia_rotated.c", tmp_path / "good.o", tmp_path / "other.o"
     compile_object(compiler, ("-O1", *STRICT), source, good)
     compile_object(compiler, ("-O3", "-mavx2", "-mfma", *STRICT), source, other)
@@ -129,7 +131,9 @@ def test_a_changed_sign_in_the_text_is_seen_in_the_object(tmp_path):
 @needs_objdump
 @pytest.mark.parametrize("compiler", HERE)
 def test_corrupted_object_files_are_refused(compiler):
-    """A slice of `python -m tests.campaigns.certificates.object_campaign`: what gives the same bits on many inputs is no corruption."""
+    """This is a part of `python -m tests.campaigns.certificates.object_campaign`; a change that gives equal bits is no
+    corruption.
+    """
     sources = [KERNELS / f"{name}.c" for name in ("euler_zyx_body_rates", "mrp_shadow")]
     counts, report = corrupted(sources, compiler, ("-O2", *STRICT), 12, 11)
     assert counts.total() == 12 and all(name.endswith(": refused") for name in counts), report
@@ -146,12 +150,12 @@ STRANGE = (
     (f"{GOOD}; ret", IDENTICAL, ""),
     (f"{GOOD}; xor ebx,ebx; ret", NOT_UNDERSTOOD, "expected the same value of register rbx"),
     (f"sub rsp,8; {GOOD}; ret", NOT_UNDERSTOOD, "'ret"),
-    (f"{GOOD}; movsd QWORD PTR [rdi],xmm1; ret", NOT_UNDERSTOOD, "expected writes inside the output arrays, got one outside, to x"),
-    (f"{GOOD}; movsd QWORD PTR [rsi+8],xmm1; ret", NOT_UNDERSTOOD, "expected writes inside the output arrays, got one outside, to y"),
-    (f"{GOOD}; movsd QWORD PTR [rsp+8],xmm1; ret", NOT_UNDERSTOOD, "got one to stack"),
-    (f"movsd xmm2,QWORD PTR [rdi+16]; {GOOD}; ret", NOT_UNDERSTOOD, "expected a read inside the array x, got one outside"),
-    (f"movsd xmm2,QWORD PTR [rsi]; {GOOD}; ret", NOT_UNDERSTOOD, "before it is read, got none"),
-    (f"movapd xmm3,XMMWORD PTR [rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "expected an aligned address, got one in x"),
+    (f"{GOOD}; movsd QWORD PTR [rdi],xmm1; ret", NOT_UNDERSTOOD, "expected writes inside the output arrays, got a write outside, to x"),
+    (f"{GOOD}; movsd QWORD PTR [rsi+8],xmm1; ret", NOT_UNDERSTOOD, "expected writes inside the output arrays, got a write outside, to y"),
+    (f"{GOOD}; movsd QWORD PTR [rsp+8],xmm1; ret", NOT_UNDERSTOOD, "got a write to stack"),
+    (f"movsd xmm2,QWORD PTR [rdi+16]; {GOOD}; ret", NOT_UNDERSTOOD, "expected a read inside the array x, got the offset 16"),
+    (f"movsd xmm2,QWORD PTR [rsi]; {GOOD}; ret", NOT_UNDERSTOOD, "to be written before it is read"),
+    (f"movapd xmm3,XMMWORD PTR [rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "expected an aligned address, got an address in x"),
     (f"movsd xmm2,QWORD PTR fs:[rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "segment fs"),
     (f"movsd xmm2,QWORD PTR fs:[rip+f]; {GOOD}; ret", NOT_UNDERSTOOD, "segment fs"),
     ("ret", NOT_UNDERSTOOD, "expected every path through the code to write y[0]"),
@@ -160,7 +164,7 @@ STRANGE = (
     (f"ldmxcsr DWORD PTR [rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "expected an instruction whose effect is known, got another"),
     (f"call tgamma; {GOOD}; ret", NOT_UNDERSTOOD, "16 bytes"),
     (f"sub rsp,8; call tgamma; {GOOD}; add rsp,8; ret", NOT_UNDERSTOOD, "expected a call of a known C library function, got tgamma"),
-    (f"jmp rax; {GOOD}; ret", NOT_UNDERSTOOD, "expected a jump to a fixed address, got a computed one"),
+    (f"jmp rax; {GOOD}; ret", NOT_UNDERSTOOD, "expected a jump to a fixed address, got a computed address"),
     ("1: jmp 1b; ret", NOT_UNDERSTOOD, "executed instructions, got more"),
     (GOOD.replace("addsd xmm1,xmm0", "addsd xmm1,xmm3") + "; ret", DIFFERS, "a value that nobody set"),
     (GOOD.replace("mulsd", "divsd") + "; ret", DIFFERS, "div(x[0], x[1])"),
@@ -196,7 +200,7 @@ def test_machine_code_by_hand(tmp_path, code, verdict, reason):
 
 @needs_objdump
 def test_a_product_that_is_rounded_here_and_fused_there_is_refused(tmp_path):
-    """y = (x0*x1 + x2) - x0*x1: with one of the two products fused, the error of the other no longer cancels."""
+    """In y = (x0*x1 + x2) - x0*x1, if one product is fused, the rounding error of the other no longer cancels."""
     text = "void f(const double x[3], double y[1])\n{\n    const double p = x[0]*x[1];\n    y[0] = (p + x[2]) - p;\n}\n"
     rows = ["movsd xmm0,QWORD PTR [rdi]", "movsd xmm1,QWORD PTR [rdi+8]", "movsd xmm2,QWORD PTR [rdi+16]",
             "vmulsd xmm3,xmm0,xmm1", "vfmadd231sd xmm2,xmm0,xmm1", "vsubsd xmm2,xmm2,xmm3",
@@ -211,18 +215,18 @@ def test_a_product_that_is_rounded_here_and_fused_there_is_refused(tmp_path):
 def test_files_that_are_no_object_files_are_refused_in_one_sentence(tmp_path):
     source, target = tmp_path / "kernel.c", tmp_path / "kernel.o"
     source.write_text(TEXT)
-    with pytest.raises(CertificateError, match="got none"):
+    with pytest.raises(CertificateError, match="got no file"):
         compare_object(TEXT, target)
     with pytest.raises(CertificateError, match="got a folder"):
         compare_object(TEXT, tmp_path)
     target.write_bytes(b"")
-    with pytest.raises(CertificateError, match="got an empty one"):
+    with pytest.raises(CertificateError, match="got an empty file"):
         compare_object(TEXT, target)
     target.write_text("no object")
     with pytest.raises(CertificateError, match="objdump cannot read it"):
         compare_object(TEXT, target)
     compile_object("gcc", ("-O2",), source, target)
-    with pytest.raises(CertificateError, match="expected machine code of g, got that of f"):
+    with pytest.raises(CertificateError, match="expected machine code of g, got only that of f"):
         compare_object(TEXT.replace("void f(", "void g("), target)
     with pytest.raises(CertificateError, match="expected a function named h"):
         compare_object(TEXT, target, ["h"])
@@ -249,7 +253,7 @@ WRONG = GOOD.replace("addsd xmm1,xmm0", "subsd xmm1,xmm0")
 
 @needs_objdump
 def test_code_of_another_part_of_the_file_does_not_stand_for_a_function(tmp_path):
-    """A wrong f, and under the same section and address in another part the right code: an archive, a group."""
+    """The function f is wrong, but correct code exists at the same section and address in another member or group."""
     for name, code in (("f", WRONG), ("g", GOOD)):
         source = tmp_path / f"{name}.s"
         source.write_text(f".intel_syntax noprefix\n.text\n.globl {name}\n{name}: {code}; ret\n")
@@ -272,7 +276,7 @@ def test_code_of_another_part_of_the_file_does_not_stand_for_a_function(tmp_path
 
 @needs_objdump
 def test_certify_compares_object_code_and_keeps_what_it_found(tmp_path, capsys, monkeypatch):
-    """Compiled and compared once; a refusal names the function and what differs, and is an exit code of 1."""
+    """Code is compiled and compared once; a refusal names function and difference and gives exit code 1."""
     monkeypatch.setenv("SYMROT_CACHE", str(tmp_path / "cache"))
     monkeypatch.setattr(object_code_build, "FLAGS", FLAGS[1:2])
     monkeypatch.setattr(object_code_build.objects_section, "__defaults__", ((), tuple(HERE), FLAGS[1:2]))
@@ -291,7 +295,7 @@ def test_certify_compares_object_code_and_keeps_what_it_found(tmp_path, capsys, 
 
 
 def test_a_difference_under_flags_that_keep_bits_fails():
-    """Under flags that contract, a product that is fused in places is said and is no failure."""
+    """Under flags that allow contraction, a product that is fused in places is reported but is no failure."""
     function = {"name": "f", "verdict": DIFFERS, "output": "y", "reason": "the C text has a + b", "cases": 1}
     objects = [{"compiler": "gcc", "flags": f"for {holds}", "flags_hold": holds, "accepted": False, "functions": [function]}
                for holds in (BITS, BOUNDS)]  # fmt: skip

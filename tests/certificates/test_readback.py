@@ -1,4 +1,4 @@
-"""The reader of emitted C: what it reads is what a compiler computes; what it does not understand it refuses."""
+"""The reader of emitted C: its operations are those that a compiler computes, and it refuses any other C."""
 
 import ctypes
 import math
@@ -49,7 +49,7 @@ def test_one_sample_and_batch_are_the_same_operations(path):
 
 @pytest.fixture(scope="module")
 def compiled(tmp_path_factory):
-    """Return one library of every fourth kernel, without contraction."""
+    """Return a library with every fourth kernel, compiled without contraction."""
     library = tmp_path_factory.mktemp("readback") / "kernels.so"
     flags = ["-O0", "-ffp-contract=off", "-shared", "-fPIC"]
     subprocess.run(["cc", *flags, *map(str, KERNELS[::4]), "-o", str(library), "-lm"], check=True)
@@ -58,7 +58,7 @@ def compiled(tmp_path_factory):
 
 @pytest.mark.parametrize("path", KERNELS[::4], ids=lambda path: path.stem)
 def test_what_is_read_is_what_the_compiler_makes_of_it(path, compiled):
-    """Without contraction, the same bits at random points."""
+    """Without contraction, the operations and the compiled code give the same bits at random points."""
     operations = read_kernel(path.read_text(encoding="utf-8"), f"symrot_{path.stem}", path.name)
     function = getattr(compiled, f"symrot_{path.stem}")
     sizes = {}
@@ -147,7 +147,7 @@ BLOCKS = (GENERATED / "euler_zxz_body_rates.c").read_text(encoding="utf-8")
     ],
 )  # fmt: skip
 def test_a_batch_in_blocks_is_read_whole_or_refused(old, new, said):
-    """Near angles by symrot_math.h, each asked whether it is far, and the block again by the C library."""
+    """A block calls symrot_math.h, tests every angle, and computes large angles again with the C library."""
     start = BLOCKS.index("void symrot_euler_zxz_body_rates_batch")
     assert old in BLOCKS[start:]
     with pytest.raises(CertificateError, match=re.escape(said)):
@@ -161,7 +161,7 @@ def test_sine_of_symrot_is_for_batches_alone():
 
 
 def test_an_edited_kernel_is_refused_or_computes_something_else():
-    """Every change of one token of a kernel changes the operations, or is not read."""
+    """Every change of one token changes the operations or is refused."""
     path = next(path for path in KERNELS if path.stem == "gravity_gradient_satellite_rates")
     text = path.read_text(encoding="utf-8")
     start = text.index("{", text.index(f"void symrot_{path.stem}("))

@@ -1,4 +1,4 @@
-"""Rounding bounds: no error is ever larger, they are near to what is measured, and wrong ones are caught."""
+"""Rounding bounds: no error exceeds its bound, bounds are close to measured errors, and wrong bounds are refused."""
 
 import copy
 import json
@@ -47,7 +47,7 @@ def text_of(name):
 
 
 def kernel(body, real="double"):
-    """A kernel of x[3] with one output, from its expression."""
+    """Return the operations of a kernel with the input x[3] and one output, from its expression."""
     head = f"void k{'f' if real == 'float' else ''}(const {real} x[3], {real} y[1])"
     return read_kernel(f"#include <math.h>\n{head}\n{{\n    y[0] = {body};\n}}\n", "kf" if real == "float" else "k")
 
@@ -88,7 +88,7 @@ def test_the_error_of_one_operation(body, low, high, units):
 
 
 def test_errors_of_operations_add_up_with_their_derivatives():
-    """(x*y)*z on [1, 2]: the first product errs by 2 units and is doubled, the second, up to 8, errs by 4."""
+    """(x*y)*z on [1, 2]: the first product has an error of 2 units, which is doubled; the second, up to 8, has 4 units."""
     assert bound_of("(x[0]*x[1])*x[2]", 1, 2).bound == pytest.approx(8 * 2.0**-53)
 
 
@@ -104,7 +104,7 @@ def test_a_constant_errs_by_what_it_is_off_from_what_it_stands_for():
 
 
 def test_the_larger_of_two_is_known_to_be_large():
-    """max(1 + x, 1 - x) is at least 1, so its root too, and half its inverse at most 1/2 and off by 1/4 unit."""
+    """max(1 + x, 1 - x) is at least 1, and so is its root; half the inverse is at most 1/2, with an error of 1/4 unit."""
     larger = "(1.0 + x[0] >= 1.0 - x[0] ? 1.0 + x[0] : 1.0 - x[0])"
     bound = bound_of(f"0.5/sqrt({larger})", -1, 1)
     assert bound.converged
@@ -122,7 +122,7 @@ def test_fused_products_are_covered_where_nothing_else_takes_them():
 
 
 def test_a_derivative_that_is_infinite_at_a_point_only_by_parts():
-    """The root of a sum of squares, sin(x)/x: no bound by their parts at zero, one as a whole."""
+    """The norm of a vector and sin(x)/x have no bound at zero step by step, but have one as a whole."""
     assert bound_of("sqrt(x[0]*x[0] + x[1]*x[1])", -1, 1).bound < 4 * 2.0**-53
     assert bound_of("x[0] == 0.0 ? 1.0 : sin(x[0])/x[0]", -1, 1).bound < 4 * 2.0**-53
     with pytest.raises(InputError, match="singular"):
@@ -217,7 +217,9 @@ def test_a_kernel_that_rounds_worse_has_a_larger_bound():
 
 
 def test_the_bound_of_a_part_is_never_larger():
-    """Bounds on halves of a box are at most that of the box, and a point is at most its box."""
+    """The bounds on the halves of a box are at most the bound on the box; the bound at a point is at most that of its
+    box.
+    """
     operations = operations_of("euler_zyx_body_rates", text_of("euler_zyx_body_rates"))[0]
     problem = library_problem(definition("euler_zyx_body_rates"), operations)
     graph = output_graph(operations, operations.outputs[0][1])
@@ -333,7 +335,7 @@ def test_processes_find_what_one_finds(monkeypatch, tmp_path):
 
 
 def test_the_table_is_of_this_method_and_holds_the_library():
-    """`python -m symrot.workshop.bound_table` prints it anew."""
+    """If this test fails, run `python -m symrot.workshop.bound_table`."""
     assert table()["method"] == method()
     for name in SLICE:
         for operations in operations_of(name, text_of(name)):
@@ -357,7 +359,7 @@ def test_bounds_of_the_table_are_found_again(name):
     "change", [{"pointwise": 0.0, "bound": 0.0}, {"worst": ()}, {"pointwise": 1.0}, {"bound": float("inf")}]
 )
 def test_a_forged_bound_of_the_table_is_found(change, monkeypatch):
-    """By the point that it names: `python -m symrot.workshop.bound_table --check` looks at all of them."""
+    """One point refutes it, the point stored with it; `python -m symrot.workshop.bound_table --check` tests all bounds."""
     double, _ = operations_of("quaternion_dcm", text_of("quaternion_dcm"))
     problem = library_problem(definition("quaternion_dcm"), double)
     tasks = {task.key: task for task in bound_tasks(double, problem.box, problem.region).values()}

@@ -1,4 +1,4 @@
-"""Enclosures that rounding bounds are made of: slopes of an angle, unit quaternions in a box, what a branch tells."""
+"""The intervals from which rounding bounds are computed: slopes of an angle, unit quaternions in a box, branches."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from symrot.certificates.rounding.region import Region, narrowed, off_unit
 
 
 def test_slopes_of_an_angle_are_enclosed_as_near_as_can_be():
-    """a/(a^2 + b^2), whose extrema on a box are at corners, or where a = |b|."""
+    """The extrema of a/(a^2 + b^2) on a box are at its corners, or where a = |b|."""
     rng = np.random.default_rng(8)
     a, b = np.sort(rng.uniform(-2, 2, (2, 2, 300)), axis=1)
     a[:, :60], b[:, 60:120] = np.abs(a[:, :60]) + 0.1, np.abs(b[:, 60:120]) + 0.1
@@ -45,7 +45,7 @@ def test_a_unit_quaternion_stays_in_what_is_left_of_its_box():
 
 @pytest.mark.parametrize("relation", RELATIONS)
 def test_what_a_branch_tells_holds_of_computed_numbers(relation):
-    """Of a, b, RN(a + b) and RN(a - b), all rounded to float: none leaves what is left of its enclosure."""
+    """The numbers a, b, RN(a + b) and RN(a - b), rounded to float, stay in the intervals narrowed for the branch."""
     rng = np.random.default_rng(10)
     a, b = (rng.choice([1.0, 2.0**-20, 2.0**-26], 400) * rng.uniform(-1, 1, 400) for _ in range(2))
     a, b = (x.astype(np.float32).astype(float) for x in (a, np.where(rng.random(400) < 0.2, a, b)))

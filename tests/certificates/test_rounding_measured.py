@@ -1,4 +1,4 @@
-"""What is measured of rounding errors: points of the region where errors are large, and bounds too small are caught."""
+"""Measured rounding errors at points where errors are large: bounds that are too small are refuted."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -30,7 +30,7 @@ def text_of(name):
      ("euler_zyx_of_quaternion", 0.6, ""), ("rotation_vector_of_quaternion", 0.4, "f")],
 )  # fmt: skip
 def test_a_bound_that_is_too_small_is_caught(name, part, suffix):
-    """By the points that the adversary finds: bounds are not twice as large as they have to be."""
+    """The adversarial points refute half the bound, so bounds are less than twice as large as necessary."""
     operations = operations_of(name, text_of(name))[1 if suffix else 0]
     problem = library_problem(definition(name), operations)
     bounds = bound_outputs(operations, problem.box, problem.region)[:1]

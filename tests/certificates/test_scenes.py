@@ -1,4 +1,4 @@
-"""Rounding bounds of a scene's own kernel: on a box that the user states, audited, quoted in its C header comment."""
+"""Rounding bounds of a scene's own kernel: on a box that the user states, audited, and quoted in the header comment."""
 
 import json
 from fractions import Fraction
@@ -35,7 +35,7 @@ def _options(ranges):
 
 @pytest.mark.parametrize("scene", BOXES)
 def test_no_error_is_above_its_bound(scene):
-    """In exact arithmetic, at the same floating-point inputs: polynomials, so that Fractions decide."""
+    """The formulas are polynomials, so Fractions compute the exact values at the same floating-point inputs."""
     operations, _, box = rounding_problem(kernel_text(scene), BOXES[scene], "double")
     (part,) = section(kernel_text(scene), BOXES[scene])["precisions"]
     bounds = {each["output"]: Fraction(float.fromhex(each["absolute"])) for each in part["outputs"]}
@@ -102,7 +102,7 @@ def test_certify_audit_and_emit_keep_the_bounds(tmp_path, capsys, monkeypatch):
 
 @pytest.mark.parametrize("part", ["absolute", "scale", "budget"])
 def test_a_forged_bound_is_not_printed_again(tmp_path, capsys, monkeypatch, part):
-    """Consistent in itself, so that one point tells nothing: emitted anew without any bound."""
+    """The forged bound is consistent, so that one point cannot refute it; emitting again leaves out any bound."""
     monkeypatch.chdir(tmp_path)
     assert main(["certify", "t_handle", *_options(BOXES["t_handle"]), "-o", "k"]) == 0
     path = Path("k/t_handle_rates.cert.json")
@@ -128,7 +128,9 @@ def test_a_forged_bound_is_not_printed_again(tmp_path, capsys, monkeypatch, part
 
 
 def test_bounds_of_a_scene_file_and_without_any(tmp_path, capsys, monkeypatch):
-    """A scene file of one's own is certified the same; with no range given there are no bounds, and no head says any."""
+    """A scene file of the user is certified in the same way; without ranges there are no bounds, and no comment states
+    any.
+    """
     monkeypatch.chdir(tmp_path)
     shipped = Path(__file__).parents[2] / "symrot" / "scene" / "shipped" / "gyrostat.toml"
     Path("mine.toml").write_bytes(shipped.read_bytes())
@@ -162,7 +164,7 @@ def test_time_is_the_span_of_the_scene_and_parameters_are_points():
      ("gravity_gradient_satellite", ("mean_motion=1e-3:2e-3",)), ("damped_disk", ("linear_3=-1:1",))],
 )  # fmt: skip
 def test_parameters_of_constants_in_their_ranges_are_in_the_box(scene, ranges):
-    """Drawn constants give parameters inside, and the ends are not far outside of what is met."""
+    """Random constants give parameters inside the box, and the box is not much larger than necessary."""
     free = [f"{symbol}=-1/2:1/2" for symbol in ("omega_1", "omega_2", "omega_3") if symbol in _states(scene)]
     _, _, box = rounding_problem(kernel_text(scene), [*free, *ranges], "double")
     inputs, draw = scene_text(scene).inputs, Random(3)
@@ -186,7 +188,7 @@ def _states(scene):
 
 
 def test_a_range_of_a_constant_is_as_wide_as_the_parameters_it_makes():
-    """A constant that is given as the point it has changes nothing; powers, roots and quotients are enclosed."""
+    """A range of one point changes nothing; powers, roots and quotients are enclosed."""
     a, ends = parse("a"), (Fraction(-1), Fraction(2))
     assert parameter_range("p", a, {}, {"a": ends}) == ends
     assert parameter_range("p", parse("a**2"), {}, {"a": ends}) == (0, 4)
@@ -209,7 +211,7 @@ def test_a_range_of_a_constant_is_as_wide_as_the_parameters_it_makes():
 
 
 def test_what_does_not_overflow_is_bounded_to_the_largest_numbers(capsys):
-    """Errors that are no double in units of 2^-53 are written all the same, rounded up."""
+    """Bounds that are too large for a double in units of 2^-53 are still printed, rounded up."""
     assert main(["bound", "t_handle", *_options((*CUBE, "p0=-1e308:1e308")), "--json"]) == 0
     (part,) = json.loads(capsys.readouterr().out)["precisions"]
     error, units = (part["outputs"][0][name] for name in ("absolute", "units"))
@@ -226,7 +228,7 @@ def test_what_does_not_overflow_is_bounded_to_the_largest_numbers(capsys):
             "on which p0 = (B - C)/A is a finite number, got A 0 .. 1",
         ),
         (["bound", "t_handle", *_options((*CUBE, "A=1:2", "p0=0:1"))], "a range of p0 or of the constants in it"),
-        (["bound", "t_handle", *_options((*CUBE, "y[0]=0:1"))], "expected one range of y[0], got 'omega_1=-1:1' too"),
+        (["bound", "t_handle", *_options((*CUBE, "y[0]=0:1"))], "expected one range of y[0], got also 'omega_1=-1:1'"),
         (["bound", "t_handle", *_options((*CUBE, "q0=0:1.7976931348623158e308"))], "within the range of a double"),
         (["bound", "t_handle", *_options((*CUBE, "A=1e-300:1e-290", "B=1e20:1e30"))], "within the range of a double"),
         (["bound", "t_handle", *_options((*CUBE, "=0:1"))], "expected NAME=LOW:HIGH"),
@@ -269,7 +271,7 @@ def test_the_largest_box_of_a_scene_has_the_target():
 
 @pytest.mark.parametrize("q0, q1", [("3/5", "4/5"), (1, 0)])
 def test_a_pendulum_that_starts_anywhere_is_certified(q0, q1, tmp_path, capsys):
-    """Its laws hold for the attitudes that it starts from: two numbers whose squares sum to one."""
+    """The laws hold for the attitudes from which it may start: two numbers whose squares sum to one."""
     scene = tmp_path / "pendulum.toml"
     scene.write_text(
         f"""schema = 1

@@ -1,4 +1,6 @@
-"""The self-test refuses machines that round otherwise, flush, contract or have a poor libm; by C programs that do."""
+"""The self-test refuses machines that round otherwise, flush to zero, contract or have a poor libm; C programs imitate
+them.
+"""
 
 import json
 import re
@@ -37,7 +39,7 @@ int main(void)
 
 
 def ran(directory, before="", during="", bits=1, compiler=("gcc", "-std=c99"), flags=("-O2", "-ffp-contract=off")):
-    """Compile the printed self-test into a program and return its number and sentence."""
+    """Compile the printed self-test into a program, and return its number and sentence."""
     for name, text in selftest_files().items():
         (directory / name).write_text(text)
     (directory / "main.c").write_text(PROGRAM % (before, during, bits))
@@ -80,7 +82,7 @@ def test_flushing_to_zero_is_refused(tmp_path, bit):
 
 @needs_gcc
 def test_flushing_is_seen_by_computing_too(tmp_path):
-    """Without the register of the processor, as on a machine that has none."""
+    """The test does not read the processor's control register, as on a machine that has none."""
     for name, text in selftest_files().items():
         (tmp_path / name).write_text(text.replace("defined(__SSE2__)", "0"))
     (tmp_path / "main.c").write_text(PROGRAM % ("#include <xmmintrin.h>", "    _mm_setcsr(_mm_getcsr() | 0x8000);", 1))
@@ -104,7 +106,7 @@ def test_contraction_is_refused_where_the_bits_are_wanted(tmp_path):
     ("name", "real", "number"), [("sin", "double", 4), ("cos", "double", 5), ("sinf", "float", 8), ("cosf", "float", 9)]
 )
 def test_a_function_that_errs_by_three_ulp_is_refused(tmp_path, name, real, number):
-    """A function of that name in the program takes the place of libm's: the right value, three steps further."""
+    """A function in the program replaces that of libm and returns a value that is wrong by three ulp."""
     step = "nextafter" if real == "double" else "nextafterf"
     whole = {"sin": "sinl", "cos": "cosl", "sinf": "sin", "cosf": "cos"}[name]
     fake = (
@@ -125,7 +127,7 @@ def test_flags_that_void_certificates_do_not_compile(tmp_path, flag, reason):
 
 
 def test_the_stored_values_are_rounded_correctly():
-    """Each row of each table, with mpmath at another precision: value + rest*ulp is the function of the arguments."""
+    """In each row of each table, value + rest*ulp equals the function, computed by mpmath at another precision."""
     text = selftest_files()["symrot_selftest.c"]
     rows = 0
     for name in NAMES:
@@ -167,7 +169,7 @@ def test_this_machine_passes_and_the_errors_are_shown(capsys):
 
 @needs_compiler
 def test_a_library_that_changed_this_process_is_found_out():
-    """The command tests its own thread: here after its rounding was turned upward."""
+    """The command tests its own thread, in which this test has set rounding upward."""
     code = (
         "import ctypes, ctypes.util, sys\n"
         "from symrot.cli import main as cli\n"

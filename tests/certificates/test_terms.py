@@ -1,4 +1,4 @@
-"""The laws of terms: what object code computes, bit for bit; instructions are checked against the processor."""
+"""The laws of terms are exact to the bit, and instructions on terms agree with the processor."""
 
 import ctypes
 import math
@@ -32,7 +32,7 @@ OPERATIONS = {
 
 
 def grown(rng, terms, values, depth):
-    """A random expression: its term, and its value by Python's own arithmetic for each assignment of values."""
+    """Return a random expression: its term, and its value in Python's arithmetic for each assignment of values."""
     if depth == 0 or rng.random() < 0.2:
         if rng.random() < 0.4:
             constant = rng.choice((0.0, -0.0, 1.0, -1.0, 2.0, 4.0, 0.5, 0.25, -2.0, 3.0, 2.0**-1074, 2.0**1023))
@@ -52,7 +52,7 @@ def bits_of(value):
 
 
 def test_terms_that_are_one_have_the_same_bits_on_every_input():
-    """Random expressions over signed zeros, subnormals, infinities: where two become one term, all their values agree."""
+    """Random expressions over signed zeros, subnormals and infinities: if two become one term, all their values agree."""
     rng, values = random.Random(7), [{"a": a, "b": b} for a in SPECIAL for b in SPECIAL]
     terms, seen, met = Terms(), {}, 0
     for _ in range(6000):
@@ -158,7 +158,7 @@ NUMBERS = (
 
 
 def calculated(terms, root, width):
-    """The number that a term is, by plain arithmetic: the inputs are small, so that nothing rounds but roots."""
+    """Return the number that a term stands for, by plain arithmetic; the inputs are so small that only roots round."""
     known = {}
     exact = {
         "add": lambda a, b: a + b, "mul": lambda a, b: a * b, "neg": lambda a: -a, "fma": lambda a, b, c: a * b + c,
@@ -190,7 +190,7 @@ def as_bits(value, width):
 @needs_avx2
 @pytest.mark.parametrize("width", [32, 64])
 def test_every_instruction_does_what_the_processor_does(tmp_path, width):
-    """Each instruction of the tables, run on terms and by the processor, on the same registers."""
+    """Each instruction in the tables is run on terms and by the processor, with the same registers."""
     chosen, size = (SINGLE, 4) if width == 32 else (DOUBLE, 8)
     lines = [".intel_syntax noprefix", ".text"]
     for number, instruction in enumerate(chosen):

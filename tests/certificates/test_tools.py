@@ -1,4 +1,4 @@
-"""Programs beside symrot that hang, fail to start or start others: each wait has an end and a sentence."""
+"""External programs that hang, cannot start or start others: each wait ends, with one sentence."""
 
 import os
 import subprocess
@@ -20,7 +20,7 @@ KERNEL = Path(__file__).parents[2] / "generated" / "c" / "quaternion_dcm.c"
 
 @pytest.fixture
 def hanging(tmp_path, monkeypatch):
-    """Programs named gcc, clang, objdump and coqc that start another one and wait for it, first on the path."""
+    """Put programs named gcc, clang, objdump and coqc first on the path; each starts another program and waits for it."""
     for name in ("gcc", "clang", "objdump", "coqc"):
         program = tmp_path / name
         program.write_text(f"#!/bin/sh\nsleep 100 &\necho $! >> {tmp_path}/pids\nwait\n")

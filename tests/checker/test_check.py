@@ -1,6 +1,6 @@
-"""Verdicts on claims: what is true is said to be true with its conditions, what is false comes with a point.
+"""Verdicts on claims: true claims are called true, with conditions; false claims get a counterexample.
 
-Every counterexample is evaluated again here, by mpmath, from the text of the claim; no code of the checker takes part.
+Every counterexample is evaluated again by mpmath from the text of the claim, without code of the checker.
 """
 
 import re
@@ -68,7 +68,7 @@ def number(source):
 
 @workdps(40)
 def values_at(claim, values):
-    """Both sides by mpmath, straight from the text (scalars only); angles given by cosine and sine are recovered."""
+    """Return both sides by mpmath, from the text (scalars only); angles given by cosine and sine are recovered."""
     names = {f: getattr(mp, f) for f in ("sin", "cos", "tan", "cot", "sqrt", "pi")} | {"abs": abs}
     for key, value in values.items():
         found = mp.mpf(eval(re.sub(r"(\d+)", r"mpf(\1)", value), {"mpf": mp.mpf, "pi": mp.pi, "sqrt": mp.sqrt}))

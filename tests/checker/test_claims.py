@@ -1,4 +1,4 @@
-"""Files of claims: what they may hold, what is refused, and the command that reads them."""
+"""Files of claims: their allowed content, refusals, and the command that reads them."""
 
 import json
 import re
@@ -70,7 +70,7 @@ def test_a_file_of_true_claims_is_true_throughout(tmp_path):
     ("2.97", "false"), ("-2.96", "false"), ("296e-2", "true"), ("0.296e1", "true"),
 ])  # fmt: skip
 def test_a_printed_number_is_right_when_the_value_rounds_to_it(tmp_path, printed, verdict):
-    """2 pi sqrt(2)/3 = 2.96192..."""
+    """The example is 2 pi sqrt(2)/3 = 2.96192..."""
     (last,) = symrot.check_file(write(tmp_path, GOOD.replace('"2.96"', f'"{printed}"')))[3:]
     assert last.verdict == verdict
     assert (last.counterexample is None) == (verdict == "true")

@@ -1,4 +1,6 @@
-"""The corpus of printed formulas: its files are complete and balanced, and an independent numeric oracle agrees with every label."""
+"""The corpus of printed formulas: its files are complete and balanced, and an independent numeric test agrees with
+every label.
+"""
 
 import ast
 from collections import Counter

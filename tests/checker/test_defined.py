@@ -1,4 +1,4 @@
-"""Nothing follows from a side that is no real number, nor from hypotheses that nothing obeys."""
+"""No verdict follows from a side that is no real number, or from hypotheses that no point satisfies."""
 
 from dataclasses import replace
 from random import Random
@@ -18,7 +18,7 @@ THIRD = Rational(1, 3)
 
 
 def verdict_of(claim, given=()):
-    """Return the verdict, "refused" for a claim that is refused in one sentence."""
+    """Return the verdict on a claim, or "refused" if it is refused in one sentence."""
     try:
         return symrot.check(claim, assume=given, repair=False).verdict
     except InputError as reason:
@@ -80,7 +80,7 @@ def test_nothing_follows_from_hypotheses_that_nothing_obeys(claim, given):
     ("x == 1", ["asin(x) == 4"]), ("x == 1", ["log(x) == 0"]), ("x == 0", ["asin(x) == 0"]), ("x == y", ["exp(x) == exp(y)"]),
 ], ids=str)  # fmt: skip
 def test_no_counterexample_breaks_a_hypothesis_on_a_function(claim, given):
-    """asin(x) = 4 was given a value of its own, beside that of x."""
+    """The function asin(x) = 4 got a value of its own, independent of the value of x."""
     assert verdict_of(claim, given) in ("refused", "undecided")
 
 
@@ -89,7 +89,7 @@ def test_no_counterexample_breaks_a_hypothesis_on_a_function(claim, given):
     ("x == 4", ["sqrt(x + 1) == x - 5", "x == 3"]),
 ], ids=str)  # fmt: skip
 def test_no_counterexample_breaks_a_hypothesis_on_a_root(claim, given):
-    """|x| = x - 1 was met at x = 3/2: the square of the root was reduced by the hypothesis itself."""
+    """|x| = x - 1 seemed to hold at x = 3/2, because the hypothesis itself had reduced the square of the root."""
     assert verdict_of(claim, given) in ("refused", "undecided")
 
 
@@ -98,7 +98,7 @@ def test_no_counterexample_breaks_a_hypothesis_on_a_root(claim, given):
     ("x*exp(z) == y*exp(z)", ["x**2 == 2*y"]),
 ], ids=str)  # fmt: skip
 def test_a_point_is_looked_for_although_both_sides_share_a_function(claim, given):
-    """The function cancels in the difference, and has no value at points of the symbols alone: KeyError."""
+    """The function cancels in the difference, so no value was computed for it, and a KeyError was raised."""
     assert verdict_of(claim, given) in ("false", "undecided")
 
 
@@ -162,7 +162,7 @@ def test_an_inverse_function_undoes_its_function_for_principal_values(claim, con
     ("Matrix([x, atan2(-y, x)]) == Matrix([x, -atan2(y, x)])", {"x": "-1", "y": "0"}),
 ])  # fmt: skip
 def test_a_claim_that_fails_on_the_cut_of_atan2_is_conditional(claim, point):
-    """atan2(-0, -1) = pi, -atan2(0, -1) = -pi: the divisor of the proof vanishes there, and only there."""
+    """atan2(-0, -1) = pi but -atan2(0, -1) = -pi; only there is the denominator of the proof zero."""
     found = symrot.check(claim)
     assert found.verdict == "conditional" and found.counterexample.values == point
     assert found.diagnosis.code == "principal_value"
@@ -191,7 +191,7 @@ def test_other_values_are_no_principal_values(claim, verdict):
     "sqrt(x*exp(3*x))*sqrt(x*exp(-x/2)) == x*exp(5*x/4)", "sqrt(-x/exp(-x/3)) == exp(x/6)*sqrt(-x)",
 ])  # fmt: skip
 def test_an_exponential_that_only_a_relation_brings_in_is_read(claim):
-    """The ring of sqrt(x exp(-x)) divides by exp(x/2), which stands nowhere in the text."""
+    """The ring of sqrt(x exp(-x)) divides by exp(x/2), which does not occur in the text."""
     assert verdict_of(claim) == "true"
 
 
@@ -204,7 +204,7 @@ PI = "pi*sqrt(2)/(((sqrt(2)**2 - 1)/(sqrt(2) - 1))**2/(1 + sqrt(2)) - 1)"
     f"acos(cos({PI})) + x", f"abs(acos(cos({PI}))) == x",
 ])  # fmt: skip
 def test_numbers_that_sympy_cannot_order_end_in_a_sentence(claim):
-    """``acos(cos(c))`` is compared with pi when it is built; here c is pi in a form that SymPy does not see."""
+    """SymPy compares ``acos(cos(c))`` with pi when it builds it; here c is pi in a form that SymPy does not recognise."""
     assert verdict_of(claim) in ("refused", "undecided", "true", "false", "definition")
 
 
@@ -220,7 +220,9 @@ LONG = (
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("claim", LONG)
 def test_an_answer_comes_within_a_few_seconds_of_work(claim):
-    """Sums of 16 angles were multiplied out, polynomials factored over fields of degree 4, and one pair found for ever."""
+    """Before, sums of 16 angles were expanded, polynomials were factored over fields of degree 4, and one search never
+    ended.
+    """
     start = process_time()
     verdict_of(claim)
     assert process_time() - start < 20
@@ -237,7 +239,7 @@ def test_a_root_of_a_product_with_a_square_is_split_only_where_both_parts_are_re
     "claim", ["log(exp(-(1/2 + 0*log(tanh(x))))) == (-x)**(1/3)", "0*log(tanh(x)) == 1 + sqrt(-x)"]
 )
 def test_a_counterexample_is_no_point_at_which_a_cancelled_logarithm_has_no_value(claim):
-    """tanh(0) = 0: neither side of x = 0 has both a logarithm of tanh(x) and a root of -x."""
+    """At x = 0, tanh(x) is 0; for no other x do both log(tanh(x)) and sqrt(-x) have a value."""
     assert verdict_of(claim) == "undecided"
 
 

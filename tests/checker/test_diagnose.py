@@ -1,4 +1,6 @@
-"""Diagnosis and repair: the right code, the right formula among the first three, every repair true, none trivial."""
+"""Diagnosis and repair: the code is right, the correct formula is among the first three, repairs are true and not
+trivial.
+"""
 
 import pytest
 
@@ -59,7 +61,7 @@ def test_every_repair_is_true_when_it_is_checked_again(claim):
 
 @pytest.mark.parametrize("claim", ["x == y", "2*x == x", "sin(x) == 0", "2 == 3", "x*y == 0"])
 def test_nothing_is_repaired_by_saying_nothing(claim):
-    """No repair makes a side a bare number or both sides zero, none says that x is x."""
+    """No repair makes one side a bare number or both sides zero, and no repair says x = x."""
     verdict = symrot.check(claim)
     assert verdict.verdict == "false"
     for repair in verdict.repairs:

@@ -1,6 +1,6 @@
-"""Hostile input: one sentence within a counted budget, through text, LaTeX and TOML, from Python and the command line.
+"""Hostile input ends in one sentence within a counted budget, as text, LaTeX or TOML, from Python and the command line.
 
-Nothing here measures time; the budgets are counts, and a guard of a minute on a subprocess only catches a hang.
+No test measures time: budgets are counts, and a limit of one minute on a subprocess only catches a hang.
 """
 
 import subprocess
@@ -90,7 +90,7 @@ def test_a_hostile_hypothesis_is_refused_too(text, words):
 
 
 def test_a_file_of_hostile_claims_refuses_each_and_decides_the_rest(tmp_path, capsys):
-    """Exit code 2, one sentence for each with file and id; the verdicts of the others are there."""
+    """The exit code is 2; each hostile claim gets a sentence with file and id, the other claims get verdicts."""
     no_toml = ("\0", "'''", ".T" * 100)
     texts = [text for text, _ in TEXTS.values() if len(text) < 100_000 and not any(part in text for part in no_toml)]
     bad = "".join(f"[[claim]]\nid = 'bad-{n}'\nsymbols = ['x', 'y']\nclaim = '''{t}'''\n" for n, t in enumerate(texts))
@@ -167,7 +167,7 @@ def test_a_hostile_file_is_refused_in_one_sentence(content, words, tmp_path, cap
 
 
 def test_nothing_is_evaluated_as_python(tmp_path):
-    """In a process of its own, with a guard against hanging only."""
+    """The claims are checked in a separate process with a time limit."""
     mark = tmp_path / "mark"
     attacks = [f"__import__('pathlib').Path('{mark}').touch() == 1", f"open('{mark}', 'w') == 1", "exec('1') == 1"]
     for attack in attacks:
@@ -205,7 +205,7 @@ HEAVY = {
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("text", HEAVY.values(), ids=HEAVY)
 def test_what_cannot_be_multiplied_out_is_disproved_as_it_is_written(text):
-    """The budgets are counts, so a machine that gets here does so after the same work as any other."""
+    """Budgets are counts, so every machine gives the verdict after the same work."""
     verdict = symrot.check(text)
     assert verdict.verdict == "false"
     assert verdict.counterexample is not None

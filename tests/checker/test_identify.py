@@ -1,4 +1,4 @@
-"""What a formula is, up to names, transposition, sign and storage order; whatever is named is proven."""
+"""Recognition of formulas up to names, transposition, sign and storage order; every recognised formula is proven."""
 
 import json
 
@@ -51,7 +51,7 @@ def test_what_has_no_value_is_outside():
 
 
 def test_the_file_is_as_printed():
-    """The part that is not of derivations, which take longer."""
+    """This tests the part of the file that does not come from derivations, which take longer."""
     printed = known_formulas.page(known_formulas.stated())
     assert known_formulas.FILE.read_text(encoding="utf-8").startswith(printed)
 
@@ -67,7 +67,7 @@ def test_the_whole_file_is_as_printed():
 @pytest.mark.thinned(4)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_every_sequence_is_recognised_under_other_names(sequence):
-    """Matrix, passive matrix and both rate Jacobians, in angles of another name."""
+    """The formulas are matrix, transposed matrix and both rate Jacobians, with other names of the angles."""
     angles = (a, b, c)
     dcm = symrot.dcm(sequence, angles)
     kind = "intrinsic" if sequence.isupper() else "extrinsic"
@@ -119,7 +119,7 @@ def test_rates_written_with_functions_of_time():
     "abs(x)**3*sqrt(y)", "Matrix([x, y, z])", "diag(A, B, C)",
 ])  # fmt: skip
 def test_what_is_not_known_is_not_named(formula):
-    """Among them formulas that differ from known ones by a factor, a sign or a symbol."""
+    """Some of the formulas differ from known formulas by a factor, a sign or a symbol."""
     assert identify(formula) == []
 
 
@@ -136,7 +136,7 @@ def test_bad_formulas_are_refused(formula, words):
 
 
 def test_a_false_claim_is_told_which_formula_it_holds(tmp_path):
-    """The body-frame rates against the space-frame Jacobian: wrong, and the note says what stands there."""
+    """The claim equates body rates with the space Jacobian; the note says which formula the other side is."""
     path = tmp_path / "claims.toml"
     path.write_text(
         "schema = 1\n[[claim]]\nid = 'rates'\nsymbols = ['t']\nfunctions = ['phi', 'theta', 'psi']\n"

@@ -1,4 +1,6 @@
-"""LaTeX in, the same equation out, or a refusal with the place: nothing is dropped and nothing is chosen."""
+"""LaTeX is read as the equation that it shows, or refused with the position: no symbol is dropped and nothing is
+guessed.
+"""
 
 import re
 
@@ -56,7 +58,7 @@ def test_latex_is_read_as(latex, text):
 
 @pytest.mark.parametrize(("latex", "text"), READINGS)
 def test_no_symbol_is_dropped(latex, text):
-    """Every letter of the source that is no part of a command is in the text, as often, but for signs of differentiation."""
+    """Every letter of the source outside commands and derivative signs occurs equally often in the text."""
     latex = re.sub(r"(?<=\\,)d(?=[a-z\\])|_\{?\w+\}?", " ", latex)
     commands = re.sub(
         r"\\(mathrm|operatorname|text)\{?[a-z]*\}?|\\begin\{array\}\{\w*\}|\\(begin|end)\{\w*\}|\\[A-Za-z]+", " ", latex
@@ -179,7 +181,7 @@ def test_every_token_is_kept():
 
 
 def test_a_formula_copied_from_a_paper_gets_its_verdict():
-    """Body rates of the sequence ZXZ: the sign of the second term of omega_2 is wrong in the second copy."""
+    """The claim is the body rates of ZXZ; the second copy has a wrong sign in omega_2."""
     line = r"\left(\dot\phi\sin\theta\cos\psi %s \dot\theta\sin\psi\right)^2 + \left(\dot\phi\sin\theta\sin\psi + \dot\theta\cos\psi\right)^2" \
         r" = \dot\phi^2\sin^2\theta + \dot\theta^2"  # fmt: skip
     assert symrot.check(line % "-").verdict == "true"

@@ -1,4 +1,4 @@
-"""The verdicts on the corpus of printed formulas: a chapter of it, and the names of the outcomes."""
+"""Verdicts on one chapter of the corpus of printed formulas, and the names of the outcomes."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""A claim has an answer in bounded processor time, even if SymPy needs minutes for it."""
+"""Every claim gets an answer within a limited processor time, even if SymPy would need minutes."""
 
 import signal
 import threading

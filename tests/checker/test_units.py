@@ -1,4 +1,6 @@
-"""Units beside the verdict: contradictions are found, whatever can be made to fit fits, the verdict does not change."""
+"""Units are reported besides the verdict: contradictions are detected, consistent units pass, the verdict does not
+change.
+"""
 
 import json
 import re
@@ -27,7 +29,7 @@ LETTERS = {"t": "s", "m": "kg", "g": "m/s^2"}
 
 
 def physical(claim):
-    """The unit of the first of these letters in a claim, which makes the others have their conventional units."""
+    """Return units for some letters of a claim, with which the other letters have conventional units."""
     return {letter: LETTERS[letter] for letter in re.findall(r"\b[tmg]\b", claim)[:1]}
 
 
@@ -54,13 +56,13 @@ def test_what_is_no_unit_is_refused(text):
 
 
 def test_every_symbol_of_symrot_has_a_unit_that_is_read():
-    """Those of a vector of any kind have none."""
+    """Only the symbols for a vector of any kind have no unit."""
     for unit in filter(None, symbols.UNIT.values()):
         read_unit(unit)
 
 
 def test_custom_agrees_with_the_symbols_of_symrot():
-    """Where a book and symrot use one name, they mean one unit."""
+    """A name that books and symrot share has the same unit in both."""
     own = {symbol.name: unit for symbol, unit in symbols.UNIT.items()}
     shared = [name for name in own if conventional_unit(name)]
     assert len(shared) > 25
@@ -82,7 +84,7 @@ def test_equations_between_units_are_solved_over_the_rationals():
 
 
 def test_a_true_identity_with_terms_of_two_units():
-    """Algebra is right, the units are not: the verdict stays true and the line beside it says where."""
+    """The algebra is right but the units are not: the verdict stays true, and the note on units says where."""
     verdict = symrot.check("x*(1 + x) == x + x**2", units={"x": "m"})
     assert verdict.verdict == "true" and verdict.diagnosis.code == "none"
     assert verdict.dimension.status == "inconsistent"
@@ -111,7 +113,7 @@ def test_units_explain_a_false_formula():
     "skew(omega_1, omega_2, omega_3)*Matrix([x, y, z]) == cross(Matrix([omega_1, omega_2, omega_3]), Matrix([x, y, z]))",
 ])  # fmt: skip
 def test_what_fits_is_not_complained_of(claim):
-    """Mixed matrices, inferred units, numbers that stand for quantities, rational exponents."""
+    """The examples are matrices of mixed units, inferred units, numbers with units, and rational exponents."""
     found = dimension(claim, **physical(claim))
     assert found.status == ("inconsistent" if "det" in claim else "consistent"), found.text
 

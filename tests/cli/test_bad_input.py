@@ -1,4 +1,4 @@
-"""Every scene that cannot be used is refused in one clear sentence, quickly."""
+"""Every scene that cannot be used is refused quickly, in one clear sentence."""
 
 import copy
 import random
@@ -20,7 +20,7 @@ BAD = bad_scenes()
 
 
 def test_the_scenes_that_the_faults_are_put_into_are_good(tmp_path):
-    """Else every test below could pass for a wrong reason."""
+    """Otherwise the tests below could pass for a wrong reason."""
     path = tmp_path / "good.toml"
     for body in (None, SHAPE, TOP, PARTS):
         path.write_text(GOOD if body is None else base_scene(body=body))
@@ -71,7 +71,7 @@ STRANGE = [
 
 
 def places(node, place=()):
-    """Yield the place of every value in a nested scene."""
+    """Yield the path to every value in a nested scene."""
     items = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
     for key, value in items:
         yield (*place, key)
@@ -81,7 +81,7 @@ def places(node, place=()):
 @pytest.mark.thinned(6)
 @pytest.mark.parametrize("path", sorted(SHIPPED.glob("*.toml")), ids=lambda path: path.stem)
 def test_a_strange_value_anywhere_is_read_or_refused_in_one_sentence(path):
-    """Every value of every shipped scene is replaced by things that it should never be: no other error gets out."""
+    """Each value of each shipped scene is replaced by strange values; no other exception is raised."""
     chance = random.Random(path.stem)
     content = tomllib.loads(path.read_text(), parse_float=Decimal)
     for *table, key in places(content):

@@ -1,4 +1,4 @@
-"""The command line: what it prints, where, and with which exit code."""
+"""The command line: what it prints, to which stream, and with which exit code."""
 
 import json
 import os
@@ -19,14 +19,14 @@ ROOT = Path(symrot.__file__).parents[1]
 
 
 def run(capsys, *words):
-    """Return exit code, standard output and standard error of a command."""
+    """Return a function that runs a command and returns exit code, standard output and standard error."""
     code = cli.main([str(word) for word in words])
     said = capsys.readouterr()
     return code, said.out, said.err
 
 
 def refused(capsys, *words):
-    """Return the one sentence with which a command is refused."""
+    """Return a function that runs a command and returns the one sentence with which it is refused."""
     code, out, err = run(capsys, *words)
     assert (code, out) == (2, "")
     assert err.startswith("symrot: ") and err.count("\n") == 1 and "Traceback" not in err
@@ -182,7 +182,7 @@ def test_emitted_files_compile_together(capsys, tmp_path):
 
 
 def test_stale_kernels_are_shown_as_a_diff(capsys, monkeypatch, tmp_path):
-    """On a few kernels; `symrot emit --check` itself, over all of them, is a step of `.ci/run`."""
+    """Only a few kernels are tested; `.ci/run` runs `symrot emit --check` on all kernels."""
     monkeypatch.setattr(kernels, "kernel_names", lambda: ("quaternion_dcm", "mrp_body_rates"))
     monkeypatch.setattr(kernels, "names_with_kernels", lambda: ("t_handle", "gyrostat"))
     assert run(capsys, "emit", "--all", "-o", tmp_path)[0] == 0
@@ -303,7 +303,7 @@ def test_bold_only_on_a_terminal_that_wants_it(monkeypatch):
 
 
 def test_a_pipe_or_device_is_no_place_for_an_output(tmp_path, capsys):
-    """Renaming onto it would replace it."""
+    """A renamed file would replace it."""
     pipe = tmp_path / "pipe.csv"
     os.mkfifo(pipe)
     assert cli.main(["run", "chen_cylinder", "--out", str(pipe)]) == 2

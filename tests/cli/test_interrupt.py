@@ -1,4 +1,4 @@
-"""Ctrl-C ends every command at once with exit code 130, no traceback, and nothing of it left running."""
+"""Ctrl-C ends every command at once with exit code 130, without a traceback, and leaves no process running."""
 
 import os
 import random
@@ -30,7 +30,7 @@ COMMANDS = {
 
 
 def started(words, folder, **environment):
-    """Start a command with a cache of its own, in a group of processes of its own."""
+    """Start a command with its own cache, in its own group of processes."""
     cache = {"SYMROT_CACHE": str(folder / "cache"), "PYTHONPATH": str(ROOT)}
     return subprocess.Popen(
         [sys.executable, "-m", "symrot", *words], cwd=folder, env=os.environ | cache | environment, text=True,
@@ -39,7 +39,7 @@ def started(words, folder, **environment):
 
 
 def interrupted(process, to_group):
-    """Send SIGINT, as a terminal does to the whole group, or to the first process alone; return what was said."""
+    """Send SIGINT to the whole group, as a terminal does, or to the first process only; return the output."""
     (os.killpg if to_group else os.kill)(process.pid, signal.SIGINT)
     try:
         _, err = process.communicate(timeout=SECONDS)

@@ -1,4 +1,4 @@
-"""Pairs of doubles in C against fifty digits, and the same bits with and without a fused instruction."""
+"""Pairs of doubles in C, compared with fifty digits; they have the same bits with and without fused instructions."""
 
 import ctypes
 import random
@@ -47,7 +47,7 @@ def signed(source):
 
 
 def near_turns(source):
-    """Angles in turns, an eighth of them next to an eighth of a turn."""
+    """Return angles in full rotations; an eighth of them are close to an eighth of a rotation."""
     return source.choice(
         (source.uniform(-3, 3), source.randint(-24, 24) / 8 + source.choice((-1, 1)) * decades(source, -18, -2))
     )
@@ -78,13 +78,13 @@ OPERATIONS = {
 
 
 def pair(source, high):
-    """Return a number as hi, lo with |lo| at most half a unit of hi."""
+    """Return a number as (hi, lo) with |lo| at most half a unit in the last place of hi."""
     low = high * source.uniform(-1, 1) * 2.0**-54
     return high + low, (high - (high + low)) + low
 
 
 def draws(name, count, seed):
-    """Return arguments of an operation, each a list of hi, lo, and the pairs it returns with and without FMA."""
+    """Return arguments of an operation, each a list of (hi, lo), and the pairs that it returns with and without FMA."""
     text = "\n".join(path.read_text().replace('#include "error_free.h"', "") for path in HEADERS) + CALLS
     calls = [
         ctypes.CDLL(str(build(text, "pairs_of_doubles", flags))).symrot_each for flags in (NATIVE_FLAGS, PLAIN_FLAGS)
@@ -101,7 +101,7 @@ def draws(name, count, seed):
 
 
 def error(name, given, found):
-    """Return the largest error of what was found over its bound."""
+    """Return the largest error of the results, divided by its bound."""
     with mp.workdps(60):
         exact = [mpf(high) + mpf(low) for high, low in zip(given[::2], given[1::2], strict=True)]
         expected = OPERATIONS[name][1](*exact)
@@ -140,7 +140,9 @@ EXACTLY = {name: exactly for name, (_, exactly) in OPERATIONS.items()} | {"diffe
 
 
 def worst_on_arrays(name, operation):
-    """The largest error of an operation of the Python module over 2^-104: of the value, of the larger term in sums."""
+    """Return the largest error of an operation of the Python module in units of 2^-104 of the value (of the larger term
+    in sums).
+    """
     source = random.Random(10)
     terms = [
         [pair(source, abs(signed(source)) if name == "root" else signed(source)) for _ in range(500)] for _ in "ab"
@@ -173,7 +175,7 @@ def test_a_normalized_pair_has_the_same_sum():
     [((1, 2, 3), (0.3, 1, 0.5)), ((1, 2, 3), (0.01, 1, 0.01)), ((3, 4, 6), (2, 1.5, 1)), ((1, 1, 2), (0.3, 1, 0.5))],
 )
 def test_the_constants_of_a_free_body_are_the_same_bits(moments, omega):
-    """Those of the circular, the hyperbolic, the endless and the symmetric motion, with and without FMA."""
+    """The circular, hyperbolic, separatrix and symmetric motions are tested, with and without FMA."""
     records = []
     for flags in (NATIVE_FLAGS, PLAIN_FLAGS):
         constants = ctypes.CDLL(str(build(library.source("free_body"), "free_body_bits", flags)))

@@ -1,4 +1,6 @@
-"""Principal axes, rates and defects of many bodies in C: the bits that exact fractions give, or the body is marked."""
+"""Principal axes, rates and differences of many bodies in C have the bits that exact fractions give, or the body is
+marked.
+"""
 
 import subprocess
 from fractions import Fraction
@@ -24,7 +26,7 @@ PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
 def tensors(moments, scale=1.0):
-    """Return bodies with such moments in axes of any direction, as columns xx, yy, zz, xy, xz, yz."""
+    """Return bodies with these moments of inertia, in axes of any direction, as columns xx, yy, zz, xy, xz, yz."""
     axes = np.linalg.qr(RANDOM.standard_normal((len(moments), 3, 3)))[0]
     full = scale * np.einsum("nik,nk,njk->nij", axes, moments, axes)
     return np.column_stack([full[:, i, j] for i, j in PLACES])
@@ -67,7 +69,7 @@ def rates():
 
 
 def of_fractions(columns, omega):
-    """Return the same from the exact path of one motion."""
+    """Return the same quantities from the exact computation for a single motion."""
     xx, yy, zz, xy, xz, yz = map(Fraction, columns.tolist())
     body = FreeRigidBody(principal_axes([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
     integers, shared = body.along(omega.tolist())
@@ -88,7 +90,7 @@ def test_bodies_have_the_bits_of_fractions_or_are_marked(name):
 
 
 def test_what_doubles_and_248_bits_cannot_tell_is_marked():
-    """Equal and rational moments, whose last digits are ties; products that vanish beside the moments."""
+    """Examples are equal moments, rational moments whose last digits are ties, and negligible products."""
     for name in ("two equal moments", "rational moments"):
         assert len(bodies.principal_bodies(list(BODIES[name].T), rates()).doubtful) == N
     given = [np.array([x]) for x in (3.0, 4.0, 5.0, 1e-70, 0.0, 1e-300)]
@@ -103,7 +105,7 @@ def test_what_doubles_and_248_bits_cannot_tell_is_marked():
 
 @pytest.mark.parametrize("name", ["any", "moments 1e-12 apart", "needles", "huge", "tiny", "one product"])
 def test_moments_are_those_of_mpmath(name):
-    """Another algorithm, 50 digits."""
+    """mpmath uses another algorithm and 50 digits."""
     columns = BODIES[name]
     found = bodies.principal_bodies(list(columns.T), np.ones((N, 3)))
     with mpmath.workdps(50):
@@ -119,7 +121,7 @@ def test_moments_are_those_of_mpmath(name):
 
 
 def test_constants_that_all_share_are_fractions():
-    """Not only doubles: 1/7 kg m^2 stays 1/7."""
+    """They need not be doubles: 1/7 kg m^2 stays 1/7."""
     shared = [Fraction(3), Fraction(4), Fraction(5), Fraction(-1, 10), Fraction(1, 7)]
     varied, omega = 0.1 + 0.1 * RANDOM.random(N), RANDOM.standard_normal((N, 3))
     found = bodies.principal_bodies([*shared, varied], omega)
@@ -132,7 +134,7 @@ def test_constants_that_all_share_are_fractions():
 
 
 def test_defects_of_given_moments_have_the_bits_of_integers():
-    """Near the separatrix too, where digits cancel; where all do, the body is marked."""
+    """This holds near the separatrix too, where digits cancel; if all digits cancel, the body is marked."""
     moments = 1 + RANDOM.random((400, 3))
     omega = RANDOM.standard_normal((400, 3))
     small, middle, large = np.sort(moments, axis=1).T
@@ -154,7 +156,7 @@ def test_defects_of_given_moments_have_the_bits_of_integers():
     "name", ["small products", "moments 1e-12 apart", "integers", "needles", "products down to 1e-60"]
 )
 def test_an_ensemble_of_tensors_has_the_bits_of_its_motions(name):
-    """Marked ones are made alone, all others by arrays."""
+    """Marked bodies are computed one by one, all others in arrays."""
     columns, omega, times = BODIES[name], RANDOM.standard_normal((N, 3)), np.array([0.0, 0.7, 1e3, -2.5])
     names = ("I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
     given = dict(zip(names, np.ascontiguousarray(columns.T), strict=True))

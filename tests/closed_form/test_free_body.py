@@ -1,6 +1,7 @@
-"""The free body in every regime against 60-digit references: stress tests S1 to S16 of the numerics notes, and laws.
+"""The free body in every regime, compared with 60-digit references: stress tests S1 to S16 of the numerics notes, and
+laws.
 
-The largest errors of each: ``pytest FILE -o log_cli=true --log-cli-level=INFO``.
+``pytest FILE -o log_cli=true --log-cli-level=INFO`` prints the largest error of each test.
 """
 
 import logging
@@ -28,7 +29,7 @@ SQRT3 = math.sqrt(3.0)
 
 
 def errors(moments, omega, times, q0=Q0, in_periods=False, motion=None, digits=reference.DIGITS):
-    """Return the largest errors of omega, over |omega0|, and of q, up to its sign, against the reference."""
+    """Return the largest errors of omega, relative to |omega0|, and of q, up to its sign, against the reference."""
     expected = reference.motion(moments, omega, q0, digits)
     motion = motion or free_body.motion(moments, omega, q0)
     scale = expected.period if in_periods and expected.period else 1
@@ -52,7 +53,7 @@ def in_bar(*arguments, **options):
                        ((3, 4, 6), (2, "-3/2", 1)), ((1, 2, 3), ("1/1000", 1, "1/1000"))]
 )  # fmt: skip
 def test_the_reference_agrees_with_taylor_series(moments, omega):
-    """Elliptic integrals and fixed-point Taylor steps, which share nothing, agree to 45 digits."""
+    """Elliptic integrals and fixed-point Taylor steps have no code in common and agree to 45 digits."""
     moments, omega = [Fraction(x) for x in moments], [Fraction(x) for x in omega]
     q0 = [Fraction(x).limit_denominator(10) for x in Q0]
     w, dcm = taylor.trajectory(moments, omega, q0, [Fraction(7)])[0]
@@ -65,7 +66,7 @@ def test_the_reference_agrees_with_taylor_series(moments, omega):
 
 
 def test_errors_are_seen():
-    """A motion that starts from the other handedness, or from a rate wrong by 1e-14, does not pass."""
+    """A motion with reversed handedness, or with an initial rate wrong by 1e-14, fails the comparison."""
     wrong = free_body.motion((1, 2, 3), (0.3, 1.0, -0.5), Q0)
     assert max(errors((1, 2, 3), (0.3, 1.0, 0.5), [7.0], motion=wrong, digits=40)) > 0.1
     close = free_body.motion((1, 2, 3), (0.3, 1.0, 0.5 + 1e-14), Q0)
@@ -79,7 +80,7 @@ def test_s1_chirality():
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("moments", list(permutations((1.0, 2.0, 3.0))))
 def test_s2_axis_permutations(moments):
-    """All orders of axes, all signs, both outer axes."""
+    """All permutations of the axes, all signs and both outer axes are tested."""
     for signs, rates in product(product((1, -1), repeat=3), ((0.3, 1.0, 0.5), (1.0, 0.4, 0.2), (0.2, 0.3, 1.1))):
         assert in_bar(moments, [s * w for s, w in zip(signs, rates, strict=True)], [7.3], digits=50)
 
@@ -91,7 +92,7 @@ def test_s3_s4_long_and_huge_times(omega):
 
 
 def random_body(source):
-    """Return moments that fulfil the triangle inequality over three decades, rates, and an attitude."""
+    """Return moments of inertia over three decades that satisfy the triangle inequality, rates, and an attitude."""
     x, y, z = (10 ** source.uniform(-3, 0) for _ in range(3))
     omega = [source.choice((1, -1)) * 10 ** source.uniform(-2, 1) for _ in range(3)]
     return (y + z, z + x, x + y), omega, [source.gauss(0, 1) for _ in range(4)]
@@ -128,7 +129,7 @@ def test_s7_fat_separatrix(d):
 @pytest.mark.parametrize("omega", [(2, 1.5, 1), (2, -1.5, 1), (2, 1.5, -1), (-2, 1.5, 1)])
 @pytest.mark.parametrize("scale", [Fraction(1), Fraction(1, 7)])
 def test_s8_exactly_on_the_separatrix(omega, scale):
-    """Also with moments that no double holds; the motion tends to rotation about the middle axis."""
+    """Some moments of inertia are not doubles; the motion tends to rotation about the middle axis."""
     moments, omega = [scale * x for x in (3, 4, 6)], [Fraction(x) for x in omega]
     motion = free_body.motion(moments, omega, Q0)
     assert motion.regime == "separatrix"
@@ -139,7 +140,7 @@ def test_s8_exactly_on_the_separatrix(omega, scale):
 
 
 def test_s9_dzhanibekov_timing():
-    """omega_2 is -1, 1, -1 after whole flips, to the last bit."""
+    """After whole flips omega_2 is -1, 1, -1, to the last bit."""
     omega = (1e-8, 1.0, 1e-8)
     half = reference.motion((1, 2, 3), omega, Q0).period / 2
     rates, _ = free_body.motion((1, 2, 3), omega, Q0).evaluate([float(half * k) for k in (1, 2, 3)], quaternion=False)
@@ -155,7 +156,7 @@ def test_s10_symmetric(moments):
 
 
 def test_s10_continuous_across_equality():
-    """Bodies that differ by 4e-16 in one moment move alike."""
+    """Bodies whose moments of inertia differ by 4e-16 move alike."""
     ahead, same, behind = (
         free_body.motion((1.0, 1.0 + d, 2.0), (0.3, 1.0, 0.5), Q0).evaluate([2.7])[1] for d in (4e-16, 0, -4e-16)
     )
@@ -213,7 +214,7 @@ def test_s16_magnitudes(moments, omega):
 
 
 def test_inertia_tensors_in_any_axes():
-    """A body given in turned axes moves as in its principal ones; the attitude is that of the given axes."""
+    """A body given in rotated axes moves as in its principal axes; the attitude refers to the given axes."""
     body = free_body.FreeRigidBody(principal_axes([[2, "1/3", 0], ["1/3", 2, 0], [0, 0, 3]]))
     turned = body.motion((Fraction(1), Fraction(1, 2), Fraction(2)), Q0)
     half = Fraction(1) / 2
@@ -242,7 +243,7 @@ TENSORS = {
 
 @pytest.mark.parametrize("name", TENSORS)
 def test_full_tensors_to_fifty_digits(name):
-    """Principal axes by Jacobi's rotations to 60 digits, the motion along them by the reference: to a million s."""
+    """The reference has principal axes by Jacobi's rotations to 60 digits and runs up to a million s."""
     inertia, omega = TENSORS[name]
     inertia, omega = [[Fraction(x) for x in row] for row in inertia], [Fraction(x) for x in omega]
     motion = free_body.FreeRigidBody(principal_axes(inertia)).motion(omega, Q0)

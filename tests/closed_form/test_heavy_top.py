@@ -1,6 +1,6 @@
-"""The symmetric heavy top against 50-digit references: stress tests S18 to S23 of the numerics notes, and laws.
+"""The symmetric heavy top, compared with 50-digit references: stress tests S18 to S23 of the numerics notes, and laws.
 
-The largest errors of each: ``pytest FILE -o log_cli=true --log-cli-level=INFO``.
+``pytest FILE -o log_cli=true --log-cli-level=INFO`` prints the largest error of each test.
 """
 
 import logging
@@ -42,7 +42,9 @@ def quaternion_to_dcm(q):
 
 
 def errors(omega, q0, times=TIMES, c=F(1, 2), pull=F(1)):
-    """Return the largest errors of omega, over |omega0| or sqrt(M/A), and of the attitude matrix, against Taylor series."""
+    """Return the largest errors of omega, relative to |omega0| or sqrt(M/A), and of the attitude matrix, against Taylor
+    series.
+    """
     omega = [F(x) for x in omega]
     motion = heavy_top.motion((1, 1, c), pull, (0, 0, 1), omega, q0)
     rates, attitudes = motion.evaluate([float(t) for t in times])
@@ -67,7 +69,7 @@ def in_bar(*arguments, **options):
 
 
 def long_errors(omega, q0, times, c=F(1, 2), pull=F(1), in_periods=True):
-    """The same against elliptic integrals, at times that Taylor series do not reach."""
+    """Return the same errors against elliptic integrals, at times that are too large for Taylor series."""
     expected = reference.motion(1, c, pull, omega, q0)
     times = [float(expected.period * exactly(t)) if in_periods else float(t) for t in times]
     rates, attitudes = heavy_top.motion((1, 1, c), pull, (0, 0, 1), omega, q0).evaluate(times)
@@ -122,7 +124,7 @@ def test_s18_to_a_million_nutations(omega):
 
 
 def test_errors_are_seen():
-    """A motion with a weight wrong by 1e-13 does not pass."""
+    """A motion with a weight wrong by 1e-13 fails the comparison."""
     expected = reference.motion(1, F(1, 2), 1, S18["loops"], tilted(F(1, 2)))(9)
     with mp.workdps(60):
         close = heavy_top.motion((1, 1, F(1, 2)), 1 + 1e-13, (0, 0, 1), S18["loops"], tilted(F(1, 2))).evaluate(9.0)
@@ -146,7 +148,7 @@ def test_s19_pendulums(omega, q0):
 @pytest.mark.parametrize("q0", [UPRIGHT, HANGING])
 @pytest.mark.parametrize("omega", [(F(5, 2), 0, 1), (F(9, 2), 1, -1), (F(1, 1000), 0, 3), (F(-1, 10), F(1, 10), 10)])
 def test_s20_through_the_vertical(omega, q0):
-    """Started exactly upright or hanging: alpha or beta vanishes there and takes its phase from its rate."""
+    """The top starts exactly upright or hanging, where alpha or beta is zero and its phase follows from its rate."""
     assert in_bar(omega, q0)
 
 
@@ -154,7 +156,7 @@ def test_s20_through_the_vertical(omega, q0):
 @pytest.mark.parametrize("w3", [F(9, 2), F(401, 100), F(4), F(39, 10), F(3)])
 @pytest.mark.parametrize("tilt", [F(1, 10**3), F(1, 10**5), F(1, 10**7)])
 def test_s21_sleeping_top(w3, tilt):
-    """On both sides of the sleeping limit C omega_3 = sqrt(4 A M) and on it; no digits are lost with the tilt."""
+    """Tops are above, below and at the limit C omega_3 = sqrt(4 A M); the tilt loses no digits."""
     assert in_bar((0, 0, w3), tilted(tilt))
 
 
@@ -167,12 +169,14 @@ def test_s21_hanging(omega):
     "w3, tilt", [(F(3), F(1, 10**3)), (F(3), F(1, 10**5)), (F(39, 10), F(1, 10**3)), (F(39, 10), F(1, 10**6))]
 )
 def test_s21_sleeping_tops_that_fall_for_long(w3, tilt):
-    """Near the separatrix, a thousand falls later."""
+    """The tops are near the separatrix, at the end of a thousand falls."""
     assert max(long_errors((0, 0, w3), tilted(tilt), [F(1, 3), F(51, 10), F(10003, 10)])) <= BAR
 
 
 def test_s21_on_the_separatrix():
-    """A pendulum that comes to rest upright, and sleeping tops with just the energy to stand up."""
+    """The motions are a pendulum that comes to rest upright, and sleeping tops with just enough energy to become
+    upright.
+    """
     assert heavy_top.motion((1, 1, F(1, 2)), 1, (0, 0, 1), (2, 0, 0), HANGING).regime == "separatrix"
     assert in_bar((2, 0, 0), HANGING)
     assert in_bar((0, 0, F(4)), UPRIGHT) and in_bar((F(1, 100), 0, F(4)), UPRIGHT)
@@ -201,7 +205,7 @@ def test_what_rests_on_the_vertical_stays(omega, q0):
 
 
 def test_any_axis_any_direction_of_gravity():
-    """The same top with its axis along each body axis, centre on either side, and gravity turned, moves alike."""
+    """The same top with its axis along any body axis, its centre on either side and gravity rotated, moves alike."""
     omega, q0 = S18["loops"], np.array([float(x) for x in tilted(F(1, 2))])
     rates, attitudes = heavy_top.motion((1, 1, 0.5), 1, (0, 0, 1), omega, q0.tolist()).evaluate([2.0, 7.0])
     for axis in range(3):
@@ -244,7 +248,7 @@ def test_bad_input_is_refused(arguments, sentence):
 
 @pytest.mark.campaign
 def test_random_tops():
-    """Any shape, weight, spin and tilt, to a thousand nutations."""
+    """Shape, weight, spin and tilt are random; the motions last up to a thousand nutations."""
     source = random.Random(23)
     for _ in range(300):
         c = F(source.uniform(0.01, 2))

@@ -1,4 +1,4 @@
-"""Exact motions from numbers that are none, or beyond what doubles hold: one sentence, never a nan."""
+"""Exact motions of arguments that are no numbers, or exceed the doubles: one sentence, never a NaN."""
 
 import math
 
@@ -34,7 +34,7 @@ TIMES = [0.0, 1.0, -3.0], [1e300, -1e300], [1e-320, 1e15]
 
 
 def spoilt(given):
-    """Yield the arguments of a motion with one of them spoilt."""
+    """Yield the arguments of a motion, each time with one argument made unusable."""
     for name, value in given.items():
         if isinstance(value, list):
             shapes = [value[:-1], [*value, 1.0], [value, value], [], None, 3.0, "abc", np.array([value]), {}]

@@ -1,4 +1,4 @@
-"""The exact motions without a C compiler: mpmath's constants and NumPy's samples against C's, which share no code."""
+"""Exact motions without a C compiler: constants by mpmath and samples by NumPy, compared with C, which shares no code."""
 
 from fractions import Fraction
 
@@ -48,7 +48,7 @@ TIMES = np.concatenate([np.linspace(-20.0, 50.0, 141), [0.0, 1e3, 1e6]])
 
 @pytest.fixture
 def no_compiler(monkeypatch):
-    """A machine without a C compiler, and with nothing loaded before."""
+    """Imitate a machine without a C compiler and without loaded libraries."""
     monkeypatch.setenv("CC", "no such compiler")
     monkeypatch.setattr(motion, "_bound", {})
     monkeypatch.setattr(library, "_loaded", {})
@@ -71,7 +71,7 @@ def test_numpy_returns_what_c_returns(name, monkeypatch):
 
 
 def test_huge_times(no_compiler):
-    """Phases in turns to 31 digits: at 1e15 the attitude is as good as at the start."""
+    """Phases have 31 digits, so at 1e15 s the attitude is as accurate as at the start."""
     found = free_body.motion((1, 1, 2), (0.3, 1.0, 0.5), Q0).evaluate([1e9, 1e15])[1]
     expected = gyrostat.motion((1, 1, 2), (0, 0, 0), (0.3, 1.0, 0.5), Q0).evaluate([1e9, 1e15])[1]
     assert np.abs(np.abs((found * expected).sum(axis=1)) - 1).max() < BAR

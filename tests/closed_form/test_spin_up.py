@@ -1,4 +1,4 @@
-"""A symmetric body driven about its axis: the closed form against Kummer's function and Taylor series of mpmath."""
+"""A symmetric body driven about its axis: the closed form, compared with mpmath's Kummer function and Taylor series."""
 
 import random
 
@@ -36,7 +36,9 @@ def about_axis(angle):
 
 
 def swept(kappa, x):
-    """Return the attitude at x of what turns at (kappa, 0, x) from 1 at x = 0: step 13 of driven_rotation.md."""
+    """Return the attitude at x of a body with angular velocity (kappa, 0, x) and attitude 1 at x = 0: step 13 of
+    driven_rotation.md.
+    """
     a, z = mpc(0, -1) * kappa**2 / 8, mpc(0, -1) * x**2 / 2
     alpha = exp(-z / 2) * hyp1f1(a, mpf(1) / 2, z)
     beta = kappa / 2 * x * exp(z / 2) * hyp1f1(mpf(1) / 2 - a, mpf(3) / 2, -z)
@@ -44,7 +46,7 @@ def swept(kappa, x):
 
 
 def kummer(a, c, torque, omega, t):
-    """Return q at t for moments a, a, c, to 50 digits."""
+    """Return q at t for the moments of inertia a, a, c, to 50 digits."""
     with mp.workdps(50):
         a, c, torque, t, *omega = map(mpf, (a, c, torque, t, *omega))
         norm = mp.sqrt(sum(mpf(x) ** 2 for x in Q0))
@@ -59,7 +61,7 @@ def kummer(a, c, torque, omega, t):
 
 
 def at(kappa, x0, torque=0.37, a=1.25, c=2.0):
-    """Return arguments of a motion that begins at x0, and the unit of time."""
+    """Return the arguments of a motion that begins at x0, and the unit of time."""
     root = (abs(torque) / a) ** 0.5
     across = kappa * root
     return (a, a, c), 2, torque, (0.6 * across, -0.8 * across, np.sign(torque) * x0 * root * a / c), Q0, 1 / root
@@ -70,7 +72,7 @@ def at(kappa, x0, torque=0.37, a=1.25, c=2.0):
     [(1e-6, 0.37), (0.03, -2), (1, 0.37), (1, -2), (4, 0.37), (6.5, -2), (8.999, 0.37), (9.001, 0.37), (20, -2)],
 )
 def test_every_regime_against_kummers_function(kappa, torque):
-    """From either side of resonance and from within, to either side and within."""
+    """Motions start before, in or after resonance, and end before, in or after it."""
     draw = random.Random(repr((kappa, torque)))
     for x0 in (-17.0, 1.5, 11.0):
         *given, unit = at(kappa, x0, torque, c=draw.uniform(0.2, 2.4))
@@ -95,7 +97,7 @@ def test_against_eulers_equations(moments, axis, torque, omega):
 
 
 def extremes(count, seed=7):
-    """Return motions of kappa from 1e-6 to 1e6, x to 1e5 (1e9 turns), both ways."""
+    """Return motions with kappa from 1e-6 to 1e6 and x up to 1e5 (1e9 rotations), in both directions of time."""
     draw = random.Random(seed)
     for _ in range(count):
         torque = draw.choice((-1, 1)) * 10 ** draw.uniform(-3, 3)
@@ -133,7 +135,7 @@ def test_numpy_returns_what_c_returns(monkeypatch):
 
 
 def test_a_spin_up_of_any_length():
-    """Beyond 1e13 rad integers take over; the change of hands shows nowhere."""
+    """Beyond 1e13 rad integers are used; the change of method is not visible in the results."""
     *given, unit = at(0.8, -3.0)
     motion = spin_up.motion(*given)
     times = np.array([4e6, 1e9, 1e15]) * unit
@@ -152,7 +154,7 @@ def test_a_weak_torque_leaves_a_free_body():
 
 
 def test_the_series_of_a_weak_torque_is_the_one_derived():
-    """The coefficients of C are those of the recurrence proven in driven_rotation.md, and of the root, to 1e-31."""
+    """The coefficients in C agree to 1e-31 with the recurrence proven in driven_rotation.md and with the root."""
     step = next(s for s in derivation("driven_rotation").steps if "sum a_k h^k$ the coefficient" in s.claim)
     following, now, before, k, c = (Symbol(name) for name in ("a_{k+1}", "a_{k}", "a_{k-1}", "k", "c"))
     (recurrence,) = solve(step.right, following)
@@ -176,7 +178,7 @@ def test_the_series_of_a_weak_torque_is_the_one_derived():
     "kappa, x0", [(1e-3, 3.1e7), (1e-3, 3.2e7), (3.1e7, -9.0), (3.2e7, 9.0), (5.0, -1e9), (1e12, 1e12)]
 )
 def test_phases_by_their_formula_and_by_their_series(kappa, x0):
-    """A torque is weak from S^2 = 1e15 s on; up to 1e13 rad pairs of doubles count either way."""
+    """A torque is weak from S^2 = 1e15 s on; up to 1e13 rad, pairs of doubles give both phases."""
     *given, unit = at(kappa, x0, -2)
     times = np.array([-0.97, -1e-4, -1e-9, 1e-11, 1e-6, 0.3, 0.97]) * 1e13 / np.hypot(kappa, x0) * unit * 0.6
     motion = spin_up.motion(*given)
@@ -186,7 +188,7 @@ def test_phases_by_their_formula_and_by_their_series(kappa, x0):
 
 
 def test_what_is_asked_for_first_does_not_matter():
-    """Constants beyond resonance are found when a sample gets there."""
+    """Constants beyond resonance are computed when a sample needs them."""
     *given, unit = at(2.0, -12.0)
     early, late = np.array([-3.0, 0.0, 1.5]) * unit, np.array([30.0, 2.5, 12.0]) * unit
     motion, once = spin_up.motion(*given), spin_up.motion(*given).evaluate(np.concatenate([early, late]))[1]
@@ -205,7 +207,7 @@ def test_a_sample_does_not_depend_on_its_neighbours():
 
 
 def test_the_edge_of_resonance_belongs_to_one_side(monkeypatch):
-    """Where doubles cannot tell on which side |x| = 10 a sample or a start is; 9.9999.. rounds to the last piece."""
+    """Doubles cannot decide whether a sample or start is beyond |x| = 10; 9.9999.. rounds to the last piece."""
     draw, cases = random.Random(3), []
     for x0 in (10.0, -10.0, 0.0, 10.5):
         for to in (10.0, -10.0, *(10.0 * (1 + k * 2.0**-53) for k in range(-4, 5)), -11.0):
@@ -220,14 +222,14 @@ def test_the_edge_of_resonance_belongs_to_one_side(monkeypatch):
 
 @pytest.mark.parametrize("across", [1e-170, 5e-324, 1e-100])
 def test_what_hardly_wobbles_spins(across):
-    """kappa^2 is no double."""
+    """The square of kappa is too small for a double."""
     w, q = spin_up.motion((1, 1, 2), 2, 0.5, (across, 0, 1.0)).evaluate([0.0, 3.0])
     half = 0.5 * (3.0 + 0.125 * 9)
     assert np.abs(q - [[1, 0, 0, 0], [np.cos(half), 0, 0, np.sin(half)]]).max() < BAR and w[1, 2] == 1.75
 
 
 def test_what_leaves_the_doubles():
-    """Times whose squares are none take integers; angular velocities that are none are refused."""
+    """Times whose squares overflow are treated with integers; angular velocities that overflow are refused."""
     given = (1.0, 1.0, 2.0), 2, 1.0, (1.0, 0.0, 1.0)
     times = np.array([1e200, 1e300, -1e300])
     (w, q), motion = spin_up.motion(*given).evaluate(times), spin_up.motion(*given)
@@ -237,7 +239,7 @@ def test_what_leaves_the_doubles():
 
 
 def test_the_series_alone_would_not_do_near_resonance(monkeypatch):
-    """Were it taken for a smaller kappa, its terms would grow before they are small."""
+    """If the series were used for a smaller kappa, its terms would grow before they become small."""
     *given, unit = at(5.0, -12.0)
     exact = kummer(given[0][0], given[0][2], given[2], given[3], 20 * unit)
     assert np.abs(spin_up.motion(*given).evaluate([20 * unit])[1][0] - exact).max() <= BAR

@@ -1,4 +1,6 @@
-"""Companions of the attitude have the coefficients of what they stand for, exactly, and nothing else becomes one."""
+"""Auxiliary states that follow the attitude have the exact Taylor coefficients of what they stand for; nothing else
+becomes one.
+"""
 
 from fractions import Fraction
 
@@ -35,7 +37,7 @@ def turning(*torques):
     [("heavy symmetric", 3), ("heavy asymmetric", 3), ("gravity gradient", 6), ("free asymmetric", 0)],
 )
 def test_companions_follow_the_attitude(name, count):
-    """Orders 0 to 6, exact: gamma' = gamma x omega, and two directions where one of them turns with time."""
+    """Orders 0 to 6 are exact: gamma' = gamma x omega, also for two directions of which one rotates with time."""
     system = recurrences(bench.SteppedProblem(name, 1.0).kernel.rates)
     lifted = with_companions(system)
     assert len(lifted.seeds) == count and (count or lifted is system)
@@ -72,7 +74,7 @@ def test_what_does_not_close_stays_or_stays_right(torques):
 
 
 def test_no_companions_without_a_constant_norm():
-    """A quaternion that is stretched, and states that only bear the names, are left alone."""
+    """A quaternion whose norm changes, and states that only have the names of one, get no auxiliary states."""
     stretched = program(
         {"w1": "q0*q1", **{name: f"{rate} + q0/9" for name, rate in KINEMATICS.items()}, "w2": "0*w2", "w3": "0*w3"}
     )

@@ -1,4 +1,4 @@
-"""Every name with external linkage in C of symrot begins with ``symrot_``, so that it can be linked with anything."""
+"""Every name with external linkage in symrot's C begins with ``symrot_``, so that the C can be linked with any program."""
 
 import re
 import subprocess
@@ -20,7 +20,7 @@ DEFINITION = re.compile(
 
 
 def external_names(text, internal):
-    """Return the functions and variables of a C text that other files see."""
+    """Return the functions and variables of a C text that other files can see."""
     definitions = DEFINITION.findall(COMMENT.sub(" ", text))
     return [
         name
@@ -30,7 +30,7 @@ def external_names(text, internal):
 
 
 def internal_words():
-    """Return macros that begin with static."""
+    """Return the macros that begin with static."""
     return {word for path in SOURCES for word in STATIC.findall(path.read_text(encoding="utf-8"))}
 
 
@@ -57,7 +57,7 @@ def test_the_reader_of_names_sees_what_a_linker_sees(text, names):
 
 
 def test_the_linker_agrees(tmp_path):
-    """On a kernel: the symbols of its object file are those that its text defines."""
+    """The symbols in a kernel's object file are those that its text defines."""
     source = ROOT / "generated" / "c" / "heavy_top.c"
     target = tmp_path / "heavy_top.o"
     subprocess.run(["cc", "-std=c99", "-c", str(source), "-o", str(target)], check=True)

@@ -1,4 +1,6 @@
-"""Kernels say what the equations say: exactly, in every language, with no needless operation, the same bytes anywhere."""
+"""Kernels compute the equations exactly, in every language, without unnecessary operations, with the same bytes on
+every machine.
+"""
 
 import ctypes
 import hashlib
@@ -42,7 +44,7 @@ MP = {name: getattr(mpmath, name) for name in ("sqrt", "sin", "cos", "exp")} | {
 
 @pytest.fixture(scope="module", params=SCENES)
 def scene_rates(request):
-    """The plan, the equations and the lowered rates of a shipped scene."""
+    """Return the plan, the equations and the lowered rates of a shipped scene."""
     plan = make_plan(load_scene(request.param))
     equations = equations_of_motion(plan.structure)
     return plan, equations, rates_program(equations, "rates")
@@ -130,7 +132,7 @@ def test_constants_are_bound_exactly_and_rounded_once(name):
 
 
 def euler_rates():
-    """The example of the style guide: inverse rates of ZXZ."""
+    """Return the inverse rates of ZXZ, the example of the style guide."""
     psi, theta = symbols.psi, symbols.theta
     w1, w2, w3 = symbols.omega_b
     q = Argument("q", "in", tuple((str(a), "rad", "") for a in symbols.angles))
@@ -280,7 +282,7 @@ NAMES = ("\\", "*\\ int x;", "a??", "??/", "http:", "caf\u00e9", "\u65e5\u672c",
 @needs_cc
 @pytest.mark.parametrize("name", NAMES, ids=ascii)
 def test_a_scene_of_any_name_is_emitted_and_certified(name, tmp_path, monkeypatch):
-    """The name, as that of a file, and a title stand in comments; the name of the function is made of it."""
+    """Name and title appear in comments; the name of the function is derived from the scene's name."""
     monkeypatch.chdir(tmp_path)
     title = name if name.isprintable() else ascii(name)
     torque = {"kind": "expression", "torque": ["sin(t)", "0", "0"]}

@@ -11,7 +11,7 @@ from symrot.planning.plan import make_plan
 
 
 def test_constants_of_nested_sums_meet_in_one():
-    """``k + m (1 - 2 a^2) + n (1 - 2 a^2 - 2 b^2)`` has one constant term, and one for each square."""
+    """``k + m (1 - 2 a^2) + n (1 - 2 a^2 - 2 b^2)`` has one constant term, and one term for each square."""
     a, b, k, m, n = (sympy.Symbol(s, real=True) for s in "abkmn")
     given = Argument("v", "in", (("a", "1", ""), ("b", "1", "")))
     out = Argument("out", "out", (("x", "1", ""),))
@@ -22,7 +22,7 @@ def test_constants_of_nested_sums_meet_in_one():
 
 
 def test_a_special_case_takes_no_more_operations():
-    """Down the ladder of `symrot bench --skip`, each motion's own rates and the general ones."""
+    """For each motion of `symrot bench --skip`, the scene's own rates are compared with the general rates."""
     scenes = [scene for _, scene in rungs().values()][:3]
     plans = [general_plan(scenes[0]), *map(make_plan, scenes)]
     costs = [

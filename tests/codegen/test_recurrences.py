@@ -1,4 +1,4 @@
-"""The recurrences are those of the derivatives: exact against differentiation, and against mpmath to order 20."""
+"""Recurrences give the Taylor coefficients: exact compared with differentiation, and to order 20 compared with mpmath."""
 
 import math
 import random
@@ -63,7 +63,7 @@ def program(rates, temporaries=()):
 def derivatives(rates, order, start, value, functions=None):
     """Return the Taylor coefficients of the states by differentiating the rates along the motion.
 
-    The derivatives x', x'', ... are symbols; each follows from the ones below it, ``x^(n+1) = d^n/dt^n f``.
+    The derivatives x', x'', ... are symbols; each follows from the lower ones by ``x^(n+1) = d^n/dt^n f``.
     """
     jets = {name: [Symbol(f"{name}_{n}", real=True) for n in range(order + 1)] for name in rates}
     t, k = Symbol("t", real=True), Symbol("k", real=True)
@@ -95,7 +95,7 @@ def exact_coefficients(rates, order):
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_coefficients_are_derivatives_exactly(name):
-    """Over the rational numbers, orders 1 to 5: no rounding anywhere."""
+    """Orders 1 to 5 are computed with rational numbers, without rounding."""
     assert exact_coefficients(SYSTEMS[name], 5) == derivatives(SYSTEMS[name], 5, RATIONAL, exact)
 
 
@@ -110,7 +110,7 @@ def in_digits(form, point):
 @pytest.mark.parametrize("order", [3, *(pytest.param(order, marks=pytest.mark.campaign) for order in (4, 5))])
 @pytest.mark.parametrize("name", FUNCTION_SYSTEMS)
 def test_functions_are_differentiated(name, order):
-    """Against SymPy's derivatives, both in 60 digits; each order of them takes five times as long as the one before."""
+    """The reference is SymPy's derivatives in 60 digits; each further order takes five times as long."""
     rates = dict(zip("xy", FUNCTION_SYSTEMS[name], strict=True))
     with mpmath.workdps(60):
         point = {n: as_mpf(value) for n, value in START.items()}
@@ -130,7 +130,7 @@ def as_mpf(value):
 @pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", [*SYSTEMS, *FUNCTION_SYSTEMS])
 def test_series_solve_the_equations_to_order_20(name):
-    """mpmath's Taylor coefficients of the rates along the series are those of its derivative."""
+    """mpmath's Taylor coefficients of the rates along the series equal those of the derivative of the series."""
     rates = SYSTEMS.get(name) or dict(zip("xy", FUNCTION_SYSTEMS[name], strict=True))
     with mpmath.workdps(60):
         start = {n: as_mpf(value) for n, value in START.items()}
@@ -149,7 +149,7 @@ def test_series_solve_the_equations_to_order_20(name):
 
 
 def test_a_wrong_rule_is_noticed():
-    """The same comparison fails when one coefficient is off by a part in 10^20, or one weight by its sign."""
+    """The same comparison fails if one coefficient is wrong by 1 part in 10^20, or one weight has the wrong sign."""
     rates = SYSTEMS["free body"]
     right, expected = exact_coefficients(rates, 5), derivatives(rates, 5, RATIONAL, exact)
     right[0][4] *= 1 + Rational(1, 10**20)
@@ -201,7 +201,7 @@ def test_signs_come_off_constants():
 
 
 def test_random_polynomial_systems_agree_with_differentiation():
-    """Seeded: sums of random monomials over three states, orders 1 to 4, exact."""
+    """The rates are sums of random monomials in three states (with a fixed seed); orders 1 to 4 are exact."""
     source = random.Random(20)
     for _ in range(4):
         rates = {

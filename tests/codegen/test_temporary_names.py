@@ -1,4 +1,4 @@
-"""Names of temporaries: made of what they are, unique, the same words in C, C++ and Python."""
+"""Names of temporaries describe what they hold, are unique, and are valid in C, C++ and Python."""
 
 import keyword
 import re
@@ -16,7 +16,9 @@ STATES = ("q1", "q2", "theta", "A", "B", "C", "omega_1")
 
 
 def named(*formulas, outputs=("y1",), numbers=None):
-    """Return the names that temporaries of some formulas get; later ones may contain #0, #1 .. for earlier ones."""
+    """Return the names of the temporaries of some formulas; later formulas may contain #0, #1 and so on for earlier
+    ones.
+    """
     inputs = Argument("x", "in", tuple((name, "", "") for name in STATES))
     results = Argument("y", "out", tuple((name, "", "") for name in outputs))
     old = [f"t{i}_" for i in range(len(formulas))]
@@ -46,7 +48,7 @@ def test_products_of_products_are_multiplied_out():
 
 
 def test_equal_names_of_different_formulas_are_told_apart():
-    """(A*B)*C and A*(B*C) round differently, and are two temporaries."""
+    """(A*B)*C and A*(B*C) round differently, so they get two temporaries."""
     assert named("A*B*C", "A*(B*C)", "t0_ + t1_")[:2] == ["A_B_C", "y1_term_1"]
 
 

@@ -1,4 +1,4 @@
-"""Euler's equations, the torques and what they keep, each from the law it must obey."""
+"""Euler's equations, torques and conserved quantities, each tested against the law that it must obey."""
 
 import pytest
 from sympy import Matrix, Rational, diag, eye, zeros
@@ -31,14 +31,14 @@ TENSOR = Matrix(3, 3, lambda i, j: symbols.moments[i] if i == j else symbols.pro
 
 
 def along(expression):
-    """d/dt of a function of the attitude."""
+    """Return the time derivative of a function of the attitude."""
     rates = quaternion_rates("body") * OMEGA
     return sum((expression.diff(q) * rate for q, rate in zip(Q, rates, strict=True)), start=0 * expression)
 
 
 @pytest.mark.parametrize("inertia", [TENSOR, diag(*symbols.principal)], ids=["tensor", "principal"])
 def test_euler_equations_are_the_rate_of_angular_momentum_in_space(inertia):
-    """d(R I omega)/dt == R tau, with omega' from the equations."""
+    """d(R I omega)/dt = R tau, with omega' from the equations."""
     tau = Matrix(symbols.torque_b)
     acceleration = angular_acceleration(inertia, OMEGA, tau)
     dcm_sb = Matrix(quaternion_to_dcm(Q))
@@ -59,7 +59,7 @@ def test_the_inverse_of_a_tensor():
 
 
 def general(kind):
-    """Every constant of a kind left free."""
+    """Return a torque of a kind in which every constant is a symbol."""
     shapes = {"scalar": FREE, "vector": VECTOR, "scalar or vector": VECTOR, "attitude": (FREE,) * 4}
     fields = [(f.name, shapes[f.shape]) for f in TORQUE_KINDS[kind].fields if f.shape in shapes and f.name != "gravity"]
     return FieldTorque(kind, "", tuple(fields))
@@ -87,7 +87,7 @@ def test_a_wrong_torque_is_not_the_gradient():
 
 
 def test_damping_only_takes_energy():
-    """tau . omega is minus a sum of squares with the coefficients."""
+    """tau . omega is minus the sum of squares with the damping coefficients."""
     law = torque_law(DAMPING, MOTION)
     linear = field_value("linear", VECTOR)
     assert is_zero(law.torque.dot(OMEGA) + sum(c * w**2 for c, w in zip(linear, OMEGA, strict=True)))
@@ -160,7 +160,7 @@ def test_the_rate_of_a_quantity_that_is_not_kept_is_not_zero():
 
 
 def test_planar_motion_is_the_full_motion():
-    """The reduced equations of a physical pendulum solve the full ones."""
+    """A solution of the reduced equations of a physical pendulum satisfies the full equations."""
     level = structure_of(SYMMETRIC, GRAVITY, planar=0, initial_quaternion=(FREE, FREE, ZERO, ZERO))
     reduced, full = equations_of_motion(level), equations_of_motion(structure_of(SYMMETRIC, GRAVITY))
     put_in = dict(zip(Q, reduced.motion.quaternion, strict=True)) | dict(

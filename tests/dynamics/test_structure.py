@@ -1,4 +1,4 @@
-"""The structure of a motion as text: the key under which its kernel is cached."""
+"""The structure of a motion as text, the key under which its kernel is cached."""
 
 import json
 from dataclasses import replace
@@ -74,7 +74,7 @@ def test_numbers_are_not_part_of_the_key_of_a_kernel(name):
 
 @pytest.mark.parametrize("field", ["torque", "weight"])
 def test_a_field_is_a_number_or_a_vector(field):
-    """To ask for the wrong one of both is an error, and no pattern."""
+    """Asking for a number in place of a vector, or the reverse, raises an error."""
     gravity = FieldTorque("gravity", "", (("weight", FREE), ("torque", (FREE, ZERO, ZERO))))
     ask = gravity.number if field == "torque" else gravity.vector
     with pytest.raises(AssertionError):

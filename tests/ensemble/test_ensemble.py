@@ -1,4 +1,4 @@
-"""Many motions at once: each is the motion it would be alone, to the last bit, whatever stands in the other lanes."""
+"""Many motions in one call: each has the bits of its motion alone, whatever the other lanes compute."""
 
 import math
 import os
@@ -65,7 +65,7 @@ def compare(rates, width):
 
 @pytest.mark.parametrize("width", [1, None], ids=["plain C", "vectors"])
 def test_compiled_coefficients_are_those_of_the_recurrences(width):
-    """All functions, some states to a library."""
+    """All functions are tested, a few states per library."""
     formulas = [f for rates in FUNCTION_SYSTEMS.values() for f in rates]
     groups = [formulas[i : i + 14] for i in range(0, len(formulas), 14)]
     for group in groups[:: 2 if width else 1][: None if width is None else 1]:
@@ -82,7 +82,9 @@ def test_compiled_polynomial_systems(name):
 @pytest.mark.parametrize("width", WIDTHS)
 @pytest.mark.parametrize("t", [0.0, 0.7, -1e5, 1e6 / 7, 1e9 / 3, 1e15 / 3])
 def test_phases_of_torques_of_time_are_as_exact_as_the_time(width, t):
-    """sin(k t + 1/3), cos(k t + 1/3), exp(k t 1e-15) at any t: k t is known to 2^-78 of it, not to the 2^-53 of one double."""
+    """sin(k t + 1/3), cos(k t + 1/3), exp(k t 1e-15) at any t: k t has a relative error of 2^-78, not the 2^-53 of a
+    double.
+    """
     rates = {"x": "sin(k*t + 1/3)", "y": "cos(k*t + 1/3)", "z": "exp(1e-15*k*t)", "w": "sin(-k*t)*cos(2*k*t)"}
     k, third = 1.0 / 7, 1.0 / 3
     found = lanes.Lanes(str(small(rates, width=width))).jet(t, [0.0] * 4, [k])[1]
@@ -98,7 +100,7 @@ def test_phases_of_torques_of_time_are_as_exact_as_the_time(width, t):
 
 @pytest.mark.parametrize("width", WIDTHS)
 def test_sine_and_cosine_of_states(width):
-    """Within the range of the vectors' own sine and beyond it, where the C library is asked for single lanes."""
+    """Arguments are inside and outside the range of the vector functions; outside, single lanes call the C library."""
     path = small({"x": "sin(x) + 0*y", "y": "cos(y)"}, width=width)
     for x in [*np.linspace(-20, 20, 41), 1e5, 131072.0, 131073.0, -1e9, 1e300]:
         found = lanes.Lanes(str(path)).jet(0.0, [x, x], [0.0])[1]
@@ -107,7 +109,7 @@ def test_sine_and_cosine_of_states(width):
 
 @pytest.mark.parametrize(("name", "sums", "products"), [("free asymmetric", 7, 15), ("heavy symmetric", 6, 12)])
 def test_products_of_one_weight_share_an_accumulator(name, sums, products):
-    """The rates of a quaternion are sums of products that are weighed once: fifteen products, seven sums."""
+    """The quaternion rates are sums of products with one weight: fifteen products, seven sums."""
     rates = problem(name).kernel.rates
     text = lane_definitions(rates, problem(name).blocks, (0.0, 1.0), 20)
     assert f"a{sums - 1} = V_" in text and f"a{sums} = V_" not in text
@@ -167,7 +169,9 @@ def test_the_number_of_lanes_changes_no_bit():
 
 @pytest.mark.long_motion  # its digits need the fused operations of the flags that ship
 def test_no_turn_is_lost_to_the_rounding_of_a_third():
-    """A steady rotation by 1e5 rad stays in phase with one of 40 digits: a series of the double 1/3 loses 7e-13 rad."""
+    """After a steady rotation by 1e5 rad the phase agrees with 40 digits; a series with the double 1/3 is wrong by
+    7e-13 rad.
+    """
     own = problem("free asymmetric")
     path = library.build(lanes.translation_unit(own.kernel.rates, own.blocks, own.scales, 20), "free")
     rates, stop = np.random.default_rng(1).uniform(0.5, 2, 16), 1e5
@@ -182,7 +186,7 @@ def test_no_turn_is_lost_to_the_rounding_of_a_third():
 
 @pytest.mark.parametrize("power", [-400, -60, 3, 500])
 def test_no_unit_of_time_changes_a_bit(power):
-    """omega 2^k over times 2^-k: the same attitudes, bit by bit."""
+    """omega 2^k and times 2^-k give the same attitudes, bit by bit."""
     own = problem("free asymmetric")
     path = library.build(lanes.translation_unit(own.kernel.rates, own.blocks, own.scales, 14), "free")
     y, p, times = np.array([own.y0] * 3), np.array([own.p] * 3), np.array([-3.0, 0.0, 1.0, 7.0])
@@ -204,7 +208,7 @@ def test_what_does_not_move_and_what_lies_at_the_ends_of_doubles():
 
 
 def test_a_motion_that_breaks_off_leaves_the_others_alone():
-    """x' = x^2 ends at t = 1/x0; its samples before are there, those after are not numbers."""
+    """x' = x^2 ends at t = 1/x0; its samples before that time are right, those after it are NaN."""
     path = small({"x": "x**2", "y": "-x*y"})
     starts = [[-1.0, 1.0], [1.0, 1.0], [-2.0, 1.0], [0.25, 3.0], [math.nan, 1.0], [1e200, 1.0], [-3.0, 1.0]]
     times = [0.0, 0.5, 2.0]
@@ -259,7 +263,7 @@ def test_a_start_that_is_not_zero():
 @pytest.mark.parametrize("name", bench.MOTIONS)
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-8, 1e-12])
 def test_errors_are_those_promised(name, tolerance):
-    """Against the last states in 40 digits: below 5 tolerances, as of a single trajectory."""
+    """Against final states in 40 digits, errors are below 5 tolerances, as for a single trajectory."""
     own = problem(name)
     order = lanes.order_for(tolerance)
     path = library.build(lanes.translation_unit(own.kernel.rates, own.blocks, own.scales, order), "accuracy")
@@ -297,7 +301,7 @@ def states(n, seed=3):
     ids=["free", "free, other bodies", "top", "top, other weights"],
 )  # fmt: skip
 def test_lanes_agree_with_the_closed_forms(content, parameters):
-    """What `auto` solves, stepped: nothing that has a closed form is stepped unless that is asked for."""
+    """Motions that `auto` would compute in closed form are integrated on request, and agree."""
     exact = symrot.propagate_ensemble(scene(content), parameters=parameters, **states(5))
     stepped = symrot.propagate_ensemble(scene(content), parameters=parameters, method="taylor", **states(5))
     assert exact.methods == ("exact",) * 5 and not exact.stats.steps.any()
@@ -318,7 +322,7 @@ def test_lanes_agree_with_the_closed_forms(content, parameters):
     ids=["gravity gradient", "damping", "expression", "spring"],
 )  # fmt: skip
 def test_every_trajectory_is_that_of_its_own_scene(torque, parameters):
-    """Against DOP853 on a scene with the values of the trajectory written into it."""
+    """The reference is DOP853 on a scene that contains the values of the trajectory."""
     start = states(3)
     found = symrot.propagate_ensemble(scene(torque=[torque]), parameters=parameters, **start)
     assert found.methods == ("taylor",) * 3
@@ -342,7 +346,9 @@ def test_only_what_has_no_closed_form_is_stepped():
 
 
 def test_torques_that_are_not_smooth_are_followed_by_dop853():
-    """A root by dop853; a size, whose switches are located, by Taylor series: as each motion would be alone."""
+    """A root is integrated by dop853; an absolute value, whose switches are located, by Taylor series, as in a single
+    motion.
+    """
     for formula, method in (("-sqrt(omega_1**2 + omega_2**2)/10", "dop853"), ("-abs(omega_1)/10", "taylor")):
         made = scene(torque=[{"kind": "expression", "torque": [formula, "0", "0"]}])
         found = symrot.propagate_ensemble(made, **states(2), t=[0, 1.0], tolerance=1e-9)
@@ -399,7 +405,7 @@ def test_the_plan_covers_all_bodies_and_no_more(moments, letters):
 
 
 def test_the_plan_does_not_trust_the_start_of_the_scene():
-    """The scene turns about one axis; the trajectories need not."""
+    """The scene rotates about one axis, but the trajectories need not."""
     flat = scene(initial={"omega": [0, 0, 1]})
     assert read_variation(flat, [[1, 2, 3]], None, None).plan().structure.planar is None
     found = symrot.propagate_ensemble(flat, omega=[[1, 2, 3.0], [0, 0, 1]], method="taylor", t=[1.0])
@@ -476,7 +482,7 @@ def test_a_cached_ensemble_imports_neither_sympy_nor_scipy():
 
 
 def test_no_error_blocks_are_assumed():
-    """A plan without attitude has one block, and the lanes judge it alone."""
+    """A plan without attitude has a single block of states, of which the lanes judge the error."""
     plan = read_variation(scene(output={"quantities": ["omega"]}), None, None, None).plan()
     assert error_blocks(plan) == ([0, 3], [0.0])
     assert "#define SYMROT_BLOCKS 1" in lane_definitions(scene_kernel(plan).rates, *error_blocks(plan), 12)

@@ -1,4 +1,4 @@
-"""Ensembles in closed form: each trajectory has the bits of its motion alone, and all of them take one call."""
+"""Ensembles in closed form: each trajectory has the bits of its motion alone, and one call computes all."""
 
 import gc
 from dataclasses import replace
@@ -46,7 +46,7 @@ FAMILIES = {name: SCENES[name] for name in ("free", "tilted", "top", "turned top
 
 
 def starts(n):
-    """Return angular velocities with all patterns of zeros, and attitudes of all sizes."""
+    """Return angular velocities with all patterns of zeros, and attitudes of all norms."""
     omega = RANDOM.standard_normal((n, 3))
     for k in range(3):
         omega[:, k][np.arange(n) % 8 >> k & 1 == 1] = 0.0
@@ -60,7 +60,7 @@ def starts(n):
 
 
 def alone(given, omega, quaternion, times):
-    """Return angular velocity and attitude of the scene with such a start, propagated by itself."""
+    """Return angular velocity and attitude of the scene with this start, propagated as a single motion."""
     q = given.initial.quaternion if quaternion is None else number.unit(list(map(Fraction, quaternion.tolist())))
     start = Initial(tuple(map(Fraction, omega.tolist())), tuple(q))
     found = propagator(replace(given, initial=start), "exact")(times)
@@ -92,7 +92,7 @@ ATTITUDES = np.array(
 
 
 def outcome(run):
-    """Return what a run returns, or the sentence that it ends in."""
+    """Return the result of ``run``, or the message of its error."""
     try:
         return run()
     except InputError as error:
@@ -102,7 +102,7 @@ def outcome(run):
 @pytest.mark.thinned(4)
 @pytest.mark.parametrize("name", FAMILIES)
 def test_each_trajectory_has_the_bits_of_its_motion_alone(name):
-    """General starts, zeros, tiny numbers, any norm; times on both sides of the start and at it."""
+    """Starts are general, zero or tiny, of any norm; times are before, at and after the start."""
     given, times = FAMILIES[name], np.array([0.0, 0.7, 1e3, -2.5])
     omega, quaternion = starts(41)
     if name == "braked to the last rate":
@@ -115,9 +115,10 @@ def test_each_trajectory_has_the_bits_of_its_motion_alone(name):
 @pytest.mark.thinned(4)
 @pytest.mark.parametrize("name", FAMILIES)
 def test_hostile_starts_have_the_bits_of_their_motions_alone(name):
-    """Rest, resonance, the last rate, the smallest and large numbers, zeros with a sign; far from the start too.
+    """Starts are rest, resonance, extreme rates, very small and large numbers and signed zeros, also at times far from
+    the start.
 
-    What one motion refuses, an ensemble refuses in the same words.
+    What a single motion refuses, an ensemble refuses in the same words.
     """
     given, times = FAMILIES[name], np.array([1e-9, 0.5, 20.0, 1e7, 1e14, -3.0])
     omega, quaternion = HOSTILE, ATTITUDES[np.arange(len(HOSTILE)) % len(ATTITUDES)]
@@ -144,7 +145,7 @@ def test_hostile_starts_have_the_bits_of_their_motions_alone(name):
 
 
 def test_spin_ups_through_resonance_have_the_bits_of_their_motions_alone():
-    """From before it, in it and beyond it, backwards too: any number of motions that need polynomials, side by side."""
+    """Motions start before, in and after resonance, also backward in time; any number of them need polynomials."""
     given = scene([PUSH], inertia=(2, 2, 1))
     random = np.random.default_rng(7)
     omega = random.standard_normal((45, 3)) * [1, 1, 6]
@@ -157,7 +158,7 @@ def test_spin_ups_through_resonance_have_the_bits_of_their_motions_alone():
 
 
 def test_turned_attitudes_are_those_of_one():
-    """Of all norms, with components that cancel in the product."""
+    """Norms are arbitrary, and components cancel in the product."""
     random, frame = np.random.default_rng(5), heavy_top.Frame(1, [Fraction(1), Fraction(-2), Fraction(3)])
     back = np.array([float(x) for x in frame.before]) * [1, -1, -1, -1]
     cases = np.vstack([random.standard_normal((3000, 4)), ATTITUDES, back, back + 1e-9, np.round(back, 3)])
@@ -166,7 +167,7 @@ def test_turned_attitudes_are_those_of_one():
 
 
 def test_times_and_starts_of_each():
-    """A scene that starts at 100 s, times of each trajectory, on one thread and on three."""
+    """The scene starts at 100 s, each trajectory has its own times; one and three threads give equal results."""
     given = scene(inertia=(5, 20, 17), span=(100, 101), attitude=(1, 2, 3, 4))
     omega, times = RANDOM.standard_normal((3000, 3)), 100 + RANDOM.integers(-2, 3, (3000, 3)) / 4
     found = [symrot.propagate_ensemble(given, omega=omega, t=times, workers=workers) for workers in (1, 3)]
@@ -225,7 +226,7 @@ def test_varied_constants_give_the_bits_of_their_own_scenes(case):
 
 @pytest.mark.parametrize("name", [*SCENES, *FAMILIES, *VARIED])
 def test_one_scene_of_a_pattern_speaks_for_all(name):
-    """The form of each trajectory is that of its own scene."""
+    """The closed form of each trajectory is the form of its own scene."""
     from symrot.closed_form.registry import exact_form
 
     given, parameters = VARIED.get(name, (name, None))
@@ -249,7 +250,7 @@ def test_one_scene_of_a_pattern_speaks_for_all(name):
     ],
 )  # fmt: skip
 def test_no_motion_is_made_alone_and_no_axes_are_found_again(name, parameters, monkeypatch):
-    """Calls are counted: principal axes at most once, C for all trajectories once, no motion in Python."""
+    """Counted calls: principal axes at most once, C once for all trajectories, no motion in Python."""
     n, counts = 2000, {"axes": 0, "calls": 0}
     values = {"principal": 1 + RANDOM.random((n, 3)) / 2}
     values["I_xy"] = RANDOM.random(n) / 5
@@ -276,7 +277,7 @@ def test_no_motion_is_made_alone_and_no_axes_are_found_again(name, parameters, m
 
 
 def test_numbers_that_leave_the_doubles_are_refused_as_for_one():
-    """One sentence, wherever the trajectory stands."""
+    """The same single sentence is raised, whichever trajectory it is."""
     omega = RANDOM.standard_normal((5, 3))
     omega[3] = [0, 1e300, 0]
     with pytest.raises(InputError, match="magnitude up to 1e\\+205"):
@@ -287,7 +288,7 @@ def test_numbers_that_leave_the_doubles_are_refused_as_for_one():
 
 
 def test_attitudes_of_many_are_those_of_one():
-    """Pairs of doubles for many, exact numbers for one: the same bits, ties and all."""
+    """Pairs of doubles for many and exact numbers for one give the same bits, also for ties."""
     cases = np.vstack(
         [
             RANDOM.standard_normal((4000, 4)), RANDOM.integers(-3, 4, (500, 4)) + np.array([0.5, 0, 0, 0]),
@@ -300,7 +301,7 @@ def test_attitudes_of_many_are_those_of_one():
 
 
 def test_a_pendulum_beside_its_axis_is_stepped():
-    """What has no closed form is found out once for all starts with the same zeros."""
+    """The lack of a closed form is determined once for all starts with the same zeros."""
     found = symrot.propagate_ensemble(scene([BESIDE], inertia=(1, 2, 3)), omega=RANDOM.standard_normal((9, 3)))
     assert set(found.methods) == {"taylor"}
 
@@ -314,7 +315,7 @@ def test_a_pendulum_beside_its_axis_is_stepped():
     ],
 )  # fmt: skip
 def test_auto_takes_what_was_measured_to_be_faster(name, seconds, methods):
-    """Arrays of closed forms, but for damped bodies; each for itself."""
+    """Closed forms are computed in arrays, except for damped bodies, which are computed one by one."""
     omega = np.random.default_rng(3).uniform(0.5, 3.0, (20, 3))
     found = symrot.propagate_ensemble(SCENES[name], omega=omega, t=[0.0, seconds])
     assert set(found.methods) == methods
@@ -324,7 +325,7 @@ def test_auto_takes_what_was_measured_to_be_faster(name, seconds, methods):
 
 
 def test_auto_takes_closed_forms_made_one_by_one_where_the_body_turns_far():
-    """Principal axes in fractions take a millisecond; with constants that vary a damped body is an array."""
+    """Principal axes in fractions take a millisecond; a damped body with varied constants is computed in arrays."""
     omega = np.random.default_rng(3).uniform(0.5, 3.0, (20, 3))
     tensors = {"I_xy": np.linspace(0.1, 0.2, 20)}
     found = symrot.propagate_ensemble(SCENES["tilted"], omega=omega, t=[0.0, 1.0], parameters=tensors)
@@ -339,7 +340,7 @@ def test_auto_takes_closed_forms_made_one_by_one_where_the_body_turns_far():
 
 
 def test_bodies_whose_tensors_vary_are_checked(monkeypatch):
-    """Doubles settle what is clear, without principal axes; a body that cannot be is refused, wherever it stands."""
+    """Doubles decide clear cases without principal axes; an impossible body is refused, whichever trajectory it is."""
     tensors = np.linspace(0.1, 0.2, 50)
     calls = []
     monkeypatch.setattr(variation, "require_admissible", lambda *given: calls.append(given))
@@ -352,7 +353,7 @@ def test_bodies_whose_tensors_vary_are_checked(monkeypatch):
 
 
 def test_what_a_scene_gives_is_found_once(monkeypatch):
-    """A second ensemble of a scene looks for no form, plans nothing and asks for no compiler; and it keeps no scene."""
+    """A second ensemble of a scene searches no form, makes no plan, asks for no compiler, and keeps no scene."""
     given, omega = scene([GRAVITY]), np.random.default_rng(3).standard_normal((5, 3))
     quaternion = np.random.default_rng(4).standard_normal((5, 4))
     parameters = {"weight": np.linspace(1, 2, 5)}

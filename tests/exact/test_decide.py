@@ -1,6 +1,6 @@
-"""Exact decision: what is true is proven, what is false is shown at a point, what is unknown is said to be unknown.
+"""Exact decisions: true equations are proven, false ones get a counterexample, unknown ones are called undecided.
 
-Oracles: textbook identities, their mutations, and 50-digit evaluation by mpmath of random formulas.
+The oracles are textbook identities, mutations of these, and 50-digit evaluation of random formulas by mpmath.
 """
 
 import subprocess
@@ -150,7 +150,7 @@ def test_a_true_identity_is_proven(name):
 
 
 def mutants(left, right):
-    """Yield false neighbours of a true identity: a sign, a factor, a function, an offset."""
+    """Yield false neighbours of a true identity: a changed sign, factor, function or offset."""
     yield -left, right
     yield 2 * left, right
     yield left, right * cos(z)
@@ -170,7 +170,7 @@ def test_no_mutant_of_a_true_identity_passes(name):
 @pytest.mark.parametrize("column", range(3))
 @pytest.mark.parametrize("row", range(3))
 def test_every_entry_of_a_matrix_identity_counts(row, column):
-    """A fault of the size 1e-30 in one of nine entries is seen, and shown where it is."""
+    """An error of 1e-30 in one of nine entries is detected, and its entry is reported."""
     wrong = DCM * skew(BODY_RATES)
     wrong[row, column] += Rational(1, 10**30) * sin(phi)
     verdict = decide(DCM_RATE, wrong)
@@ -190,7 +190,7 @@ def test_every_entry_of_a_matrix_identity_counts(row, column):
     ],
 )
 def test_a_rational_counterexample_is_checked_by_substitution(left, right, relations):
-    """Both sides take the values reported, and the hypotheses hold there."""
+    """Both sides have the reported values at the point, and the hypotheses hold there."""
     verdict = decide(left, right, relations)
     witness = verdict.counterexample
     assert (
@@ -209,7 +209,7 @@ def test_a_rational_counterexample_is_checked_by_substitution(left, right, relat
 
 
 def test_a_counterexample_obeys_the_assumptions():
-    """A moment of inertia is positive, also where formulas differ."""
+    """A moment of inertia is positive in the counterexample too."""
     verdict = decide(A**2, A * B)
     values = dict(verdict.counterexample.point)
     assert values[A] > 0 and values[B] > 0
@@ -280,7 +280,7 @@ def test_contradictory_hypotheses_prove_nothing():
 
 
 def test_hypotheses_that_overlap_are_completed():
-    """q . q = 1 and q0 = q1 = q2: then q3^2 = 1 - 3 q0^2."""
+    """q . q = 1 and q0 = q1 = q2 give q3^2 = 1 - 3 q0^2."""
     relations = [UNIT_QUATERNION, q0 - q1, q1 - q2]
     assert is_zero(q3**2 - 1 + 3 * q1**2, relations)
     assert not is_zero(q3**2 - 1 + 2 * q1**2, relations)
@@ -288,7 +288,7 @@ def test_hypotheses_that_overlap_are_completed():
 
 
 def test_rotation_about_a_vector_is_the_exponential():
-    """R^T dR = skew(J dv) with the right Jacobian J, where |v| stands inside and outside the sine."""
+    """R^T dR = skew(J dv) with the right Jacobian J, where |v| occurs inside and outside the sine."""
     v, dv = Matrix(rotation_vector), Matrix(symbols("a1:4", real=True))
     angle = sqrt(v.dot(v))
     dcm = eye(3) + sin(angle) / angle * skew(v) + (1 - cos(angle)) / angle**2 * skew(v) ** 2
@@ -333,7 +333,7 @@ RATIONALS = [Fraction(text) for text in POINT.values()]
 
 
 def at_a_generic_point(formula):
-    """Return the value to 50 digits, by mpmath."""
+    """Return the value at a generic point to 50 digits, by mpmath."""
     with mp.workdps(50):
         return lambdify(list(POINT), formula, "mpmath")(*(mp.mpf(f.numerator) / f.denominator for f in RATIONALS))
 
@@ -356,7 +356,7 @@ def test_a_formula_equals_itself_rewritten(formula):
 @settings(max_examples=40, deadline=None)
 @given(formulas, formulas)
 def test_zero_is_never_said_of_what_50_digits_see(left, right):
-    """normal_form is 0 if and only if the value at a generic point is; generic points lie on no identity's locus."""
+    """The normal form is 0 if and only if the value at a generic point, which no identity singles out, is 0."""
     difference = left - rewritten(right)
     try:
         assert is_zero(difference) == (abs(at_a_generic_point(difference)) < 1e-40)

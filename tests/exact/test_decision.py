@@ -1,4 +1,4 @@
-"""The engine that decides equations by stages, and what it refuses."""
+"""The engine that decides equations in stages, and what it refuses."""
 
 import pytest
 from sympy import Matrix, Rational, Symbol, symbols
@@ -48,7 +48,7 @@ def test_claims_share_the_stages_of_formulas():
 
 
 def test_a_point_that_breaks_a_hypothesis_is_no_counterexample():
-    """Whatever a search returns: under x = y, the point x = 1, y = 2 refutes nothing."""
+    """Under x = y, the point x = 1, y = 2 refutes nothing, whatever a search returns."""
     wrong = Counterexample(((x, Rational(1)), (y, Rational(2))), None, 1, 2)
     right = Counterexample(((x, Rational(3)), (y, Rational(3))), None, 9, 3)
     case = case_of(x**2, y, [x - y])
@@ -75,7 +75,7 @@ def test_a_counterexample_reads_as_text():
 
 
 def test_the_formulas_of_a_claim_are_computed_once(monkeypatch):
-    """Decision, diagnosis, repairs and recognition read the same values."""
+    """Decision, diagnosis, repairs and recognition use the same values."""
     trees = []
     read = Interpreter.read
 

@@ -1,4 +1,4 @@
-"""A true formula one side of which is defined in fewer places than the other says so beside its verdict."""
+"""For a true formula of which one side is defined at fewer points than the other, the verdict says so."""
 
 import pytest
 

@@ -1,7 +1,7 @@
-"""Inverse trigonometric functions, exponentials, logarithms, dependent roots and constants: branches above all.
+"""Inverse trigonometric functions, exponentials, logarithms, dependent roots and constants, above all their branches.
 
-Oracle: values to 60 digits by mpmath, evaluated here node by node; where a function has no real value, neither has the
-formula. A claim is "true" only if no point contradicts it, and "false" only with a point at which the sides differ.
+The oracle is values to 60 digits by mpmath, computed here node by node; if a function has no real value, neither has
+the formula. A claim is "true" only if no point contradicts it, and "false" only with a point at which the sides differ.
 """
 
 from fractions import Fraction
@@ -152,7 +152,7 @@ def test_an_assumption_chooses_the_branch():
 
 
 def test_on_the_cut_of_atan2_nothing_is_claimed():
-    """Half an atan2 is the atan2 of a half angle, except on the negative axis, which the conditions leave out."""
+    """Half an atan2 is the atan2 of the half angle, except on the negative axis, which the conditions exclude."""
     verdict = symrot.check("atan2(y, x) == 2*atan2(y, x + sqrt(x**2 + y**2))")
     assert verdict.verdict == "true"
     assert any("sqrt(x**2 + y**2)" in condition and "!= 0" in condition for condition in verdict.conditions)
@@ -179,7 +179,7 @@ def test_proven_equal_functions_are_equal_inside_others():
 
 @pytest.mark.parametrize("prime", [5, 7, 11, 13, 17])
 def test_sums_of_gauss(prime):
-    """Sum of the Legendre symbol times the prime-th roots of unity is sqrt(p) or i sqrt(p) (Gauss, 1805)."""
+    """The sum of the Legendre symbol times the p-th roots of unity is sqrt(p) or i sqrt(p) (Gauss, 1805)."""
     residues = {n * n % prime for n in range(1, prime)}
     trigonometric = cos if prime % 4 == 1 else sin
     signs = ((n, 1 if n in residues else -1) for n in range(1, prime))
@@ -201,7 +201,7 @@ def test_minimal_polynomials_vanish_at_their_number(n):
 
 
 def test_nearly_equal_numbers_are_told_apart():
-    """A nested root against its 40 first digits; two sums of roots that agree to 17 digits."""
+    """Examples are a nested root and its first 40 digits, and two sums of roots that agree to 17 digits."""
     with mp.workdps(60):
         digits = int(mp.floor(mp.sqrt(2 + mp.sqrt(3)) * mp.mpf(10) ** 40))
     assert not is_zero(sqrt(2 + sqrt(3)) - Rational(digits, 10**40))
@@ -213,7 +213,7 @@ def test_nearly_equal_numbers_are_told_apart():
 
 
 class Undefined(ArithmeticError):
-    """No real value."""
+    """Raised if a formula has no real value."""
 
 
 def value(formula, point):

@@ -1,4 +1,4 @@
-"""Files of others: a pipe, device, folder, socket or endless file in the place of any input is refused in a sentence."""
+"""A pipe, device, folder, socket or endless file in place of any input file is refused in one sentence."""
 
 import json
 import os
@@ -23,7 +23,7 @@ KERNEL = "euler_zyx_dcm"
 
 @pytest.fixture(autouse=True)
 def no_endless_wait():
-    """Raise TimeoutError in a test whose read blocks, instead of waiting for ever."""
+    """Raise TimeoutError in a test whose read blocks, so that the test does not wait for ever."""
 
     def stop(*_):
         raise TimeoutError("blocked")
@@ -64,7 +64,7 @@ SPECIAL = {
 
 @pytest.fixture(params=SPECIAL)
 def special(request, tmp_path):
-    """Return a function that puts a special file at a path, and what is said of it."""
+    """Return a function that creates a special file at a path, and the words that the message must contain."""
     make, said = SPECIAL[request.param]
     return make, said
 
@@ -144,7 +144,7 @@ def test_an_object_that_is_special_is_refused(special, tmp_path, capsys):
 
 
 def test_emitted_files_take_the_place_of_special_ones(tmp_path, capsys):
-    """What an earlier certificate kept is looked for in the folder that is written."""
+    """The earlier certificate is read from the folder into which files are written."""
     os.mkfifo(tmp_path / f"{KERNEL}.cert.json")
     assert cli.main(["emit", KERNEL, "--target", "c", "-o", str(tmp_path)]) == 0
     assert json.loads((tmp_path / f"{KERNEL}.cert.json").read_text())["kernel"] == KERNEL
@@ -171,7 +171,7 @@ def scene_with_table(folder, file):
 
 @pytest.fixture
 def folders(tmp_path):
-    """Return the folder of a scene, and one beside it that holds a table and a secret."""
+    """Return the folder of a scene, and a folder next to it with a table and a secret."""
     here, elsewhere = tmp_path / "here", tmp_path / "elsewhere"
     for folder in (here, here / "below", elsewhere):
         folder.mkdir()

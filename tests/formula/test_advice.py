@@ -1,4 +1,4 @@
-"""Formulas in the words of other languages are refused with what to write instead, and what is advised can be read."""
+"""Formulas in the notation of other languages are refused with what to write instead, and that can be parsed."""
 
 import re
 
@@ -58,7 +58,7 @@ def test_no_word_that_formulas_know_is_among_the_foreign_ones():
 
 
 def test_a_formula_that_knows_no_jumps_is_not_advised_to_use_them():
-    """Events are found as zeros of smooth formulas."""
+    """Events are zeros of smooth formulas."""
     with pytest.raises(InputError, match="allowed only in formulas of torques"):
         symrot.propagate("t_handle", events=["sign(omega_3)"])
     with pytest.raises(InputError) as caught:
@@ -88,7 +88,7 @@ def test_other_limits_of_a_clip_are_not(formula):
 
 @needs_compiler
 def test_a_clip_of_formulas_that_cross_takes_the_lower_limit():
-    """As docs/scene_format.md says: max(low, min(u, high))."""
+    """As docs/scene_format.md says, clip is max(low, min(u, high))."""
     scene = read("clip(t/10, 1 - t, t - 1)")
     omega = symrot.propagate(scene).omega[-1, 2]  # before t = 1 the limits have crossed: the torque is 1 - t
     assert omega == pytest.approx(1 + (1 / 2) / 3, rel=1e-11)

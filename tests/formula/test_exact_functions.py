@@ -1,4 +1,4 @@
-"""Functions on exact numbers: identities that hold to 90 digits, domains, and sizes beyond all doubles."""
+"""Functions on exact numbers: identities hold to 90 digits, in their domains, also for sizes beyond all doubles."""
 
 import math
 from fractions import Fraction as F

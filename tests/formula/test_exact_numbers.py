@@ -1,4 +1,4 @@
-"""Numbers of a scene: exact where rational, right to 2^-250 elsewhere (oracle: mpmath at 2500 bits)."""
+"""Numbers of a scene: exact if rational, otherwise correct to 2^-250 (compared with mpmath at 2500 bits)."""
 
 from decimal import Decimal
 from fractions import Fraction

@@ -1,4 +1,4 @@
-"""Exact polynomials against SymPy, and what they must refuse."""
+"""Exact polynomials, compared with SymPy, and what they must refuse."""
 
 from fractions import Fraction as F
 
@@ -22,7 +22,7 @@ x, y, z = map(generator, "xyz")
 
 
 def test_square_roots_of_squares():
-    """Root of p^2 is p, up to the sign that makes the lowest term positive; exact fractions."""
+    """The root of p^2 is p with the sign that makes the lowest term positive; coefficients are exact fractions."""
     for p in (x + 1, F(2, 3) * x**2 * y + z - y, 1 - x, 3 * x * y, constant(F(4, 9)) + x**3):
         root = square_root(p * p)
         assert root in (p, -p)
@@ -31,13 +31,13 @@ def test_square_roots_of_squares():
 
 @pytest.mark.parametrize("p", [x, x * x + 1, x * x + y * y, constant(2), constant(-1), x * x + 2 * x * y - y * y])
 def test_what_is_no_square_is_refused(p):
-    """ValueError, and no endless series."""
+    """ValueError is raised, without an endless series."""
     with pytest.raises(ValueError, match="expected the square"):
         square_root(p)
 
 
 def test_exact_quotients():
-    """(p q)/p = q; None when it does not divide; division by expected a number as the divisor in the operator."""
+    """(p q)/p = q; None if p does not divide; the operator / accepts only a number as divisor."""
     p, q = x * y - z + F(1, 2), x**2 + y * z * 3 - 7
     assert exact_quotient(p * q, p) == q
     assert exact_quotient(p * q + 1, p) is None
@@ -49,7 +49,7 @@ def test_exact_quotients():
 
 
 def test_derivatives_of_angles():
-    """d/dtheta of s cos^2 sin, reduced, as SymPy has it."""
+    """d/dtheta of s cos^2 sin, reduced, equals SymPy's result."""
     theta, s = sympy.symbols("theta s")
     source = generator("s") * cosine("theta") ** 2 * sine("theta")
     found = reduce_circular(source.derivative("theta"), ["theta"])
@@ -62,7 +62,7 @@ def test_derivatives_of_angles():
 
 
 def test_polynomials_compare_and_show_themselves():
-    """Equality is of terms; zero has none."""
+    """Polynomials with equal terms are equal; zero has no terms."""
     assert x - x == constant(0) and not (x - x)
     assert x + y == y + x and hash(x + y) == hash(y + x)
     assert x != 1 and "x" in repr(x)
@@ -72,7 +72,7 @@ def test_polynomials_compare_and_show_themselves():
 
 
 def test_generators_are_names_or_numbers():
-    """Numbers sort as numbers: 2 before 10."""
+    """Numbers are sorted as numbers: 2 before 10."""
     a, b = generator(10), generator(2)
     assert (a * b * 3).terms == {((2, 1), (10, 1)): F(3)}
     assert (a + b) ** 2 == a * a + 2 * a * b + b * b

@@ -1,4 +1,4 @@
-"""Squares under roots: sqrt(u^2 v) = abs(u) sqrt(v), whatever the square looks like."""
+"""Squares under roots: sqrt(u^2 v) = abs(u) sqrt(v), however the square is written."""
 
 from math import isclose, sqrt
 from random import Random

@@ -1,4 +1,6 @@
-"""Torques that jump or bend: the smooth formula is the formula, switches are exact, the motion slides where it must."""
+"""Torques with jumps or kinks: the smooth formula of each state is exact, switches are located exactly, and the motion
+slides where it must.
+"""
 
 import math
 
@@ -37,7 +39,7 @@ FORMULAS = [
 
 @pytest.mark.parametrize("formula", FORMULAS)
 def test_the_smooth_formula_with_the_modes_of_a_state_is_the_formula(formula):
-    """At 300 random states, the modes being signs and whole parts of the guards there."""
+    """At 300 random states, with the signs and integer parts of the guards as modes."""
     form = smooth((formula,))
     names = ["t", "omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3"]
     for _ in range(300):
@@ -92,7 +94,7 @@ def scene(torque, omega=(0, 0, 0), stop=10.0, principal=(1, 2, 3), more=(), **pa
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])
 def test_friction_sticks_until_the_drive_breaks_it_loose(method, tolerance):
-    """C omega' = a sin t - k while it slips, from sin t = k/a on; until then the body is exactly at rest."""
+    """While it slips, C omega' = a sin t - k, from sin t = k/a on; before that the body is exactly at rest."""
     a, k = 2.0, 1.0
     loose, times = math.asin(k / a), np.linspace(0, 1.5, 16)
     motion = symrot.propagator(scene("a*sin(t) - k*sign(omega_3)", stop=1.5, a=a, k=k), method, tolerance)(times)
@@ -106,7 +108,7 @@ def test_friction_sticks_until_the_drive_breaks_it_loose(method, tolerance):
 @needs_compiler
 @pytest.mark.parametrize("method", METHODS)
 def test_friction_about_three_axes_stops_each_in_its_time(method):
-    """A spherical body: I omega_i' = -k_i sign(omega_i), each at rest from omega_i I/k_i on."""
+    """In a spherical body, I omega_i' = -k_i sign(omega_i), each component is at rest from omega_i I/k_i on."""
     torque = ["-sign(omega_1)", "-2*sign(omega_2)", "-3*sign(omega_3)"]
     times = np.linspace(0, 3, 13)
     motion = symrot.propagator(scene(torque, (1, -1, 2), principal=(1, 1, 1)), method, 1e-10)(times)
@@ -117,7 +119,7 @@ def test_friction_about_three_axes_stops_each_in_its_time(method):
 
 @needs_compiler
 def test_friction_holds_a_tumbling_body_together():
-    """Energy falls by the work of friction alone, on a body without symmetry: dE/dt = -k sum |omega_i|."""
+    """Energy decreases by the work of friction alone, in a body without symmetry: dE/dt = -k sum |omega_i|."""
     torque = ["-k*sign(omega_1)", "-k*sign(omega_2)", "-k*sign(omega_3)"]
     made = symrot.propagator(scene(torque, (0.3, 1, 0.5), k=0.05), "taylor", 1e-11)
     times = np.linspace(0, 10, 20001)
@@ -131,7 +133,7 @@ def test_friction_holds_a_tumbling_body_together():
 @needs_compiler
 @pytest.mark.parametrize("method", METHODS)
 def test_a_relay_slides_along_its_line(method):
-    """-sign(angle + omega): on the line omega = -angle, so that both decay as exp(-t), for as long as |omega| < 1/C."""
+    """Under -sign(angle + omega), omega = -angle on the line, so both decay as exp(-t) while |omega| < 1/C."""
     motion = symrot.propagator(scene("-sign(2*atan2(q3, q0) + omega_3)", (0, 0, 1)), method, 1e-10)
     times = np.linspace(0, 10, 21)
     omega = motion(times).omega[:, 2]
@@ -146,7 +148,7 @@ def test_a_relay_slides_along_its_line(method):
 @needs_compiler
 @pytest.mark.parametrize("method", METHODS)
 def test_bang_bang_control_swings_in_parabolas(method):
-    """-sign(angle) from rest at rate 1: a period of 4 C omega/k, in arcs of constant torque."""
+    """Under -sign(angle), a start at angle 0 with rate 1 gives the period 4 C omega/k, in arcs of constant torque."""
     times = np.linspace(0, 24, 49)
     omega = symrot.propagator(scene("-sign(2*atan2(q3, q0))", (0, 0, 1), 24.0), method, 1e-10)(times).omega[:, 2]
     phase = np.mod(times, 12.0)
@@ -156,7 +158,7 @@ def test_bang_bang_control_swings_in_parabolas(method):
 
 @needs_compiler
 def test_endless_switching_ends_in_a_sentence_with_its_time():
-    """A body that falls back with half its speed each time: infinitely many switches before t = 12.93 s."""
+    """The body returns with half its speed each time, with infinitely many switches before t = 12.93 s."""
     made = symrot.propagator(scene("-sign(2*atan2(q3, q0)) - 0.5*sign(omega_3)", (0, 0, 1), 40.0), "taylor", 1e-10)
     with pytest.raises(PropagationError, match=r"beyond t = 12\.928.*(slide|endlessly)") as caught:
         made(np.linspace(0, 40, 401))
@@ -174,7 +176,7 @@ def test_backward_through_a_switch_and_not_through_rest():
 
 @needs_compiler
 def test_a_start_between_two_futures_is_refused():
-    """sign(omega_3) drives a resting body either way."""
+    """sign(omega_3) drives a resting body in either direction."""
     with pytest.raises(PropagationError, match=r"t = 0\.0 .*more than one future"):
         symrot.propagator(scene("sign(omega_3)"), "taylor", 1e-10)([1.0])
     assert symrot.propagator(scene("sign(omega_3)", (0, 0, 1e-9)), "taylor")([3.0]).omega[0, 2] == pytest.approx(1.0)
@@ -205,7 +207,7 @@ def test_an_ensemble_is_its_motions():
 
 @needs_compiler
 def test_parameters_of_any_name_stand_in_guards():
-    """Kernels call their own constants p0, p1, ..: not those of the scene."""
+    """Kernels name their own constants p0, p1 and so on, which may be names in the scene."""
     for name in ("p0", "p1", "p2", "x0"):
         motion = symrot.propagator(scene(f"floor(t/{name}) - 2*floor(t/(2*{name}))", stop=2.0, **{name: 0.25}))
         assert motion([2.0]).omega[0, 2] == pytest.approx(1 / 3, abs=1e-10), name
@@ -223,7 +225,9 @@ def test_parameters_of_any_name_stand_in_guards():
     ],
 )  # fmt: skip
 def test_guards_that_stay_at_zero_have_the_value_at_zero(method, torque, expected):
-    """About axis 3, q1 and q2 are zero all along; a maximum is zero for a part of the span. Impulse after 3 s."""
+    """In rotation about axis 3, q1 and q2 stay zero; a maximum is zero for a part of the span. The impulse after 3 s is
+    tested.
+    """
     motion = symrot.propagator(scene(torque, (0, 0, 0.1), 3.0), method, 1e-10)([3.0])
     assert motion.omega[0, 2] == pytest.approx(0.1 + expected / 3, abs=1e-9)
 
@@ -242,14 +246,16 @@ def test_guards_that_stay_at_zero_have_the_value_at_zero(method, torque, expecte
     ],
 )  # fmt: skip
 def test_guards_of_steps_jump_as_they_are_written(method, torque, stop, impulse):
-    """Guards that are whole numbers, or zero for a while: the value of the formula there, not that beside it."""
+    """If a guard is an integer, or zero for a while, the torque has the formula's value there, not a neighbouring
+    value.
+    """
     motion = symrot.propagator(scene(torque, stop=float(stop)), method, 1e-10)([float(stop)])
     assert motion.omega[0, 2] == pytest.approx(impulse / 3, abs=1e-9)
 
 
 @needs_compiler
 def test_friction_above_a_speed_ends_there():
-    """-sign(max(omega_3 - 1, 0)) slows the body to 1 rad/s and lets it be."""
+    """-sign(max(omega_3 - 1, 0)) slows the body to 1 rad/s and then has no effect."""
     motion = symrot.propagator(scene("-sign(max(omega_3 - 1, 0))", (0, 0, 2), 10.0), "taylor", 1e-10)([1.5, 3, 10])
     assert motion.omega[:, 2] == pytest.approx([1.5, 1.0, 1.0], abs=1e-9)
 
@@ -275,7 +281,7 @@ def test_who_cannot_follow_switches_says_so(use):
 
 @needs_compiler
 def test_products_of_inertia_slide_too():
-    """The guard omega_1 + omega_2 stays at zero under friction along it, whatever the axes: full tensor."""
+    """Friction along omega_1 + omega_2 keeps this guard at zero, also with a full tensor."""
     content = {
         "schema": 1, "body": {"inertia": {"xx": 2, "yy": 3, "zz": 4, "xy": 0.3, "xz": 0.1, "yz": -0.2}},
         "initial": {"omega": [0.2, 0.1, 0.4]}, "span": {"t": [0, 5]},
@@ -290,7 +296,7 @@ def test_products_of_inertia_slide_too():
 @needs_compiler
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
 def test_the_event_at_which_friction_stops_a_wheel_is_reported(method):
-    """omega_3 falls to zero at 15 s and stays there."""
+    """omega_3 falls to zero at 15 s and stays zero."""
     motion = symrot.propagator(scene("-sign(omega_3)", (0, 0, 5), 40.0), method)(events=["omega_3"])
     assert motion.t_events[0] == pytest.approx([15.0], abs=1e-9) and motion.event_kinds[0] == ["falling"]
 
@@ -313,7 +319,7 @@ def test_a_guard_without_a_value_ends_in_a_sentence():
     ],
 )  # fmt: skip
 def test_switches_in_switches_switch_together(torque, omega, method):
-    """A guard that jumps onto zero and off again, as mod at its jumps, and guards that never change, zero or not."""
+    """Guards jump to zero and away again, as mod does, or never change, at zero or elsewhere."""
     made = symrot.propagator(
         scene(torque, stop=4.0, principal=(1, 1, 1), **({"k": 2} if "k" in torque else {})), method
     )
@@ -341,7 +347,7 @@ FRICTIONS = {  # torque -> omega_3 from 1 rad/s, for a moment of inertia of 1
 @pytest.mark.parametrize("method", [*METHODS, "scipy:Radau", "scipy:BDF", "scipy:LSODA"])
 @pytest.mark.parametrize("torque", FRICTIONS)
 def test_friction_of_several_parts_stops_and_holds_the_body(torque, method):
-    """Their guards are the same: they switch together, and one of them holds the body for all."""
+    """The parts have equal guards, so they switch together, and one of them holds the body for all."""
     times = np.linspace(0, 3, 31)
     omega = symrot.propagator(scene(torque, (0, 0, 1), 3.0, (1, 1, 1)), method, 1e-9)(times).omega[:, 2]
     assert abs(omega - FRICTIONS[torque](times)).max() < 20e-9

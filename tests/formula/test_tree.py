@@ -1,4 +1,4 @@
-"""Formulas as text: what is read is what was written, and nothing else is read."""
+"""Formulas as text: parsing returns what was written, and refuses everything else."""
 
 from fractions import Fraction
 
@@ -27,7 +27,7 @@ TREES = st.recursive(
 @example(("neg", ("**", ("**", ("number", Fraction(0)), 0), 0)))
 @given(TREES)
 def test_printing_and_reading_are_inverse(tree):
-    """Brackets are neither lost nor needless: the order of evaluation survives."""
+    """No bracket is lost or unnecessary, so the order of evaluation stays the same."""
     assert parse(text(tree)) == tree
 
 

@@ -1,4 +1,4 @@
-"""Only the part of a ``where`` that holds is evaluated and enclosed; what the other part would do does not matter."""
+"""Only the branch of a ``where`` whose condition holds is evaluated and enclosed; the other branch has no effect."""
 
 import math
 
@@ -25,7 +25,7 @@ def scene(torque, omega=0, stop=2.0):
 
 
 def root(u):
-    """The integral of sqrt from 0."""
+    """Return the integral of sqrt from 0."""
     return 2 / 3 * np.maximum(u, 0) ** 1.5
 
 
@@ -72,7 +72,7 @@ def test_no_hop_passes_over_a_pole(method, torque):
 
 @needs_compiler
 def test_an_event_inside_a_hop_is_found():
-    """At the switch itself, to whose last bits the steps before it do not come."""
+    """The event is at the switch itself, to whose last bits the steps before do not extend."""
     trajectory = symrot.propagate(scene("where(t < 1, sqrt(1 - t), 0)"), method="taylor", events=["t - 1"])
     assert trajectory.t_events[0].tolist() == pytest.approx([1.0], abs=1e-15)
 
@@ -95,7 +95,7 @@ REFERENCE = {"sqrt": math.sqrt, "log": math.log, "exp": math.exp, "abs": abs, "s
 
 
 def value(node, values):
-    """The value of a formula by Python's own functions; of ``where``, only the part that holds."""
+    """Return the value of a formula by Python's functions; of ``where``, only the branch whose condition holds."""
     if node[:2] == ("call", "where"):
         return value(node[2][1 if value(node[2][0], values) else 2], values)
     if node[0] == "call":
@@ -108,7 +108,7 @@ def value(node, values):
 
 @pytest.mark.parametrize("formula", PARTS)
 def test_the_chosen_formula_is_the_formula_where_it_has_a_value(formula):
-    """At 200 random places; guards in the other part are left alone, whatever their modes are."""
+    """At 200 random points; guards in the other branch are ignored, whatever their modes are."""
     form, random = smooth((formula,)), np.random.default_rng(3)
     assert any(map(has_choices, (*form.formulas, *(switch.guard for switch in form.switches))))
     for _ in range(200):

@@ -1,4 +1,6 @@
-"""Bodies of several parts: additivity, holes, rotations, parallel axes; every refusal in one sentence."""
+"""Composite bodies: parts add up, holes are subtracted, parts are rotated and moved; each bad part is refused in one
+sentence.
+"""
 
 from fractions import Fraction as F
 
@@ -20,7 +22,7 @@ HALF_ABOUT_X = ((1, 0, 0), (0, -1, 0), (0, 0, -1))
 
 
 def turn(angle, axis):
-    """Rotation about a coordinate axis by an angle whose cosine and sine are irrational."""
+    """Return the rotation about a coordinate axis by an angle whose cosine and sine are irrational."""
     c, s = number.cos(F(angle)), number.sin(F(angle))
     rows = [[c, -s, 0], [s, c, 0], [0, 0, 1]]
     order = [(axis - 2 + k) % 3 for k in range(3)]
@@ -29,20 +31,20 @@ def turn(angle, axis):
 
 
 def agree(one, other):
-    """Equal to 2^-250 of the largest entry, for numbers that hold pi."""
+    """Return whether all entries agree within 2^-250 of the largest one; the numbers may contain pi."""
     flat = [[body.mass, *body.center_of_mass, *sum(body.inertia, ())] for body in (one, other)]
     scale = max(map(abs, flat[0]))
     return all(abs(a - b) * 2**250 <= scale for a, b in zip(*flat, strict=True))
 
 
 def test_two_halves_make_a_box():
-    """Additivity, exactly."""
+    """The inertia of the halves adds up to the inertia of the box, exactly."""
     halves = [Part("box", {"a": 2, "b": 1, "c": 3}, density="7/3", at=(x, 0, 0)) for x in (-1, 1)]
     assert mass_properties(halves) == mass_properties([Part("box", {"a": 4, "b": 1, "c": 3}, density="7/3")])
 
 
 def test_two_hemispheres_make_a_sphere():
-    """A half turn about x brings the other half; the parallel axis theorem brings both to one centre."""
+    """A half turn about x makes the lower hemisphere; the parallel axis theorem refers both to one centre."""
     half = Part("hemisphere", {"radius": "1/2"}, density=2)
     whole = mass_properties([Part("sphere", {"radius": "1/2"}, density=2)])
     assert agree(mass_properties([half, half._replace(rotation=HALF_ABOUT_X)]), whole)
@@ -70,12 +72,12 @@ def test_two_hemispheres_make_a_sphere():
     ids=lambda part: part.shape,
 )
 def test_a_hole_is_subtracted(solid_part, hole, rest):
-    """Solid less hole is the hollow solid of the table."""
+    """A solid sphere without its inner sphere has the inertia of the hollow sphere."""
     assert agree(mass_properties([solid_part, hole]), mass_properties([rest]))
 
 
 def test_triangles_make_a_rectangle_and_a_prism_a_box():
-    """Two halves along the diagonal; products of inertia cancel."""
+    """Two halves along the diagonal make the body, and their products of inertia cancel."""
     dimensions = {"base": 4, "height": 3, "apex": 0}
     lower = Part("triangular_plate", dimensions, density=1)
     upper = lower._replace(at=(4, 3, 0), rotation=((-1, 0, 0), (0, -1, 0), (0, 0, 1)))
@@ -87,7 +89,7 @@ def test_triangles_make_a_rectangle_and_a_prism_a_box():
 
 
 def test_six_tetrahedra_fill_a_cube():
-    """The Kuhn triangulation: one tetrahedron per order of the axes, in both orientations."""
+    """The Kuhn triangulation has one tetrahedron for each order of the axes; three are right-handed, three left-handed."""
     from itertools import permutations
 
     def path(order):
@@ -107,7 +109,7 @@ def test_six_tetrahedra_fill_a_cube():
 
 
 def test_rotations_compose_and_keep_the_moments():
-    """R2 (R1 body) = (R2 R1) body; principal moments do not notice."""
+    """R2 (R1 body) = (R2 R1) body, and rotations leave the principal moments unchanged."""
     body = mass_properties([Part("box", {"a": 1, "b": 2, "c": 3}, mass=12)])
     first, second = turn(1, 2), turn(F(2, 7), 0)
     twice = place(place(body, rotation=first), rotation=second)
@@ -117,7 +119,7 @@ def test_rotations_compose_and_keep_the_moments():
 
 
 def test_equal_moments_survive_pi_and_irrational_rotations():
-    """A cylinder of given density, turned by one radian, is still a symmetric body; a ball is still spherical."""
+    """A cylinder of given density, turned by one radian, is still symmetric; a ball is still spherical."""
     rotation = tensor.multiply(turn(1, 2), turn(2, 0))
     drum = mass_properties([Part("cylinder", {"radius": "1/3", "length": 2}, density=7, rotation=rotation)])
     ball = mass_properties([Part("sphere", {"radius": "1/3"}, density=7, rotation=rotation, at=(1, 2, 3))])
@@ -126,13 +128,13 @@ def test_equal_moments_survive_pi_and_irrational_rotations():
 
 
 def test_a_very_small_body_is_a_body():
-    """Moments near the smallest double: the residue of an irrational rotation is below it, and is no error."""
+    """Where moments are near the smallest double, the rounding error of an irrational rotation is no fault."""
     grain = Part("cylinder", {"radius": "1e-100", "length": "3e-100"}, mass="1e-100", rotation=turn(1, 0))
     assert principal_axes(mass_properties([grain]).inertia).kind == "symmetric"
 
 
 def test_a_cross_of_equal_rods_is_symmetric_about_its_normal():
-    """Four parts with density and rotation: equal moments exactly equal."""
+    """Four parts with densities and rotations have exactly equal moments."""
     bar = Part("cylinder", {"radius": "1/10", "length": 1}, density=7800)
     cross = mass_properties([bar._replace(rotation=QUARTER_ABOUT_X), bar])
     body = principal_axes(cross.inertia)
@@ -140,7 +142,7 @@ def test_a_cross_of_equal_rods_is_symmetric_about_its_normal():
 
 
 def test_symbolic_bodies_use_the_same_code():
-    """Cone on a hemisphere, symbolic; parallel axis and change of axes on SymPy matrices."""
+    """A cone on a hemisphere with symbols: parallel axes and a change of axes act on SymPy matrices too."""
     R, h, rho = symbols.R, symbols.h, symbols.rho
     top, bottom = solid("cone", density=rho), place(solid("hemisphere", density=rho), rotation=Matrix(HALF_ABOUT_X))
     body = compose([top, bottom])
@@ -157,7 +159,7 @@ def test_symbolic_bodies_use_the_same_code():
 
 
 def test_parallel_axes_and_rotation_of_a_symbolic_tensor():
-    """Against the definition, the integral of a rod's second moments, and against R I R^T by SymPy."""
+    """Both agree with SymPy: with the integral of a rod's second moments, and with R I R^T."""
     m, L, angle = symbols.m, symbols.L, symbols.alpha
     rod = solid("rod")
     assert rod.inertia_about((0, 0, L / 2))[0, 0] == m * L**2 / 3
@@ -174,7 +176,7 @@ def test_parallel_axes_and_rotation_of_a_symbolic_tensor():
 
 
 def test_inertia_about_a_fixed_point_of_a_composite():
-    """Huygens-Steiner for numbers, with products."""
+    """The Huygens-Steiner theorem holds for numbers, products of inertia included."""
     body = mass_properties([Part("box", {"a": 1, "b": 2, "c": 3}, mass=12, at=(1, 2, 3))])
     assert body.inertia_about((0, 0, 0)) == tensor.add(
         ((13, 0, 0), (0, 10, 0), (0, 0, 5)), ((156, -24, -36), (-24, 120, -72), (-36, -72, 60))
@@ -182,7 +184,7 @@ def test_inertia_about_a_fixed_point_of_a_composite():
 
 
 def test_tensor_operations_agree_with_sympy():
-    """Product, determinant, cross and transpose on symbols."""
+    """Product, determinant, cross product and transpose agree on symbols."""
     left, right = (Matrix(3, 3, sympy.symbols(f"{name}:9")) for name in "ab")
     assert (Matrix(tensor.multiply(left, right)) - left * right).applyfunc(expand) == zeros(3)
     assert expand(tensor.determinant(left) - left.det()) == 0
@@ -250,7 +252,7 @@ REFUSED = [
 
 @pytest.mark.parametrize(("parts", "sentence"), REFUSED)
 def test_what_is_no_body_is_refused_in_one_sentence(parts, sentence):
-    """InputError with the place in front, one line."""
+    """An InputError of one line begins with the place in the scene."""
     with pytest.raises(InputError, match=sentence) as refused:
         mass_properties(parts, "s.toml: body")
     assert str(refused.value).startswith("s.toml: body")

@@ -1,4 +1,4 @@
-"""Integrals of polynomials in coordinates, cosines and sines, and the limits that they refuse."""
+"""Integrals of polynomials in coordinates, cosines and sines; and the limits of integration that are refused."""
 
 from fractions import Fraction as F
 
@@ -13,7 +13,7 @@ from symrot.inertia.shapes import SHAPES, Coordinate
 @pytest.mark.parametrize("powers", [(a, b) for a in range(6) for b in range(6)])
 @pytest.mark.parametrize("quarters", [(0, 1), (0, 2), (0, 4), (1, 3), (-1, 1), (2, 3)])
 def test_integrals_of_cosines_and_sines(powers, quarters):
-    """Against 50-digit quadrature, each sign and each quadrant."""
+    """Each agrees with 50-digit quadrature, for every sign and every quadrant."""
     import mpmath
 
     with mpmath.workdps(50):
@@ -29,13 +29,13 @@ def test_integrals_of_cosines_and_sines(powers, quarters):
 
 
 def test_angles_end_at_quarter_turns():
-    """A limit in between is refused by name, not rounded."""
+    """A limit between two quarter turns is refused with its name, not rounded."""
     angle = Coordinate("phi", "0", "pi/3")
     with pytest.raises(ValueError, match="multiples of pi/2"):
         integrate(cosine("phi"), ((angle, constant(0), generator("pi") / 3),))
 
 
 def test_a_map_with_numbers_gives_the_measure_of_the_numbers():
-    """Ellipsoid 4/3 pi a b c."""
+    """The ellipsoid has the volume 4/3 pi a b c of its three numbers."""
     region = domain(SHAPES["ellipsoid"], {"a": F(1, 2), "b": F(3), "c": F(5)})
     assert integrate(region.jacobian, region.limits) == generator("pi") * 10

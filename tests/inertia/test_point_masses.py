@@ -1,4 +1,4 @@
-"""Point masses among other parts of a body: the inertia is the sum over all of them, about their common centre."""
+"""Point masses among other parts of a body: the inertia about the common centre of mass is the sum over all parts."""
 
 from fractions import Fraction as F
 
@@ -19,7 +19,7 @@ OWN = {"sphere": lambda part: [F(2, 5) * part["mass"] * F(part["radius"]) ** 2] 
 
 
 def point_sum(parts):
-    """The tensor about the common centre of mass, with every solid as its own tensor and a point at its centre."""
+    """Return the tensor about the common centre of mass: each solid counts as its own tensor and a point at its centre."""
     points, own = [], np.zeros((3, 3), dtype=object)
     for part in parts:
         at = [F(x) for x in part.get("at", (0, 0, 0))]

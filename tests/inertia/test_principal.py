@@ -1,4 +1,6 @@
-"""Principal axes: accurate for any gap, exact class, right-handed; what is no body is refused."""
+"""Principal axes: accurate for any gap between moments, right-handed, of exact class; tensors that no body has are
+refused.
+"""
 
 from fractions import Fraction as F
 from random import Random
@@ -31,7 +33,7 @@ def diagonal(moments):
 
 
 def random_rotation(seed):
-    """An exact rational rotation, from a quaternion of small integers."""
+    """Return an exact rational rotation, made from a quaternion of small integers."""
     random = Random(seed)
     a, b, c, d = (random.randint(-9, 9) for _ in range(4))
     a = a or 1
@@ -45,7 +47,9 @@ def random_rotation(seed):
 
 
 def check_axes(inertia, body):
-    """Orthonormal, right-handed, diagonalising: to 1e-100, far below a double."""
+    """Check that the axes are orthonormal, right-handed and diagonalise the tensor to 1e-100, far below the rounding of
+    doubles.
+    """
     tiny = F(1, 10**100)
     axes = body.axes
     square = tensor.subtract(tensor.multiply(tensor.transpose(axes), axes), tensor.IDENTITY)
@@ -60,7 +64,7 @@ def check_axes(inertia, body):
 @pytest.mark.parametrize("moments", SPECTRA, ids=str)
 @pytest.mark.parametrize("seed", range(4))
 def test_the_moments_return_from_any_rational_rotation(moments, seed):
-    """Exactly, whatever the gap between them; with the class of body and its axis of symmetry."""
+    """Whatever their gap, the moments return exactly, with the class of the body and its axis of symmetry."""
     rotation = random_rotation(seed)
     inertia = tensor.rotate(diagonal(moments), rotation)
     body = principal_axes(inertia)
@@ -78,7 +82,7 @@ def test_the_moments_return_from_any_rational_rotation(moments, seed):
 
 @pytest.mark.parametrize("seed", range(10))
 def test_axes_agree_with_mpmath(seed):
-    """Independent: 50-digit eigenvalues, and numpy's axes up to sign, for random tensors of three points."""
+    """For random tensors of three points: 50-digit eigenvalues by mpmath, and axes by NumPy up to sign."""
     random = np.random.default_rng(seed)
     points = [[F(int(v), 7) for v in row] for row in random.integers(-20, 20, (4, 3))]
     total = diagonal((0, 0, 0))
@@ -98,7 +102,7 @@ def test_axes_agree_with_mpmath(seed):
 
 
 def test_float_axes_are_orthonormal_to_an_ulp_for_a_near_degenerate_tensor():
-    """Doubles rounded from the exact axes: the gap of 1e-18 does not enter."""
+    """The exact axes are rounded to doubles, so a gap of 1e-18 between moments does no harm."""
     inertia = tensor.rotate(diagonal((1, 1 + F(1, 10**18), F(3, 2))), random_rotation(3))
     axes = np.array(principal_axes(inertia).axes, float)
     assert abs(axes.T @ axes - np.eye(3)).max() < 4e-16
@@ -106,14 +110,14 @@ def test_float_axes_are_orthonormal_to_an_ulp_for_a_near_degenerate_tensor():
 
 
 def test_diagonal_tensors_keep_their_axes_and_order():
-    """No sorting, identity axes, the moments as given."""
+    """The axes are the identity, and the moments stay as given, unsorted."""
     body = principal_axes([[3, 0, 0], [0, "1/3", 0], [0, 0, 3]])
     assert (body.moments, body.axes) == ((3, F(1, 3), 3), tensor.IDENTITY)
     assert (body.given_axes, body.kind, body.symmetry_axis) == (True, "symmetric", 1)
 
 
 def test_axes_stay_close_to_the_given_ones():
-    """A small rotation is found as a small rotation, not as a permutation."""
+    """A small rotation is found as a small rotation, not as a permutation of the axes."""
     c, s = number.cos(F(1, 100)), number.sin(F(1, 100))
     inertia = tensor.rotate(diagonal((3, 1, F(5, 2))), ((c, -s, 0), (s, c, 0), (0, 0, 1)))
     body = principal_axes(inertia)
@@ -123,7 +127,7 @@ def test_axes_stay_close_to_the_given_ones():
 
 
 def test_a_moment_that_differs_in_the_last_digit_makes_the_body_asymmetric():
-    """Equality is exact: 1e-50 is a difference, 2^-210 is rounding."""
+    """Moments that differ by 1e-50 are unequal; a difference of 2^-210 counts as rounding."""
     assert principal_axes(diagonal((1, 1 + F(1, 10**50), F(3, 2)))).kind == "asymmetric"
     assert principal_axes(diagonal((1, 1 + F(1, 2**210), F(3, 2)))).kind == "symmetric"
 
@@ -133,7 +137,7 @@ def test_a_moment_that_differs_in_the_last_digit_makes_the_body_asymmetric():
     [((1, 2, 3), True, False), ((0, 1, 1), True, True), ((1, 1, 1), False, False), ((0, 0, 0), True, True)],
 )
 def test_thin_bodies_are_recognised(moments, flat, needle):
-    """Flat: the largest is the sum of the others. Needle: one is zero, a body that cannot be propagated."""
+    """A flat body's largest moment is the sum of the others; a needle has a zero moment and cannot be propagated."""
     body = principal_axes(tensor.rotate(diagonal(moments), random_rotation(1)))
     assert (body.flat, body.needle) == (flat, needle)
     require_admissible(body)
@@ -141,7 +145,7 @@ def test_thin_bodies_are_recognised(moments, flat, needle):
 
 
 def test_why_a_needle_cannot_be_propagated():
-    """The clause names the moments; a point has its own."""
+    """The reason names the moments; a single point has a reason of its own."""
     assert "0, 1, 1 kg m^2" in why_not_propagable(principal_axes(diagonal((0, 1, 1))))
     assert "point" in why_not_propagable(principal_axes(diagonal((0, 0, 0))))
 
@@ -157,7 +161,7 @@ def test_why_a_needle_cannot_be_propagated():
     ],
 )
 def test_moments_that_no_body_has_are_refused(moments, sentence):
-    """In the given axes and rotated."""
+    """They are refused both in the given axes and rotated."""
     values = tuple(number.read(moment) for moment in moments)
     with pytest.raises(InputError, match="s.toml: body.principal: expected principal moments.*" + sentence):
         require_admissible(principal_axes(diagonal(values)), "s.toml: body.principal")
@@ -176,6 +180,6 @@ def test_moments_that_no_body_has_are_refused(moments, sentence):
     ],
 )
 def test_what_is_no_tensor_is_refused(inertia, sentence):
-    """With the place in front."""
+    """The message begins with the place in the scene."""
     with pytest.raises(InputError, match=f"body.inertia: .*{sentence}"):
         principal_axes(inertia, "body.inertia")

@@ -1,4 +1,4 @@
-"""Mass properties of the solids, against Cartesian cubature, SymPy's own integrals, limits and published tables."""
+"""Mass properties of the solids agree with Cartesian cubature, SymPy's own integrals, limits and published tables."""
 
 import os
 import subprocess
@@ -28,7 +28,7 @@ A, B, C = 1.3, 0.7, 2.1
 
 
 def revolved(sign, low, high, radius):
-    """The piece of space within ``radius(z)`` of the z axis."""
+    """Return the limits of the part of space within ``radius(z)`` of the z axis."""
     return (
         sign, (low, high), lambda z: (-radius(z), radius(z)),
         lambda y, z: (-np.sqrt(np.maximum(radius(z) ** 2 - y**2, 0)), np.sqrt(np.maximum(radius(z) ** 2 - y**2, 0))),
@@ -40,7 +40,7 @@ def ball(sign, radius, low=-1):
 
 
 def triangle(low, high, base, apex, height):
-    """x from the left side to the right side of the triangle (0, 0), (base, 0), (apex, height)."""
+    """Return limits of x from the left edge to the right edge of the triangle (0, 0), (base, 0), (apex, height)."""
     sides = lambda y, z: (apex * y / height, base + (apex - base) * y / height)  # noqa: E731
     return (1, (low, high), lambda z: (0 * z, height + 0 * z), sides)
 
@@ -98,7 +98,9 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 
 
 def stretched(low, high):
-    """Return points and weights between limits, by Gauss in t with x = middle + half sin t: exact for sqrt ends."""
+    """Return points and weights of Gauss's rule in t, with x = middle + half sin t, between limits; roots at the ends
+    are exact.
+    """
     t = NODES * pi / 2
     middle, half = (high + low) / 2, (high - low) / 2
     shape = (*np.shape(middle), 1)
@@ -140,7 +142,7 @@ def dimensions_of(name):
 
 
 def summed(points, weights):
-    """Return mass, centre of mass and inertia about it of weighted points."""
+    """Return the mass, the centre of mass and the inertia about it of weighted points."""
     mass = weights.sum()
     center = weights @ points / mass
     r = points - center
@@ -157,7 +159,7 @@ def close(body, expected):
 
 @pytest.mark.parametrize("name", EXTENDED)
 def test_the_uniform_solid_is_what_cartesian_cubature_finds(name):
-    """Measure, centre of mass and inertia of the printed closed form, density 3."""
+    """Cubature with density 3 finds the measure, centre of mass and inertia of the printed closed form."""
     points, weights = cartesian_points(name)
     close(mass_properties([Part(name, dimensions_of(name), density=3)]), summed(points, 3 * weights))
 
@@ -165,7 +167,7 @@ def test_the_uniform_solid_is_what_cartesian_cubature_finds(name):
 @pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", EXTENDED)
 def test_a_polynomial_density_is_what_cartesian_cubature_finds(name):
-    """The stdlib path and the symbolic path, for a density with every kind of term."""
+    """A density with every kind of term, once without SymPy and once with symbols."""
     text = "5 + x/2 - y*z/3 + z**2 + x*y**2/7 + x**2*y"
     points, weights = cartesian_points(name)
     x, y, z = points.T
@@ -176,7 +178,9 @@ def test_a_polynomial_density_is_what_cartesian_cubature_finds(name):
 
 @pytest.mark.parametrize("name", EXTENDED)
 def test_the_two_exact_paths_agree(name):
-    """Closed form and direct integration of a constant polynomial, equal up to pi to 2^-300."""
+    """The closed form and the direct integral of a constant polynomial are equal, with pi replaced by a number to
+    2^-300.
+    """
     one, other = (mass_properties([Part(name, dimensions_of(name), density=d)]) for d in ("2", "2 + 0*x"))
     pairs = zip([one.mass, *sum(one.inertia, ())], [other.mass, *sum(other.inertia, ())], strict=True)
     assert all(abs(a - b) <= abs(a) / 2**250 for a, b in pairs)
@@ -188,7 +192,7 @@ SLOW_FOR_SYMPY = {"tetrahedron"}  # twelve symbols; covered by the affine law be
 @pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", [name for name in EXTENDED if name not in SLOW_FOR_SYMPY])
 def test_sympy_finds_the_same_integrals(name):
-    """Integrand and limits of the steps, integrated by SymPy instead: measure and one second moment."""
+    """SymPy integrates the integrand and limits of the printed steps: the measure and one second moment."""
     steps = {step.quantity: step for step in solid(name, density=symbols.rho).steps}
     for quantity in ("measure", "second moment xx", "first moment z"):
         step = steps[quantity]
@@ -196,7 +200,7 @@ def test_sympy_finds_the_same_integrals(name):
 
 
 def test_the_steps_reproduce_the_tensor_about_the_origin():
-    """I = trace(M) 1 - M for the second moments of the steps, and the sum of squares for the mass."""
+    """I = trace(M) 1 - M for the second moments M of the printed steps; the mass agrees too."""
     cone = solid("cone", density="rho*(1 + z/height)")
     value = {step.quantity: step.value for step in cone.steps}
     second = [[value["second moment " + "".join(sorted(i + j))] for j in "xyz"] for i in "xyz"]
@@ -208,7 +212,7 @@ def test_the_steps_reproduce_the_tensor_about_the_origin():
 
 @pytest.mark.parametrize("name", EXTENDED)
 def test_jacobians_are_positive_inside(name):
-    """The measure of the map is positive at an inner point, so that masses are."""
+    """The Jacobian of each map is positive at an inner point, so that masses are positive."""
     body = solid(name, **dimensions_of(name))
     inside = {c: low + (high - low) * Rational(2, 7) for c, low, high in body.limits}
     assert body.jacobian.subs(inside).evalf() > 0
@@ -222,7 +226,7 @@ def load_reference():
 
 @pytest.mark.parametrize(("name", "entry"), load_reference().items())
 def test_the_table_of_landau_and_lifshitz(name, entry):
-    """Section 32, problem 2, exactly."""
+    """Landau & Lifshitz, Mechanics, section 32, problem 2, exactly."""
     known = {n: Symbol(n, positive=True) for n in ("mu", "R", "h", "l", "a", "b", "c")}
     body = solid(name, mass=known["mu"], **{d: known[text] for d, text in entry["dimensions"].items()})
     moments = [
@@ -234,7 +238,7 @@ def test_the_table_of_landau_and_lifshitz(name, entry):
 
 
 def test_textbook_moments_beyond_that_table():
-    """Hemisphere 83/320, torus, hoop, thin shell, thick shell: standard results."""
+    """Hemisphere (83/320), torus, hoop, thin shell and thick shell have their standard moments."""
     R, r, m = symbols.R, symbols.r, symbols.m
     assert solid("hemisphere").inertia[0, 0] == Rational(83, 320) * m * R**2
     assert cancel(solid("torus").inertia[2, 2] - m * (R**2 + Rational(3, 4) * r**2)) == 0
@@ -265,7 +269,7 @@ LIMITS = [
 
 @pytest.mark.parametrize(("name", "dimensions", "toward", "other", "others", "same_measure"), LIMITS)
 def test_solids_go_over_into_one_another(name, dimensions, toward, other, others, same_measure):
-    """Inertia at equal mass and centre of mass, as dimensions vanish or become equal."""
+    """As dimensions vanish or become equal, a solid takes the inertia and centre of mass of another one of equal mass."""
     body, target = solid(name, **dimensions), solid(other, **others)
     inertia = body.inertia
     for symbol, value in toward.items():
@@ -276,14 +280,14 @@ def test_solids_go_over_into_one_another(name, dimensions, toward, other, others
 
 
 def test_a_frustum_of_equal_radii_is_a_cylinder_on_its_end():
-    """Equal inertia; the centre half the height above the bottom, where the frustum has its origin."""
+    """The inertia is equal; the centre is half the height above the bottom, where the frustum has its origin."""
     body = solid("frustum", bottom=R, top=R, height=L)
     assert (body.inertia - solid("cylinder").inertia).applyfunc(cancel) == zeros(3)
     assert (body.center_of_mass[2], body.measure) == (L / 2, solid("cylinder").measure)
 
 
 def test_a_flat_cone_is_a_disk_with_the_density_of_its_height():
-    """At equal mass a flat cone is heavier in the middle: it is no uniform disk, but one with 1 - s/R."""
+    """A flat cone has more mass in the middle than a uniform disk: it is a disk of density 1 - s/R."""
     flat = limit(solid("cone").inertia[2, 2], h, 0)
     s = Symbol("s", positive=True)
     weighted = integrate((1 - s / R) * s**3, (s, 0, R)) / integrate((1 - s / R) * s, (s, 0, R))
@@ -293,19 +297,19 @@ def test_a_flat_cone_is_a_disk_with_the_density_of_its_height():
 
 @pytest.mark.parametrize("name", [n for n in EXTENDED if SHAPES[n].position[2] == "0"])
 def test_perpendicular_axes(name):
-    """Of a body in the plane z = 0: I_zz = I_xx + I_yy, about any of its points."""
+    """A body in the plane z = 0 has I_zz = I_xx + I_yy about each of its points."""
     for inertia in (solid(name).inertia, solid(name).inertia_about((a, b, 0))):
         assert cancel(inertia[2, 2] - inertia[0, 0] - inertia[1, 1]) == 0
 
 
 def test_the_shell_is_the_derivative_of_the_ball():
-    """dI/dR of a solid sphere of unit density is I of the shell of unit density."""
+    """dI/dR of a solid sphere of unit density is the inertia of a shell of unit density."""
     ball_inertia, shell = solid("sphere", density=1).inertia[0, 0], solid("spherical_shell", density=1).inertia[0, 0]
     assert cancel(ball_inertia.diff(R) - shell) == 0
 
 
 def test_a_tetrahedron_follows_its_affine_map():
-    """Second moments about the centre of mass go over into T M T^T under x -> T x + d, at equal mass, exactly."""
+    """Under x -> T x + d at equal mass, second moments M about the centre of mass become T M T^T, exactly."""
     unit = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     turn = sympy.Matrix([[2, Rational(1, 3), -1], [0, Rational(5, 7), 1], [1, 1, 3]])
     moved = [list(turn * sympy.Matrix(p) + sympy.Matrix([1, -2, Rational(1, 2)])) for p in unit]
@@ -321,7 +325,7 @@ def test_a_tetrahedron_follows_its_affine_map():
 
 
 def test_per_mass_and_per_density():
-    """The same body by mass and by density, and rescaled to another mass."""
+    """A body given by its mass equals the same body given by its density; another mass scales the inertia."""
     rho, m = symbols.rho, symbols.m
     by_density = solid("cylinder", density=rho)
     assert cancel(by_density.mass - sympy.pi * L * R**2 * rho) == 0
@@ -331,12 +335,12 @@ def test_per_mass_and_per_density():
 
 
 def test_inertia_about_a_point():
-    """A sphere rolling: 7/5 m R^2 about the point of contact."""
+    """A rolling sphere has 7/5 m R^2 about its point of contact."""
     assert solid("sphere").inertia_about((0, 0, R))[0, 0] == Rational(7, 5) * symbols.m * R**2
 
 
 def test_point_masses():
-    """Two masses on a line: reduced mass times the square of the distance; the same from the scene path."""
+    """Two masses on a line have the reduced mass times the distance squared, directly and from a scene."""
     first, second, distance = (Symbol(n, positive=True) for n in ("m1", "m2", "d"))
     body = solid("point_masses", masses=[first, second], points=[[0, 0, 0], [0, 0, distance]])
     reduced = first * second / (first + second) * distance**2
@@ -346,12 +350,12 @@ def test_point_masses():
 
 
 def test_the_printed_closed_forms_are_the_derived_ones():
-    """Byte for byte; print them with `python -m symrot.inertia.solids`."""
+    """They agree byte for byte; `python -m symrot.inertia.solids` prints them."""
     assert CLOSED_FORMS.read_text(encoding="utf-8") == closed_forms_text()
 
 
 def test_printing_does_not_depend_on_the_hash_seed():
-    """The printing command in a fresh process prints the same bytes."""
+    """The printing command prints the same bytes in a fresh process."""
     command = [sys.executable, "-m", "symrot.inertia.solids"]
     root = str(CLOSED_FORMS.parents[2])
     environment = {**os.environ, "PYTHONHASHSEED": "77", "PYTHONPATH": root}
@@ -360,7 +364,7 @@ def test_printing_does_not_depend_on_the_hash_seed():
 
 
 def test_a_scene_needs_no_sympy_for_its_inertia():
-    """Uniform and polynomial densities, composed and with principal axes, in a process without SymPy or NumPy."""
+    """Uniform and polynomial densities, composed, with principal axes, in a process without SymPy and NumPy."""
     program = (
         "import sys\n"
         "from symrot.inertia.composite import Part, mass_properties\n"
@@ -403,14 +407,14 @@ REFUSED = [
 
 @pytest.mark.parametrize(("arguments", "keywords", "sentence"), REFUSED)
 def test_what_is_no_solid_is_refused_in_one_sentence(arguments, keywords, sentence):
-    """InputError, one line."""
+    """The InputError is one line."""
     with pytest.raises(InputError, match=sentence) as refused:
         solid(*arguments, **keywords)
     assert "\n" not in str(refused.value)
 
 
 def test_the_cubature_would_notice_a_wrong_formula():
-    """The oracle itself is fed a wrong input: a cylinder one part in 1e9 too long."""
+    """Cubature tells a cylinder from one whose length is off by one part in 1e9."""
     points, weights = cartesian_points("cylinder")
     wrong = mass_properties([Part("cylinder", {"radius": "1.3", "length": "2.1000000021"}, density=3)])
     with pytest.raises(AssertionError):

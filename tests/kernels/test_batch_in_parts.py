@@ -1,4 +1,4 @@
-"""A batch that is split into loops over the same samples: read as one kernel, or refused."""
+"""A batch function split into several loops over the same samples is read as one kernel, or refused."""
 
 import pytest
 

@@ -1,4 +1,6 @@
-"""Batches over many arrays: nothing is computed after the first store, what needs the fewest inputs first of all."""
+"""Loops over many arrays compute everything before the first store, beginning with the results that need the fewest
+inputs.
+"""
 
 import re
 
@@ -23,18 +25,20 @@ def loops(text):
 
 
 def computes_first(statements):
-    """Whether statements of a loop are what is computed, then what is stored, then what is asked of angles."""
+    """Return whether a loop's statements first compute, then store, then test the size of angles."""
     kinds = [next((i for i, kind in enumerate((COMPUTED, STORED, ASKED)) if kind.fullmatch(s)), 3) for s in statements]
     return kinds == sorted(kinds) and 1 in kinds and 3 not in kinds
 
 
 def defined(statements, name):
-    """Return which statement of a loop gives a name its value."""
+    """Return the index of the loop's statement that gives a name its value."""
     return next(i for i, s in enumerate(statements) if re.match(rf"const \w+ {name} =", s))
 
 
 def of_many_arrays():
-    """Return a program whose outputs are called as an argument, an input, a temporary, words of the loop, a function."""
+    """Return a program whose outputs are named like an argument, an input, a temporary, a word of the loop and a
+    function.
+    """
     inputs = tuple((f"a{i}", "rad", "") for i in range(WAYS))
     results = ("y", "a1", "s", "s_", "k", "end", "sin", "of")
     signature = Signature("f", (Argument("x", "in", inputs), Argument("y", "out", tuple((r, "", "") for r in results))))
@@ -51,13 +55,13 @@ def test_nothing_is_computed_after_the_first_store(name, count):
 
 
 def test_a_loop_of_a_part_stores_last_where_it_walks_along_many_arrays_itself():
-    """The accelerations take twelve arrays and give three; the rates of the quaternion eleven in all."""
+    """The accelerations take twelve arrays and give three; the quaternion rates use eleven in all."""
     found = loops(emit("rigid_body_tensor").source)
     assert [computes_first(each) for each in found] == [True, False, True, False]
 
 
 def test_nothing_is_computed_after_the_first_store_where_angles_are_asked_for():
-    """The names of the results are new, and both loops are still the one-sample function."""
+    """The results have new names, and both loops still equal the one-sample function."""
     text = c_source(of_many_arrays(), Description("products", "all", "none", "none"), near=True)
     assert "const double a1_ =" in text and "const double s_ =" in text and "const double s__ =" in text
     assert len(loops(text)) == 2
@@ -74,7 +78,7 @@ def test_nothing_is_computed_after_the_first_store_where_angles_are_asked_for():
     ],
 )
 def test_results_of_the_fewest_inputs_are_computed_first(name, early, later):
-    """Before what only the others need is loaded; arrays are stored to in the order of the arguments."""
+    """They precede loads that only other results need; stores follow the order of the arguments."""
     text = emit(name).source
     outputs = [a for a in kernel_program(name).signature.arguments if a.role == "out"]
     for statements in loops(text):

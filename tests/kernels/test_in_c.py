@@ -1,4 +1,4 @@
-"""Kernels in a program of one's own: C99 and C++17 without a warning, batches vectorised, sine and cosine to 1 ulp."""
+"""Kernels in a user's program: C99 and C++17 without warnings, vectorised batches, sine and cosine within 1 ulp."""
 
 import ctypes
 import shutil
@@ -48,7 +48,7 @@ def test_a_program_of_ones_own_builds_and_runs(compiler, language, tmp_path):
                                   "rotation_vector_dcm", "rotation_vector_of_quaternion", "euler_zyx_of_quaternion",
                                   "euler_zxz_of_quaternion", "quaternion_of_dcm", "mrp_shadow", "heavy_top", "rigid_body_tensor", "quaternion_dcm"])  # fmt: skip
 def test_compilers_vectorise_batches(name, tmp_path):
-    """The loop of double and that of float; sine, cosine and arc tangent included."""
+    """Compilers vectorise the loops of double and of float, with sine, cosine and arc tangent in them."""
     told = {"gcc": ["-O3", "-fopt-info-vec-optimized"], "clang": ["-O2", "-Rpass=loop-vectorize"]}
     for compiler in COMPILERS:
         found = compiled(compiler, "-std=c99", "-fno-math-errno", *told[compiler], "-c", KERNELS / f"{name}.c", "-o",
@@ -65,7 +65,7 @@ def test_compilers_vectorise_batches(name, tmp_path):
     "flags", [["-O1"], ["-O2"], ["-O1", "-fno-math-errno"], ["-Os", "-fno-math-errno"]], ids=" ".join
 )
 def test_clang_warns_of_no_loop(flags, tmp_path):
-    """Functions that may set errno are not vectorised: no loop with one may be said to be."""
+    """Loops with functions that may set errno cannot be vectorised; the text may not ask for it, or clang would warn."""
     for name in ("quaternion_of_dcm", "torque_damping_quadratic", "rotation_vector_body_rates", "rodrigues_quaternion"):
         compiled("clang", "-std=c99", *flags, *STRICT, "-c", KERNELS / f"{name}.c", "-o", tmp_path / "x.o")
 
@@ -95,7 +95,7 @@ MULTIPLES = int(FAR["binary64"] * 2 / np.pi)
 @needs_cc
 @pytest.mark.parametrize("flags", CONTRACTION, ids=["unfused", "fused"])
 def test_sine_and_cosine_are_within_one_unit_in_the_last_place(flags, tmp_path):
-    """Against sines of 64 bits; the doubles nearest to every multiple of pi/2 in range, where most digits cancel."""
+    """References are 64-bit sines; arguments include doubles next to multiples of pi/2, where digits cancel."""
     found = harness(tmp_path, *flags)
     assert found.symrot_worst_at_multiples(MULTIPLES) <= 1
     assert found.symrot_worst_double(200_000, float(FAR["binary64"]), 7) <= 1
@@ -107,7 +107,7 @@ def test_sine_and_cosine_are_within_one_unit_in_the_last_place(flags, tmp_path):
 @pytest.mark.campaign
 @pytest.mark.parametrize("flags", CONTRACTION, ids=["unfused", "fused"])
 def test_sine_and_cosine_campaign(flags, tmp_path):
-    """Ten million doubles, and every float in range."""
+    """Ten million doubles in range, and every float in range."""
     found = harness(tmp_path, *flags)
     assert found.symrot_worst_double(5_000_000, float(FAR["binary64"]), 1) <= 1
     assert found.symrot_worst_double(5_000_000, 4.0, 2) <= 1
@@ -116,7 +116,7 @@ def test_sine_and_cosine_campaign(flags, tmp_path):
 
 @needs_cc
 def test_what_kernels_call_is_within_its_stated_error():
-    """One sample and batch, double and float: 4 units in the last place at removable singularities, else 1."""
+    """One sample and a batch, double and float: 4 ulp at removable singularities, 1 ulp elsewhere."""
     found = list(ulps.measured(500, ("fused",)))
     both, batch = ({"one", "batch"}, {"batch"})
     stated = {"sinc": both, "sine_gap": both, "tangent_gap": both, "tangent_gap >pi": both, "arc_ratio": both,
@@ -129,7 +129,7 @@ def test_what_kernels_call_is_within_its_stated_error():
 
 @needs_cc
 def test_arc_tangents_at_zeros_and_beyond_numbers():
-    """Zeros of either sign as in C, the axes and diagonals to the last bit; NaN of what is no number."""
+    """Signed zeros as in C, axes and diagonals to the last bit, and NaN for NaN."""
     (function,) = (each for each in ulps.FUNCTIONS if each.name == "atan2")
     loaded = ctypes.CDLL(str(ulps.cache.build(ulps._text(function), "ulps", ulps.FLAGS)))
     sides = (0.0, -0.0, 1.0, -1.0, 3.0, -3.0)
@@ -146,7 +146,7 @@ def test_arc_tangents_at_zeros_and_beyond_numbers():
 
 @needs_cc
 def test_a_power_that_overflows_is_seen(monkeypatch):
-    """(x - sin x)/x^3 is 0 where x^3 is infinite, and its value is 1/x^2 there: measured on the whole line, it shows."""
+    """Where x^3 overflows, (x - sin x)/x^3 is computed as 0, but its value is 1/x^2: the measurement shows this error."""
 
     def altered(name):
         found = emit(name)
@@ -170,7 +170,7 @@ def test_a_coefficient_that_is_off_in_its_last_digits_is_seen(monkeypatch):
 
 
 def test_coefficients_are_the_series_to_the_last_bit():
-    """The polynomials differ from sine and cosine by less than an eighth of a unit in the last place."""
+    """The polynomials differ from sine and cosine by less than 1/8 ulp."""
     from symrot.codegen.printing import math_header as made
 
     with mpmath.workdps(40):

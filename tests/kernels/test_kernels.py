@@ -1,4 +1,6 @@
-"""The library of kernels: every one obeys its laws, agrees with other libraries, and is safe where formulas are not."""
+"""The library of kernels: each obeys its laws, agrees with other libraries, and stays accurate at removable
+singularities.
+"""
 
 import importlib.util
 from pathlib import Path
@@ -31,7 +33,7 @@ def computed(name, *arguments):
 
 
 def sample(found, count):
-    """Inputs in the box of a kernel, by component: quaternions of unit norm, matrices that are rotations."""
+    """Return inputs in the box of a kernel, one array per component: unit quaternions, and matrices that are rotations."""
     values = {key: RNG.uniform(float(low), float(high), count) for key, (low, high) in found.box.items()}
     for letter in "qp":
         names = [f"{letter}{i}" for i in range(4)]
@@ -53,7 +55,7 @@ def arguments(found, values):
 
 @pytest.mark.parametrize("name", kernel_names())
 def test_every_kernel_obeys_its_laws(name):
-    """What vanishes by a law is rounding, at random points of the box."""
+    """At random points of the box, each expression that vanishes by a law is as small as rounding."""
     found = definition(name)
     values = sample(found, 40)
     results = computed(name, *arguments(found, values))
@@ -114,7 +116,7 @@ def test_rotation_vectors_are_safe_at_zero_and_at_pi(size):
 
 @pytest.mark.parametrize("name", REMOVABLE)
 def test_removable_singularities_lose_four_ulp_at_most(name):
-    """Against 40 digits, densely around the place where the series takes over, and down to the smallest numbers."""
+    """Compare with 40 digits near the point where the series takes over, and down to the smallest numbers."""
     which = REMOVABLE[name]
     function = getattr(module({"sine_gap": "rotation_vector_body_jacobian", "tangent_gap": "rotation_vector_body_rates"}[name]), f"_{name}")  # fmt: skip
     split = float(which.split) ** 0.5
@@ -145,7 +147,7 @@ BY_HAND = {  # multiplications, additions, divisions of the best formulas known
 
 @pytest.mark.parametrize("name", BY_HAND)
 def test_operations_are_no_more_than_by_hand(name):
-    """The dcm by doubled components, rates by half the angular velocity, the tensor solved by its cofactors."""
+    """Hand counts: dcm by doubled components, rates by half the angular velocity, tensor by cofactors."""
     counts = kernel_program(name).operations()
     assert all(counts[kind] <= most for kind, most in zip(("mul", "add", "div"), BY_HAND[name], strict=True)), counts
 

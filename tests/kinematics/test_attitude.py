@@ -1,4 +1,4 @@
-"""Euler sequences and quaternions: every formula against the definition ``omega = vee(dcm^T d(dcm)/dt)``, exactly."""
+"""Euler sequences and quaternions: every formula agrees exactly with the definition ``omega = vee(dcm^T d(dcm)/dt)``."""
 
 import pickle
 import random
@@ -39,7 +39,7 @@ def omega_by_definition(dcm_sb, parameters, frame):
 
 
 def numbers(expression, values):
-    """The matrix at 50 digits, as mpmath's."""
+    """Return the matrix to 50 digits, as a matrix of mpmath."""
     return mp_matrix(expression.subs(values).evalf(50).tolist())
 
 
@@ -47,7 +47,7 @@ def numbers(expression, values):
 
 
 def test_elementary_rotations_turn_right_handed():
-    """A quarter turn about x takes y to z, about y z to x, about z x to y."""
+    """A quarter turn about x takes y to z, about y takes z to x, and about z takes x to y."""
     for axis in range(3):
         following, after = (axis + 1) % 3, (axis + 2) % 3
         turned = rotations.elementary_rotation(axis, pi / 2) * rotations.unit_vector(following)
@@ -113,7 +113,7 @@ def test_space_jacobian_is_the_turned_body_jacobian():
 
 
 def test_a_wrong_jacobian_is_not_proven():
-    """The checks above would fail for the other frame, the transpose, and a flipped sign."""
+    """The proof fails for the other frame, the transpose and a flipped sign."""
     for sequence in ("ZXZ", "ZYX", "xyz"):
         truth = omega_by_definition(dcm(sequence), sym.angles, "body")
         body = rate_jacobian(sequence, "body")
@@ -124,7 +124,7 @@ def test_a_wrong_jacobian_is_not_proven():
 
 
 def test_landau_lifshitz_35_1():
-    """Mechanics, 3rd ed., eq. (35.1): omega in body axes for ZXZ."""
+    """Mechanics, 3rd ed., eq. (35.1), gives omega in body axes for ZXZ."""
     dphi, dtheta, dpsi = sym.angle_rates
     omega_b = rate_jacobian("ZXZ") * Matrix(sym.angle_rates)
     printed = Matrix(
@@ -139,7 +139,7 @@ def test_landau_lifshitz_35_1():
 
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_inverse_is_compact(sequence):
-    """No sum of squares left, one division by one trigonometric function: at most three factors in an entry."""
+    """Each entry has at most three factors, one division by one trigonometric function, and no sum of squares."""
     for frame in FRAMES:
         inverse = rate_jacobian(sequence, frame).inverse
         assert not any(node.is_Add for entry in inverse for node in preorder_traversal(entry))
@@ -162,7 +162,7 @@ def test_condition_number_is_that_of_the_singular_values(sequence):
 
 
 def test_angles_may_be_functions_of_time():
-    """omega = B dq/dt with q(t), by the chain rule."""
+    """omega = B dq/dt holds with q(t), by the chain rule."""
     t = Symbol("t", real=True)
     moving = [sin(t), t**2, 3 * t]
     dcm_sb = dcm("ZYX", moving)
@@ -171,7 +171,7 @@ def test_angles_may_be_functions_of_time():
 
 
 def test_all_sequences_are_derived_within_two_seconds():
-    """Processor time of a fresh process, so that nothing is cached; the wall clock of a shared machine is no law."""
+    """A fresh process has no caches; its processor time counts, since other programs share the machine."""
     code = (
         "import time; from symrot.conventions import SEQUENCES; from symrot.kinematics.euler import rate_jacobian\n"
         "start = time.process_time()\n"
@@ -239,13 +239,13 @@ def test_dcm_of_a_quaternion():
 
 
 def test_dcm_of_a_quaternion_against_goldstein():
-    """Classical Mechanics, 3rd ed., (4.47), is the transpose, for A = dcm_bs, in e0..e3: its entry (1, 2)."""
+    """The transpose of Goldstein, Classical Mechanics, 3rd ed., eq. (4.47): A = dcm_bs in e0..e3; entry (1, 2)."""
     q0, q1, q2, q3 = sym.quaternion
     assert normal_form(quaternion.quaternion_to_dcm(form="homogeneous").T[0, 1] - 2 * (q1 * q2 + q0 * q3)) == 0
 
 
 def test_quaternion_rates_follow_from_the_dcm():
-    """dq/dt along omega turns the dcm by omega, in both frames, for unit q; and keeps the norm for any q."""
+    """Unit dq/dt by omega turns the dcm by omega, in both frames; the norm of any q stays."""
     unit = [quaternion.unit_relation()]
     for frame, omega in (("body", sym.omega_b), ("space", sym.omega_s)):
         rate = quaternion.quaternion_rates(frame) * Matrix(omega)
@@ -269,7 +269,7 @@ def test_quaternion_rate_jacobian(frame):
 
 
 def test_quaternion_of_dcm_on_every_branch():
-    """All pivots of 4 q q^T: q_i q of the dcm of q, for unit q."""
+    """For unit q, the branch of pivot i gives q up to the sign of q_i, for each i."""
     q, unit = Matrix(sym.quaternion), [quaternion.unit_relation()]
     for pivot in range(4):
         branch = quaternion.quaternion_of_dcm(quaternion.quaternion_to_dcm(), pivot)

@@ -1,4 +1,4 @@
-"""Rotation vector, axis-angle, Rodrigues parameters: rates against the dcm, exactly; and the numeric rates."""
+"""Rates of rotation vector, axis-angle and Rodrigues parameters agree exactly with the dcm; numeric rates agree too."""
 
 import random
 
@@ -22,7 +22,7 @@ CHARTS = (*attitude.CHARTS, "ZXZ", "zyx")
 
 
 def seeded_values(chart, seed):
-    """Rational parameters of a generic attitude, obeying the relations of the chart."""
+    """Return rational parameters of a generic attitude that obey the relations of the chart."""
     generator = random.Random(seed)
     values = [Rational(generator.randint(-90, 90), 100) for _ in chart.parameters]
     if chart.name == "quaternion":
@@ -65,7 +65,7 @@ def test_inverse_and_determinant(name, frame):
 
 @pytest.mark.parametrize("frame", FRAMES)
 def test_axis_angle_rates(frame):
-    """For dn tangent to the sphere; n and alpha as functions of time through their rates."""
+    """dn is tangent to the sphere; n and alpha are functions of time with the given rates."""
     chart = attitude.chart("axis_angle")
     n, rates_of = Matrix(sym.axis), Matrix(Matrix([Symbol(f"d{s}", real=True) for s in chart.parameters]))
     relations = [*chart.relations, n.dot(rates_of[:3, 0])]
@@ -107,7 +107,7 @@ def test_singular_sets():
 
 
 def test_unreached_attitudes():
-    """Classical parameters name no half turn, modified ones no full turn: their divisors vanish there."""
+    """Classical Rodrigues parameters miss half turns, modified ones full turns: their divisors vanish there."""
     q0 = sym.quaternion[0]
     assert attitude.chart("rodrigues").unreached == q0
     assert attitude.chart("mrp").unreached == 1 + q0
@@ -115,7 +115,7 @@ def test_unreached_attitudes():
 
 
 def test_limits_of_the_rotation_vector():
-    """At |v| -> 2 pi the inverse grows like 2 pi / distance across the axis and is 1 along it."""
+    """As |v| -> 2 pi, the inverse is 1 along the axis and grows across it as 2 pi over the distance."""
     jacobian = rotation_vector.jacobian()
     on_x = dict(zip(sym.axis, (1, 0, 0), strict=True))
     below, above = jacobian.limits
@@ -126,7 +126,7 @@ def test_limits_of_the_rotation_vector():
 
 
 def test_exponential_map_is_the_series():
-    """dcm and right Jacobian against sum K^k / k! and sum (-K)^k / (k+1)!, 50 digits."""
+    """dcm and right Jacobian agree to 50 digits with sum K^k / k! and sum (-K)^k / (k+1)!."""
     v = [Rational(3, 10), -Rational(7, 10), Rational(11, 10)]
     matrix = rotations.skew(v)
     series, mean, power = zeros(3), zeros(3), eye(3)
@@ -140,7 +140,7 @@ def test_exponential_map_is_the_series():
 
 
 def test_function_of_skew_on_the_square():
-    """K^2 itself: c0 = c1 = 0, c2 = 1."""
+    """The function K^2 itself has the coefficients c0 = c1 = 0 and c2 = 1."""
     a = Symbol("a", positive=True)
     assert rotations.function_of_skew(lambda z: z**2, 0, a) == (0, 0, 1)
     assert rotations.function_of_skew(exp, 1, a) == (1, sin(a) / a, (1 - cos(a)) / a**2)
@@ -156,7 +156,7 @@ def test_rotation_vector_is_regular_at_zero():
 
 
 def test_rodrigues_formulas_of_the_literature():
-    """Shuster, J. Astronaut. Sci. 41 (1993): the kinematic equations of the Rodrigues vector and of its modified kin."""
+    """Shuster, J. Astronaut. Sci. 41 (1993): kinematic equations of Rodrigues parameters, classical and modified."""
     g, s, one = Matrix(sym.rodrigues), Matrix(sym.mrp), eye(3)
     classical = (one + rotations.skew(g) + g * g.T) / 2
     assert normal_form(attitude.chart("rodrigues").rates("body") - classical) == zeros(3)
@@ -165,7 +165,7 @@ def test_rodrigues_formulas_of_the_literature():
 
 
 def test_definition_by_the_angle():
-    """axis tan(angle/2) and axis tan(angle/4) of a unit axis."""
+    """The parameters are axis tan(angle/2) and axis tan(angle/4) for a unit axis."""
     relations = attitude.chart("axis_angle").relations
     for which, share in ((rodrigues.CLASSICAL, 2), (rodrigues.MODIFIED, 4)):
         turn = rotation_vector.quaternion_of_axis_angle(angle=4 * sym.alpha)
@@ -175,7 +175,7 @@ def test_definition_by_the_angle():
 
 
 def test_shadow_set():
-    """The same attitude, lengths that multiply to 1, and its own shadow is the set itself."""
+    """The shadow has the same attitude, the two lengths multiply to 1, and its own shadow is the original set."""
     shadow, s = rodrigues.shadow(), Matrix(sym.mrp)
     assert normal_form(rodrigues.MODIFIED.dcm(shadow) - rodrigues.MODIFIED.dcm()) == zeros(3)
     assert normal_form(shadow.dot(shadow) * s.dot(s) - 1) == 0
@@ -190,7 +190,7 @@ def test_shadow_set():
 @pytest.mark.parametrize("target", CHARTS)
 @pytest.mark.parametrize("source", CHARTS)
 def test_conversions_keep_the_attitude(source, target):
-    """Symbolic expressions at rational values, 50 digits; dcm before and after."""
+    """Symbolic conversions at rational values: dcm before and after agree to 50 digits."""
     start, end = attitude.chart(source), attitude.chart(target)
     values = seeded_values(start, source + target)
     found = attitude.convert(source, target, tuple(values.values()))
@@ -200,7 +200,7 @@ def test_conversions_keep_the_attitude(source, target):
 
 
 def test_symbolic_and_numeric_conversions_agree():
-    """Each numeric conversion against the derived expression."""
+    """Each numeric conversion agrees with its derived expression."""
     numeric = {
         "rotation_vector": conversions.quaternion_to_rotation_vector,
         "axis_angle": lambda q: np.concatenate([part.ravel() for part in conversions.quaternion_to_axis_angle(q)]),
@@ -248,7 +248,7 @@ def test_locked_rates_are_flagged():
 
 @pytest.mark.parametrize("frame", FRAMES)
 def test_numeric_quaternion_rates(frame, motion):
-    """A small turn about omega, by SciPy, against the rate; and omega back from it."""
+    """The rate agrees with a small turn about omega by SciPy, and gives omega back."""
     q, omega = motion
     dq = rates.quaternion_rate(q, omega, frame)
     h = 1e-6
@@ -263,7 +263,7 @@ def test_numeric_quaternion_rates(frame, motion):
 
 
 def test_space_and_body_rates_of_a_tilted_spin():
-    """S38: a body tilted about x, spinning about space z: omega_s is (0, 0, 1), omega_b has a y part."""
+    """S38: a body tilted about x spins about z of space: omega_s is (0, 0, 1), and omega_b has a y component."""
     q = conversions.euler_to_quaternion([0.0, 0.5, 0.0], "ZXZ")
     dq = rates.quaternion_rate(q, [0.0, 0.0, 1.0], "space")
     np.testing.assert_allclose(rates.angular_velocity(q, dq, "body"), [0, np.sin(0.5), np.cos(0.5)], atol=1e-15)

@@ -1,6 +1,6 @@
-"""Numeric conversions against 50-digit arithmetic (stress tests S35 to S38), SciPy, and bad rows.
+"""Numeric conversions agree with 50-digit arithmetic (stress tests S35 to S38) and SciPy; bad rows are refused.
 
-A unit quaternion in double precision is itself known to 1.1e-16 per component; the bounds are two to four of those.
+A unit quaternion in doubles is itself known only to 1.1e-16 per component; the bounds are two to four times that.
 """
 
 import subprocess
@@ -33,7 +33,7 @@ from tests.reference.quaternions import (
 
 @pytest.fixture(autouse=True)
 def strict():
-    """50 digits, and any warning is a failure."""
+    """Compute with 50 digits, and let any warning fail the test."""
     with mp.workdps(DIGITS), warnings.catch_warnings():
         warnings.simplefilter("error")
         yield

@@ -40,7 +40,7 @@ def test_integers_and_fractions_are_exact():
 
 
 def test_arrays_of_components_agree_with_the_product_of_arrays():
-    """They add the same four products, below 1, in another order: three roundings of sums below 4 in each."""
+    """Both add the same four products, each below 1, in different orders, so three roundings bound the difference."""
     p, q = np.random.default_rng(21).uniform(-1.0, 1.0, size=(2, 500, 4))
     assert np.abs(np.array(hamilton(p.T, q.T)).T - multiply(p, q)).max() <= 6 * np.spacing(1.0)
 

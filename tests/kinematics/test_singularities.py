@@ -1,4 +1,4 @@
-"""Where Euler sequences lock: the derived sets, limits and alternatives against numbers and SciPy's conventions."""
+"""Where Euler sequences lock: the derived sets, limits and alternatives agree with numbers and SciPy's conventions."""
 
 import random
 from functools import cache
@@ -32,7 +32,9 @@ def on_circle(where, k):
 @pytest.mark.thinned(8)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_singular_set(sequence):
-    """sin theta = 0 for proper sequences, cos theta = 0 for Tait-Bryan: the textbook answer, found."""
+    """The derivation finds the textbook answer: sin theta = 0 for proper sequences, cos theta = 0 for Tait-Bryan
+    sequences.
+    """
     found = rate_jacobian(sequence).singular_set
     assert found.points() == ((0, pi) if is_proper(sequence) else (pi / 2, 3 * pi / 2))
     assert isinstance(found.values, ImageSet) and found.values.base_set is S.Integers
@@ -61,7 +63,7 @@ def test_zeros_of_known_equations():
 @pytest.mark.thinned(4)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_limits_are_what_the_inverse_does_close_by(sequence):
-    """Signs of infinities, finite limits and residues against the inverse at 1e-20 rad, 50 digits."""
+    """Signs of infinities, finite limits and residues agree with the inverse at 1e-20 rad, to 50 digits."""
     generator = random.Random(sequence)
     for frame in ("body", "space"):
         jacobian = rate_jacobian(sequence, frame)
@@ -94,7 +96,7 @@ def test_condition_number_grows_like_two_over_the_distance():
 
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_lock_indicator_tells_the_distance(sequence):
-    """det^2 = 1 - indicator^2, for every attitude."""
+    """det^2 = 1 - indicator^2 holds for every attitude."""
     indicator = lock_indicator(sequence, euler_dcm(sequence))
     assert normal_form(rate_jacobian(sequence).determinant ** 2 - (1 - indicator**2)) == 0
 
@@ -102,7 +104,7 @@ def test_lock_indicator_tells_the_distance(sequence):
 @pytest.mark.thinned(4)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_alternatives_against_numbers(sequence):
-    """Attitudes all around the locked circle, as matrices: which of the other sequences lock there, numerically."""
+    """For attitudes all around the locked circle, as matrices: numbers show which other sequences lock there too."""
     meetings = sequences_at_lock(sequence)
     assert set(meetings) == set(SEQUENCES) - {sequence}
     circle = np.arange(24) * (np.pi / 12)
@@ -149,7 +151,9 @@ def test_regular_at_agrees_with_numbers():
 @pytest.mark.thinned(4)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_what_is_lost_at_lock(sequence):
-    """The silent rates turn nothing, and no rates turn about the lost axis; the attitude depends on one combination."""
+    """Silent rates turn nothing, no rates turn the body about the lost axis, and one combination of angles sets the
+    attitude.
+    """
     dossier = singularity_dossier(sequence)
     assert [point.middle for point in dossier.locked] == list(dossier.singular_set.points())
     for point in dossier.locked:
@@ -191,7 +195,7 @@ def test_every_other_sequence_is_in_one_list():
 
 
 def test_rates_stay_finite_for_motion_that_the_locked_chart_can_follow():
-    """Directions in the range of B at lock have finite rates: the lost axis alone asks for infinite ones."""
+    """Rates are infinite only for omega with a component along the lost axis, outside the range of B."""
     for sequence in ("ZXZ", "ZYX", "xyz"):
         for point in singularity_dossier(sequence).locked:
             limit = next(x for x in rate_jacobian(sequence).limits if x.point == point.middle)

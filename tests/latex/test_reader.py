@@ -1,4 +1,4 @@
-"""The tree says how a formula is written, with the place of every piece; text that is no LaTeX is refused with its place."""
+"""The tree says how a formula is written, with the place of every piece; bad LaTeX is refused with its place."""
 
 from itertools import pairwise
 
@@ -24,7 +24,7 @@ from symrot.latex.tree import (
 
 
 def shape(node):
-    """A tree as nested tuples, without positions."""
+    """Return a tree as nested tuples, without positions."""
     if isinstance(node, Token):
         return node.text
     if isinstance(node, Row):
@@ -71,7 +71,7 @@ def test_the_tree_is_the_formula_as_it_is_written(latex, tree):
 
 @pytest.mark.parametrize("latex", [latex for latex, _ in SHAPES])
 def test_every_item_starts_at_its_place(latex):
-    """The source, cut where the items of a row start, gives the items one by one; its tokens are all there, in order."""
+    """The source, cut where items of a row start, gives the items one by one, with all tokens in order."""
     row = read(latex)
     starts = [*(item.start for item in row.items), row.end]
     pieces = [latex[start:stop] for start, stop in pairwise(starts)]

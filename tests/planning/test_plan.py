@@ -1,4 +1,4 @@
-"""What a plan keeps and skips, scene by scene, and why."""
+"""Which states and equations a plan keeps, which it skips and why, scene by scene."""
 
 import pytest
 
@@ -89,7 +89,7 @@ def test_moments_that_differ_in_the_last_digit_are_different():
 
 
 def test_a_body_that_is_symmetric_by_irrational_numbers_is_symmetric():
-    """Three rods at 60 degrees to each other: equal moments by sqrt(3), not by rational numbers."""
+    """Three rods at 60 degrees to each other have equal moments only because sqrt(3)^2 = 3."""
     parts = [
         {
             "shape": "rod",
@@ -129,7 +129,7 @@ def test_repeated_torques_and_parameters_with_taken_names_keep_apart():
     "name", ["torque_1", "linear_1", "torque2_linear_1", "direction_2", "omega_3", "theta", "L_1", "p0", "x0"]
 )
 def test_a_parameter_may_have_any_name(name):
-    """A parameter called like a component of another torque is still itself: the motion does not depend on its name."""
+    """A parameter named like a component of another torque stays itself: the motion does not depend on its name."""
     from symrot.propagation.propagate import propagate
 
     def motion(parameter):

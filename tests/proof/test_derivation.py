@@ -1,4 +1,4 @@
-"""A derivation cannot hold a step that does not hold, and prints the same page every time."""
+"""A derivation refuses a step that does not hold, and prints the same page every time."""
 
 from itertools import pairwise
 
@@ -283,7 +283,7 @@ def test_what_has_no_meaning_is_not_read(text):
     ],
 )
 def test_a_page_cannot_show_what_was_not_proven(page, named, display):
-    """The proven sides are right; what would be printed for them is not."""
+    """Both sides of the equation are proven; the LaTeX given for them shows something else."""
     u = Matrix([q1, q2, q3])
     page.notation({r"\omega": V, "u": u})
     good = {"because": "the product is antisymmetric", "named": r"\omega \times u"}

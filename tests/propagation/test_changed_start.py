@@ -1,4 +1,6 @@
-"""A propagator that is called with another start: the same bits as a new scene's, and nothing looked up again."""
+"""A propagator called with another start gives the same bits as a new scene with that start, and prepares nothing
+again.
+"""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -87,7 +89,7 @@ def same_bits(one, other):
 @pytest.mark.parametrize("method", ["auto", "taylor", "dop853"])
 @pytest.mark.parametrize("name", SCENES)
 def test_another_start_gives_the_bits_of_another_scene(name, method):
-    """Twice each: the first start of a structure is prepared, later ones take over what it has."""
+    """Each start twice: its first call prepares its structure, its second call takes over the preparation."""
     given = SCENES[name]
     called = propagate.propagator(given, method)
     times = np.linspace(*map(float, given.span[:2]), 6)
@@ -99,7 +101,7 @@ def test_another_start_gives_the_bits_of_another_scene(name, method):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_starts_of_one_key_have_one_plan(name):
-    """All patterns of zeros in omega, with attitudes that lay torques along axes or not."""
+    """All patterns of zeros in omega, with attitudes that lay torques along an axis and attitudes that do not."""
     plans = {}
     for mask in range(8):
         omega = tuple(Fraction(k + 1, 3) * (mask >> k & 1) for k in range(3))
@@ -124,7 +126,7 @@ LOOKED_UP = [
 @pytest.mark.parametrize("method", ["auto", "taylor", "dop853"])
 @pytest.mark.parametrize("name", SCENES)
 def test_a_second_start_of_a_structure_looks_nothing_up(name, method, monkeypatch):
-    """Neither principal axes nor libraries, compilers, orders, forms, plans: calls of them are counted."""
+    """No principal axes, libraries, compilers, orders, closed forms or plans are looked up: calls are counted."""
     given = SCENES[name]
     called = propagate.propagator(given, method)
     times = np.linspace(*map(float, given.span[:2]), 6)
@@ -140,7 +142,7 @@ def test_a_second_start_of_a_structure_looks_nothing_up(name, method, monkeypatc
 
 
 def test_doubles_settle_which_torques_lie_along_an_axis(monkeypatch):
-    """Exact numbers are taken where a component may be zero alone: they take a fifth of a millisecond."""
+    """Exact numbers, which take a fifth of a millisecond, are used only where a component may be zero."""
     vector, clear, level = (Fraction(1), Fraction(2), Fraction(-2)), (0.21, 0.33, -0.47, 0.13), (1.0, 0.0, 0.0, 0.0)
     chance = np.random.default_rng(5)
     exact = rules._in_body
@@ -158,7 +160,7 @@ def test_doubles_settle_which_torques_lie_along_an_axis(monkeypatch):
 
 
 def test_quantities_of_a_changed_start_use_one_kernel(monkeypatch):
-    """The kernel of energy and momentum is fetched once for a structure, not for every trajectory."""
+    """The kernel of energy and momentum is fetched once for a structure, not once for each trajectory."""
     called = propagate.propagator(PRISM)
     assert called(omega=(0.1, 0.2, 0.3)).invariants
     monkeypatch.setattr(motion, "scene_kernel", None)
@@ -167,7 +169,7 @@ def test_quantities_of_a_changed_start_use_one_kernel(monkeypatch):
 
 
 def test_a_driven_motion_from_another_start_looks_nothing_up(monkeypatch):
-    """A torque in Python: the same library, and the bits of another scene."""
+    """With a torque in Python, the library stays the same and the bits are those of a new scene."""
 
     def torque(t, omega, quaternion):
         return -0.1 * omega
@@ -182,7 +184,7 @@ def test_a_driven_motion_from_another_start_looks_nothing_up(monkeypatch):
 
 
 def test_the_unit_vector_is_exact_or_good_to_320_bits():
-    """Rational norms give fractions; others the root to 2^-320."""
+    """A rational norm gives fractions; otherwise the root is computed to 2^-320."""
     assert number.unit([Fraction(3, 7), Fraction(0), Fraction(-4, 7)]) == (Fraction(3, 5), 0, Fraction(-4, 5))
     for vector in ([Fraction(1, 3), Fraction(-2, 5), Fraction(1)], [Fraction(2) ** -900, Fraction(2) ** -880]):
         found = number.unit(vector)

@@ -1,4 +1,4 @@
-"""Torques that end: beyond where their formula has a value no method says anything, and what comes before is right."""
+"""Torques whose formula loses its value: no method gives results after that time, and results before it are right."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ def scene(torque, stop=2.0):
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("stop", [1.00000004, 1.2])
 def test_a_motion_ends_where_its_torque_has_no_value(method, stop):
-    """The root of 1 - t has none after 1 s; only the rate, not the attitude, shows it within a step that ends there."""
+    """The root of 1 - t has no value after 1 s; in a step that ends there, only the rate shows it."""
     with pytest.raises(PropagationError, match="cannot be followed beyond") as caught:
         symrot.propagator(scene("sqrt(1 - t)", stop), method, 1e-9)([0.25, 0.5, stop])
     reached = caught.value.trajectory

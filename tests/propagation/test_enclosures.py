@@ -1,4 +1,4 @@
-"""Enclosures: discs hold the image of every function, steps are held where a feature hides and nowhere else."""
+"""Enclosures: a disc holds a function's image of another disc, and steps become short only where a feature may hide."""
 
 import cmath
 import ctypes
@@ -36,7 +36,7 @@ DOMAINS = {"log": (0.1, 5.0), "sqrt": (0.1, 5.0), "asin": (-0.9, 0.9), "acos": (
 
 
 def image_of(name, disc, whole=1.0):
-    """Return the image of a disc; a root has a corner, which ``whole`` widens."""
+    """Return the image of a disc; a root has a corner, and ``whole`` says how far it is widened."""
     return FUNCTIONS[name](disc, whole) if name == "sqrt" else FUNCTIONS[name](disc)
 
 
@@ -57,7 +57,7 @@ def circle(disc, count=64):
 
 @pytest.mark.parametrize("name", sorted(set(FUNCTIONS) - {"atan2"}))
 def test_the_image_of_a_disc_lies_in_the_disc_of_its_image(name):
-    """|f(z) - centre| <= radius on the circle, hence inside: the largest value of an analytic function is there."""
+    """|f(z) - centre| <= radius on the circle, and hence inside, since analytic functions are largest at the boundary."""
     low, high = DOMAINS.get(name, (-30.0, 30.0) if name in ("tanh", "sech", "atan") else (-4.0, 4.0))
     bounded = 0
     for _ in range(400):
@@ -80,7 +80,7 @@ def factor(name, power, inner):
 
 
 def test_no_product_of_three_functions_leaves_its_disc():
-    """Over discs so large that bounds over- and underflow: nothing is known there, or the product lies within."""
+    """Discs so large that bounds overflow or underflow: the product's disc is unbounded there, or holds the product."""
     import mpmath
 
     known = {name: getattr(mpmath, name) for name in FACTORS}
@@ -112,7 +112,7 @@ def test_no_product_of_three_functions_leaves_its_disc():
 
 
 def test_an_unbounded_factor_is_not_taken_for_zero():
-    """A bump in the angle of unknown size, squared, times a pulse far away whose bound overflows."""
+    """The square of an unbounded bump in the angle, times a distant pulse whose bound overflows, is unbounded."""
     bump = FUNCTIONS["sech"](Disc(-19.7, math.inf))
     pulse = FUNCTIONS["exp"](Disc(-6e7, 1.2e10))
     assert product(product(bump, bump), pulse).radius == math.inf == product(pulse, product(bump, bump)).radius
@@ -122,7 +122,7 @@ def test_an_unbounded_factor_is_not_taken_for_zero():
 @needs_compiler
 @pytest.mark.parametrize("method", ["taylor", "dop853", "scipy:RK45", "scipy:DOP853", "scipy:LSODA"])
 def test_a_pulse_that_meets_a_bump_of_the_angle_is_seen(method):
-    """Both are narrow, and act where they meet alone: while the body passes the middle of the bump."""
+    """Both are narrow, and their product acts only while the pulse comes as the body passes the bump."""
     rate, w = 40.0, 5e-7
     torque = "m*((1/cosh((2*atan2(q3, q0)-c)/v)**2)*exp(-((t-d)/w)**2))"
     made = scene(torque, (0, 0, rate), 0.1, 1e-7, m=1e6, c=43.0 * rate / 1000, d=0.043, v=0.008, w=w)
@@ -170,7 +170,7 @@ void image(int which, double c, double r, double *out)
 @needs_compiler
 @pytest.mark.parametrize("method", ["taylor", "dop853", "scipy:DOP853"])
 def test_a_wave_within_a_vanished_pulse_costs_no_steps(method):
-    """Far from its pulse a chirp is exp(-1e6) times a wave whose own bound overflows: logarithms keep the product."""
+    """Far from its pulse, a chirp is exp(-1e6) times a wave with an overflowing bound: logarithms keep the product."""
     made = scene("exp(-((t-5)/w)**2)*sin(a*(t-5)**2)", (0, 0, 0.1), 10.0, w=1e-3, a=1e7)
     stats = symrot.propagator(made, method)([10.0]).stats
     assert stats.accepted < 5000  # without: millions
@@ -203,7 +203,7 @@ def test_what_may_hide_a_feature_is_enclosed(torque):
     ["exp(-(t-1)**2)", "tanh(3*omega_3 + t)", "q1/(3 + omega_3*cos(t)**9)", "atan2(1 + q1, 2 + t)", "log(2 + t)"],
 )
 def test_coefficients_obey_the_bound(torque):
-    """Coefficient n of an enclosed rate is at most its deviation over rho^n (Cauchy), the states being polynomials."""
+    """For polynomial states, coefficient n of an enclosed rate is at most its deviation over rho^n (Cauchy)."""
     made = scene(torque, (0.1, -0.2, 0.3))
     plan, kernel = rates(made)
     system = recurrences(kernel.rates)
@@ -274,7 +274,7 @@ def test_the_reach_that_is_tried_first_changes_no_step():
 
 
 def test_a_bound_that_is_too_small_would_let_a_pulse_pass():
-    """The search for a step trusts the enclosure: told that nothing deviates, it takes the whole step."""
+    """The search for a step uses the enclosure: if that claims zero deviation, the whole step is taken."""
     made = scene("exp(-((t-5)/w)**2)", w=1e-3)
     plan, kernel = rates(made)
     terms = enclosure(recurrences(kernel.rates))
@@ -290,7 +290,7 @@ def test_a_bound_that_is_too_small_would_let_a_pulse_pass():
 @needs_compiler
 @pytest.mark.parametrize("stepper", [taylor, dop853], ids=["taylor", "dop853"])
 def test_without_the_enclosure_the_pulse_is_missed(stepper):
-    """So the tests of narrow torques do see the enclosure at work."""
+    """So the tests of narrow torques do depend on the enclosure."""
     plan, kernel = rates(scene("exp(-((t-5)/w)**2)", w=1e-3))
     p, edges = bind(kernel.rate_parameters, plan.constants), error_blocks(plan)
     for enclosed in (True, False):
@@ -331,7 +331,7 @@ def test_held_steppers_are_clean_c99_and_valid_cpp(command):
 @needs_compiler
 @pytest.mark.parametrize("torque", ["exp(-t)/5", "exp(-(t-5)**2)", "tanh(t-5)/5", "sqrt(1+t**2)/50", "sin(t**2/4)/5"])
 def test_smooth_torques_of_time_cost_no_more_steps(torque):
-    """At most a fifth more than without the enclosure, over a span of some ten steps of the torque."""
+    """The enclosure costs at most a fifth more steps, over a span of about ten steps of the torque."""
     plan, kernel = rates(scene([torque, "0", torque], (0.3, 1, 0.5), 20.0, 1e-12))
     p, edges = bind(kernel.rate_parameters, plan.constants), error_blocks(plan)
     steps = []
@@ -342,7 +342,7 @@ def test_smooth_torques_of_time_cost_no_more_steps(torque):
 
 
 def test_a_function_without_series_is_not_enclosed():
-    """Of abs nothing is known: who steps it locates its switches instead."""
+    """abs has no Taylor series, so no enclosure: steppers locate its switches instead."""
     from symrot.formula.program import Argument, Program, Signature
 
     one = (("y", "", ""),)
@@ -386,7 +386,7 @@ def test_an_interrupt_carries_the_samples_before(method, monkeypatch):
 
 
 def test_exact_numbers_of_weights_are_used():
-    """Weights of a sum are folded as fractions, not typed: 1/3 of a deviation is a third of it."""
+    """Weights of a sum are exact fractions: exp(-t)/3 deviates by exactly a third of what exp(-t) does."""
     plan, kernel = rates(scene("exp(-t)/3"))
     parameters = dict(
         zip([n for n, _ in kernel.rate_parameters], bind(kernel.rate_parameters, plan.constants), strict=True)

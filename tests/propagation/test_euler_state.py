@@ -1,4 +1,4 @@
-"""Euler angles as state: the same motion as the quaternion's, through gimbal lock by switching, and not without."""
+"""Euler angles as states give the same motion as the quaternion; they pass gimbal lock only by switching sequences."""
 
 import math
 
@@ -18,7 +18,7 @@ T = np.linspace(-3, 8, 111)
 
 
 def scene(theta, omega=(0, "2/5", 1), moments=(1, "6/5", 2), torque=(), sequence="ZXZ"):
-    """A body whose middle angle is ``theta`` at t = 0."""
+    """Return a scene of a body whose middle angle is ``theta`` at t = 0."""
     return symrot.Scene.from_dict(
         {
             "schema": 1, "title": "pass by the lock", "body": {"principal": list(moments), "about": "fixed_point"},
@@ -31,7 +31,7 @@ def scene(theta, omega=(0, "2/5", 1), moments=(1, "6/5", 2), torque=(), sequence
 
 
 def apart(first, second):
-    """Largest difference of attitudes (up to the common sign) and of rates."""
+    """Return the largest difference between attitudes (up to sign) and between rates."""
     q = [np.abs(first.quaternion - sign * second.quaternion).max() for sign in (1, -1)]
     return max(min(q), np.abs(first.omega - second.omega).max())
 
@@ -45,7 +45,7 @@ SPRING = {"kind": "spring", "stiffness": 2, "attitude": {"quaternion": [1, 0, 0,
     "sequence, torque", [("ZXZ", (GRAVITY,)), ("ZYX", (SPRING,)), ("xyz", ()), ("yxy", (GRAVITY,))]
 )
 def test_angles_and_quaternion_follow_one_motion(sequence, torque):
-    """Both sides of the start, by torques that see the attitude as matrix and as quaternion."""
+    """Before and after the start, with torques that use the attitude as a matrix and as a quaternion."""
     body = scene("4/5", torque=torque)
     expected = symrot.propagator(body, method="taylor", tolerance=1e-13)(T)
     found = symrot.propagator(body, tolerance=1e-13, state=sequence)(T)
@@ -57,7 +57,7 @@ def test_angles_and_quaternion_follow_one_motion(sequence, torque):
 
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_partners_are_regular_where_a_sequence_locks(sequence):
-    """Derived: nowhere on the singular set of the one is the other singular; and so for each other's partner."""
+    """Derived: where a sequence is singular, its partner is not, and the other way round."""
     assert partner(partner(sequence)) == sequence
     assert sequences_at_lock(sequence)[partner(sequence)].is_empty
 
@@ -73,7 +73,7 @@ def test_one_of_two_partners_is_always_regular():
 @pytest.mark.thinned(8)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_torques_odd_in_q_see_one_sign_of_it_in_every_sequence(sequence):
-    """A change of sequence keeps the sign of q, which such a torque sees; so does a start at -q."""
+    """A torque that is odd in q depends on its sign: a change of sequence keeps the sign, and so does a start at -q."""
     body = scene(
         "4/5", ("1/2", 1, "7/10"), (1, 2, "5/2"), ({"kind": "expression", "torque": ["q1/5", "q0/5", "q3*q1*q2/3"]},)
     )
@@ -87,7 +87,7 @@ def test_torques_odd_in_q_see_one_sign_of_it_in_every_sequence(sequence):
 
 @pytest.mark.parametrize("theta", ["1/10", "1/100000", "1/10000000000", 0])
 def test_s34_switching_keeps_error_and_steps_through_the_lock(theta):
-    """However near the pass, and through the lock itself: the same error, nearly the same number of steps."""
+    """Near gimbal lock and through it, the error stays the same, and the steps almost."""
     body = scene(theta)
     expected = symrot.propagator(body, method="exact")(T)
     found = symrot.propagator(body, method="taylor", tolerance=1e-13, state="ZXZ")(T)
@@ -106,7 +106,7 @@ def test_without_switching_steps_multiply_near_the_lock(method):
 
 
 def test_without_switching_the_lock_itself_ends_the_motion():
-    with pytest.raises(PropagationError, match=r"beyond t = 0.0 s .*ZXZ are the state, .*switching=True avoids"):
+    with pytest.raises(PropagationError, match=r"beyond t = 0.0 s .*Euler angles ZXZ, .*switching=True avoids"):
         symrot.propagator(scene(0), state="ZXZ", switching=False)([1.0])
 
 

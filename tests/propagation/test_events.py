@@ -1,4 +1,6 @@
-"""Events against closed forms: zeros to the last bits, touches told from crossings, close pairs, ends of a motion."""
+"""Events agree with closed forms: zeros to the last bits, touches distinguished from crossings, close pairs, ends of
+motions.
+"""
 
 import math
 
@@ -25,7 +27,9 @@ def scene(omega=("3/8", 1, "1/2"), stop=30, **more):
 
 
 def pendulum(rate, stop=20):
-    """A body that swings about its first axis from straight down: I theta'' = -m g l sin theta, all constants one."""
+    """Return a scene of a pendulum that swings about axis 1 from straight down: I theta'' = -m g l sin theta, all
+    constants 1.
+    """
     return scene(
         (rate, 0, 0), stop, body={"principal": [1, 1, "1/2"], "about": "fixed_point"},
         torque=[{"kind": "gravity", "weight": 1, "center_of_mass": [0, 0, -1]}],
@@ -43,7 +47,9 @@ def run(found, events, method="taylor", tolerance=1e-15, **more):
 
 
 def zeros_of_sn():
-    """Times at which omega_2 of the free body is zero: u0 + lambda t = 2 k K (moments 1, 2, 3; it rises at first)."""
+    """Return the times at which the free body's omega_2 is zero: u0 + lambda t = 2 k K (moments 1, 2, 3; omega_2 rises
+    first).
+    """
     with mpmath.workdps(40):
         w = [mpmath.mpf("0.375"), mpmath.mpf(1), mpmath.mpf("0.5")]
         # omega_2' = -(A - C)/B omega_1 omega_3 with omega_1^2, omega_3^2 linear in omega_2^2: sn with these constants
@@ -65,7 +71,7 @@ def zeros_of_sn():
 
 @pytest.mark.parametrize("method, ulps", [("taylor", 12), ("dop853", 60), ("exact", 4)])
 def test_zeros_of_sn(method, ulps):
-    """The free body passes omega_2 = 0 every half period of sn; it rises at the start, so it falls at the first."""
+    """The free body's omega_2 vanishes every half period of sn; it rises at the start, so it falls at the first zero."""
     trajectory = run(scene(), ["omega_2"], method)
     exact = [t for t in zeros_of_sn() if t < 30]
     assert abs(trajectory.t_events[0] - exact).max() < ulps * ULP * 30
@@ -76,7 +82,7 @@ def test_zeros_of_sn(method, ulps):
 
 @pytest.mark.parametrize("method", ["taylor", "exact"])
 def test_turning_points_of_a_pendulum(method):
-    """omega_1 = 0 at odd multiples of K(m), m = (omega/2)^2, and the lowest point at even ones."""
+    """omega_1 = 0 at odd multiples of K(m), m = (omega/2)^2; the lowest point is at even multiples."""
     quarter = float(mpmath.ellipk(mpmath.mpf("0.5625")))  # omega = 3/2
     trajectory = run(pendulum("3/2"), ["omega_1", "q1"], method)
     count = int(20 / quarter)
@@ -93,7 +99,7 @@ def test_turning_points_of_a_pendulum(method):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_touches_are_told_from_crossings_and_from_near_misses(method):
-    """q0 = cos(t/2): its square touches zero at odd multiples of pi, moved by more than rounding it does not."""
+    """q0 = cos(t/2): q0^2 touches zero at odd multiples of pi; shifted by more than rounding, it does not."""
     motion = scene((1, 0, 0), 20, **SPIN)
     events = ["q0*q0", "q0*q0 + 1e-14", "q0*q0 - 1e-14", "q0 == 1", "q0**3"]
     trajectory = run(motion, events, method)
@@ -119,14 +125,14 @@ TOUCHES = [  # formula of t, and its zeros in [0, 20] s
 @pytest.mark.thinned(3)
 @pytest.mark.parametrize(("formula", "zeros"), TOUCHES)
 def test_a_touch_between_two_doubles_is_found(formula, zeros):
-    """No double is a multiple of pi: a touch there is only zero up to the rounding of the time. A jump is no touch."""
+    """No double is a multiple of pi, so g there is zero only up to the rounding of the time. A jump is no touch."""
     found = run(scene(stop=20, **SPIN), [formula]).t_events[0]
     assert len(found) == len(zeros) and np.allclose(found, zeros, rtol=0, atol=1e-7)
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_squares_and_sizes_of_what_crosses_zero_touch_it(method):
-    """Each zero of g is a touch of g^2, abs(g) and (2 + cos t) g^2, wherever it lies between two doubles."""
+    """At each zero of g, g^2, abs(g) and (2 + cos t) g^2 touch zero, also between two doubles."""
     for g in ("omega_2", "omega_1 - 1/3", "q1*q3", "q0*q2 - sin(3*t)/10"):
         events = [g, f"({g})**2", f"abs({g})", f"(2 + cos(t))*({g})**2"]
         crossings, *touches = run(scene(), events, method, 1e-13).t_events
@@ -136,7 +142,7 @@ def test_squares_and_sizes_of_what_crosses_zero_touch_it(method):
 
 
 def test_what_a_body_that_friction_holds_keeps_at_zero_is_one_event():
-    """omega_3 reaches zero at 6 s and stays there until 13 s."""
+    """omega_3 reaches zero at 6 s and stays zero until 13 s."""
     events = ["omega_3", "abs(omega_3)", "omega_3**2"]
     trajectory = symrot.propagate("friction_wheel", events=events)
     assert [t.tolist() for t in trajectory.t_events] == [[6.0]] * 3 and not trajectory.warnings
@@ -145,18 +151,18 @@ def test_what_a_body_that_friction_holds_keeps_at_zero_is_one_event():
 
 
 def test_a_touch_within_the_error_of_the_motion_is_reported():
-    """1 - q0^2 touches zero every 2 pi, but the motion is only known to its tolerance."""
+    """1 - q0^2 touches zero every 2 pi, though the motion is known only to its tolerance."""
     motion = scene((0, 0, 1), 20, torque=[{"kind": "expression", "torque": ["0", "0", "1e-30*sin(t)"]}], **SPIN)
     for method in ("taylor", "dop853"):
         trajectory = run(motion, ["1 - q0**2", "q3**2", "1 - q0**2 + 1e-6"], method, 1e-12)
         assert len(trajectory.t_events[0]) != 4 and len(trajectory.t_events[1]) == 4
         (sentence,) = trajectory.warnings
-        assert "'1 - q0**2' comes nearer to zero at t = 6.28318530" in sentence
+        assert "'1 - q0**2' differs from zero at t = 6.28318530" in sentence
 
 
 @pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9])
 def test_close_pairs(gap):
-    """Two zeros of omega-free formulas of t and of the motion, however close, and ten in one step."""
+    """Two zeros, however close, in formulas of t and of the motion; and ten zeros in one step."""
     trajectory = run(scene(), [f"(omega_2 - {gap!r})*omega_2", f"(t - 7)*(t - 7 - {gap!r})"])
     first, second = trajectory.t_events
     assert len(first) == 2 * len([t for t in zeros_of_sn() if t < 30]) and (np.diff(first) > 0).all()
@@ -176,7 +182,7 @@ def test_what_is_zero_all_along_or_never_is_no_event():
 
 
 def test_formulas_without_a_value_somewhere():
-    """sqrt of a negative number is no event and no error; the zero beside it is found."""
+    """The root of a negative number is neither event nor error; the zero beside it is found."""
     trajectory = run(scene(), ["sqrt(t - 5) - 1", "log(t - 40)", "abs(omega_2) - 0.2"])
     assert trajectory.t_events[0] == pytest.approx([6], abs=1e-14)
     assert len(trajectory.t_events[1]) == 0 and len(trajectory.t_events[2]) >= 10
@@ -198,7 +204,7 @@ def test_a_terminal_event_ends_the_motion(method):
 
 
 def test_directions_and_backward_motion():
-    """Directions are those of the motion as it goes: backward, what falls in time rises."""
+    """Directions follow the motion: run backward, it rises where the function falls in time."""
     both, up, down = run(
         scene(), ["omega_2", symrot.Event("omega_2", direction=1), {"formula": "omega_2", "direction": -1}]
     ).t_events
@@ -284,7 +290,7 @@ def test_zeros_at_the_edge_of_a_domain_are_no_events_but_touches_by_a_kink_are()
 @pytest.mark.parametrize("method", EVERY_METHOD)
 @pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])
 def test_no_pulse_is_so_narrow_that_it_is_missed(method, width):
-    """Two crossings within 1.7 widths of 100 s, in time; and in an angle, q3 = sin(t/2)."""
+    """Crossings 1.7 widths apart: of a pulse at t = 100 s, and of a pulse in an angle, q3 = sin(t/2)."""
     half = width * math.sqrt(math.log(2))
     for t in ([0.0, 200.0], [0.0, -200.0]):
         place = math.copysign(100.0, t[1])
@@ -312,7 +318,7 @@ def test_dense_zeros_of_exact_motions_are_counted():
 @pytest.mark.long_motion
 @pytest.mark.parametrize("formula", ["sin(1/(t - 5))", "asin(sin(t)) - t", "sin(1e8*t)"])
 def test_zeros_that_cannot_be_told_apart_end_in_a_sentence(formula):
-    """Samples and events before that time are kept."""
+    """The samples and events before that time are kept."""
     motion, sentence = scene(), r"events: expected formulas whose zeros can be separated, but beyond t"
     with pytest.raises(PropagationError, match=sentence) as stopped:
         run(motion, [formula, "t - 1e-3"], "exact", t=[0.0, 1e-3, 30.0])
@@ -338,7 +344,7 @@ def test_events_at_the_ends_and_at_samples():
 
 @pytest.mark.parametrize("count", [16, pytest.param(400, marks=pytest.mark.campaign)])
 def test_random_products_of_known_zeros(count):
-    """Factors with zeros in closed form, seeded: crossings and touches, poles, pulses, pairs, both directions."""
+    """Seeded products of factors with known zeros: crossings, touches, poles, pulses, pairs, both directions."""
     random = np.random.default_rng(20)
     for number in range(count):
         a, b = round(random.uniform(1, 9), 3), round(random.uniform(10, 19), 3)

@@ -1,4 +1,4 @@
-"""Torques that are no formulas: functions in Python and C, tables, switching times; their errors come to the surface."""
+"""Torques that are no formulas: functions in Python and C, tables, switching times; their errors reach the user."""
 
 import ctypes
 import math
@@ -29,7 +29,7 @@ def square_wave(t, omega, quaternion):
 
 
 def test_a_square_wave_restarted_at_its_jumps_is_exact():
-    """S42: constant pieces give parabolas; the declared jump costs no rejected step and no accuracy."""
+    """S42: constant pieces give parabolas; a declared jump rejects no step and costs no accuracy."""
     propagator = symrot.propagator(scene(), torque=square_wave, switching_times=[1.25], tolerance=1e-12)
     t = np.array([0.3, 1.25, 2.0, 3.0])
     trajectory = propagator(t)
@@ -43,7 +43,7 @@ def test_a_square_wave_restarted_at_its_jumps_is_exact():
 
 
 def test_a_function_acts_as_the_same_formula_does():
-    """A driven and damped heavy top: the formula in the scene, and the same as a function of time, rates and attitude."""
+    """A driven and damped heavy top: the formula in the scene acts like the same function in Python."""
     gravity = {"kind": "gravity", "weight": 1, "center_of_mass": ["1/10", "1/5", "9/10"]}
     formulas = ["sin(3*t)/4 - omega_1/10", "q0*q1", "cos(t) - q3"]
     body = {"principal": [1, "3/2", "7/10"], "about": "fixed_point"}
@@ -60,7 +60,7 @@ def test_a_function_acts_as_the_same_formula_does():
 
 
 def test_general_axes_and_components_in_space():
-    """A tensor with products; a torque of fixed direction in space, by formula and by function in either frame."""
+    """A tensor with products; a torque of fixed direction in space, as formula and as function in either frame."""
     body = {"inertia": {"xx": 3, "yy": 4, "zz": 5, "xy": "-1/2", "xz": "1/4", "yz": "-1/3"}}
     start = {"omega": ["1/2", 1, "-1/4"], "attitude": {"axis": [1, 2, 3], "angle": 1}}
     push = [{"kind": "constant_space", "torque": ["1/2", 0, "-1/4"]}]
@@ -90,7 +90,7 @@ def test_a_table_is_interpolated_and_may_jump():
 
 @pytest.mark.parametrize("formulas", [["3/10", "1/10", "-1/5"], ["3/10 - t/10", "t/5", "0"]], ids=["constant", "line"])
 def test_samples_of_one_line_take_no_steps_of_their_own(formulas):
-    """Pieces of one line, or constant, are stepped over eight samples at a time; a bend between two lines is not."""
+    """Over constant or linear pieces one step passes eight samples; at a bend between two lines a step ends."""
     free = {"omega": (0.1, 1, 0.3), "moments": (1, 2, 3)}
     known = symrot.propagate(scene(**free, torque=[{"kind": "expression", "torque": formulas}]), tolerance=1e-14)
     times = np.linspace(0, 3, 1001)
@@ -103,10 +103,10 @@ def test_samples_of_one_line_take_no_steps_of_their_own(formulas):
 
 
 def test_a_spline_far_from_its_samples_is_refused():
-    """Two samples of a jump one bit apart send the spline beside it to 1e30 N m; declared, the jump is one."""
+    """Samples of a jump one bit apart make the spline reach 1e30 N m; if the jump is declared, it is a jump."""
     samples = np.array([[0, 0, 0], [0.1, 0, 0], [-0.1, 1, 0], [0, 0, 0.1]])
     with pytest.raises(
-        InputError, match=r"expected samples that a cubic spline follows, .* between 1\.0000000000000002 and 3\.0 s"
+        InputError, match=r"expected samples that a cubic spline can follow, .* between 1\.0000000000000002 and 3\.0 s"
     ):
         symrot.propagator(scene(), torque=([0, 1, math.nextafter(1, 2), 3], samples))
     assert symrot.propagator(scene(), torque=([0, 1, 1, 3], samples), switching_times=[1])().success
@@ -115,7 +115,7 @@ def test_a_spline_far_from_its_samples_is_refused():
 
 
 def test_a_table_of_a_torque_that_grows_from_nothing_moves_a_body_at_rest():
-    """At rest, without a torque in the first moment: the first step is chosen by what it grows to."""
+    """The first step of a body at rest without a torque depends on what the torque grows to."""
     times = np.arange(-1.0, 4.0)
     for first in (0, 1):
         moved = symrot.propagator(scene(), torque=(times[first:], np.outer(times, [0, 1, 0])[first:]))()
@@ -123,7 +123,7 @@ def test_a_table_of_a_torque_that_grows_from_nothing_moves_a_body_at_rest():
 
 
 def test_a_table_that_spins_too_fast_ends_in_a_sentence(monkeypatch):
-    """1e10 N m for 3 s are 1e10 turns."""
+    """1e10 N m for 3 s make 1e10 turns."""
     table = [0, 1, 3], [[1e10, 0, 0], [0, 1e10, 0], [0, 0, 1e10]]
     monkeypatch.setattr(driven._Table, "most_steps", 100_000)
     with pytest.raises(PropagationError, match=r"beyond t = .* s: 100000 steps were not enough; the next would be"):
@@ -185,9 +185,9 @@ def test_what_the_function_raises_comes_out():
         (3, "expected a function of"),
         (([0, 1], [[1, 2, 3]]), r"samples in N m of shape \(n, 3\)"),
         (([0, 1], [[1, 2, 3], [1, 2, math.inf]]), "finite numbers"),
-        (([0, 2, 1, 3], [[1, 2, 3]] * 4), "rising times"),
-        (([0, 1, 1, 3], [[1, 2, 3]] * 4), "twice the same at switching times alone"),
-        (([0, 1], [[1, 2, 3]] * 2), r"the table covers 0.0 to 1.0 s, got the time 3.0 s"),
+        (([0, 2, 1, 3], [[1, 2, 3]] * 4), "increasing times"),
+        (([0, 1, 1, 3], [[1, 2, 3]] * 4), "only a switching time may occur twice"),
+        (([0, 1], [[1, 2, 3]] * 2), r"expected times from 0.0 to 1.0 s, the span of the table, got 3.0 s"),
     ],
 )  # fmt: skip
 def test_a_torque_that_cannot_be_used_is_refused(torque, words):

@@ -1,4 +1,4 @@
-"""The classes of motions, each abstract or final, none overriding another; and what a trajectory asks of its scene."""
+"""Each class of motions is abstract or final, and overrides nothing concrete; and what a trajectory needs of its scene."""
 
 import inspect
 from abc import ABC, abstractmethod
@@ -25,7 +25,9 @@ def descendants(base):
 
 
 def faults(base):
-    """Return in words where a hierarchy is not made of abstract and final classes that override nothing concrete."""
+    """Return the faults of a hierarchy: classes neither abstract nor final, subclasses of final ones, overridden
+    members.
+    """
     listed = []
     for each in descendants(base):
         name, is_final = each.__name__, getattr(each, "__final__", False)
@@ -72,7 +74,7 @@ def test_other_hierarchies_are_seen(fault):
 
 
 def test_each_motion_runs_the_constructor_of_its_base():
-    """What the base holds, every motion holds: the setup and the plan that its own properties read."""
+    """So every motion holds the setup and the plan that properties of the base class read."""
     for each in FINAL:
         constructor = vars(each).get("__init__")
         assert constructor is None or "super().__init__(" in inspect.getsource(constructor), each.__name__

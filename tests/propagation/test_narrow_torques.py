@@ -1,7 +1,7 @@
-"""Torques with narrow features, in time and in the states: no step passes over them, and dense output agrees.
+"""Torques with narrow features, in time and in the states: no step passes over a feature, and dense output agrees.
 
-Momentum gives omega under a torque of time about the axis of rotation; work gives it under a torque of the angle. The
-bodies that tumble are followed by the reference of the campaign, which is told where the features are.
+A torque of time about the axis of rotation changes omega by its impulse, a torque of the angle by its work. Tumbling
+bodies are compared with the campaign's reference, which is told where the features are.
 """
 
 from math import cos, cosh, erf, exp, log, pi, sqrt
@@ -30,7 +30,7 @@ def scene(torque, parameters=None, omega=(0, 0, 0), stop=4.0, moments=(1, 2, 3))
 
 
 def rates(trajectory, times):
-    """omega_3 at the samples and, by dense output, at more times: the times and the rates."""
+    """Return the times and omega_3 at the samples, with more times from dense output."""
     dense = np.sort(np.random.default_rng(5).uniform(times[0], times[-1], 200))
     return np.concatenate([trajectory.t, dense]), np.concatenate([trajectory.omega[:, 2], trajectory.sol(dense)[2]])
 
@@ -70,9 +70,9 @@ IMPULSES = {  # torque of t, c and w -> its integral from 0
     ],
 )
 def test_the_momentum_is_the_impulse_of_a_torque_of_time(method, torque, start, c, w, stop, tolerance):
-    """3 (omega_3 - start) is the integral of the torque, at samples and by dense output.
+    """3 (omega_3 - start) is the integral of the torque, at samples and in dense output.
 
-    The torque is scaled to an impulse of 3 N m s, relative to which the tolerance is meant.
+    The torque is scaled to an impulse of 3 N m s, since the tolerance is relative to this size.
     """
     impulse = IMPULSES[torque]
     grid = np.linspace(0, stop, 10001)
@@ -98,7 +98,7 @@ def in_angles(made, method, stop):
 
 @pytest.mark.parametrize("method", STEPPED)
 def test_dense_output_reaches_the_last_sample(method):
-    """Though the end of the last step, as a sum of two doubles, is not where that sample is."""
+    """It does although the end of the last step, a sum of two doubles, differs from the time of that sample."""
     made = symrot.Scene.from_dict({
         "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": [0, 0, 0]}, "span": {"t": ["-41.01", -40]},
         "torque": [{"kind": "expression", "torque": ["0", "0", "1000/cosh((t + 43.091)*1000)**2"]}],
@@ -112,7 +112,7 @@ def test_dense_output_reaches_the_last_sample(method):
 @pytest.mark.parametrize("number", ["m", "1e11"])
 @pytest.mark.parametrize("large", ["1 + tanh((t-2)*1000)", "tanh((t-2)*1000) - tanh((t-3)*1000)"])
 def test_a_large_torque_that_is_zero_leaves_no_rounding(method, large, number):
-    """Written out, ``m + m*tanh(u) + ...`` would leave the rounding of m, 1e-5 N m, from the start on."""
+    """Expanded, ``m + m*tanh(u) + ...`` would leave 1e-5 N m, the rounding error of m, from the start on."""
     small = "(1 + tanh((t-1/2)*10))/3"
     known = {"m": 10**11} if number == "m" else {}
     made = scene(f"{number}*({large}) - {small}", known, (0, 0, 0), 1.0, (1, 1, 1))
@@ -133,7 +133,7 @@ SCIPY = ("scipy:DOP853", "scipy:RK45", "scipy:Radau", "scipy:BDF", "scipy:LSODA"
     ],
 )
 def test_a_pulse_too_narrow_for_the_digits_of_the_time_keeps_its_impulse(method, follow, switch):
-    """A microsecond wide at 2.1 s: where times are kept to 4e-16 s, the impulse would be off by 1e-9 of it."""
+    """A microsecond wide at 2.1 s, where times rounded to 4e-16 s would lose 1e-9 of the impulse."""
     made = scene(f"1e6*exp(-((t - c)*1e6)**2){switch}", {"c": "21/10"}, (0, 0, 0), 3.0, (1, 1, 1))
     truth = sqrt(pi) + (2.75 / 10 if switch else 0)
     assert abs(follow(made, method, 3.0) - truth) < ALLOWED * 1e-12 * truth
@@ -189,7 +189,7 @@ def test_a_tumbling_body_meets_every_pulse(method, omega, torque, parameters, fe
 @pytest.mark.parametrize("method", STEPPED)
 @pytest.mark.parametrize("w", [0.03, 0.003, 0.001, 0.0001])
 def test_a_bump_of_the_angle_does_its_work(method, w):
-    """C (omega^2 - 4)/2 is the work of m*exp(-((angle - c)/w)^2), wherever the body is; every angle is below a turn."""
+    """C (omega^2 - 4)/2 is the work of m*exp(-((angle - c)/w)^2) at every angle below a full turn."""
     c, m = 1.3, 0.3 * 4 / w
     made = scene("m*exp(-((2*atan2(q3, q0)-c)/w)**2)", {"c": c, "w": w, "m": m}, (0, 0, 2), 1.4)
     times = np.random.default_rng(2).uniform(0, 1.4, 40)
@@ -204,7 +204,7 @@ def test_a_bump_of_the_angle_does_its_work(method, w):
 
 @pytest.mark.parametrize("method", STEPPED)
 def test_a_soft_stop_sends_the_body_back(method):
-    """A torque of the angle alone that turns the body round gives back its rate."""
+    """A torque that depends on the angle alone stops the body and gives its rate back."""
     text = "-m*(1+tanh((2*atan2(q3, q0)-c)/w))/2"
     made = scene(text, {"c": 1.0, "w": 1e-3, "m": 400.0}, (0, 0, 2), 0.9)
     last = symrot.propagator(made, method, 1e-10)([0.0, 0.9])
@@ -227,7 +227,7 @@ def test_an_ensemble_meets_the_pulse(method):
 @pytest.mark.parametrize("method", ("taylor", "dop853"))
 @pytest.mark.parametrize("torque", ["exp(t**3)", "exp(exp(t))", "cosh(100*t)", "1/(t-1/3)**3"])
 def test_overflow_and_poles_end_in_a_sentence(torque, method):
-    """Every method says how far it came, after a number of steps that only a run without an end exceeds."""
+    """Every method says how far it came, within the default limit of steps."""
     with pytest.raises(PropagationError, match=r"beyond t = [0-9.]+ s on the way to 20\.0 s"):
         symrot.propagator(scene(torque, stop=20.0), method, 1e-10)([20.0])
 
@@ -251,7 +251,7 @@ ROOTS_OF_SQUARES = [  # torque, and its integral over [0, 10] s
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 @pytest.mark.parametrize(("torque", "impulse"), ROOTS_OF_SQUARES)
 def test_no_step_goes_past_the_bend_of_a_root(torque, impulse, tolerance, method):
-    """sqrt(u^2) is abs(u), which bends where u = 0, however the square is written."""
+    """sqrt(u^2) is abs(u), which bends at u = 0, however the square is written."""
     made = symrot.Scene.from_dict({
         "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": [0, 0, 1]}, "span": {"t": [0, 10]},
         "torque": [{"kind": "expression", "torque": ["0", "0", torque]}],
@@ -292,14 +292,14 @@ SIZES_OF_SWITCHES = {  # torque, and its integral over [0, 6] s
 @pytest.mark.parametrize("method", ["auto", "scipy:DOP853"])
 @pytest.mark.parametrize("torque", SIZES_OF_SWITCHES)
 def test_functions_of_what_jumps(torque, method):
-    """Values that only occur between two switches of the same instant, such as sqrt(0.5 - 1), do no harm."""
+    """Values that occur only between two switches at the same instant, such as sqrt(0.5 - 1), do no harm."""
     omega = symrot.propagator(scene(torque, stop=6, moments=(1, 1, 1)), method, 1e-10)([0.0, 6.0]).omega[-1][2]
     assert abs(omega - SIZES_OF_SWITCHES[torque]) < ALLOWED * 1e-10
 
 
 @pytest.mark.parametrize("method", ["auto", "scipy:DOP853"])
 def test_samples_before_a_torque_loses_its_value_are_kept(method):
-    """log(-sign(t - 1)) is 0 before 1 s, and has no value after it."""
+    """log(-sign(t - 1)) is 0 before 1 s and has no value after that."""
     with pytest.raises(
         symrot.PropagationError, match=r"beyond t = 1\.0 s .* its rate of change is not finite there"
     ) as ended:
@@ -309,13 +309,13 @@ def test_samples_before_a_torque_loses_its_value_are_kept(method):
 
 @pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
 def test_a_jump_in_the_last_bits_of_the_end_ends_the_motion(method):
-    """mod(1e5 t, 1) jumps at 2 ms, of which the double is a little more."""
+    """mod(1e5 t, 1) jumps at 2 ms, and the double next to 2 ms is a little larger."""
     trajectory = symrot.propagator(scene("3*mod(1e5*t, 1)", stop=0.002), method, 1e-9)([0.0, 0.002])
     assert abs(trajectory.omega[-1][2] - 0.001) < ALLOWED * 1e-9
 
 
 def test_the_bend_of_a_root_of_a_rate_is_not_passed_over():
-    """omega_1 = t - 5: the hat of width 0.002 around omega_1 = 0.3 has an integral of 0.001."""
+    """omega_1 = t - 5; the integral of the hat of width 0.002 around omega_1 = 0.3 is 0.001."""
     hat = "(sqrt((omega_1-0.301)**2) + sqrt((omega_1-0.299)**2) - 2*sqrt((omega_1-0.3)**2))/0.002"
     made = symrot.Scene.from_dict({
         "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": [-5, 0, 1]}, "span": {"t": [0, 10]},
@@ -330,7 +330,7 @@ def test_the_bend_of_a_root_of_a_rate_is_not_passed_over():
 @pytest.mark.parametrize("method", STEPPED)
 @pytest.mark.parametrize("torque", ["step(t-c)", "(1+sign(t-c))/2", "where(t < c, 0, 1)", "(1+(t-c)/abs(t-c))/2"])
 def test_a_switch_is_located_to_the_last_bits(method, torque):
-    """omega_3 is (t - c)/3 behind the switch, to rounding of the tolerance 1e-12."""
+    """After the switch at c, omega_3 is (t - c)/3, to rounding of the tolerance 1e-12."""
     c = 1.2345678901234567
     times = [0.0, 4.0]
     t, omega = rates(symrot.propagator(scene(torque, {"c": c}), method, 1e-12)(times), times)
@@ -341,7 +341,7 @@ def test_a_switch_is_located_to_the_last_bits(method, torque):
 @pytest.mark.parametrize("count", [100, pytest.param(1000, marks=pytest.mark.campaign)])
 @pytest.mark.parametrize("method", STEPPED)
 def test_a_thruster_fires_hundreds_of_times(method, count):
-    """Pulses of 10 ms, one each second: the momentum is m times 10 ms times their number."""
+    """Pulses of 10 ms, one each second: the momentum is their number times m times 10 ms."""
     made = scene("where(mod(t, 1) < 0.01, m, 0)", {"m": 0.3}, stop=float(count))
     t, omega = rates(symrot.propagator(made, method, 1e-10)([0.0, float(count)]), [0, count])
     on = np.floor(t) * 0.01 + np.minimum(t - np.floor(t), 0.01)
@@ -350,7 +350,7 @@ def test_a_thruster_fires_hundreds_of_times(method, count):
 
 @pytest.mark.parametrize("method", STEPPED)
 def test_dry_friction_stops_and_holds_the_body(method):
-    """-sign(omega_3) stops a body with C = 3 that turns at 1 rad/s after 3 s, and 3/2 rad."""
+    """-sign(omega_3) stops a body with C = 3 and 1 rad/s after 3 s and 3/2 rad."""
     trajectory = symrot.propagator(scene("-sign(omega_3)", None, (0, 0, 1), 10.0), method, 1e-10)(
         np.linspace(0, 10, 11)
     )
@@ -365,7 +365,7 @@ def test_a_motion_that_breaks_off_says_when():
 
 
 def test_the_closed_forms_are_integrals_of_the_torques():
-    """Each antiderivative of this file, by Gauss's rule on pieces of a width."""
+    """Each antiderivative of this file agrees with Gauss's rule on pieces one width long."""
     x, weights = np.polynomial.legendre.leggauss(30)
     c, w = 1.1, 0.07
     edges = np.arange(0, 3, w / 2)
@@ -377,6 +377,8 @@ def test_the_closed_forms_are_integrals_of_the_torques():
 
 
 def test_a_bend_that_only_sympy_sees_is_refused():
-    """exp(log(u^2)/2) is abs(u), which no step may pass in silence."""
-    with pytest.raises(symrot.InputError, match=r"torque: expected abs where a formula bends, .* of abs\(t - 5\)"):
+    """exp(log(u^2)/2) is abs(u); no step may pass its bend unnoticed."""
+    with pytest.raises(
+        symrot.InputError, match=r"torque: expected abs to be written .* contains abs\(t - 5\) implicitly"
+    ):
         symrot.propagate(scene("exp(-1000*exp(log((t - 5)**2)/2))", stop=10))

@@ -1,4 +1,4 @@
-"""Motions as polynomials: rows of steppers agree with their dense output, fits follow a function to rounding."""
+"""Motions as polynomials: rows of steppers agree with their dense output, and fits follow a function to rounding."""
 
 import signal
 
@@ -13,7 +13,7 @@ from tests.propagation.test_events import run, scene
 
 
 def value(row, t, count):
-    """The states of a row at a time, shape (count,)."""
+    """Return the states that a row gives at a time, shape (count,)."""
     terms = row[HEAD:].reshape(-1, count)
     return ((((t - row[0]) - row[2]) / row[3]) ** np.arange(len(terms))) @ terms
 
@@ -49,7 +49,7 @@ def test_fits_follow_a_motion_to_rounding_and_are_cut_where_it_is_steep():
 
 
 def test_what_polynomials_cannot_follow_is_refused():
-    with pytest.raises(PropagationError, match="expected a motion that polynomials can follow"):
+    with pytest.raises(PropagationError, match="expected a motion that piecewise polynomials can approximate"):
         fitted(lambda t: np.sign(t - 0.3)[:, None], np.array([0.0, 1.0]), [0, 1], [1.0])
 
 
@@ -57,7 +57,7 @@ def test_what_polynomials_cannot_follow_is_refused():
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # from a finaliser
 @pytest.mark.parametrize("method", ["exact", "taylor"])
 def test_an_interrupt_ends_a_search(method):
-    """It is seen between calls of the library, none of which is long; the search would end in a sentence."""
+    """The search checks for Ctrl-C between short calls of the library; uninterrupted, it would end with a message."""
 
     class Interrupt(BaseException):
         pass

@@ -1,4 +1,4 @@
-"""Long motions tell how far they have come, by the whole span; the line of a terminal stays one line."""
+"""Long motions tell how much of the whole span they have followed; the line on a terminal stays one line."""
 
 import os
 import sys
@@ -32,7 +32,7 @@ def scene(formula, stop):
      ("pulses", "dop853"), ("friction", "dop853"), ("friction", "scipy:DOP853")],
 )  # fmt: skip
 def test_progress_is_of_the_whole_span(name, method):
-    """Also where the motion is followed from switch to switch, or window by window."""
+    """This holds also where the motion goes from switch to switch, or window by window."""
     heard: list[tuple[float, float, float]] = []
     stop = 30000 if name == "smooth" and method != "scipy:DOP853" else 3 if name == "friction" else 30
     with reporting(lambda *given: heard.append(given)):
@@ -71,7 +71,7 @@ class Terminal:
 
 
 def test_a_line_of_progress_is_cut_to_the_width_of_the_terminal(monkeypatch):
-    """A longer one would go on below, where the next one does not clear it."""
+    """A longer line would wrap, and the next line would not clear the rest."""
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
     monkeypatch.setattr(os, "get_terminal_size", lambda number: os.terminal_size((40, 24)))

@@ -1,4 +1,4 @@
-"""The Taylor stepper on the invariants of its motion: found exactly, restored, and never made worse."""
+"""The Taylor stepper keeps the invariants of its motion: they are found exactly, restored, and never made worse."""
 
 import math
 from fractions import Fraction
@@ -27,7 +27,7 @@ GRAVITY = {"kind": "gravity", "weight": 1, "center_of_mass": ["1/10", "1/5", "9/
 
 
 class Body:
-    """A scene's stepper, with its invariants."""
+    """A scene's stepper with its invariants."""
 
     def __init__(self, omega, moments=(1, 2, 3), torque=(), **more):
         body = {"principal": list(moments), **({"about": "fixed_point"} if torque else {})}
@@ -46,7 +46,7 @@ class Body:
         return taylor.integration(self.path, self.p, self.start, 0.0, tolerance, **more).sample([t])[0][0]
 
     def drift(self, state):
-        """The largest change of an invariant that is kept, exactly."""
+        """Return the largest change of a kept invariant, computed exactly."""
         values = {name: Fraction(v) for (name, _), v in zip(self.kernel.quantity_parameters, bind(
             self.kernel.quantity_parameters, self.plan.constants), strict=True)}  # fmt: skip
         outputs = [item.output for item in self.kernel.conserved if item.holds]
@@ -81,7 +81,7 @@ FORMULAS = {
 
 
 def test_invariants_hold_32_digits_and_their_gradients_16():
-    """Against 50 digits; an invariant with a sine is left out."""
+    """Both agree with 50 digits; an invariant that contains a sine is left out."""
     given = quantities({**FORMULAS, "f": "sin(x)"})
     assert projectable(given, [*FORMULAS, "f"]) == list(FORMULAS)
     text = invariant_definitions(given, [*FORMULAS, "f"], ("x", "y"), ("k",))
@@ -128,7 +128,7 @@ def test_invariants_hold_32_digits_and_their_gradients_16():
     ids=["free", "heavy top", "gyrostat"],
 )
 def test_what_is_kept_stays_within_round_off(body):
-    """A thousand seconds: nothing drifts beyond the last bits of the states; without projection it does."""
+    """In 1000 s no invariant drifts beyond the last bits of the states; without projection they do."""
     body = Body(**body)
     size = np.abs(body.start).max()
     assert body.drift(body.at(1000.0)) < 6 * 2.0**-52 * size**2
@@ -138,7 +138,7 @@ def test_what_is_kept_stays_within_round_off(body):
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-15])
 @pytest.mark.parametrize("omega", [["3/10", 1, "1/2"], ["1e-9", "1e-9", 1], ["1e-6", 1, "1e-6"]], ids=str)
 def test_projection_never_makes_it_worse(monkeypatch, tolerance, omega):
-    """S29, S12: often, at every tolerance, about steady and unstable axes too; energy and momentum end no worse."""
+    """S29, S12: projected often, at every tolerance, about unstable axes too: energy and momentum end no worse."""
     monkeypatch.setattr(taylor, "PROJECTED_EVERY", 4)
     body = Body(omega)
     on, off = body.at(300.0, tolerance), body.at(300.0, tolerance, project=False)
@@ -148,7 +148,7 @@ def test_projection_never_makes_it_worse(monkeypatch, tolerance, omega):
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-12])
 def test_projected_motions_are_ten_times_as_good(tolerance):
-    """A hundred and eighty revolutions: errors of the invariants make a motion run ahead, ever faster; nothing else does."""
+    """After 180 revolutions: errors of the invariants make the motion run ahead ever faster, and only they do."""
     body = Body(["3/10", 1, "1/2"])
     best = body.at(1000.0, 1e-15)
     on, off = (np.abs(body.at(1000.0, tolerance, project=project) - best).max() for project in (True, False))
@@ -165,14 +165,14 @@ def test_motions_of_which_nothing_is_right_are_refused_ever_more_seldom():
 
 
 def test_a_thousand_revolutions_against_the_exact_motion():
-    """Energy to its last bits, attitude better than without projection by far; the command takes this to 1e6."""
+    """The energy keeps its last bits, and the attitude is far better than without projection; the command goes to 1e6."""
     found = long.measure(long.STATES[0], 3000)
     assert found["taylor, projected"][0] < 3e-16 and found["taylor, projected"][1] < 3e-13
     assert found["taylor, plain"][1] > 5 * found["taylor, projected"][1]
 
 
 def test_the_norm_that_was_given_is_kept_when_it_is_not_one():
-    """A quaternion of another norm is the caller's own business: it is not forced to one."""
+    """The stepper keeps the norm of the quaternion that the caller gave, even if it is not 1."""
     body = Body(["3/10", 1, "1/2"])
     body.start[3:] = [2 * q for q in body.start[3:]]
     assert math.isclose(np.linalg.norm(body.at(20.0)[3:]), 2.0, rel_tol=1e-15)

@@ -1,4 +1,4 @@
-"""Arrays that NumPy reads as numbers although they are none: dates, complex numbers, true and false, objects, text."""
+"""Arrays that NumPy converts to numbers although they hold none: dates, complex numbers, true and false, objects, text."""
 
 from datetime import datetime
 from fractions import Fraction
@@ -22,7 +22,7 @@ WRONG = {
 
 @pytest.mark.parametrize("kind", WRONG)
 def test_times_that_are_no_real_numbers_are_refused(kind):
-    """One sentence, with what to write instead, from a propagator and from an ensemble."""
+    """A propagator and an ensemble refuse them with one sentence that says what to write instead."""
     with pytest.raises(InputError, match=r"^t: expected an array of times in s, got an array of type \S+; write "):
         symrot.propagator("tumbling_prism")(WRONG[kind])
     with pytest.raises(InputError, match=r"^t: expected times in s, got an array of type \S+; write "):

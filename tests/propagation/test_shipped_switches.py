@@ -1,4 +1,4 @@
-"""The shipped scenes with switches: closed forms of two of them, a law written by hand for the third."""
+"""The shipped scenes with switches: two agree with closed forms, the third with a law written by hand."""
 
 import math
 from itertools import pairwise
@@ -15,7 +15,7 @@ METHODS = ["taylor", "dop853"]
 
 
 def momentum(t):
-    """Angular velocity and angle of the wheel: k = 1/4 N m, C = 1/20 kg m^2, 30 rad/s, a motor of (t - 8)/20 N m."""
+    """Return the wheel's angular velocity and angle: k = 1/4 N m, C = 1/20 kg m^2, 30 rad/s, a motor of (t - 8)/20 N m."""
     slowing, loose = np.minimum(t, 6.0), np.maximum(t - 13.0, 0.0)
     omega = 30.0 - 5.0 * slowing + loose**2 / 2.0
     return omega, 30.0 * slowing - 5.0 * slowing**2 / 2.0 + loose**3 / 6.0
@@ -38,7 +38,7 @@ def test_the_wheel_stops_rests_and_breaks_loose_as_the_closed_form_does(method):
 @needs_compiler
 @pytest.mark.parametrize("method", METHODS)
 def test_each_pulse_of_the_thruster_spins_the_satellite_up(method):
-    """Axis 3 gains m 0.01/C a pulse; the transverse rates turn by (C - A)/A times the angle about axis 3."""
+    """Each pulse adds m 0.01/C about axis 3; the other rates turn by (C - A)/A times the angle about axis 3."""
     motion = symrot.propagate("thruster_train", method=method)
     t, pulses, into = motion.t, np.floor(motion.t), motion.t - np.floor(motion.t)
     into, rate = np.where(np.isclose(into, 1.0, atol=1e-9), 1.0, into), 4.0 / 8.0
@@ -52,7 +52,7 @@ def test_each_pulse_of_the_thruster_spins_the_satellite_up(method):
 
 
 def law(t, y, failed):
-    """Euler's equations, quaternion rates and the PD law of the quadcopter, by hand."""
+    """Return the rates of the state: Euler's equations, quaternion rates and the quadcopter's PD law, written by hand."""
     omega, q = y[:3], y[3:]
     low = np.array([0.6, 0.6, 0.05])
     torque = np.clip(-3.0 * q[1:] * np.sign(q[0]) - 0.1 * omega, -low, low) + failed * np.array([0.7, -0.7, 0.0])
@@ -64,7 +64,7 @@ def law(t, y, failed):
 
 @needs_compiler
 def test_the_quadcopter_follows_the_law_written_by_hand():
-    """From one switching time to the next; a time that is off by 1e-9 s would leave a jump inside a step."""
+    """The reference restarts at each switching time; a time off by 1e-9 s would leave a jump inside a step."""
     motion = symrot.propagate("quadcopter_motor_failure")
     ends = [0.0, *motion.stats.switching_times, 2.0]
     assert 0.5 in ends and len(ends) > 20

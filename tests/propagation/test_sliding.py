@@ -1,7 +1,7 @@
-"""Sliding along switches: the rates are a mixture of those on both sides (Filippov), or one sentence says why not.
+"""Sliding along switches: the rates mix the rates of both sides (Filippov), or one sentence says why they cannot.
 
-``omega_1' = 0.2 - 0.5 sign(omega_1)`` holds omega_1 at zero: the sides +1 and -1 have the shares 0.7 and 0.3. Another
-formula of the same switch then has the mean of its values on both sides, with these shares.
+``omega_1' = 0.2 - 0.5 sign(omega_1)`` holds omega_1 at zero: the sides +1 and -1 have the shares 0.7 and 0.3. Any other
+formula of the same switch then takes the mean of its values on both sides, with these shares.
 """
 
 import re
@@ -50,7 +50,7 @@ def test_formulas_of_the_switch_have_the_mean_of_both_sides(torque, above, below
 
 
 def test_a_switch_that_brakes_by_its_square_slides():
-    """0.2 - 0.5 s - 0.1 s^2 is -0.4 above and 0.6 below: shares 0.6 and 0.4, mean of s 0.2."""
+    """0.2 - 0.5 s - 0.1 s^2 is -0.4 for s = 1 and 0.6 for s = -1: shares 0.6 and 0.4, mean of s 0.2."""
     made = scene("1/5 - sign(omega_1)/2 - sign(omega_1)**2/10", "sign(omega_1)")
     assert abs(symrot.propagator(made, "auto", 1e-10)([0, 5]).omega[-1][1] - 1.0) < 20 * 1e-10
 
@@ -94,14 +94,14 @@ RESTING = [  # torque about the second axis, and its value where omega_1 = 0
 @pytest.mark.parametrize("method", ["auto", "scipy:DOP853"])
 @pytest.mark.parametrize(("torque", "value"), RESTING)
 def test_a_body_at_rest_has_the_values_at_zero(torque, value, method):
-    """No torque pulls, so that sign(0) = 0 holds: there is nothing to mix."""
+    """Without a torque sign(0) = 0 holds: the sides are not mixed."""
     omega = symrot.propagator(scene("-sign(omega_1)/10", torque), method, 1e-10)([0, 5]).omega[-1]
     assert omega[0] == 0.0 and abs(omega[1] - 5 * value) < 20 * 1e-10
 
 
 @pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
 def test_rest_ends_where_a_torque_begins_to_pull(method):
-    """At rest until 3 s; held until 5 s, with s from 0 to 1; then free."""
+    """The body rests without torque until 3 s, is held until 5 s while s goes from 0 to 1, then moves freely."""
     made = scene("-sign(omega_1)/10 + max(0, t - 3)/20", "sign(omega_1)**2 + step(omega_1)", stop=10)
     omega = symrot.propagator(made, method, 1e-10)([0, 10]).omega[-1]
     assert abs(omega[1] - (2 * (1 + 3 / 4) + 5 * 2)) < 20 * 1e-10
@@ -110,7 +110,7 @@ def test_rest_ends_where_a_torque_begins_to_pull(method):
 
 @pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
 def test_a_torque_too_small_for_a_double_is_no_rest(method):
-    """The pulse is zero at no time, though exp(-250000) is no double: both sides are mixed all along."""
+    """The pulse is never zero, though exp(-250000) underflows: both sides are mixed throughout."""
     made = scene("-sign(omega_1)/10 + exp(-((t - 5)/0.01)**2)/20", "sign(omega_1)**2", stop=10)
     assert abs(symrot.propagator(made, method, 1e-9)([0, 10]).omega[-1][1] - 10) < 20 * 1e-8
 
@@ -136,7 +136,7 @@ SEVERAL_AT_ONCE = [  # torques of functions that are all at their switches at th
 @pytest.mark.parametrize("method", ["auto", "scipy:DOP853"])
 @pytest.mark.parametrize(("frame", "torque", "simpler", "omega"), SEVERAL_AT_ONCE)
 def test_functions_that_switch_together_settle_in_any_order(frame, torque, simpler, omega, method):
-    """While some have not changed yet, others may change and change back; that is no sliding."""
+    """While some functions have not switched yet, others may switch and switch back; this is no sliding."""
     ends = [
         symrot.propagator(scene(*each, omega=omega, frame=frame), method, 1e-10)([0, 2]).omega[-1]
         for each in (torque, simpler)
@@ -156,7 +156,7 @@ AWAY = [  # torque, angular velocity at the start, and when motions beside the s
 @pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
 @pytest.mark.parametrize(("torque", "frame", "omega", "end"), AWAY)
 def test_a_motion_does_not_slide_where_others_lead_away(torque, frame, omega, end, method):
-    """There the least error decides to which side the body goes."""
+    """Where motions on both sides lead away, the smallest error decides to which side the body goes."""
     with pytest.raises(PropagationError, match=r"lead away|as it does before a singularity") as ended:
         symrot.propagator(scene(*torque, omega=omega, frame=frame, stop=10), method, 1e-9)([0, 10])
     at = float(re.search(r"beyond t = ([0-9.]+) s", str(ended.value))[1])

@@ -1,4 +1,6 @@
-"""The list of stress tests: complete, the quick ones met, wrong figures seen. All of it: ``python -m tests.reference.stress``."""
+"""The list of stress tests is complete, the quick ones meet their bars, and wrong figures are noticed. All: ``python -m
+tests.reference.stress``.
+"""
 
 import json
 import math

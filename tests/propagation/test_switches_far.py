@@ -1,4 +1,6 @@
-"""Switches far from t = 0, where doubles lie far apart: located to twice their digits, and followed from there."""
+"""Switches far from t = 0, where doubles lie far apart, are located to twice the digits of a double, and motions go on
+from there.
+"""
 
 from fractions import Fraction
 
@@ -25,18 +27,18 @@ def scene(torque, start, stop, tolerance=1e-12, omega="1/10"):
 
 
 def ramp(t, start):
-    """The impulse of step(t - start - 3/10)."""
+    """Return the impulse of step(t - start - 3/10)."""
     return max(t - start - THIRD, Fraction(0))
 
 
 def saw(t, start):
-    """The impulse of mod(t, 3/10), up to a constant."""
+    """Return the impulse of mod(t, 3/10), up to a constant."""
     whole = t // THIRD
     return whole * THIRD**2 / 2 + (t - whole * THIRD) ** 2 / 2
 
 
 def waves(t, start):
-    """The impulse of sign(sin(t)): what remains of whole half waves alternates."""
+    """Return the impulse of sign(sin(t)): in each half wave it rises or falls by turns."""
     with mpmath.workdps(50):
         time = mpmath.mpf(t.numerator) / t.denominator
         half = mpmath.floor(time / mpmath.pi)
@@ -65,7 +67,7 @@ def test_the_momentum_is_the_impulse_however_late_it_is(method, torque, impulse,
 @needs_compiler
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
 def test_a_short_pulse_after_a_long_rest_has_its_impulse(method):
-    """A millisecond after 1e6 s: its ends are known to more than the 1e-10 s by which doubles lie apart there."""
+    """A millisecond after 1e6 s, where doubles lie 1e-10 s apart; the ends of the pulse are known better than that."""
     pulse = "step(t-1000000-1/3) - step(t-1000000-1/3-1/1000)"
     motion = symrot.propagator(scene(pulse, 0, 1_000_001, omega=0), method)
     assert motion([1_000_001]).omega[-1, 2] == pytest.approx(1e-3 / 3, rel=2e-11)
@@ -73,7 +75,7 @@ def test_a_short_pulse_after_a_long_rest_has_its_impulse(method):
 
 @needs_compiler
 def test_a_sample_at_the_double_next_to_a_switch_is_on_its_own_side():
-    """The switch lies between two doubles; the samples at both are right, and so is what lies between more of them."""
+    """The switch lies between two doubles: samples at both are right, and dense output around them is too."""
     start = 10**9
     trajectory = symrot.propagator(scene(f"1000*step(t-{start}-3/10)", start, start + 1), "taylor")
     near = float(start) + 0.3
@@ -86,7 +88,7 @@ def test_a_sample_at_the_double_next_to_a_switch_is_on_its_own_side():
 
 @needs_compiler
 def test_events_between_switches_far_from_zero_are_found():
-    """omega_3 = 1/10 + (t - t0)^2/6 on the first tooth of the saw, and on."""
+    """omega_3 = 1/10 + (t - t0)^2/6 on the first tooth of the saw; later teeth follow."""
     start = 3 * 10**8
     trajectory = symrot.propagate(
         scene("mod(t, 3/10)", start, start + 1), method="taylor", events=["omega_3 - 0.11", "t - 300000000.5"]

@@ -1,4 +1,4 @@
-"""The coefficients of DOP853 satisfy the order conditions of Runge-Kutta theory, all of them, to every printed digit.
+"""The coefficients of DOP853 satisfy all order conditions of Runge-Kutta theory to every printed digit.
 
 Rooted trees: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.2 and II.6.
 """
@@ -23,7 +23,7 @@ Tree = tuple  # of its branches, each a tree; the single vertex is ()
 
 @cache
 def trees(order: int) -> tuple[Tree, ...]:
-    """Return all rooted trees with so many vertices."""
+    """Return all rooted trees with ``order`` vertices."""
     return tuple(sorted({tuple(sorted(forest)) for forest in _forests(order - 1, order - 1)}))
 
 
@@ -55,7 +55,9 @@ def rows() -> list[dict[int, Decimal]]:
 
 
 def elementary(tree: Tree, table: list[dict[int, Decimal]], memory: dict[Tree, list[Decimal]]) -> list[Decimal]:
-    """Return, per stage, the product over the branches of the sums of their own."""
+    """Return a tree's elementary weight in each stage: the product, over its branches, of their weights summed by the
+    table.
+    """
     if tree not in memory:
         branches = [elementary(branch, table, memory) for branch in tree]
         sums = [[sum((a * weights[j] for j, a in row.items()), Decimal(0)) for row in table] for weights in branches]
@@ -64,7 +66,7 @@ def elementary(tree: Tree, table: list[dict[int, Decimal]], memory: dict[Tree, l
 
 
 def defects(weights: dict[int, Decimal], order: int, theta: Decimal = Decimal(1), table=None) -> list[Decimal]:
-    """Return sum b_i Phi_i - theta^order / gamma of every tree of one order."""
+    """Return sum b_i Phi_i - theta^order / gamma for every tree of one order."""
     table, memory = table or rows(), {}
     return [
         sum(b * elementary(tree, table, memory)[i] for i, b in weights.items()) - theta**order / density(tree)
@@ -115,7 +117,7 @@ def test_the_embedded_solutions_have_their_order_and_no_more(weights, order):
 
 
 def dense_weights(theta: Decimal) -> dict[int, Decimal]:
-    """Return b_i(theta) of the dense output, as dop853.c combines its terms."""
+    """Return the weights b_i(theta) of the dense output, combined as in dop853.c."""
     step, first, last = numbers(tableau.WEIGHTS), {0: Decimal(1)}, {12: Decimal(1)}
     bend = _combined((1, first), (-1, step))
     terms = [step, bend, _combined((1, step), (-1, last), (-1, bend))]
@@ -138,7 +140,7 @@ def test_the_dense_output_has_order_7_throughout_the_step(theta):
 
 
 def test_the_coefficients_are_those_of_scipy():
-    """SciPy types them anew; both round to the same doubles."""
+    """SciPy's coefficients were typed independently; both round to the same doubles."""
     from scipy.integrate._ivp import dop853_coefficients as scipy
 
     def filled(coefficients, length):

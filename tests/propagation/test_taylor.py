@@ -1,4 +1,4 @@
-"""The Taylor stepper keeps its promise: coefficients, accuracy, sampling, direction, scales, limits."""
+"""The Taylor stepper keeps its promises: coefficients, accuracy, sampling, direction, scales, limits."""
 
 import math
 import shutil
@@ -36,7 +36,9 @@ MATH = {name: getattr(math, name) for name in FUNCTIONS if name != "abs"}
 
 
 def rigid_body_program():
-    """Return a heavy body about a fixed point: moments a, b, c; weight times centre of mass; gravity along -z."""
+    """Return the rates of a heavy body about a fixed point: moments a, b, c; weight times centre of mass; gravity along
+    -z.
+    """
     names = [f"w{i}" for i in (1, 2, 3)] + [f"q{i}" for i in range(4)]
     rates = [
         "((b - c)*w2*w3 + m2*g3 - m3*g2)/a", "((c - a)*w3*w1 + m3*g1 - m1*g3)/b", "((a - b)*w1*w2 + m1*g2 - m2*g1)/c",
@@ -81,7 +83,7 @@ def small(rates, scale=1.0, flags=(), order=None):
     "flags", [(), ("-DSYMROT_PAIRS",), ("-DSYMROT_PLAIN",)], ids=["vectors", "vectors of two", "plain C"]
 )
 def test_compiled_coefficients_are_those_of_the_recurrences(flags):
-    """All systems and functions at once: eight states to a library, so that lanes and groups of all kinds are met."""
+    """All systems and functions, eight states to a library, so that SIMD lanes and groups of all kinds occur."""
     formulas = [f for rates in FUNCTION_SYSTEMS.values() for f in rates]
     groups = [formulas[i : i + 7] for i in range(0, len(formulas), 7)]
     for group in groups[:: 3 if flags else 1]:
@@ -144,7 +146,7 @@ def scene_library(name):
 
 
 def test_names_of_parameters_do_not_meet_names_in_c():
-    """Parameters a, b, c and m1, states w1: the emitted text uses c, x, n and m itself."""
+    """Parameters a, b, c, m1 and states w1 do not collide with c, x, n and m of the emitted text."""
     states, _ = taylor.integration(body(), parameters("asymmetric"), MOTIONS["asymmetric"][2], 0.0, 1e-12).sample([1.0])
     assert np.isfinite(states).all()
 
@@ -165,13 +167,13 @@ def test_code_does_not_grow_with_the_order():
 @pytest.mark.parametrize("name", MOTIONS)
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
 def test_the_error_of_the_trajectory_stays_near_the_tolerance(name, tolerance):
-    """Calibrated to 6 times the tolerance; 10 leaves room for another processor's rounding of its steps."""
+    """Here it is at most 6 times the tolerance; the bound 10 leaves room for the rounding of other processors."""
     states, _ = taylor.integration(body(), parameters(name), MOTIONS[name][2], 0.0, tolerance).sample(TIMES)
     assert error(states, reference(name)) < 10 * tolerance
 
 
 def test_orders_for_tolerances_keep_the_promise():
-    """The lower orders that loose tolerances take."""
+    """Loose tolerances take lower orders, and their errors are within the promise too."""
     assert [taylor.order_for(e) for e in (1e-2, 1e-3, 1e-4, 1e-6, 1e-7, 1e-15)] == [14, 14, 16, 16, 20, 20]
     for tolerance in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6):
         source = taylor.translation_unit(rigid_body_program(), order=taylor.order_for(tolerance))
@@ -184,7 +186,7 @@ def test_orders_for_tolerances_keep_the_promise():
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", bench.MOTIONS)
 def test_long_motions_keep_the_promise(name):
-    """184 revolutions of a free body, 200 s of heavy tops; the last bits are lost to rounding alone."""
+    """184 revolutions of a free body, 200 s of heavy tops; rounding alone takes the last bits."""
     problem, exact = bench.SteppedProblem(name, 1.0), bench.reference(name)
     for tolerance in (1e-4, 1e-7, 1e-10, 1e-12):
         states, _ = taylor.integration(problem.taylor_library(), problem.taylor_p, problem.y0, 0.0, tolerance).sample(
@@ -198,7 +200,7 @@ def test_long_motions_keep_the_promise(name):
 
 
 def test_the_kept_references_are_those_computed(tmp_path, monkeypatch):
-    """A short span both ways: 40-digit series against the stepper near round-off, and a wrong state is far off."""
+    """40-digit series over a short span both ways agree with the stepper near round-off, and not with a wrong state."""
     exact = bench.reference("heavy symmetric", 0.01)
     problem = bench.SteppedProblem("heavy symmetric", 0.01)
     states, _ = taylor.integration(problem.taylor_library(), problem.taylor_p, problem.y0, 0.0, 1e-15).sample(
@@ -238,7 +240,7 @@ def test_a_symmetric_body_follows_its_closed_form():
 
 @pytest.mark.parametrize("speed", [1.0, 1e3, 1e6])
 def test_rates_do_not_hide_the_attitude(speed):
-    """S17: judged in one norm with omega, the attitude would be off by speed times the tolerance."""
+    """S17: one norm for omega and attitude would let the attitude err by the speed times the tolerance."""
     start, p = state((1e-3, 1e-3, speed)), (1.0, 1.5, 2.0, 0.0, 0.0, 0.0)
     loose, _ = taylor.integration(body(), p, start, 0.0, 1e-9).sample([1000 / speed])
     tight, _ = taylor.integration(body(), p, start, 0.0, 1e-14).sample([1000 / speed])
@@ -246,7 +248,7 @@ def test_rates_do_not_hide_the_attitude(speed):
 
 
 def test_energy_is_kept_over_many_revolutions():
-    """10 000 s of a free body, about 1800 revolutions, at the tightest tolerance."""
+    """A free body for 10 000 s, about 1800 revolutions, at the tightest tolerance."""
     moments, start = np.array([1.0, 2.0, 4.0]), state((0.3, 1.0, 0.5))
     states, _ = taylor.integration(body(), (*moments, 0, 0, 0), start, 0.0, 1e-15).sample([1e4])
     energy, before = (moments * states[0, :3] ** 2).sum(), (moments * start[:3] ** 2).sum()
@@ -255,7 +257,7 @@ def test_energy_is_kept_over_many_revolutions():
 
 
 def test_there_and_back_again():
-    """S32: a heavy top for 100 s and back returns to where it began, but for what rounding took."""
+    """S32: a heavy top goes forward 100 s and back, and returns to its start up to rounding."""
     p, start = parameters("asymmetric top"), MOTIONS["asymmetric top"][2]
     there, _ = taylor.integration(body(), p, start, 0.0, 1e-15).sample([100.0])
     back, _ = taylor.integration(body(), p, there[0], 100.0, 1e-15).sample([0.0])
@@ -267,7 +269,7 @@ def test_there_and_back_again():
 
 @pytest.mark.parametrize("power", [-300, -60, 60, 300])
 def test_no_bit_depends_on_the_unit_of_time(power):
-    """S15: omega times 2^k and t over 2^k gives omega times 2^k and the same attitude, bit by bit."""
+    """S15: omega times 2^k and t over 2^k give omega times 2^k and the same attitude, bit for bit."""
     p, start, t = parameters("asymmetric"), MOTIONS["asymmetric"][2], np.array([3.0, 7.0])
     plain, _ = taylor.integration(body(), p, start, 0.0, 1e-12).sample(t)
     factor = np.array([2.0**power] * 3 + [1.0] * 4)
@@ -333,7 +335,9 @@ def test_a_recording_agrees_with_samples():
     states, _ = taylor.integration(body(), p, start, 0.0, 1e-12).sample(t)
     assert abs(solution(t) - states).max() < 1e-13
     assert (solution(0.0) == start).all() and solution.span == (-5.0, 20.0)
-    with pytest.raises(InputError, match=r"known from -5\.0 to 20\.0 s, got the time 21\.0 s"):
+    with pytest.raises(
+        InputError, match=r"expected times from -5\.0 to 20\.0 s, where the motion is known, got 21\.0 s"
+    ):
         solution(21.0)
 
 
@@ -380,13 +384,13 @@ def test_too_many_steps_are_refused():
     [
         ({"tolerance": 0.0}, "between 0 and 1, got 0.0"),
         ({"tolerance": math.nan}, "between 0 and 1"),
-        ({"times": [[1.0]]}, r"sample times are a sequence of numbers, got an array of shape \(1, 1\)"),
-        ({"times": [1.0, math.inf]}, "sample times must be finite, got inf"),
-        ({"times": [math.nan, 1.0]}, "sample times must be finite, got nan"),
-        ({"y0": [1.0]}, r"takes 2 states, got an array of shape \(1,\)"),
-        ({"y0": [1.0, math.nan]}, "states must be finite numbers"),
-        ({"p": []}, "takes 1 parameters"),
-        ({"t0": math.inf}, "initial time must be finite"),
+        ({"times": [[1.0]]}, r"times: expected a sequence of sample times in s, got an array of shape \(1, 1\)"),
+        ({"times": [1.0, math.inf]}, "times: expected finite sample times in s, got inf"),
+        ({"times": [math.nan, 1.0]}, "times: expected finite sample times in s, got nan"),
+        ({"y0": [1.0]}, r"states: expected an array of shape \(2,\) for this kernel, got shape \(1,\)"),
+        ({"y0": [1.0, math.nan]}, "states: expected finite numbers"),
+        ({"p": []}, r"parameters: expected an array of shape \(1,\) for this kernel"),
+        ({"t0": math.inf}, "t0: expected a finite initial time"),
         ({"max_step": 0.0}, "max_step: expected a positive number"),
     ],
 )  # fmt: skip
@@ -413,12 +417,12 @@ def test_odd_orders_are_refused(order):
 
 @pytest.mark.parametrize("blocks, scales", [((0, 1), (1.0,)), ((0, 1, 1, 2), (1, 1, 1)), ((0, 2), (1, 1))])
 def test_blocks_that_do_not_fit_are_refused(blocks, scales):
-    with pytest.raises(InputError, match="expected edges of blocks that rise from 0 to 2"):
+    with pytest.raises(InputError, match="expected increasing edges from 0 to 2, the number of states"):
         taylor.translation_unit(program({"x": "y", "y": "x"}), blocks, scales)
 
 
 def test_flags_that_kill_the_carry_are_noticed():
-    """S28: -ffast-math stops the compiler; what it stands for, given one by one, is noticed when the library loads."""
+    """S28: -ffast-math stops the build; the single flags that it stands for are noticed when the library loads."""
     with pytest.raises(CompilerError, match="fast-math"):
         small({"x": "-x"}, flags=("-ffast-math",))
     path = small({"x": "-x"}, flags=("-fassociative-math", "-fno-signed-zeros", "-fno-trapping-math"))
@@ -427,7 +431,7 @@ def test_flags_that_kill_the_carry_are_noticed():
 
 
 def test_the_carry_is_alive():
-    """S28: after many steps it holds what rounding took."""
+    """S28: after many steps the carry holds the rounding errors."""
     task = Integration(taylor._stepper, body(), parameters("asymmetric"), MOTIONS["asymmetric"][2], 0.0, 1e-12)
     run = next(task.runs(500.0))
     task.advance(run, None, 0, None, None, 0)
@@ -466,7 +470,7 @@ def test_the_text_is_cplusplus_too_and_draws_no_warning(plain, tmp_path):
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
 def test_a_text_without_invariants_needs_no_optimizer_to_link(tmp_path):
-    """A call of a function that is not there is an error in C, though an optimizer drops the code around it."""
+    """A call of a missing function is an error in C, even if an optimizer drops the code around it."""
     system = program({"x": "-k*x + t"})
     source = taylor.translation_unit(system, (0, 1), (1.0,), invariants=invariant_definitions(system, [], ["x"], ["k"]))
     command = ["gcc", "-x", "c", "-std=c99", "-O0", "-march=native", "-Werror=implicit-function-declaration", "-shared",
@@ -490,7 +494,7 @@ def test_the_benchmark_runs_and_ranks():
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("power", range(1, 7))
 def test_series_with_gaps_are_followed(power, tolerance):
-    """A sphere from rest under t^k: its angle is t^(k+2)/((k+1)(k+2)), its attitude skips k + 1 coefficients."""
+    """A sphere at rest under t^k: its angle is t^(k+2)/((k+1)(k+2)), and k + 1 coefficients of its attitude are zero."""
     made = load_scene_of([f"t**{power}", "0", "0"], 4.0)
     motion = propagator(made, "taylor", tolerance)(np.linspace(0, 4, 33))
     half = motion.t ** (power + 2) / (power + 1) / (power + 2) / 2
@@ -499,7 +503,7 @@ def test_series_with_gaps_are_followed(power, tolerance):
 
 
 def test_powers_beyond_the_order_are_followed():
-    """omega_1 = t^7/7 drives omega_2 = t^43/(43 7^6), which has no coefficient within the order."""
+    """omega_1 = t^7/7 drives omega_2 = t^43/(43 7^6), a power beyond the order of the series."""
     made = load_scene_of(["t**6", "omega_1**6", "0"], 2.0)
     expected = 2.0**43 / 43 / 7**6
     assert propagator(made, "taylor", 1e-9)([2.0]).omega[0, 1] == pytest.approx(expected, rel=1e-7)

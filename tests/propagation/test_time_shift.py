@@ -1,4 +1,4 @@
-"""The motion does not depend on how far from t = 0 it starts: references of 40 digits, at starts that are doubles."""
+"""Motions do not depend on how far from t = 0 they start: 40-digit references, starts that are doubles."""
 
 import math
 import subprocess
@@ -43,7 +43,7 @@ def scene(*given):
 
 
 def extrapolated(rate, y, end, size):
-    """Return the state at the end: the midpoint rule extrapolated to order 20, in steps of about ``size``."""
+    """Return the state at the end, by the midpoint rule extrapolated to order 20, in steps of about ``size``."""
     count = int(mpmath.ceil(end / size))
     big, now = end / count if count else end, mpmath.mpf(0)
     for _ in range(count):
@@ -85,7 +85,7 @@ def general_reference(t0):
 
 
 def axis_reference(t0, taus=TAU):
-    """omega = 1/2 + (cos(3 t0/2) - cos(3 t/2))/(3/2 C), and its integral."""
+    """Return omega = 1/2 + (cos(3 t0/2) - cos(3 t/2))/(3/2 C), and its integral."""
     a, rows = mpmath.mpf(3) / 2, []
     for tau in taus:
         t = mpmath.mpf(t0) + tau
@@ -124,7 +124,7 @@ def test_a_start_far_away_costs_no_digit(case, t0):
 
 
 def test_the_clock_of_the_scene_would_cost_them():
-    """The check above sees the fault that it is there for."""
+    """Without the shift of time the check above fails."""
     found = propagator(scene(AXIS, CASES["axis"][1], 10**9), "dop853")
     motion = found._motion
     shared = SteppedSetup(replace(motion.setup, allows_time_shift=False), motion.library)
@@ -136,7 +136,7 @@ def test_the_clock_of_the_scene_would_cost_them():
 
 
 def test_taylor_steps_keep_phases_over_a_long_span():
-    """``1.5 t`` from the time in two parts: from one, omega was off by 3e-10 after 1e5 s."""
+    """``1.5 t`` is computed from a time in two parts: with one double, omega was off by 3e-10 after 1e5 s."""
     with mpmath.workdps(40):
         expected = axis_reference(0, (100_000,))
     found = propagator(scene(AXIS, CASES["axis"][1], 0), "taylor")([100_000])
@@ -146,7 +146,7 @@ def test_taylor_steps_keep_phases_over_a_long_span():
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("t0, end", [(0, 10_000), (0, -10_000), (-400, 9_000), (10_000, 20_000)])
 def test_dormand_prince_steps_keep_phases_over_a_long_span(t0, end):
-    """Samples, motion between them and events, within what the tolerance promises; on clocks of either kind."""
+    """Samples, dense output and events keep the tolerance, with the scene's clock and with a shifted one."""
     middle, promised = (t0 + end) / 2, 5 * BELOW
     with mpmath.workdps(40):
         halfway, last = (float(row[2]) for row in axis_reference(t0, (middle - t0, end - t0)))
@@ -162,7 +162,7 @@ def test_dormand_prince_steps_keep_phases_over_a_long_span(t0, end):
 
 
 def test_one_time_for_all_steps_would_lose_phases(monkeypatch):
-    """``1.5 t`` rounded at 1e4 s; at 1e5 s omega was off by 3e-8, and before 1e6 s steps shrank to nothing."""
+    """With ``1.5 t`` rounded, at 1e5 s omega was off by 3e-8, and before 1e6 s steps shrank to nothing."""
     with mpmath.workdps(40):
         expected = float(axis_reference(0, (10_000,))[0][2])
     monkeypatch.setattr(dop853, "WINDOW", MAX_STEPS)
@@ -172,7 +172,7 @@ def test_one_time_for_all_steps_would_lose_phases(monkeypatch):
 
 
 def test_parameters_follow_the_epoch_exactly():
-    """What was found once and what is found anew make what all found anew makes."""
+    """Parameters updated for a new epoch are equal to those computed anew for it."""
     found = propagator(scene(GENERAL, GENERAL_TORQUE, 10**6), "dop853")._motion
     plan, kernel = epoch.time_shifted(found.plan, found.kernel)
     following = epoch.ShiftedParameters(kernel.rate_parameters, plan.constants, 0.1)
@@ -192,7 +192,7 @@ def test_the_motion_between_samples_starts_far_away_too():
 
 @pytest.mark.parametrize("method", ["taylor", "dop853", "scipy"])
 def test_events_far_away_are_found_on_the_same_clock(method):
-    """omega = 1/2 + 2 (cos(3 t0/2) - cos(3 t/2))/9 is what it is at t0 + 1/2 there, and elsewhere by symmetry."""
+    """omega = 1/2 + 2 (cos(3 t0/2) - cos(3 t/2))/9 takes its value of t0 + 1/2 there, and elsewhere by symmetry."""
     t0 = 10**9
     with mpmath.workdps(40):
         level = float(axis_reference(t0)[1][2])
@@ -224,7 +224,7 @@ MPMATH = {name: getattr(mpmath, name) for name in ("sin", "cos", "tan", "exp", "
 
 @pytest.mark.parametrize("formula", FORMULAS)
 def test_moved_rates_are_the_rates_at_a_later_time(formula):
-    """f(epoch + tau, y) in 60 digits; parameters are kept as exact as they are found."""
+    """f(epoch + tau, y) agrees in 60 digits; parameters are kept as exactly as they are computed."""
     constants, epoch, tau = {"constant": Fraction(7, 11)}, Fraction(10**9) + Fraction(3, 8), Fraction(5, 13)
     here, parameters = program(formula), (("k", ("symbol", "constant")),)
     there, formulas = moved(here, parameters)
@@ -243,7 +243,7 @@ def test_moved_rates_are_the_rates_at_a_later_time(formula):
 
 
 def test_large_coefficients_become_parameters():
-    """No phase beyond a turn, and no difference of large numbers, is left in what is computed in doubles."""
+    """Doubles then hold no phase beyond a turn and no difference of large numbers."""
     _, formulas = moved(program("sin(3*t/2) + (t - 10**9)**2"), (("k", ("symbol", "constant")),))
     values = bind(formulas, {"constant": Fraction(1), "epoch": Fraction(10**9)})
     named = {name: value for (name, _), value in zip(formulas, values, strict=True)}
@@ -279,7 +279,7 @@ def test_without_time_in_the_torque_nothing_is_compiled_anew():
 
 @pytest.mark.parametrize("method", ["scipy", "taylor"])
 def test_a_motion_with_events_that_breaks_off_names_the_time_of_the_scene(method):
-    """The root has no value after 5 s on the motion's own clock, which nobody sees."""
+    """The root loses its value at 5 s of the shifted clock; the message gives the scene's time instead."""
     broken = propagator(scene(GENERAL, ["sqrt(1000000005 - t)", "0", "0"], 10**9), method)
     with pytest.raises(PropagationError, match=r"beyond t = 100000000[45]\.\d+ s"):
         broken(10**9 + np.array([0.0, 9.0]), events=["omega_1 == 1e9"])
@@ -299,7 +299,7 @@ def test_a_motion_that_was_derived_before_needs_no_sympy_far_away():
 
 
 def test_a_clock_that_is_too_coarse_is_said_to_be():
-    """A torque that is asked for at the times of the scene cannot have another clock."""
+    """A torque function is called with the scene's times, so its motion cannot use a shifted clock."""
     driven = propagator(scene(GENERAL, ["0", "0", "omega_1/9"], 10**15), torque=lambda t, w, q: (0.0, 0.1, 0.0))
     with pytest.raises(PropagationError, match=r"doubles lie 0\.125 s apart"):
         driven(10**15 + np.array([0.0, 5.0]))
@@ -307,7 +307,7 @@ def test_a_clock_that_is_too_coarse_is_said_to_be():
 
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
 def test_a_singularity_far_away_is_one_and_has_its_time(method):
-    """omega_3' = omega_3^2 from 2 ends after 1/2 s."""
+    """omega_3' = omega_3^2 from omega_3 = 2 ends after 1/2 s."""
     body = {"body": {"principal": [1, 1, 1]}, "initial": {"omega": [0, 0, 2]}}
     with pytest.raises(PropagationError, match=r"beyond t = 1000000000\.[45]\d* s .*: (?!the clock)"):
         propagator(scene(body, ["0", "0", "omega_3**2 + 0*t"], 10**9), method)([10**9, 10**9 + 2])

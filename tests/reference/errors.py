@@ -1,4 +1,4 @@
-"""Print the errors of shipped scenes in units of their tolerance: ``python -m tests.reference.errors``."""
+"""Print the errors of shipped scenes, divided by their tolerance: ``python -m tests.reference.errors``."""
 
 from tests.propagation.test_propagator import (
     REFERENCE,
@@ -15,7 +15,7 @@ CLOSED = ("chen_cylinder", "axisymmetric_satellite", "axisymmetric_satellite_obl
 
 
 def ratio(name: str, tolerance: float) -> float:
-    """Return the larger of the errors of attitude and angular velocity, in tolerances."""
+    """Return the larger of the errors of attitude and angular velocity, divided by the tolerance."""
     if name in CLOSED:
         trajectory = propagate(name, tolerance=tolerance)
         omega, dcm = symmetric_motion(trajectory.scene, trajectory.t)

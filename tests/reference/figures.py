@@ -1,4 +1,7 @@
-"""What the stress tests share: a measured figure with its bar, scenes written as data, and distances."""
+"""Common parts of the stress tests: measured figures with their bars, scenes written as data, and distances.
+
+A bar is the limit that a figure has to meet.
+"""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -14,7 +17,9 @@ GRAVITY = {"kind": "gravity", "weight": 1}
 
 
 class Figure(NamedTuple):
-    """One measured number: by which method, of what, the bar, what was reached, and on which side of the bar to be."""
+    """One measured number: the method, what was measured, the bar, the value, and whether the value has to be above the
+    bar.
+    """
 
     method: str
     what: str
@@ -25,12 +30,12 @@ class Figure(NamedTuple):
 
     @property
     def good(self) -> bool:
-        """Whether the bar is met; a number that is none meets no bar."""
+        """Return whether the bar is met; NaN meets no bar."""
         return bool(self.reached >= self.bar if self.at_least else self.reached <= self.bar)
 
 
 class Stress(NamedTuple):
-    """One stress test: its number, name and parameters, what runs it, and whether it takes no longer than a second or so."""
+    """One stress test: its number, name and parameters, the function that runs it, and whether it takes about a second."""
 
     id: str
     name: str
@@ -40,7 +45,7 @@ class Stress(NamedTuple):
 
 
 def body(moments: Any, omega: Any, torque: Any = (), attitude: Any = None) -> Scene:
-    """Return a scene of a body in its principal axes, turning about a fixed point if a torque acts."""
+    """Return a scene of a body in its principal axes; if a torque acts, it turns about a fixed point."""
     form = {
         "schema": 1, "title": "stress", "initial": {"omega": list(omega), "attitude": attitude or Q0},
         "body": {"principal": list(moments), **({"about": "fixed_point"} if torque else {})},
@@ -54,7 +59,7 @@ def propagated(scene: Scene, method: str, tolerance: float, t: Any, **more: Any)
 
 
 def largest(found: Any, expected: Any, sign: bool = False) -> float:
-    """Return the largest difference; of quaternions up to the sign of each with ``sign``."""
+    """Return the largest difference; with ``sign``, of quaternions up to the sign of each."""
     found, expected = np.asarray(found, dtype=float), np.asarray(expected, dtype=float)
     apart = np.abs(found - expected)
     if sign:
@@ -67,7 +72,9 @@ def largest(found: Any, expected: Any, sign: bool = False) -> float:
 
 
 def apart(found: Any, expected: Any) -> float:
-    """Return the larger error of two trajectories: attitude up to sign, omega relative to its size at the start."""
+    """Return the larger error of two trajectories: of attitude up to sign, or of omega relative to its size at the
+    start.
+    """
     size = float(np.linalg.norm(np.array([float(w) for w in found.scene.initial.omega_b])))
     return max(
         largest(found.quaternion, expected.quaternion, sign=True), largest(found.omega, expected.omega) / (size or 1.0)

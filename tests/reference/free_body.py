@@ -1,8 +1,8 @@
 """The free body to 60 digits at any time, through elliptic integrals of the third kind (mpmath).
 
-Shares no formula of the phase with symrot, which takes it from theta functions: here
-``psi' = |L|/I3 + (2T - |L|^2/I3)/(|L| + L3)`` is integrated to Legendre's Pi and an arc tangent. It is held against the
-Taylor series of :mod:`tests.reference.taylor`, which knows nothing of elliptic functions.
+It shares no formula of the phase with symrot, which uses theta functions: here ``psi' = |L|/I3 + (2T - |L|^2/I3)/(|L| +
+L3)`` is integrated to Legendre's Pi and an arc tangent. It is compared with the Taylor series of
+:mod:`tests.reference.taylor`, which uses no elliptic functions.
 """
 
 import mpmath
@@ -30,7 +30,9 @@ def multiply(a, b):
 
 
 def worst_errors(motion, times, rates, attitudes, size):
-    """Return the largest errors of omega, over ``size``, and of q, up to its sign, against a motion at those times."""
+    """Return the largest errors at the times, compared with a motion: of omega, divided by ``size``, and of q, up to
+    sign.
+    """
     worst = [0.0, 0.0]
     for time, rate, attitude in zip(times, rates.tolist(), attitudes.tolist(), strict=True):
         w, q = motion(time)
@@ -62,7 +64,9 @@ def quaternion_of(rows):
 
 
 def motion(moments, omega, quaternion, digits=DIGITS):
-    """Return a function of time that gives ``(omega_b, quaternion)``; principal axes, numbers as given, exactly."""
+    """Return a function of time that gives ``(omega_b, quaternion)``, in principal axes; the given numbers are taken
+    exactly.
+    """
     with mp.workdps(digits):
         moments, omega = [exactly(x) for x in moments], [exactly(x) for x in omega]
         start = normalised([exactly(x) for x in quaternion])
@@ -127,7 +131,7 @@ def _elliptic(moments, omega, start, digits):
         return (mpmath.atanh(x) + k * atan(k * x)) / (1 - n)
 
     def psi(turns, phi, u):
-        """The integral of psi' from u = 0, times rate."""
+        """Return the integral of psi' from u = 0, times rate."""
         pi_part = third_kind(phi) + (2 * turns * whole_pi if turns else 0)
         arc = atan2(root * sin(phi), abs(cos(phi))) + pi * turns
         return g / i3 * u + (twice - square / i3) * (g * pi_part / a1**2 - a3 * arc / (a1**2 * root))

@@ -1,8 +1,8 @@
 """The symmetric heavy top to 60 digits at any time, through elliptic integrals of the third kind (mpmath).
 
-``(arg alpha)' = (omega_3 - l + Sigma/(2 - s))/2`` and ``(arg beta)' = (l - omega_3 + D/s)/2`` with
-``s = S1 - (S1 - S2) sn^2 u`` are integrated to Legendre's Pi; symrot takes them from theta functions. For motions that do
-not pass through the vertical. Held against the Taylor series of :mod:`tests.reference.taylor`.
+``(arg alpha)' = (omega_3 - l + Sigma/(2 - s))/2`` and ``(arg beta)' = (l - omega_3 + D/s)/2`` with ``s = S1 - (S1 - S2)
+sn^2 u`` are integrated to Legendre's Pi; symrot uses theta functions instead. Motions through the vertical are
+excluded. The results are compared with the Taylor series of :mod:`tests.reference.taylor`.
 """
 
 from mpmath import (
@@ -29,7 +29,7 @@ DIGITS = 90
 
 
 def motion(transverse, axial, pull, omega, quaternion, digits=DIGITS):
-    """Return a function of time that gives ``(omega_b, quaternion)``; e3 the symmetry axis, gravity along -z."""
+    """Return a function of time that gives ``(omega_b, quaternion)``; e3 is the symmetry axis, gravity acts along -z."""
     with mp.workdps(digits):
         c, m2 = exactly(axial) / exactly(transverse), 2 * exactly(pull) / exactly(transverse)
         w1, w2, w3 = (exactly(x) for x in omega)

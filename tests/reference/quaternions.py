@@ -1,4 +1,4 @@
-"""Quaternions of rotations to 50 digits, written out independently of symrot; to be used at 50 digits of mpmath."""
+"""Quaternions of rotations to 50 digits, independent of symrot; set mpmath to 50 digits to use these functions."""
 
 import numpy as np
 from mpmath import mp, mpf
@@ -10,12 +10,12 @@ LOCKED = {True: (0.0, np.pi), False: (-np.pi / 2, np.pi / 2)}  # middle angles a
 
 
 def is_proper(sequence):
-    """Whether the first axis comes back as the third."""
+    """Return whether the third axis of a sequence is the first one again."""
     return sequence[0] == sequence[2]
 
 
 def exact_euler(angles, sequence):
-    """Unit quaternion of Euler angles to 50 digits."""
+    """Return the unit quaternion of Euler angles to 50 digits."""
     turns = []
     for axis, angle in zip(sequence.upper(), angles, strict=True):
         turn = [mp.cos(mpf(angle) / 2), mpf(0), mpf(0), mpf(0)]
@@ -26,13 +26,13 @@ def exact_euler(angles, sequence):
 
 
 def exact_exponential(v):
-    """Unit quaternion of a rotation vector that is not zero, to 50 digits."""
+    """Return the unit quaternion of a nonzero rotation vector to 50 digits."""
     size = mp.sqrt(sum(mpf(x) ** 2 for x in v))
     return [mp.cos(size / 2), *(mp.sin(size / 2) / size * mpf(x) for x in v)]
 
 
 def difference(p, q):
-    """Largest component of p - q or p + q, whichever is smaller: the sign-free distance of quaternions."""
+    """Return the largest component of p - q or of p + q, whichever is smaller: a distance that ignores the sign."""
     return min(
         max(abs(mpf(float(a) if isinstance(a, np.floating) else a) - s * mpf(b)) for a, b in zip(p, q, strict=True))
         for s in (1, -1)
@@ -40,16 +40,16 @@ def difference(p, q):
 
 
 def exact_unit(q):
-    """A quaternion divided by its norm to 50 digits: one in double precision is unit to 2e-16 only."""
+    """Return a quaternion divided by its norm, to 50 digits: in doubles, its norm is 1 only to 2e-16."""
     norm = mp.sqrt(sum(mpf(float(x)) ** 2 for x in q))
     return [mpf(float(x)) / norm for x in q]
 
 
 def doubles(values):
-    """Numbers of 50 digits as an array of doubles."""
+    """Return numbers of 50 digits as an array of doubles."""
     return np.array([float(value) for value in values])
 
 
 def apart(p, q):
-    """Largest component of p - q or p + q, whichever is smaller, along the last axis, in doubles."""
+    """Return the largest component of p - q or of p + q, whichever is smaller, along the last axis, in doubles."""
     return np.minimum(np.abs(p - q).max(axis=-1), np.abs(p + q).max(axis=-1))

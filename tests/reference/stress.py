@@ -1,8 +1,9 @@
 """All stress tests of numerical stability: ``python -m tests.reference.stress [--quick] [--json] [S6 S7 ..]``.
 
-Each row is one measured figure: by which method, of what, the bar, what was reached, the verdict. Without ``--quick``
-every test runs at its full length (a few minutes). Exit code 1 if a bar is not met. The references share nothing with
-what they judge: elliptic integrals and Taylor series in 50 digits, closed forms, heyoka, 50-digit conversions.
+Each row is one measured figure: the method, what was measured, the bar (its limit), the value, the verdict. Without
+``--quick`` every test runs at its full length (a few minutes). The exit code is 1 if a bar is not met. The references
+share nothing with the code they judge: elliptic integrals and Taylor series in 50 digits, closed forms, heyoka,
+50-digit conversions.
 """
 
 import argparse
@@ -75,7 +76,7 @@ FOUND = (  # places where a stepper was wrong once
 
 
 def verdict(figure: Figure) -> str:
-    """Return the verdict of one figure."""
+    """Return the verdict on one figure."""
     return "shown" if not figure.judged else "met" if figure.good else "NOT MET"
 
 
@@ -86,7 +87,7 @@ def line(stress: Stress, figure: Figure) -> str:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run them and print the table."""
+    """Run the tests and print the table."""
     parser = argparse.ArgumentParser(
         prog="python -m tests.reference.stress", description=(__doc__ or "").split("\n")[0]
     )

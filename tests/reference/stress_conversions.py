@@ -1,4 +1,4 @@
-"""Stress tests S35 to S38: conversions of attitudes against 50 digits."""
+"""Stress tests S35 to S38: conversions of attitudes agree with 50 digits."""
 
 import numpy as np
 from mpmath import mp, mpf
@@ -58,7 +58,7 @@ def s37(long):
 
 
 def s38(long):
-    """Signs and orders as textbooks have them, counted where they are not."""
+    """Count the signs and orders of components that differ from the textbook conventions."""
     h, tilt = np.sqrt(0.5), np.array([np.cos(0.5), np.sin(0.5), 0.0, 0.0])
     dcm = cv.quaternion_to_dcm(tilt)
     spin = [0.0, 0.0, 2.0]

@@ -1,4 +1,4 @@
-"""Stress tests S1 to S16 and S18 to S23: the exact motions against elliptic integrals and Taylor series in 50 digits."""
+"""Stress tests S1 to S16 and S18 to S23: exact motions agree with elliptic integrals and Taylor series in 50 digits."""
 
 import math
 import random
@@ -20,7 +20,7 @@ PERIODS = (10.3, 1000.3, 1e6 + 0.3, -1e6 + 0.1)
 
 
 def _free(what, cases, bar=BAR):
-    """Return the largest error of omega and q over cases, each the arguments of the comparison."""
+    """Return the figure of the largest error of omega and q over cases; a case holds the arguments of the comparison."""
     return Figure(METHOD, what, bar, max(max(free.errors(*case, **more)) for *case, more in cases))
 
 

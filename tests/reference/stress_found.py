@@ -1,4 +1,4 @@
-"""Stress tests F1 to F8: places where a stepper was wrong or could be, by every method that applies."""
+"""Stress tests F1 to F8: cases in which a stepper was or could be wrong, by every method that applies."""
 
 import math
 
@@ -16,7 +16,9 @@ STEPPERS, METHODS = ("taylor", "dop853"), ("exact", "taylor", "dop853")
 
 
 def f1(long):
-    """Near steady rotation energy and momentum hardly differ: a projection that drops one may feed the rates noise."""
+    """Near steady rotation, energy and momentum hardly differ: a projection that drops one may put noise into the
+    rates.
+    """
     found, times = [], np.array([1e3, 1e4])
     for tilt in ("1/10", "1/1000", "1/100000"):
         scene = body((1, "3/2", "1.5000001"), (tilt, 0, 1))
@@ -28,7 +30,7 @@ def f1(long):
 
 
 def f2(long):
-    """Units of time and of mass to the limits of scenes."""
+    """Units of time and mass, to the limits of scenes."""
     found, reference = [], propagator(body((2, 3, 4), RATES), "exact")(TIMES)
     for method in METHODS:
         worst = 0.0
@@ -42,7 +44,7 @@ def f2(long):
 
 
 def f3(long):
-    """From rest, or nearly, by a torque: the rates at the start say nothing about the step."""
+    """Motions from rest, or nearly, by a torque: the rates at the start give no hint of the step."""
     found, scene, t = [], body(FREE, (0, 0, 0), ARM), [5.0]
     still = propagator(scene, "taylor", 1e-14)(t)
     for method in STEPPERS:
@@ -58,7 +60,9 @@ def f3(long):
 
 
 def f4(long):
-    """Times before and after the start, repeated, unsorted, next to it: as if asked for in order; none: none."""
+    """Times before and after the start, repeated, unsorted, or next to it give the results of sorted times; no times
+    give none.
+    """
     found = []
     times = np.array([3, -1, 3, 0, 0, 9, math.nextafter(3, 4), -1, 5e-324, -5e-324, 1e-310, 3])
     order = np.argsort(times, kind="stable")
@@ -76,7 +80,7 @@ def f4(long):
 
 
 def f5(long):
-    """Needles, a million million times more slender than long."""
+    """Needles, a million million times longer than thick."""
     found, t = [], np.array([0.1, 1.0, 5.0])
     for moments in (("1e-12", 1, 1), (1, 1, "1e-12"), ("1e-12", 1, "1.0000000000005")):
         scene = body(moments, RATES)
@@ -88,7 +92,7 @@ def f5(long):
 
 
 def f6(long):
-    """Equilibria, the unstable ones too, started there exactly: nothing may push them off."""
+    """Motions that start exactly at equilibria, the unstable ones too, must stay there."""
     found = []
     for method in STEPPERS:
         pushed = 0.0
@@ -103,7 +107,7 @@ def f6(long):
 
 
 def f7(long):
-    """Euler angles as state from exactly locked attitudes."""
+    """Euler angles as states, from attitudes in exact gimbal lock."""
     found, t = [], np.array([0.0, 0.1, 1.0, 5.0])
     for method in STEPPERS:
         worst = 0.0
@@ -118,7 +122,7 @@ def f7(long):
 
 
 def f8(long):
-    """A torque that switches exactly at a sample time, declared once, twice, at the start, outside the span."""
+    """A torque that switches exactly at a sample time, declared once, twice, at the start or outside the span."""
     scene, worst = body((1, 1, 1), (0, 0, 0), attitude=UPRIGHT), 0.0
     t = np.array([0, 0.5, 1.0, math.nextafter(1, 2), math.nextafter(1, 0), 2.0, 3.0, -0.5])
 

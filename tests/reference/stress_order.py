@@ -1,10 +1,10 @@
-"""Stress test S25: the order of convergence, with fixed steps, of the recurrences that are emitted.
+"""Stress test S25: the order of convergence of the emitted recurrences, with fixed steps.
 
-From order 12 on a double is too short to see a slope: at steps small enough for the leading term of the error to be all
-of it, that error is below 1e-13 already; where it is above, the terms after it still bend the slope, in any precision.
-So the emitted jet is compiled once more, the same text, with quadruple precision for double, and its slope is taken
-there, by the last halving of the step above 1e-29. In doubles the slope has to be that of quadruple precision at the same steps, as long as
-errors are above 1e-13: rounding has no part in it until then.
+From order 12 on, doubles are too short for a slope: where steps are small enough for the leading term to be the whole
+error, the error is below 1e-13; where it is larger, later terms bend the slope. So the same emitted text is compiled
+with quadruple precision in place of double, and its slope is the one of the last halving of the step with errors above
+1e-29. In doubles, while errors are above 1e-13 and rounding does not matter, the slope has to be that of quadruple
+precision at the same steps.
 """
 
 import ctypes
@@ -88,7 +88,7 @@ class Quadruple:
 
 
 def exact_steps(stepped, order, step, count):
-    """Return the state after fixed steps of that order in mpmath's precision, by the recurrences before they are emitted."""
+    """Return the state after fixed steps in mpmath's precision, by the recurrences from which the text is emitted."""
     system, state = recurrences(stepped.kernel.rates), [mp.mpf(x) for x in stepped.start]
     values = {name: mp.mpf(x) for name, x in zip(system.parameters, stepped.p, strict=False)} | {"t": mp.mpf(0)}
     for _ in range(count):
@@ -103,7 +103,7 @@ def _apart(a, b):
 
 
 def _last_halving(errors, least):
-    """Return the last two numbers of steps with errors above the least, and the slope between them."""
+    """Return the last two numbers of steps whose errors are above ``least``, and the slope between them."""
     pair = [count for count, error in errors.items() if error > least][-2:]
     return pair, float(mp.log(errors[pair[0]] / errors[pair[1]], 2))
 

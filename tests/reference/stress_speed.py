@@ -1,4 +1,4 @@
-"""Stress tests S40 and S41: speed against heyoka, and the instruction sets of this processor."""
+"""Stress tests S40 and S41: speed compared with heyoka, and the instruction sets of this processor."""
 
 import math
 from pathlib import Path
@@ -18,7 +18,7 @@ from tests.reference.stress_stepping import Stepped, asymmetric_top
 
 
 def s40(long):
-    """Speed against heyoka in one interleaved run; needs heyoka."""
+    """Compare the speed with heyoka's in one interleaved run; needs heyoka."""
     import heyoka  # noqa: F401 - not run without it
 
     from symrot.bench import ensemble
@@ -48,9 +48,9 @@ def s40(long):
 
 
 def _dense(name):
-    """Compare 20 000 samples at equal error, steps included; then at equal tolerances, and steps and samples apart.
+    """Compare 20 000 samples at equal error, steps included; then at equal tolerances, with steps and samples apart.
 
-    At equal tolerances symrot is compared while its error is a hundred times smaller: no bar is about that.
+    At equal tolerances the error of symrot is a hundred times smaller, so this comparison has no bar.
     """
     samples, found = 20_000, []
     many, two = (
@@ -81,7 +81,7 @@ def _dense(name):
 
 
 def _raced(runs, rounds=15):
-    """Return the least time of each, s, of interleaved rounds."""
+    """Return the least time of each run, s, from interleaved rounds."""
     best = [math.inf] * len(runs)
     for _ in range(rounds):
         for i, run in enumerate(runs):
@@ -92,7 +92,7 @@ def _raced(runs, rounds=15):
 
 
 def _instruction_sets():
-    """Return the sets of this processor by name: flags that hold the compiler to each."""
+    """Return this processor's instruction sets: name -> flags that restrict the compiler to it."""
     try:
         has = Path("/proc/cpuinfo").read_text(encoding="utf-8")
     except OSError:

@@ -1,4 +1,4 @@
-"""Stress tests S17, S24 to S34 and S39 and S42: the steppers against exact motions and 50-digit series."""
+"""Stress tests S17, S24 to S34, S39 and S42: the steppers agree with exact motions and 50-digit series."""
 
 import math
 from fractions import Fraction as F
@@ -35,7 +35,7 @@ def asymmetric_top():
 
 
 class Stepped:
-    """A scene's Taylor stepper, bound to numbers; the carry is projected onto the invariants if asked."""
+    """A scene's Taylor stepper, bound to numbers; if asked, it projects the carry onto the invariants."""
 
     def __init__(self, scene, order=20, flags=library.FLAGS):
         self.plan = plan = make_plan(scene)
@@ -56,13 +56,15 @@ class Stepped:
         return self.task(tolerance, every, **more).sample(np.atleast_1d(np.asarray(t, dtype=float)))
 
     def with_tail(self, t, tail, every=0, **more):
-        """Return what :meth:`at` returns, with the same last terms allowed in every step, as S25 and S29 demand."""
+        """Return what :meth:`at` returns, with the same size ``tail`` of last terms allowed in every step, as S25 and
+        S29 demand.
+        """
         task = self.task(1e-12, every, **more)
         task.allowed, task.pace = tail, 1e-300
         return task.sample(np.atleast_1d(np.asarray(t, dtype=float)))
 
     def changes(self, state):
-        """Return the changes of the kept quantities, in exact arithmetic, relative to the largest of them."""
+        """Return the changes of the kept quantities, in exact arithmetic, relative to the largest quantity."""
         values = bind(self.kernel.quantity_parameters, self.plan.constants)
         known = {name: F(v) for (name, _), v in zip(self.kernel.quantity_parameters, values, strict=True)}
         outputs = [item.output for item in self.kernel.conserved if item.holds]
@@ -76,7 +78,7 @@ class Stepped:
         return np.array([float((both[0][name] - both[1][name]) / size) for name in outputs])
 
     def drift(self, state):
-        """Return the largest change of a kept quantity, in exact arithmetic, relative to the largest of them."""
+        """Return the largest change of a kept quantity, in exact arithmetic, relative to the largest quantity."""
         return float(np.abs(self.changes(state)).max())
 
 
@@ -94,7 +96,9 @@ MAP = {1e-6: 8e-5, 1e-8: 1e-6, 1e-10: 3e-9, 1e-12: 2e-10, 1e-14: 1e-12, 1e-16: 2
 
 
 def s24(long):
-    """As users get it, and without projection, where the figure of one tail is chance: tails near it, twice each way."""
+    """Projected, as users get it; and unprojected, where the figure of one tail is chance: tails near it, two times
+    wider either way.
+    """
     problem, exact = race.SteppedProblem("heavy asymmetric", 1.0), race.reference("heavy asymmetric")
     path, plain = problem.taylor_library(), problem.taylor_library(project=False)
 
@@ -138,7 +142,9 @@ def s26(long):
 
 
 def _long_runs(states, revolutions, every):
-    """Return relative errors of the energy and attitude errors in rad of plates, shapes (states, revolutions)."""
+    """Return relative errors of the energy, and attitude errors in rad, of plates: two arrays of shape (states,
+    revolutions).
+    """
     energies, attitudes = [], []
     for omega in states:
         scene = body(PLATE, omega, attitude={"quaternion": [1, 0, 0, 0]})
@@ -184,7 +190,7 @@ def s28(long):
 
 
 def s29(long):
-    """At the end, and over 200 samples: there the mean square, for drifts have zeros; the largest is that of one step."""
+    """Drifts at the end, and their mean square over 200 samples, since a drift may pass zero at any one time."""
     scenes = {"free": body((1, 2, 3), ("3/10", 1, "1/2")), "symmetric top": symmetric_top(), "heavy": asymmetric_top()}
     times, broken, ratios = np.linspace(0.0, 200.0, 201)[1:], 0, {}
     for name, scene in scenes.items():
@@ -207,7 +213,7 @@ def _end_and_span(drifts):
 
 
 def s30(long):
-    """Compare projection every 4 steps, for which the bars were set, with every 16 steps, the setting of users.
+    """Compare projection every 4 steps, for which the bars were set, with every 16 steps, the users' setting.
 
     The bars were set for medians.
     """
@@ -261,7 +267,7 @@ def s32(long):
 
 
 def _rates_by_coefficients(gyro, omega, stop, bits=200, order=40):
-    """Return omega at a time, by series in whole numbers, of Euler's equations with these very coefficients."""
+    """Return omega at the time ``stop``, by integer series of Euler's equations with exactly these coefficients."""
 
     def fixed(x):
         return round(F(x) * 2**bits)
@@ -346,7 +352,7 @@ def s39(long):
 
 
 def s42(long):
-    """A square wave, a wave with several jumps inside a step, and a blow: constant between, so that q is known."""
+    """A square wave, a wave with several jumps inside a step, and a blow: constant between jumps, so that q is known."""
 
     def wave(t, omega, quaternion):
         return (0.0, 0.0, 1.0 if t % 1.0 < 0.5 else -1.0)

@@ -1,7 +1,7 @@
 """Reference trajectories to 50 digits: fixed-point Taylor series of Euler's equations with the attitude as a matrix.
 
-Shares nothing with symrot's equations, kernels or steppers: the state is omega_b and the nine entries of dcm_sb, the
-arithmetic Python integers scaled by 2^BITS, the order and the step far beyond what 50 digits need.
+This module shares nothing with symrot's equations, kernels or steppers: the state is omega_b and the nine entries of
+dcm_sb, the arithmetic uses Python integers scaled by 2^BITS, and order and step go far beyond 50 digits.
 
 ``python -m tests.reference.taylor`` prints ``trajectories.toml`` anew.
 """
@@ -107,7 +107,7 @@ SAMPLES = 4
 
 
 def decimal(value: Fraction, digits: int = 50) -> str:
-    """Return the value to so many digits behind the point."""
+    """Return the value with ``digits`` digits after the point."""
     scaled = round(abs(value) * 10**digits)
     sign = "-" if value < 0 else ""
     return f"{sign}{scaled // 10**digits}.{scaled % 10**digits:0{digits}d}"

@@ -1,4 +1,6 @@
-"""Free bodies and tops as kernels by hand, and their motions by a Taylor series in 30 digits that shares nothing else."""
+"""Free bodies and tops as kernels written by hand, with their motions by a Taylor series in 30 digits that shares
+nothing else.
+"""
 
 import math
 from functools import cache
@@ -26,7 +28,7 @@ static inline void rigid_body(double t, const double y[7], const double p[6], do
 
 
 def rigid_body(t, y, p):
-    """Return the rates in Python."""
+    """Return the rates, computed in Python."""
     a, b, c, m1, m2, m3 = p
     w1, w2, w3, q0, q1, q2, q3 = y
     n = q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3
@@ -44,7 +46,7 @@ def rigid_body(t, y, p):
 
 
 def state(omega, angle=0.0):
-    """Return omega and the attitude turned by an angle about x."""
+    """Return a state from omega and the attitude turned by an angle about x."""
     return np.array([*omega, math.cos(angle / 2), math.sin(angle / 2), 0.0, 0.0])
 
 
@@ -71,7 +73,7 @@ def cross(u, v):
 
 @cache
 def taylor(name):
-    """Return the states at TIMES, from Taylor series in 30 digits; gravity is carried as a vector of the body."""
+    """Return the states at TIMES, from Taylor series in 30 digits; gravity is a vector in body axes."""
     moments, arm, start = MOTIONS[name]
     with mpmath.workdps(30):
         a, b, c = map(mpmath.mpf, moments)
@@ -111,7 +113,7 @@ def taylor(name):
 
 
 def error(states, reference):
-    """Return the error that the tolerance speaks of: omega against its largest size, the quaternion as it is."""
+    """Return the error that the tolerance bounds: of omega relative to its largest size, or of the quaternion."""
     omega, size = abs(states[:, :3] - reference[:, :3]).max(), np.linalg.norm(reference[:, :3], axis=1).max()
     return max(omega / size, abs(states[:, 3:] - reference[:, 3:]).max())
 
@@ -122,5 +124,5 @@ def parameters(name):
 
 
 def wave(times):
-    """Return the oscillator that starts at (1, 0)."""
+    """Return the oscillator's states at the times, from the start (1, 0)."""
     return np.array([np.cos(times), -np.sin(times)]).T

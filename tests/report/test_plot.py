@@ -1,4 +1,4 @@
-"""The page of a motion: it shows what the motion has, in every format, the same bytes twice."""
+"""The plot page of a motion: it shows the quantities of the motion, in every format, with the same bytes each time."""
 
 import importlib.util
 import sys

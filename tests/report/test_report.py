@@ -1,4 +1,4 @@
-"""What is written of a motion reads back to the same numbers, with what they are beside them."""
+"""Results in files: they read back as the same numbers, with the texts that describe them."""
 
 import json
 from fractions import Fraction
@@ -87,7 +87,7 @@ def test_every_quantity_has_its_columns_and_files_are_the_same_twice(tmp_path, c
 
 
 def test_gimbal_lock_is_flagged(tmp_path, capsys):
-    """ZXZ is singular at the identity, where the nutation angle is zero; a spin about z stays there."""
+    """ZXZ is singular at the identity, where the nutation angle is zero; a spin about z stays singular."""
     scene, out = _scene(tmp_path, ["euler"], 'sequence = "ZXZ"\n'), tmp_path / "motion.csv"
     assert cli.main(["run", str(scene), "--out", str(out)]) == 0
     columns = _columns(out)[1]

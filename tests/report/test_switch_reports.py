@@ -1,4 +1,4 @@
-"""What a run says of its switches, what an explained plan says of narrow features, and how wide both are."""
+"""Reports of a run's switches and of a plan's narrow features, and the width of these lines."""
 
 import json
 import sys
@@ -39,7 +39,7 @@ def toml(scene):
 @needs_compiler
 @pytest.mark.parametrize("method", METHODS)
 def test_a_switch_that_holds_is_told_from_one_that_is_passed(method):
-    """Friction of 1 N m stops 2 kg m^2 at 3 rad/s after 6 s and holds it until a torque of 2 N m sets in at 8 s."""
+    """Friction of 1 N m stops 2 kg m^2 at 3 rad/s after 6 s and holds it until a torque of 2 N m begins at 8 s."""
     stats = symrot.propagate(Scene.from_dict(wheel(), "wheel"), method=method, tolerance=1e-9).stats
     assert [(each.function, each.how) for each in stats.switchings] == [
         ("sign(omega_3)", "held"), ("8 < t", "passed"), ("sign(omega_3)", "released"),
@@ -66,7 +66,7 @@ def test_the_dense_output_and_the_events_of_a_motion_tell_the_same():
 @needs_compiler
 @pytest.mark.parametrize("method", METHODS)
 def test_friction_stops_a_body_in_one_direction_by_every_method(method):
-    """omega_3 falls to zero at 6 s, whichever way the wheel turns when it is let go at 8 s."""
+    """omega_3 falls to zero at 6 s, whichever way the wheel turns when it breaks loose at 8 s."""
     scene = Scene.from_dict(wheel(), "wheel")
     events = ["omega_3", {"formula": "omega_3", "direction": -1}, {"formula": "omega_3", "direction": 1}]
     found = symrot.propagate(scene, method=method, events=events)
@@ -124,7 +124,7 @@ def test_components_without_torque_are_named_in_words():
 
 
 def test_a_torque_by_formulas_is_not_said_to_leave_the_axis():
-    """This one never leaves axis 3: the plan does not look, and may not say otherwise."""
+    """This torque stays along axis 3, but the plan does not check this and may not claim the opposite."""
     scene = Scene.from_dict(wheel("exp(-t)"), "wheel")
     (row,) = [row for row in symrot.plan(scene).rows if row.item == "rotation out of one axis"]
     assert not row.skipped and "is assumed to change the axis" in row.why
@@ -158,7 +158,7 @@ class Terminal:
 
 
 def narrow(monkeypatch):
-    """Make standard output a terminal of 80 columns, from here on to the end of the test."""
+    """Make standard output a terminal of 80 columns until the test ends."""
     monkeypatch.setattr(sys, "stdout", Terminal(sys.stdout))
     monkeypatch.setenv("COLUMNS", "80")
     monkeypatch.setenv("NO_COLOR", "1")

@@ -1,4 +1,6 @@
-"""Torques by samples in scene files: the motion that Python's ``torque=`` has, and what cannot be read."""
+"""Torques by samples in scene files: the same motion as with the argument ``torque=``, and messages on files that
+cannot be read.
+"""
 
 import json
 
@@ -106,7 +108,7 @@ def test_the_shipped_scene():
 
 
 def test_steps_end_at_samples():
-    """Where the third derivative of the torque jumps: a step across it would miss its tolerance a hundredfold."""
+    """At samples the third derivative of the torque jumps: a step across one would miss its tolerance a hundredfold."""
     for tolerance in (1e-8, 1e-10, 1e-12):
         found, fine = (symrot.propagator("thruster_pulse", tolerance=x)([30.0]) for x in (tolerance, 1e-14))
         assert np.abs(found.y - fine.y).max() < tolerance
@@ -122,12 +124,15 @@ REFUSED = {
     "infinite": (CSV.replace("-0.1", "1e999").encode(), "line 5: expected four finite numbers"),
     "words": (CSV.replace("-0.1", "none").encode(), "line 5: expected four finite numbers"),
     "not of a CSV": (CSV.replace("-0.1", "1_0").encode(), "line 5: expected four finite numbers"),
-    "unsorted": (CSV.replace("\n3,", "\n1.5,").encode(), "line 5: expected rising times, got 1.5 s after 2.0 s"),
-    "repeated": (CSV.replace("\n3,", "\n2,").encode(), "line 5: expected rising times, twice the same only where"),
+    "unsorted": (CSV.replace("\n3,", "\n1.5,").encode(), "line 5: expected increasing times, got 1.5 s after 2.0 s"),
+    "repeated": (
+        CSV.replace("\n3,", "\n2,").encode(),
+        "line 5: expected increasing times; only a switching time may occur twice",
+    ),
     "one row": (f"{HEAD}\n0, 0, 0, 0".encode(), "two samples or more, got 1"),
     "header alone": (HEAD.encode(), "two samples or more, got 0"),
     "too short": (CSV.rsplit("\n", 1)[0].encode(), "cover the span of the scene, 0.0 to 4.0 s, got 0.0 to 3.0 s"),
-    "binary": (b"\x89PNG\r\n\x1a\n\xff\x00", "expected UTF-8 text, got another byte at position 0"),
+    "binary": (b"\x89PNG\r\n\x1a\n\xff\x00", "expected UTF-8 text, got a byte of another encoding at position 0"),
     "zeros": (b"\0" * 1000, "line 1: expected the columns"),
     "huge": (b"0" * (LARGEST_FILE + 1), "at most 20 MB"),
     "missing": (None, "No such file"),
@@ -154,7 +159,7 @@ def test_folders_and_devices_are_no_files(tmp_path):
     ({"file": "moments.csv"}, "the keys t and moment, or the key file, got t and moment and file"),
     ({"t": None, "moment": None}, "the keys t and moment, or the key file, got none of them"),
     ({"t": [0, 1, 2]}, "one torque for each of the 3 times, got 5"),
-    ({"t": [0, 1, 3, 2, 4]}, r"torque\[0\].t\[3\]: expected rising times, got 2.0 s after 3.0 s"),
+    ({"t": [0, 1, 3, 2, 4]}, r"torque\[0\].t\[3\]: expected increasing times, got 2.0 s after 3.0 s"),
     ({"t": [0, 1, 1, 1, 4], "switching_times": [1]}, "two samples or more between switching times, got one at 1.0 s"),
     ({"t": [0, 1, 2, 4, 4], "switching_times": [4]}, "two samples or more between switching times, got one at 4.0 s"),
     ({"t": [0, 1, 2, 3, "nan"]}, r"t\[4\]: expected a time in s"),
@@ -183,7 +188,7 @@ def test_two_tables_are_refused():
 
 def test_no_torque_is_made_up_outside_the_samples():
     made = symrot.propagator(scene())
-    with pytest.raises(InputError, match=r"the table covers 0.0 to 4.0 s, got the time 5.0 s"):
+    with pytest.raises(InputError, match=r"expected times from 0.0 to 4.0 s, the span of the table, got 5.0 s"):
         made([1.0, 5.0])
 
 

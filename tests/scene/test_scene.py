@@ -1,6 +1,6 @@
-"""Scenes: read exactly, and each shipped one is the motion that its title names.
+"""Scenes are read exactly, and each shipped scene has the motion that its title names.
 
-Oracles: SciPy's rotations (1e-15: a double), closed forms of the textbooks, and bodies cut up and put together again.
+Oracles: SciPy's rotations (1e-15, as doubles), closed forms of textbooks, and bodies cut up and put together again.
 """
 
 import subprocess
@@ -30,7 +30,7 @@ SHIPPED = {
 
 
 def scene(body=None, torque=(), **tables):
-    """Return a small scene with some of its tables given."""
+    """Return a small scene, with the given tables in place of its own."""
     return Scene.from_dict({
         "schema": 1,
         "body": body or {"principal": [1, 2, 3]},
@@ -149,7 +149,7 @@ def test_a_part_turned_by_a_right_angle_swaps_moments_exactly():
 
 
 def test_three_blades_make_a_symmetric_body():
-    """Angles of 120 degrees are irrational: products vanish and moments agree only up to rounding, which is removed."""
+    """With angles of 120 degrees, products vanish and moments agree only up to rounding, which is removed."""
     blades = [
         {**BOX, "mass": 1, "at": [f"3*cos({k}*2*pi/3)", f"3*sin({k}*2*pi/3)", 0],
          "rotate": {"axis": [0, 0, 1], "angle": 120 * k, "degrees": True}}
@@ -161,7 +161,7 @@ def test_three_blades_make_a_symmetric_body():
 
 
 def test_a_fixed_point_adds_the_parallel_axes():
-    """A rod-like cylinder about its end: m (R^2/4 + L^2/3) across, m R^2/2 along."""
+    """A cylinder about its end has m (R^2/4 + L^2/3) across its axis and m R^2/2 along it."""
     end = {"about": "fixed_point", "fixed_point": [0, 0, "-3/2"]}
     body = scene({"shape": "cylinder", "radius": 1, "length": 3, "mass": 4, **end}).body
     assert body.center_of_mass == (0, 0, Fraction(3, 2)) and body.about == "fixed_point"
@@ -258,7 +258,7 @@ def moments(name):
 
 
 def test_the_prisms_are_brown_s():
-    """The script on p. 58 has I0 = (b^2 + c^2, a^2 + c^2, a^2 + b^2), (a, b, c) = (4, 1, 2); p. 57 names the cases."""
+    """The script's p. 58 has I0 = (b^2 + c^2, a^2 + c^2, a^2 + b^2) for (a, b, c) = (4, 1, 2); p. 57 names the cases."""
     assert moments("tumbling_prism") == (5, 20, 17)
     assert max(moments("tumbling_prism_largest")) == moments("tumbling_prism_largest")[2]
     assert min(moments("tumbling_prism_smallest")) == moments("tumbling_prism_smallest")[2]
@@ -284,10 +284,10 @@ def test_the_t_handle_spins_about_its_intermediate_axis():
 
 
 def precession_rates(name):
-    """Return the precession rate of a symmetric top at its two nutation bounds, upper (small theta) first.
+    """Return a symmetric top's precession rates at its two nutation bounds, first the upper one (small theta).
 
-    Source: Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., eq. (5.62): u'^2 = (1 - u^2)(alpha - beta u)
-    - (b - a u)^2, u = cos(theta), phi' = (b - a u)/(1 - u^2).
+    Source: Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., eq. (5.62): u'^2 = (1 - u^2)(alpha - beta u) - (b -
+    a u)^2, u = cos(theta), phi' = (b - a u)/(1 - u^2).
     """
     found = load_scene(name)
     body, omega = found.body, floats(found.initial.omega_b)
@@ -308,7 +308,7 @@ def precession_rates(name):
 
 @pytest.mark.parametrize(("name", "sign"), [("loops", -1), ("cusps", 0), ("waves", 1)])
 def test_the_axis_of_a_heavy_top_draws_what_its_title_says(name, sign):
-    """The precession reverses at the upper bound, stops there, or never stops."""
+    """At the upper bound of nutation the precession reverses, stops, or neither."""
     upper, lower = precession_rates(f"heavy_top_{name}")
     assert lower > 0
     assert abs(upper) < 1e-6 if sign == 0 else sign * upper > 0.5  # rad/s; a root of the cubic is good to 1e-9
@@ -321,7 +321,7 @@ def test_the_three_heavy_tops_are_one_top():
 
 
 def test_the_wheel_precesses_steadily():
-    """Omega = M g d / (I_xx nu), brown p. 56, and the torque is Omega x L exactly."""
+    """Omega = M g d / (I_xx nu), p. 56 of brown; and the torque is Omega x L exactly."""
     found = load_scene("precessing_wheel")
     spin, rate = Fraction(20), Fraction("2.18")
     weight, arm = found.torques[0].values["weight"], found.torques[0].values["center_of_mass"][2]
@@ -331,7 +331,7 @@ def test_the_wheel_precesses_steadily():
 
 @pytest.mark.parametrize(("name", "direct"), [("", True), ("_oblate", False)])
 def test_precession_is_direct_for_a_slender_satellite_and_retrograde_for_a_flat_one(name, direct):
-    """Precession L/A and spin omega_3 (1 - C/A) have one sense when C < A; L is along z of space."""
+    """Precession L/A and spin omega_3 (1 - C/A) have the same sense when C < A; L points along z of space."""
     found = load_scene(f"axisymmetric_satellite{name}")
     (a, _, c), omega = found.body.principal.moments, found.initial.omega_b
     assert found.body.principal.kind == "symmetric"
@@ -342,7 +342,7 @@ def test_precession_is_direct_for_a_slender_satellite_and_retrograde_for_a_flat_
 
 
 def test_gravity_gradient_holds_the_satellite():
-    """Long axis along the radius, largest moment across the orbit (Hughes, chapter 9): A < B < C."""
+    """The long axis points along the radius, the largest moment across the orbit: A < B < C (Hughes, chapter 9)."""
     first, second, third = moments("gravity_gradient_satellite")
     assert first < second < third
     found = load_scene("gravity_gradient_satellite")
@@ -359,7 +359,7 @@ def test_the_earth_wobbles_in_about_300_days():
 
 
 def test_the_rotor_steadies_the_prism():
-    """Stable about the intermediate axis C < B when h > (B - C) omega_3."""
+    """The rotation about the intermediate axis, C < B, is stable when h > (B - C) omega_3."""
     found = load_scene("gyrostat")
     first, second, third = found.body.principal.moments
     assert found.body.principal.moments == moments("tumbling_prism") and first < third < second

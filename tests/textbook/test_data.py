@@ -1,4 +1,4 @@
-"""The claims of the four documents: well-formed data that says what a document says, and nothing about verdicts."""
+"""The claims of the four documents: well-formed data that states the claims of a document and no verdicts."""
 
 import re
 import tomllib
@@ -35,7 +35,7 @@ def load(document):
 
 
 def read_names(text):
-    """Return the names used in a formula of the claim language; raise ValueError for anything else."""
+    """Return the names in a formula of the claim language; raise ValueError for any other text."""
     names, brackets, position = set(), [], 0
     while position < len(text.rstrip()):
         match = TOKEN.match(text, position)
@@ -55,7 +55,7 @@ def read_names(text):
 
 
 def formulas(claim):
-    """Yield (what it is, text, the names it may use) for every formula of a claim, in reading order."""
+    """Yield each formula of a claim in reading order: its role, its text, the names it may use."""
     known = BUILT_IN | set(claim.get("symbols", [])) | set(claim.get("functions", []))
     for name, text in claim.get("define", []):
         yield name, text, set(known)
@@ -72,7 +72,7 @@ CLAIMS = [(document, claim) for document in DOCUMENTS for claim in load(document
 
 
 def each_claim(law):
-    """Judge all claims of a document in one test: a test for each of 2700 pairs would cost more than what it judges."""
+    """Return a test that applies a law to all claims of a document: 2700 separate tests would cost more than the laws."""
 
     @pytest.mark.parametrize("document", DOCUMENTS)
     def test(document):

@@ -1,4 +1,4 @@
-"""The verdicts on what the four documents say: each as reviewed by hand, the page of errata as printed."""
+"""The verdicts on the four documents: each as reviewed by hand, and the page of errata as printed."""
 
 import tomllib
 from pathlib import Path
@@ -21,7 +21,7 @@ def survey():
 
 
 def test_a_verdict_that_flips_is_noticed(survey):
-    """What does not simply hold is what was reviewed, claim by claim."""
+    """Claims that do not simply hold have their reviewed verdicts, one by one."""
     for source, found in survey:
         assert {item.claim["id"]: item.outcome for item in found if item.outcome != "holds"} == REVIEWED[source.name]
 

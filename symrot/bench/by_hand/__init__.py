@@ -1,4 +1,4 @@
-"""Kernels and steppers that symrot is compared with: handwritten in C, or made by other tools."""
+"""Kernels and steppers with which symrot is compared: handwritten in C, or made by other tools."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Addresses of heyoka's compiled functions, so that its machine code runs in the same loops as that of other tools."""
+"""Addresses of heyoka's compiled functions, so that its machine code runs in the same loops as other tools' code."""
 
 import ctypes
 import subprocess
@@ -49,7 +49,7 @@ def heyoka_code(name: str) -> tuple[Any, Any, Any]:
 
 
 def _linked(directory: Path, index: int, code: bytes) -> Any:
-    """Return the address of the function in heyoka's object code, after linking it into a library in ``directory``."""
+    """Link heyoka's object code into a library in ``directory``; return the address of its function."""
     (directory / f"{index}.o").write_bytes(code)
     made = directory / f"{index}.so"
     subprocess.run(

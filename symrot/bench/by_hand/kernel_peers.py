@@ -1,4 +1,4 @@
-"""Kernels made from the same textbook formulas by other tools: SymPy, SymForce, CasADi, heyoka, and by hand.
+"""Kernels from the same textbook formulas, made by other tools (SymPy, SymForce, CasADi, heyoka) or by hand.
 
 Each tool gets the formulas as textbooks print them, without the named quantities of symrot's own definitions. C code is
 compiled with the flags of symrot's kernels. A tool that is not installed is skipped, and the report names it.
@@ -70,7 +70,7 @@ TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
     "rigid_body_tensor": _rigid_body,
     "heavy_top": _heavy_top,
 }
-"""The kernels that other tools can produce too, each with the formula that textbooks print."""
+"""The kernels that other tools can produce too: name -> function that returns the formulas of textbooks."""
 
 
 def textbook(name: str) -> list[sympy.Expr]:
@@ -87,7 +87,7 @@ def textbook(name: str) -> list[sympy.Expr]:
 
 
 def input_names(name: str) -> list[str]:
-    """Return the names of the inputs of a kernel, component by component."""
+    """Return the names of the components of a kernel's inputs, in order."""
     return [name for a in kernel_program(name).signature.arguments if a.role == "in" for name, *_ in a.components]
 
 
@@ -165,9 +165,9 @@ def counted(text: str, name: str) -> Counter[str]:
 
 
 def casadi_function(name: str) -> tuple[Any, Counter[str]]:
-    """Return CasADi's function for a kernel, with common subexpressions shared, and its number of operations by kind.
+    """Return CasADi's function of one vector for a kernel, and its number of operations by kind.
 
-    All inputs are components of one vector.
+    The components of the vector are all inputs of the kernel. Common subexpressions are computed once.
     """
     import casadi
 

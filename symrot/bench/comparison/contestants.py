@@ -2,8 +2,9 @@
 
 For one tolerance, a contestant prepares a function that computes the motion from its start to a given time and returns
 the states at that time and the number of steps. Work that a user does once (deriving, compiling) is part of the
-preparation and not timed. All functions are called from Python, as users call them. SciPy gets the NumPy kernel that
-symrot emits for the scene, rewritten for single states with Python floats and :mod:`math`, which takes half the time.
+preparation, which is not timed. All functions are called from Python, as users call them. SciPy gets the NumPy kernel
+that symrot emits for the scene, rewritten for one state at a time with Python floats and :mod:`math`, which halves its
+time.
 """
 
 from collections.abc import Callable, Sequence
@@ -36,10 +37,10 @@ ADAPTIVE = tuple(float(Fraction(1, 10**k)) for k in range(2, 14))  # SciPy takes
 
 
 class Contestant(NamedTuple):
-    """One contestant of a work-precision study: a method with its settings, one curve of time against error.
+    """One contestant of a work-precision study: a method with its settings, which gives one curve of time and error.
 
-    ``group`` is the name that selects it in ``--methods``; ``missing`` returns why it cannot take part, or an empty
-    text; ``prepare`` returns the timed function for a tolerance.
+    ``group`` is the name that selects the contestant in ``--methods``; ``missing`` returns why it cannot take part, or
+    an empty text; ``prepare`` returns the timed function for a tolerance.
     """
 
     name: str
@@ -48,7 +49,7 @@ class Contestant(NamedTuple):
     tolerances: tuple[float, ...]
     missing: Callable[[Problem], str]
     prepare: Callable[[Problem, float], Run]
-    quick: bool = True  # whether it is part of a quick study
+    quick: bool = True  # whether the contestant is part of a quick study
 
     def at(self, tolerances: Sequence[float]) -> "Contestant":
         """Return the contestant restricted to the tolerances that it supports; a closed form has no tolerance."""
@@ -77,7 +78,7 @@ def _no_form(problem: Problem) -> str:
 
 
 def _symrot(method: str) -> Callable[[Problem, float], Run]:
-    """Return a function that prepares a propagator, and returns a timed function that calls it with the end time."""
+    """Return a function that prepares a propagator and returns the timed function, which calls the propagator."""
 
     def prepare(problem: Problem, tolerance: float) -> Run:
         propagate = propagator(problem.scene, method, tolerance)
@@ -92,7 +93,7 @@ def _symrot(method: str) -> Callable[[Problem, float], Run]:
 
 
 def _last(trajectory: Any) -> Any:
-    """Return the integrated states at the end of a trajectory; for a closed form, the state of the body there."""
+    """Return the integrated states at the end of a trajectory; for a closed form, the body's state at the end."""
     if trajectory.method != "exact":
         return trajectory.y[:, 0]
     y = trajectory.y[:, 0]
@@ -208,7 +209,7 @@ def tolerances_from(text: str) -> tuple[float, ...]:
     Raises
     ------
     InputError
-        Unless the text is a falling list of numbers between 0 and 1.
+        Unless the text is a comma-separated list of decreasing numbers between 0 and 1.
     """
     try:
         tolerances = tuple(float(part) for part in text.split(","))
@@ -217,7 +218,7 @@ def tolerances_from(text: str) -> tuple[float, ...]:
     falling = list(tolerances) == sorted(set(tolerances), reverse=True)
     if not tolerances or not falling or not all(0.0 < value < 1.0 for value in tolerances):
         raise InputError(
-            f"--tolerances: expected falling numbers between 0 and 1, comma-separated, such as 1e-3,1e-6,1e-9, "
+            f"--tolerances: expected decreasing numbers between 0 and 1, separated by commas, such as 1e-3,1e-6,1e-9, "
             f"got {text!r}"
         )
     return tolerances

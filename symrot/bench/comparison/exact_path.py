@@ -1,4 +1,4 @@
-"""Reference motions by Taylor series in 40 digits of mpmath; for free bodies, over any number of periods.
+"""Reference motions, computed to 40 digits by Taylor series in mpmath; of free bodies, over any number of periods.
 
 The angular velocity of a free body is periodic, and every period adds the same rotation: with period P and ``R = q(P)
 q(0)^-1`` the attitude is ``q(t + n P) = R^n q(t)``. So the series of one period give the motion after a million
@@ -31,7 +31,7 @@ Floats = NDArray[np.float64]
 
 DIGITS, ORDER, TAIL = 40, 32, 1e-28
 MOST_STEPS = 2000
-SLOWEST = 1e-8  # times the initial angular speed (rad/s if it is zero): errors of slower bodies are relative to this
+SLOWEST = 1e-8  # times the initial angular speed (or 1 rad/s): errors of slower bodies are relative to this speed
 
 
 _NAMES = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
@@ -97,7 +97,7 @@ class ExactPath:
             abs(one[ORDER - k]) / (size if i < self.rates else 1) for i, one in enumerate(series) for k in (0, 1)
         )
         step = (TAIL / last) ** (mpmath.mpf(1) / ORDER) if last else mpmath.mpf(1)
-        if self.deviations:  # the step must end before a feature of the torque that its coefficients do not show
+        if self.deviations:  # the step must end before a pulse of the torque that its coefficients do not show
             step = min(step, self.span)
             terms = [[float(abs(one[n] * step**n)) for n in range(1, ORDER + 1)] for one in series]
             allowed = [TAIL * float(size if first < self.rates else 1) for first in self.edges[:-1]]
@@ -119,9 +119,9 @@ class ExactPath:
         return [mpmath.polyval(one[::-1], step) for one in series]
 
     def state(self, t: Any, on_step: Callable[[Any], object] = lambda now: None) -> list[Any]:
-        """Return the states at one time, which is not before the start; call it with 40 digits in force.
+        """Return the states at a time that is not before the start; to be called with 40 digits in force.
 
-        ``on_step`` is called after each step with the time that is reached; what it raises ends the computation.
+        ``on_step`` is called after each step with the time reached; an exception that it raises ends the computation.
         """
         while self._end[0] < t:
             self._advance()
@@ -135,7 +135,7 @@ class ExactPath:
         return self._sum(self.pieces[low][2], t - self.pieces[low][0])
 
     def states(self, times: Floats) -> Floats:
-        """Return the states at times not before the start, rounded to double, shape (n, N)."""
+        """Return the states at ``times``, none of them before the start, rounded to double, shape (n, N)."""
         with mpmath.workdps(DIGITS):
             return np.array([[float(x) for x in self.state(mpmath.mpf(float(t)))] for t in times])
 
@@ -163,7 +163,7 @@ class ExactPath:
                         root = self._newton(t)
                         if root is not None and root > self.t0:
                             return root - self.t0
-        raise InputError("expected a free body off its separatrix, got one whose angular velocity does not return")
+        raise InputError("expected a free body off its separatrix, got a body whose angular velocity does not return")
 
     def _newton(self, t: Any) -> Any:
         """Return the time near t at which omega has its initial value, or None if Newton's method fails."""
@@ -186,7 +186,7 @@ class ExactPath:
         return coefficients(self.system, 1, known, FUNCTIONS, as_mpf)[index][1]
 
     def states_of_free_body(self, times: Floats) -> Floats:
-        """Return omega and quaternion of a free body at any times not before the start, shape (n, 7)."""
+        """Return omega and quaternion of a free body at ``times``, none of them before the start, shape (n, 7)."""
         period = self.period()
         with mpmath.workdps(DIGITS):
             first, last = self.start[self.rates :], self.state(self.t0 + period)[self.rates :]

@@ -35,7 +35,7 @@ def heyoka_integrator(
 ) -> Callable[[float], tuple[Any, int]] | None:  # fmt: skip
     """Return a function that runs heyoka to a given end time, s, and returns the last state and the number of steps.
 
-    ``began`` is the start time, s. Without heyoka the result is None.
+    ``began`` is the start time, s. If heyoka is not installed, return None.
     """
     try:
         import heyoka
@@ -53,9 +53,9 @@ def heyoka_integrator(
 
 
 def scalar_kernel(program: Program) -> Callable[..., Any]:
-    """Return the emitted NumPy kernel as ``f(t, y, p)`` for SciPy, rewritten for one state at a time, given as a list.
+    """Return the emitted NumPy kernel as a function ``f(t, y, p)`` for SciPy, rewritten for a single state (a list).
 
-    Python floats and :mod:`math` replace zero-dimensional arrays, which halves the time; an expert would do so too.
+    Python floats and :mod:`math` replace zero-dimensional arrays. This halves the time; an expert would do it too.
     """
     text = numpy_source(program, UNNAMED).replace("import numpy as np", "import math\n\nimport numpy as np")
     text = re.sub(r"np\.empty\(\((\d+), \*np\.shape\(y\)\[1:\]\)\)", r"np.empty(\1)", text)

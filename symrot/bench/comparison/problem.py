@@ -1,4 +1,4 @@
-"""A scene prepared for a comparison of methods: plan, kernel, initial state, times of comparison, error measure."""
+"""A scene prepared for a comparison of methods: its plan, kernel, initial state, times and measure of errors."""
 
 import math
 from collections.abc import Sequence
@@ -21,10 +21,9 @@ __all__ = ["PARTS", "Problem", "State"]
 Floats = NDArray[np.float64]
 
 PARTS = (0.382, 0.618, 0.854, 1.0)
-"""Fractions of the span at which errors are measured. One time is not enough: along an unstable motion, errors come
-close to zero at some times."""
+"""Fractions of the span at which errors are measured; one is not enough, since an error may pass through zero."""
 REST = 1e-3
-"""Part of the largest angular velocity at these times; errors of slower bodies are relative to it."""
+"""Fraction of the largest angular velocity at these times; errors at slower times are relative to this fraction."""
 
 
 class State(NamedTuple):
@@ -84,7 +83,7 @@ class Problem:
 
     @staticmethod
     def error(state: State, exact: State, least: float = 0.0) -> float:
-        """Return the larger of two errors: relative error of the angular velocity, and error of the attitude in rad.
+        """Return the larger of two errors: the relative error of the angular velocity, or the attitude error in rad.
 
         For a body slower than ``least``, rad/s, the first error is relative to ``least``: a body that is nearly at rest
         before a pulse may rotate at 1e-40 rad/s, where relative errors are meaningless.

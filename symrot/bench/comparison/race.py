@@ -1,7 +1,7 @@
 """Processor times of several runs that alternate, so that all run under the same conditions.
 
-A run of microseconds is repeated until the clock can resolve it; a run of seconds is timed in fewer rounds. The median
-of the rounds is the result; the least time is recorded too.
+All runs are timed once per round. A run of microseconds is repeated until the clock can resolve it; a run of seconds is
+timed in fewer rounds. The result is the median of the rounds; the least time is recorded too.
 """
 
 import gc
@@ -73,7 +73,7 @@ def race(
 ) -> None:
     """Time all runs alternately, and append the seconds to their entries.
 
-    ``turn`` is called with the number of each round.
+    ``turn`` is called with the number of a round before it begins.
     """
     collecting = gc.isenabled()
     gc.disable()

@@ -8,17 +8,18 @@ reference                    equations              method                      
                              tensor, no shortcut    halved until nothing changes  double, where it is longer
 ``closed form``              (no equations)         theta functions               double-double, double
 ``extrapolated midpoints``   the scene's own        Gragg's rule, order 16,       long double
-                                                    steps halved as above
+                                                    steps halved likewise
 ===========================  =====================  ============================  ==========================
 
-No reference steps over a feature of a torque, such as a narrow pulse: enclosures of the torque limit the steps of the
-series, and fixed steps are short where the stepper of the scene, limited in the same way, takes short steps.
+No reference steps over a narrow pulse of a torque. Enclosures (intervals that contain all values of the torque within a
+step) limit the steps of the series; fixed steps are short at the times at which the scene's stepper, which is limited
+in the same way, takes short steps.
 
-The first available reference is used, and the others are compared with it. It is an error if references contradict each
-other; errors of methods below the difference between references are meaningless. The last reference is computed only if
-just one of the others is available, as for torques without a Taylor series. All references start from the exact numbers
-of the scene, so that the rounding of parameters counts as an error of a method. References that take minutes are stored
-in the cache of kernels.
+The first available reference is used, and the others are compared with it. If references contradict each other, an
+error is raised; errors of methods below the difference between references are meaningless. The last reference is
+computed only if just one of the others is available, as for torques without a Taylor series. All references start from
+the exact numbers of the scene, so that the rounding of parameters counts as an error of a method. References that take
+minutes are stored in the cache of kernels.
 """
 
 import ctypes
@@ -68,7 +69,7 @@ MOST_STEPS = 2_000_000  # limit of fixed steps, like MOST_SECONDS
 FEWEST_STEPS = 64
 GRID_TOLERANCE = 1e-8  # tolerance of the motion whose steps show where fixed steps must be short
 CONTRADICTION = 1e-6  # a larger difference between references means that one of them is wrong
-CONVERGED = 4e-19  # smallest error per radian of rotation (at least one radian) that long double can reach
+CONVERGED = 4e-19  # smallest error that long double can reach, per radian of rotation
 ROUNDED = 1e-15  # per radian: smaller changes may be rounding errors, larger changes come from kinks in the torque
 LONG_DOUBLE_BITS = 63  # smallest number of bits of the fraction that makes long double better than double
 LITERAL = re.compile(r"(?<![\w.])(\d+\.\d*(?:[eE][+-]?\d+)?|\d+[eE][+-]?\d+)(?![\w.])")
@@ -106,13 +107,13 @@ class _Unavailable(Exception):
 
 
 def reference(problem: Problem, say: Progress = lambda text: None, seconds: float = MOST_SECONDS) -> Reference:
-    """Return the reference states of a scene's motion, with the differences of other references from them.
+    """Return the reference states of a scene's motion, and how much other references differ from them.
 
     Raises
     ------
     SymrotError
-        If no reference is available, because the motion ends early or because there is neither a Taylor series nor a
-        compiler; also if the references contradict each other.
+        If no reference is available (the motion ends early, or there is neither a Taylor series nor a compiler), or if
+        references contradict each other.
     """
     began = perf_counter()
     paths: list[tuple[str, list[State]]] = []
@@ -181,7 +182,7 @@ def _series(problem: Problem, say: Progress, seconds: float) -> list[list[Any]]:
 
 
 def _sizes(problem: Problem) -> list[float]:
-    """Return the unit of the error of each state: the initial |omega| for angular velocities, 1 for an attitude."""
+    """Return the size to which the error of each state is relative: the initial |omega|, or 1 for the attitude."""
     spin = float(np.linalg.norm([float(value) for value in problem.scene.initial.omega_b])) or 1.0
     return [spin if name.startswith("omega") else 1.0 for name in problem.plan.states]
 
@@ -205,7 +206,7 @@ def _state(problem: Problem, last: list[Any], end: float) -> State:
 
 
 def longer(source: str) -> str:
-    """Return C code with every double, literal and library function replaced by its long double version."""
+    """Return C code in which long double replaces double, in types, literals and library functions."""
     text = CALLS.sub(r"\1l(", LITERAL.sub(r"\1L", source))
     return re.sub(r"\bdouble\b", "long double", text)
 
@@ -250,12 +251,11 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
 
 
 def _grid(problem: Problem) -> list[float]:
-    """Return times at which a fixed step must end, so that no step misses a narrow pulse; an empty list if unnecessary.
+    """Return times at which a fixed step must end, so that no step misses a narrow pulse; empty if there are no pulses.
 
-    These are the ends of steps that enclosures of the torque allow. Without them a fixed step could miss a pulse
+    They are the ends of the steps that enclosures of the torque allow. Without them a fixed step could miss a pulse
     narrower than the step, and a step of half its length could miss it too; then both would agree on a wrong result.
-    Steps between two of these times are halved like all others, so the times only ensure that steps are short where
-    necessary.
+    Steps between two of these times are halved like all others, so that steps are short wherever that is necessary.
     """
     motion = stepped_motion(problem.plan, Choice("dop853", ""), GRID_TOLERANCE)
     if formula_deviations(problem.plan, problem.kernel) is None:
@@ -275,10 +275,10 @@ def _grid(problem: Problem) -> list[float]:
 def _fixed_steps(
     general: Problem, name: str, files: Sequence[Path], fewest: int, grid: Sequence[float]
 ) -> Callable[[int], Any]:
-    """Return a function from the number of steps to the integrated states at the times of comparison.
+    """Return a function that takes a number of steps and returns the integrated states at the times of comparison.
 
-    Each interval of the grid gets steps in proportion to its length, but at least one when ``fewest`` steps are taken
-    in all; with more steps in all, this minimum grows in proportion.
+    The steps are shared among the intervals of the grid in proportion to their lengths, but each interval gets at
+    least ``steps/fewest`` steps.
     """
     parts = [
         general.kernel.source,
@@ -321,7 +321,7 @@ def _long_state(general: Problem, y: Any, end: float) -> State:
 
 
 def _long_number(value: Fraction) -> Any:
-    """Return a number as long double, correct to its last bit: the nearest double plus its rounding error."""
+    """Return a number as long double, correct to the last bit: the nearest double plus what its rounding left out."""
     first = float(value)
     return np.longdouble(first) + np.longdouble(float(value - Fraction(first)))
 

@@ -36,7 +36,7 @@ Progress = Callable[[str], object]
 
 
 def motions() -> dict[str, tuple[str, Scene]]:
-    """Return the motions of the suite: name -> (kind of motion, scene)."""
+    """Return a map from the name of each motion in the suite to (kind of motion, scene)."""
     scenes = {}
     for name, entry in read_toml(SUITE, SUITE.name).items():
         entry_scene = entry["scene"]
@@ -46,7 +46,7 @@ def motions() -> dict[str, tuple[str, Scene]]:
 
 
 class _Checkpoint:
-    """The finished studies of an interrupted run, in a file that only a run with the same settings reads."""
+    """The finished studies of an interrupted run, in a file that only a run with equal settings continues."""
 
     def __init__(self, directory: Path, **settings: Any) -> None:
         self.path = directory / "unfinished.json"
@@ -123,7 +123,7 @@ def run(
 def _compact(results: Mapping[str, Any]) -> str:
     """Return the results as JSON text with one line for each motion.
 
-    Numbers are rounded to their significant digits.
+    Numbers are rounded to four significant digits.
     """
     studies = results["studies"].items()
     rows = ",\n".join(f"{json.dumps(name)}: {json.dumps(_short(one), ensure_ascii=False)}" for name, one in studies)
@@ -140,7 +140,10 @@ def _short(value: Any, name: str = "") -> Any:
 
 
 def summary(studies: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return, for each peer, the median and the smallest ratio of its time to symrot's over all motions and decades."""
+    """Return, for each other program, the median and the smallest ratio of its time to symrot's time.
+
+    The ratios are taken over all motions and all powers of ten of the error.
+    """
     rows = []
     for peer in PEERS:
         ratios = [
@@ -161,7 +164,7 @@ def _cell(one: Mapping[str, Any], peer: str) -> str:
 
 
 def _ratio(middle: float, least: float) -> str:
-    """Return the text of a median ratio and, in brackets, of the smallest ratio, each with at least two digits."""
+    """Return the text of a median ratio with the smallest ratio in brackets, each with at least two digits."""
     return " ".join(
         form.format(f"{value:.{0 if value >= 10 else 1}f}") for form, value in (("{}", middle), ("({})", least))
     )

@@ -1,9 +1,10 @@
 """Work-precision studies: time and error of every available method on one scene.
 
-Each contestant runs over a range of tolerances. Its error is the largest at four times of the span, each reached by a
-separate run, against a more precise reference (:mod:`symrot.bench.comparison.reference`). Runs over the whole span are
-timed alternately (:mod:`symrot.bench.comparison.race`). For each decade of the error, the fastest run with at most that
-error counts; no curve is smoothed or extended. Decades below the difference between the references are left out.
+Each contestant runs at several tolerances. The error of a run is the largest error at four times of the span, each
+reached by a separate run, against a more precise reference (:mod:`symrot.bench.comparison.reference`). Runs over the
+whole span are timed alternately (:mod:`symrot.bench.comparison.race`). A decade is a power of ten of the error, such as
+1e-9: it counts the fastest run with at most that error, so no curve is smoothed or extended. Decades below the
+difference between the references are left out.
 """
 
 import hashlib
@@ -42,7 +43,7 @@ class Effort(NamedTuple):
 
     rounds: int
     longest: float  # s: after a longer run, the tighter tolerances of its contestant are skipped
-    every: int  # only every so many of a contestant's tolerances is run; there are two per decade
+    every: int  # 1 runs all tolerances of a contestant (two per decade), 2 runs every second tolerance
     reference: float  # s, for the computation of the reference
 
 
@@ -69,18 +70,18 @@ def study(
     methods : str, optional
         Groups of :data:`symrot.bench.comparison.contestants.CONTESTANTS`, comma-separated; default: all.
     quick : bool
-        Half the tolerances, fewer repetitions, heyoka in its default settings only.
+        Whether to run half the tolerances, fewer repetitions, and heyoka in its default setting only.
     say : callable
         Called with messages about the progress.
     tolerances : sequence of float, optional
-        Decreasing; each method runs at those tolerances that it supports. Default: two per decade, or one.
+        Decreasing numbers; each method runs at those that it supports. Default: two per decade, or one if ``quick``.
     rounds : int, optional
-        Repetitions of each run. Default: 9, quick 5.
+        Number of repetitions of each run. Default: 9, or 5 if ``quick``.
 
     Raises
     ------
     InputError
-        For an unknown method, a scene without a state to integrate, or if no method can take part.
+        If a method is unknown, the scene has no state to integrate, or no method can take part.
     SymrotError
         If the references contradict one another.
     """
@@ -115,7 +116,7 @@ def study(
 
 
 def digest(problem: Problem) -> str:
-    """Return a hash of a motion, which depends on body, start, torques and span but not on the title."""
+    """Return a hash of a motion; it depends on body, initial state, torques and span but not on the title."""
     scene = problem.scene
     moving = (scene.body.inertia, scene.initial, scene.torques, scene.span.start, scene.span.stop, problem.names)
     return hashlib.sha256(repr(moving).encode()).hexdigest()[:16]
@@ -124,7 +125,7 @@ def digest(problem: Problem) -> str:
 def _entries(
     problem: Problem, contestants: Sequence[Contestant], effort: Effort, exact: Sequence[State], say: Progress
 ) -> tuple[list[Entry], list[dict[str, str]]]:
-    """Return every run of every contestant with its error, and the contestants that were skipped with the reason."""
+    """Return every run of every contestant with its error, and the skipped contestants with the reasons."""
     entries: list[Entry] = []
     skipped = []
     for contestant in contestants:
@@ -195,10 +196,10 @@ def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str
 
 
 def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return, for each peer, the median and least ratio of its time to that of symrot, over the decades of the error.
+    """Return, for each other program (peer), the median and the least ratio of its time to symrot's time.
 
-    The ratios are to symrot's steppers and to all its methods. If heyoka ran in several settings, its fastest setting
-    at each decade is one more peer.
+    The ratios are taken over the decades of the error, for symrot's steppers and for all its methods. If heyoka ran in
+    several settings, its fastest setting at each decade counts as one more peer.
     """
     peers = list(dict.fromkeys(name for row in rows for name in row["methods"] if name not in (*OURS, "symrot scipy")))
     settings = [name for name in peers if name.startswith("heyoka")]
@@ -219,7 +220,7 @@ def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _ratios(rows: Sequence[dict[str, Any]], ours: Sequence[str], theirs: Sequence[str]) -> dict[str, float]:
-    """Return the ratio of the fastest time of ``theirs`` to that of ``ours``, by decade of the error."""
+    """Return, for each decade of the error, the fastest time of ``theirs`` divided by the fastest time of ``ours``."""
     ratios = {}
     for row in rows:
         sides = [[row["methods"][name]["seconds"] for name in names if name in row["methods"]]

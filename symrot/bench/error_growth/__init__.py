@@ -1,1 +1,1 @@
-"""Growth of errors along a motion, near gimbal lock, and in the points of a body."""
+"""Growth of errors along a motion, near gimbal lock, and in the positions of a body's points."""

@@ -49,11 +49,11 @@ class Track:
     Parameters
     ----------
     scene : Scene
-        Its attitude is computed even if the scene does not list it among its outputs.
+        The scene of the motion; the attitude is computed even if the scene does not list it among its outputs.
     times : array, shape (n,)
-        Rising, not before the start.
+        Increasing times, none of them before the start.
     periodic : bool
-        Whether the body is free; then the reference of one period is continued through all periods.
+        Whether the body is free; if so, the reference is computed for one period and continued through all periods.
     """
 
     def __init__(self, scene: Scene, times: Floats, periodic: bool) -> None:
@@ -67,11 +67,11 @@ class Track:
 
     @staticmethod
     def rough(scene: Scene) -> str:
-        """Return the reason, as a sentence, why a motion has no Taylor series, or an empty text if it has one."""
+        """Return a sentence that says why a motion has no Taylor series, or an empty text if it has a Taylor series."""
         return non_smooth_torque(propagator(scene, "scipy").plan)
 
     def trajectory(self, states: Floats, motion: Motion | None = None) -> Trajectory:
-        """Return the states that a method computed as a trajectory of the motion."""
+        """Return a trajectory of the motion made of the states that a method computed."""
         return Trajectory(motion or self.motion, self.times[: len(states)], states, "", Stats(0, 0, 0, 0.0), "")
 
     def curve(self, method: str, trajectory: Trajectory) -> Curve:
@@ -155,9 +155,9 @@ def _rk4(normalised: bool) -> Callable[[Track, Floats], Trajectory | None]:
 
 
 class Method(NamedTuple):
-    """A method of computing a motion: name, description, limits of revolutions, and the function that runs it.
+    """A method of computing a motion: name, description, two limits, and the function that runs the method.
 
-    There are two limits: the default limit, and the limit with ``--long``.
+    The limits are the largest numbers of revolutions that the method computes, by default and with ``--long``.
     """
 
     name: str
@@ -194,7 +194,7 @@ def growth(track: Track, long: bool = False, say: Callable[[str], object] = lamb
 def exponent(revolutions: Floats, errors: Floats) -> float:
     """Return the exponent k of errors that grow as t^k, fitted after :data:`FROM` revolutions.
 
-    It is nan if there are too few points.
+    Return nan if there are too few points.
     """
     chosen = (revolutions >= FROM) & np.isfinite(errors) & (errors > 0.0) & (errors < 0.5)
     if int(chosen.sum()) < 4:
@@ -203,6 +203,6 @@ def exponent(revolutions: Floats, errors: Floats) -> float:
 
 
 def median_curve(curves: list[Any], name: str) -> Floats:
-    """Return the median over several motions of one kind of error, a field of :class:`Curve` such as ``attitude``."""
+    """Return the median of the error ``name``, a field of :class:`Curve` such as ``attitude``, over several motions."""
     medians: Floats = np.exp(np.median(np.log(np.array([getattr(c, name) for c in curves]) + 1e-18), axis=0))
     return medians

@@ -1,4 +1,4 @@
-"""Points of a body moved along their velocity: the body grows with tangent steps, but not with secant steps.
+"""Points of a body, moved in steps along their velocity: the body grows with tangent steps, not with secant steps.
 
 ``r + h (omega x r)`` is longer than r, because the step is perpendicular to r: ``|r'|^2 = |r|^2 + h^2 |omega x r|^2``.
 For r perpendicular to the axis, the length grows by the factor ``sqrt(1 + (omega h)^2)``. The secant joins two points
@@ -23,18 +23,18 @@ Floats = NDArray[np.float64]
 
 
 class Carried(NamedTuple):
-    """The result of moving points of a body with one step size: growth as computed and by the law, strain, error."""
+    """The result of moving points of a body with one step size: computed growth, growth by the law, strain, error."""
 
     scheme: str
     h: float  # s
-    growth: float  # largest |r| at the end over that at the start
+    growth: float  # largest |r| at the end divided by largest |r| at the start
     derived: float  # growth of the tangent step by the law, along the exact motion; 1 for other schemes
     strain: float  # largest relative change of a distance between two points, apart from uniform growth
     error: float  # largest error of positions, relative to the size of the body
 
 
 def laws() -> list[tuple[str, bool]]:
-    """Return the laws of one tangent or secant step, each with whether it was proven exactly."""
+    """Return the laws of one tangent or secant step, each as (law, whether it was proven exactly)."""
     from sympy import Matrix, eye, symbols
 
     from symrot.exact import is_zero
@@ -120,9 +120,9 @@ def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.
 
 
 def _strain(first: Floats, last: Floats) -> float:
-    """Return the strain between two positions of a set of points: largest over least ratio of a distance, minus 1.
+    """Return the strain of a set of points: the largest ratio of a distance after to before, over the least, minus 1.
 
-    So a uniform change of size does not count.
+    So a uniform change of size is no strain.
     """
     pairs = np.triu_indices(len(first), 1)
     before, after = (np.linalg.norm(each[pairs[0]] - each[pairs[1]], axis=1) for each in (first, last))

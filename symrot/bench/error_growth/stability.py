@@ -1,12 +1,12 @@
-"""Report on numerical stability: growth of errors, drift of invariants, gimbal lock, moving points of a body.
+"""The report on numerical stability: growth of errors, drift of invariants, gimbal lock, moving points of a body.
 
     symrot bench --stability [SCENE] [--long] [--plot FILE.png] [--json]
 
 Without a scene, a free plate (moments 1, 3, 4) is followed for 1e5 revolutions (``--long``: 1e6), with medians over
-three starts; with a scene, its motion is followed over its span. The reference has 30 digits and shares nothing with
-any method (:mod:`symrot.bench.comparison.exact_path`). Then claims of textbooks are tested: Euler angles against the
-quaternion as state, near gimbal lock and through it; the quaternion with and without renormalisation; points moved
-along tangents or secants.
+three starts; with a scene, the scene's motion is followed over its span. The reference has 30 digits and shares no code
+with any method (:mod:`symrot.bench.comparison.exact_path`). Then claims of textbooks are tested: Euler angles against
+the quaternion as integrated state, near gimbal lock and through it; the quaternion with and without renormalisation;
+points moved along tangents or secants.
 """
 
 import math
@@ -62,7 +62,7 @@ def stability(scene: Scene | None = None, long: bool = False, say: Callable[[str
     scene : Scene, optional
         The motion to follow; default: a free plate for many revolutions.
     long : bool
-        Whether the free plate makes 1e6 revolutions, and SciPy 1e4 of them.
+        Whether to follow the free plate for 1e6 revolutions instead of 1e5, and SciPy's run for 1e4 of these.
     say : callable
         Called with messages about the progress.
     """
@@ -112,7 +112,9 @@ def _median(rows: list[Floats], count: int) -> Floats:
 
 def _of_scene(scene: Scene, long: bool, say: Callable[[str], object]) -> dict[str, Any]:
     if not scene.span.stop > scene.span.start:
-        raise InputError(f"{scene.name}: span: expected a last time after the first time")
+        raise InputError(
+            f"{scene.name}: span: expected a last time after the first, got {scene.span.start} to {scene.span.stop} s"
+        )
     times = np.linspace(float(scene.span.start), float(scene.span.stop), SAMPLES)
     say(f"{scene.name}: truth in 30 digits ..")
     track = Track(scene, times, periodic=False)
@@ -143,9 +145,9 @@ def _curve(
 
 
 def passes() -> list[dict[str, Any]]:
-    """Return steps and errors of motions that pass near gimbal lock.
+    """Return steps and errors of motions that pass near gimbal lock, for three choices of the integrated state.
 
-    The state is the quaternion, Euler angles with switched sequences, or Euler angles of one sequence.
+    The state is the quaternion, Euler angles whose sequence is switched, or Euler angles of one sequence.
     """
     t, rows = np.linspace(-3, 8, 45), []
     for distance in PASSES:
@@ -263,12 +265,14 @@ def _point_lines(results: Any) -> list[str]:
 
 
 def report(scene: str | None, long: bool, plot: Path | None, say: Callable[[str], object]) -> Any:
-    """Return the report on numerical stability of a scene, or of the free plate if ``scene`` is None; plot it if asked.
+    """Return the report on numerical stability of a scene, or of the free plate if ``scene`` is None.
+
+    If ``plot`` is a path, the report is also drawn into that file.
 
     Raises
     ------
     InputError
-        For an unusable scene.
+        If the scene cannot be used.
     """
     results = stability(load_scene(scene) if scene else None, long, say)
     if plot:

@@ -1,4 +1,4 @@
-"""The plot of the report of :mod:`~symrot.bench.error_growth.stability` on one page."""
+"""The plot of the report on numerical stability (:mod:`~symrot.bench.error_growth.stability`) on one page."""
 
 from pathlib import Path
 from typing import Any
@@ -59,7 +59,10 @@ def _rates(axes: Any, data: Any) -> None:
 
 
 def _smoothed(values: Any, linear: bool) -> Any:
-    """Return the largest error up to each time, since an error that changes sign is not really small at its zeros."""
+    """Return the largest error up to each time, if ``linear``; else the errors themselves.
+
+    An error that changes sign is small only near its zeros.
+    """
     if not linear:
         return values
     largest = np.fmax.accumulate(values)

@@ -16,7 +16,7 @@ ONE = eye(3)
 
 @dataclass(frozen=True)
 class ProjectionForm:
-    """The formulas that hold for classical or modified Rodrigues parameters, each as an expression and as LaTeX."""
+    """The formulas for classical or for modified Rodrigues parameters, each as an expression and as LaTeX."""
 
     title: str
     letter: str

@@ -148,5 +148,5 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
 
 
 def _share(speed: Expr) -> dict[Symbol, Expr]:
-    """Return the time derivative of h = tanh(p t/2) for the frequency ``speed`` (p), as symbol -> derivative."""
+    """Return a map from the symbol h = tanh(p t/2) to its time derivative, for the frequency p = ``speed``."""
     return {SHARE: speed * (1 - SHARE**2) * Rational(1, 2)}

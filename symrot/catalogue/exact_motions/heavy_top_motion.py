@@ -41,7 +41,7 @@ def derive() -> Derivation:
 
 
 def cubic(height: Expr) -> Expr:
-    """Return the square of the rate of cos(theta) of a heavy top, a cubic polynomial given by its three zeros."""
+    """Return the square of the rate of cos(theta) of a heavy top: a cubic polynomial with three known zeros."""
     return 2 * W * ARM / A * (height - U1) * (height - U2) * (height - U3)
 
 

@@ -78,7 +78,7 @@ def _plane(d: Derivation) -> None:
 def _holds(
     d: Derivation, claim: str, motion: tuple[Expr, ...], along: dict[Symbol, Expr], hypotheses: list[Expr]
 ) -> None:
-    """Add a step to the derivation ``d``: a given motion satisfies the equations of a pendulum.
+    """Add the step to the derivation ``d`` that a motion satisfies the equations of a pendulum.
 
     The motion is given by the sine and cosine of half the angle, and by the angular rate.
     """

@@ -73,7 +73,7 @@ def _functions(d: Derivation) -> None:
 def _amplitudes() -> tuple[Matrix, object, object]:
     """Return amplitudes, frequency and parameter of Jacobi's elliptic functions in the motion of a free body.
 
-    They are computed from the first and third component of the angular velocity at the start.
+    They are computed from the initial values of the first and the third component of the angular velocity.
     """
     second = THIRD * sqrt(C * (A - C) / (B * (A - B)))
     p = (A - C) / B * FIRST * THIRD / second

@@ -142,9 +142,9 @@ def _tensor(d: Derivation, body: Solid, moments: Moments) -> None:
 
 
 def _stages(body: Solid, axes: Sequence[int]) -> tuple[Expr, tuple[Stage, ...]]:
-    """Return the integral of a product of x, y, z over a solid: a constant factor, and the integrations one by one.
+    """Return a constant factor and the integrations, one by one, of a product of x, y, z over a solid.
 
-    ``axes`` names the factors of the product.
+    ``axes`` contains the numbers of the factors: 0 for x, 1 for y, 2 for z.
     """
     coordinates = [variable for variable, _, _ in body.limits]
     constant, weight = body.jacobian.as_independent(*coordinates, as_Add=False)
@@ -162,7 +162,7 @@ def _integral(body: Solid, axes: Sequence[int]) -> Expr:
 def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
     """Return the antiderivatives of an integral as text for the reason of a step, the innermost first.
 
-    If they are long, only the last one is returned.
+    If they are long, return only the last antiderivative.
     """
     constant, stages = _stages(body, axes)
     formulas = [f"${_latex(factor_terms(stage.antiderivative))}$ in ${_latex(stage.variable)}$" for stage in stages]
@@ -173,7 +173,7 @@ def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
 
 
 def _between(body: Solid, axes: Sequence[int]) -> list[tuple[str, Expr, Expr]]:
-    """Return (words, left side, right side) for the antiderivative between its limits, for each integration."""
+    """Return, for each integration, the equation (words, left, right) for the antiderivative between its limits."""
     equations = []
     for stage in _stages(body, axes)[1]:
         upper, lower = (stage.antiderivative.subs(stage.variable, end) for end in (stage.upper, stage.lower))

@@ -19,14 +19,14 @@ def imaginary() -> Expr:
 
 
 def derivatives(speed: Expr = S.One, parameter: Expr = MU) -> dict[Symbol, Expr]:
-    """Return the time derivatives of sn, cn and dn, by symbol, for an argument that grows at ``speed``."""
+    """Return a map from the symbols sn, cn, dn to their time derivatives, if their argument grows at ``speed``."""
     return {SN: speed * CN * DN, CN: -speed * SN * DN, DN: -speed * parameter * SN * CN}
 
 
 def squares(parameter: Expr = MU, fixed: bool = False) -> list[Expr]:
     """Return the two quadratic relations of sn, cn and dn, as expressions that are zero.
 
-    With ``fixed`` they are relations of the values at the fixed argument w.
+    With ``fixed``, the relations are between the values at the fixed argument w.
     """
     s, c, d = W_VALUES if fixed else (SN, CN, DN)
     return [c**2 - 1 + s**2, d**2 - 1 + parameter * s**2]

@@ -14,7 +14,7 @@ __all__ = ["Stage", "antiderivative", "iterated"]
 
 @dataclass(frozen=True)
 class Stage:
-    """One integration of an iterated integral: variable, antiderivative, limits, and the integral between them."""
+    """One integration of an iterated integral: variable, antiderivative, limits, and the value of the integral."""
 
     variable: Symbol
     antiderivative: Expr
@@ -25,7 +25,7 @@ class Stage:
 
 @cache
 def _waves(cosines: int, sines: int) -> tuple[tuple[int, Expr, Expr], ...]:
-    """Return the Fourier series of ``cos(x)^cosines sin(x)^sines``: (k, a, b) for each ``a cos(k x) + b sin(k x)``."""
+    """Return the terms ``a cos(k x) + b sin(k x)`` whose sum is ``cos(x)^cosines sin(x)^sines``, each as (k, a, b)."""
     spectrum: dict[int, Expr] = {0: Integer(1)}
     for up, down, times in ((Rational(1, 2), Rational(1, 2), cosines), (-I / 2, I / 2, sines)):
         for _ in range(times):
@@ -46,7 +46,7 @@ def antiderivative(integrand: Expr, variable: Symbol) -> Expr:
     Raises
     ------
     ProofError
-        If its derivative is not the integrand.
+        If the derivative of the result is not the integrand.
     """
     total: Expr = Integer(0)
     if integrand.has(cos(variable), sin(variable)):
@@ -64,7 +64,7 @@ def antiderivative(integrand: Expr, variable: Symbol) -> Expr:
 
 @cache
 def iterated(integrand: Any, limits: tuple[tuple[Symbol, Expr, Expr], ...]) -> tuple[Stage, ...]:
-    """Return all integrations of an iterated integral over (variable, lower, upper); the first is innermost."""
+    """Return the integrations of an iterated integral; ``limits`` are (variable, lower, upper), innermost first."""
     stages = []
     for variable, lower, upper in limits:
         primitive = antiderivative(expand(integrand), variable)

@@ -22,12 +22,12 @@ TENSOR = Matrix(
 
 
 def pairs(variables: Sequence[Symbol], rates: Any) -> dict[Symbol, Expr]:
-    """Return a mapping from each variable to its rate of change."""
+    """Return a map from each variable to its rate of change."""
     return dict(zip(variables, list(rates), strict=True))
 
 
 def attitude_rates() -> dict[Symbol, Expr]:
-    """Return the rates of the quaternion components q0..q3, by symbol, for the body angular velocity ``OMEGA``."""
+    """Return a map from the quaternion components q0 to q3 to their rates, for the angular velocity ``OMEGA``."""
     return pairs(symbols.quaternion, quaternion_rates("body") * OMEGA)
 
 

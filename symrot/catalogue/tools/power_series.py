@@ -8,7 +8,7 @@ __all__ = ["coefficient", "indexed"]
 
 
 def indexed(name: str, index: Symbol, shift: int = 0) -> Symbol:
-    """Return the symbol of a coefficient of a power series, e.g. ``a_{n-1}``."""
+    """Return the symbol of a coefficient of a power series, such as ``a_{n-1}``."""
     return Symbol(f"{name}_{{{index.name}{f'{shift:+d}' if shift else ''}}}")
 
 
@@ -20,7 +20,8 @@ def coefficient(terms: Mapping[str, Mapping[int, Expr]], variable: Symbol, index
     Parameters
     ----------
     terms : mapping
-        Name of a series -> order of its derivative -> polynomial in the variable that multiplies this derivative.
+        A map from the name of a series to a map from the order of a derivative to the polynomial that multiplies this
+        derivative.
 
     Notes
     -----

@@ -1,6 +1,6 @@
 """Formulas for a body swept through resonance: recurrences of series, and phases without cancellation.
 
-Such a body rotates at a linearly growing rate about its axis, and at a constant rate about an axis across it.
+Such a body rotates at a linearly growing rate about its axis, and at a constant rate about an axis normal to this axis.
 """
 
 from sympy import Expr, Matrix, Rational, S, Symbol, sqrt
@@ -17,7 +17,7 @@ V, X, R, KAPPA = Symbol("v"), Symbol("x"), Symbol("r"), Symbol("kappa")
 
 
 def far(d: Derivation) -> None:
-    """Append steps to the derivation ``d`` on the coefficients of the series far from resonance.
+    """Add steps to the derivation ``d`` about the coefficients of the series far from resonance.
 
     These series describe a vector that is fixed in space, and the small angle of rotation about this vector.
     """
@@ -114,7 +114,7 @@ def _small_angle(d: Derivation) -> None:
 
 
 def near(d: Derivation) -> None:
-    """Append steps to the derivation ``d`` on the Taylor series of the attitude near resonance, and its symmetry."""
+    """Add steps to the derivation ``d`` about the Taylor series of the attitude near resonance, and its symmetry."""
     d.section("Near resonance")
     place, step = Symbol("X"), Symbol("u")
     names = r"\alpha", r"\beta"
@@ -154,7 +154,7 @@ def near(d: Derivation) -> None:
 
 
 def weak(d: Derivation) -> None:
-    """Append steps to the derivation ``d`` on the phase under a weak torque, a power series of the time."""
+    """Add steps to the derivation ``d`` about the phase under a weak torque, a power series in time."""
     d.section("A weak torque")
     h, c = Symbol("h"), Symbol("c")
     f = sqrt(1 + 2 * c * h + h**2)
@@ -237,7 +237,7 @@ def _by_legendre(c: Expr) -> dict[Symbol, Expr]:
 
 
 def between(d: Derivation) -> None:
-    """Append steps to the derivation ``d`` on the phase between two times, a sum of positive terms."""
+    """Add steps to the derivation ``d`` about the phase between two times, a sum of positive terms."""
     d.section("Between two times")
     omega, start, speed, there, across = (Symbol(name) for name in ("Omega", "Omega_0", "S", "S_0", "W"))
     together = there * speed + start * omega

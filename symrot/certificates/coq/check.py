@@ -1,6 +1,6 @@
-"""Run Coq on files of theorems; verify that no proof is skipped and that only axioms of the real numbers are used.
+"""Checks of theorem files with Coq: no proof is skipped, and only axioms of the real numbers are used.
 
-The files are checked in a temporary folder, into which Coq also writes its own files.
+Coq works in a temporary folder, into which it also writes files of its own.
 """
 
 import os
@@ -48,9 +48,9 @@ class CoqResult:
     ----------
     theorems : tuple of TheoremResult
     axioms : tuple of str
-        The axioms on which the theorems rest, all together.
+        All axioms on which the theorems rest.
     problems : tuple of str
-        One sentence for each refused file or theorem, with the place and the message of Coq.
+        One sentence for each refused file or theorem, with the line number and Coq's message.
     seconds : float
     version : str
     """
@@ -66,7 +66,7 @@ class CoqResult:
 
 
 def coqc() -> str | None:
-    """Return the path of Coq's compiler, from the variable ``COQC`` or the search path; None if it is not installed."""
+    """Return the path of Coq's compiler (named by the variable ``COQC``, or coqc); None if it is not installed."""
     return shutil.which(os.environ.get("COQC") or "coqc")
 
 
@@ -77,12 +77,12 @@ def coq_version(compiler: str) -> str:
 
 
 def unproven(text: str) -> tuple[str, ...]:
-    """Return the words of a Coq file, comments excluded, that assume a statement or skip a proof: ``Admitted`` etc."""
+    """Return the words of a Coq file outside comments that assume a statement or skip a proof, such as ``Admitted``."""
     return tuple(match[0] for match in _UNPROVEN.finditer(_COMMENT.sub(" ", text)))
 
 
 def check_kernel(kernel: str, seconds: float = SECONDS) -> CoqResult:
-    """Check with Coq the theorem about a kernel, together with the files that the theorem needs.
+    """Check the theorem about a kernel, and the files that it needs, with Coq; return the result.
 
     Raises
     ------
@@ -105,12 +105,12 @@ def check_texts(
     seconds: float = SECONDS,
     progress: Callable[[str], object] = lambda text: None,
 ) -> CoqResult:
-    """Check files of theorems with Coq, several at once.
+    """Check files of theorems with Coq, several at once; return one result for all.
 
     Parameters
     ----------
     texts : mapping of str to str
-        File name -> text, as :func:`symrot.certificates.coq.library.coq_texts` returns them.
+        A map from file name to text, as :func:`symrot.certificates.coq.library.coq_texts` returns it.
     jobs : int, optional
         Number of files to check at once; default: the number of processors.
     seconds : float
@@ -121,7 +121,7 @@ def check_texts(
     Raises
     ------
     CertificateError
-        If Coq is not installed.
+        If Coq is not installed. A file that Coq refuses raises nothing: its message is in ``problems`` of the result.
     """
     compiler = coqc()
     if compiler is None:

@@ -1,4 +1,4 @@
-"""Coq theorems about dynamics: Euler's equations follow from the law of angular momentum; energy; inertia tensor."""
+"""Coq theorems about dynamics: Euler's equations, angular momentum, kinetic energy and the rotated inertia tensor."""
 
 from symrot import symbols
 from symrot.certificates.coq.file import CoqFile, Theorem, statement

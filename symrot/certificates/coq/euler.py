@@ -1,9 +1,9 @@
-"""Coq theorems about Euler angles: the angle rates agree with the derivative of the rotation matrix (24 sequences).
+"""Coq theorems about Euler angles in 24 sequences: the angle rates agree with the rotation matrix's derivative.
 
-The rotation matrix (dcm) is the product of three rotations, each with its own angular velocity. The angular velocity of
-the product is the sum of all three in one common frame, into which the rotations in between carry them
+The rotation matrix (dcm) is the product of three rotations, each with its own angular velocity. The product's angular
+velocity is the sum of these three vectors, after the rotations between have carried them into one common frame
 (``three_turns_body`` and ``three_turns_space`` in ``rotation.v``). It remains to prove that the printed rate Jacobian
-gives that sum: three identities of products of sines and cosines.
+gives that sum: one identity of products of sines and cosines for each of the three components.
 """
 
 from sympy import cos, sin
@@ -38,7 +38,7 @@ _PRINTED = {
 
 
 def euler_files() -> dict[str, str]:
-    """Return the names of the Coq files about Euler angles, each with its axis sequence such as ``"zxz"``."""
+    """Return a map from the name of each Coq file about Euler angles to its axis sequence, such as ``"zxz"``."""
     return {prefix(sequence): sequence for sequence in SEQUENCES}
 
 
@@ -62,7 +62,7 @@ def euler_file(sequence: str) -> CoqFile:
 
 
 def _rotations(sequence: str) -> list[tuple[str, str]]:
-    """Return axis letter and angle of the three rotations whose product is the rotation matrix, left to right."""
+    """Return the axis letter and angle of the three rotations whose product, from left to right, is the dcm."""
     return [(AXES[factor.axis].lower(), str(factor.angle)) for factor in factors(sequence)]
 
 

@@ -31,7 +31,7 @@ class Theorem:
 
 @dataclass(frozen=True)
 class CoqFile:
-    """A file of theorems, which Coq checks after the files that it requires.
+    """A file of theorems; Coq checks it after the files in ``requires``.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class CoqFile:
         The file's name without the suffix ``.v``.
     title : str
     requires : tuple of str
-        Names of all files that it needs directly or indirectly, in order.
+        The names of all files that this file needs directly or indirectly, in the order in which Coq must check them.
     definitions : tuple of str
     theorems : tuple of Theorem
     """
@@ -69,7 +69,7 @@ class CoqFile:
 
 
 def _short(line: str) -> str:
-    """Fold a line of Coq text into several indented lines if it is too long."""
+    """Return a line of Coq text, folded into several indented lines if it is too long."""
     return folded(line, len(line) - len(line.lstrip()) + 2)
 
 

@@ -1,4 +1,4 @@
-"""The Coq files that symrot prints, and the search for the theorem about a kernel."""
+"""The Coq files that symrot prints, and the theorem about each kernel."""
 
 from collections.abc import Callable
 from functools import cache, partial
@@ -43,7 +43,10 @@ _FILES: dict[str, tuple[tuple[str, ...], Callable[[], CoqFile]]] = {
     "dynamics": (("euler_equations_", "kinetic_", "angular_", "inertia_rotated"), dynamics_file),
     **{name: ((f"{name}_",), partial(euler_file, sequence)) for name, sequence in euler_files().items()},
 }
-"""File, without ``.v`` -> the prefixes of its kernels' names, and the function that makes it; required files first."""
+"""File name without ``.v`` -> the prefixes of its kernels' names, and the function that makes the file.
+
+Each file comes after the files that it requires.
+"""
 
 
 def coq_file_names() -> tuple[str, ...]:
@@ -73,7 +76,7 @@ def rules_text() -> str:
 
 
 def assumptions_text(names: tuple[str, ...]) -> str:
-    """Return a Coq file that prints the axioms on which any theorem of the given files rests."""
+    """Return the text of a Coq file that prints all axioms on which the theorems of the named files rest."""
     lines = [f"  let _ := {name}.{theorem.name} in" for name in names for theorem in coq_file(name).theorems]
     return "\n".join([
         "(* The axioms on which the theorems rest, all together. Printed by `symrot prove --coq`; do not edit. *)",
@@ -83,7 +86,7 @@ def assumptions_text(names: tuple[str, ...]) -> str:
 
 
 def with_required(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return some Coq files and all files that they require, each after the files that it needs."""
+    """Return the named Coq files and all files that these require; each file comes after the files that it needs."""
     files_needed = set(names)
     for name in names:
         files_needed |= set(coq_file(name).requires) - {RULES}
@@ -91,9 +94,9 @@ def with_required(names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def coq_texts(names: tuple[str, ...] | None = None) -> dict[str, str]:
-    """Return Coq files (default: all) and everything that checking them needs, as a mapping from file name to text.
+    """Return the named Coq files (default: all) and all files that checking them needs, as a map from name to text.
 
-    The file ``_CoqProject`` among them lists all files for the build tool ``coq_makefile``.
+    The map includes ``_CoqProject``, a list of all files for the build tool ``coq_makefile``.
     """
     names_needed = with_required(coq_file_names() if names is None else names)
     printed = {name: coq_file(name).text for name in names_needed}
@@ -103,7 +106,7 @@ def coq_texts(names: tuple[str, ...] | None = None) -> dict[str, str]:
 
 
 def _theorem_about(kernel: str) -> tuple[str, Theorem] | None:
-    """Return the theorem about a kernel and its file, or None if the kernel has no theorem."""
+    """Return the name of the file with the theorem about a kernel, and the theorem; None if there is no theorem."""
     for name, (beginnings, _) in _FILES.items():
         if kernel.startswith(beginnings):
             for theorem in coq_file(name).theorems:
@@ -115,8 +118,8 @@ def _theorem_about(kernel: str) -> tuple[str, Theorem] | None:
 def coq_section(kernel: str) -> dict[str, Any] | None:
     """Return the section ``coq`` of a kernel's certificate, which states the theorem about the kernel, or None.
 
-    The section is made without Coq: it states the theorem and does not say that Coq has checked it
-    (:func:`symrot.certificates.coq.check.check_kernel` checks it). Not every kernel has a theorem.
+    The section states the theorem; it does not say that Coq has checked the theorem, and Coq is not needed to make it
+    (:func:`symrot.certificates.coq.check.check_kernel` runs Coq).
 
     Parameters
     ----------
@@ -126,8 +129,8 @@ def coq_section(kernel: str) -> dict[str, Any] | None:
     Returns
     -------
     dict or None
-        ``file``, ``theorem``, ``statement`` (its text), ``statement_sha256``, ``file_sha256``, ``requires`` (file ->
-        sha256) and ``axioms``, the only axioms on which the theorem may rest.
+        ``file``, ``theorem`` (its name), ``statement`` (its text), ``statement_sha256``, ``file_sha256``, ``requires``
+        (required file -> sha256) and ``axioms``, the only axioms on which the theorem may rest.
     """
     home = _theorem_about(kernel)
     if home is None:

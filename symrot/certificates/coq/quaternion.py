@@ -1,4 +1,4 @@
-"""Coq theorems about unit quaternions: the rotations that they represent, and their rates."""
+"""Coq theorems about unit quaternions: the rotations that they represent, and the quaternion rates."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""Coq theorems about classical and modified Rodrigues parameters: the attitude they describe, and their rates."""
+"""Coq theorems about classical and modified Rodrigues parameters: the attitude, and the parameter rates."""
 
 from symrot import symbols
 from symrot.certificates.coq.euler import DCM_RATE, OMEGA
@@ -36,12 +36,15 @@ def rodrigues_file(name: str) -> CoqFile:
 
 
 def _norm(parameters: tuple[str, ...], at: str = "") -> str:
-    """Return the Coq text of 1 + the sum of squares of the parameters, the divisor in the formulas."""
+    """Return the Coq text of the denominator in the formulas: 1 plus the sum of the squared parameters.
+
+    ``at`` is appended to each parameter, such as `` t`` for its value at time t.
+    """
     return " + ".join(f"{each}{at} ^ 2" for each in parameters) + " + 1"
 
 
 def _positive(parameters: tuple[str, ...], at: str = "") -> str:
-    """Return the Coq tactic that proves 1 + the sum of squares of the parameters to be positive."""
+    """Return the Coq tactic which proves that 1 plus the sum of the squared parameters is positive."""
     return "(" + "; ".join(f"pose proof (pow2_ge_0 ({each}{at}))" for each in parameters) + "; lra)"
 
 

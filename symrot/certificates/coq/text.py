@@ -1,6 +1,6 @@
-"""Print SymPy expressions and kernels as Coq text: rational functions, sines, cosines and roots of real variables.
+"""Coq text of SymPy expressions and kernels: rational functions, sines, cosines and square roots of real variables.
 
-Terms and factors are in SymPy's canonical order, so that the same formula gives the same bytes on every machine.
+Terms and factors are printed in SymPy's canonical order, so that a formula gives the same bytes on every machine.
 """
 
 from collections.abc import Iterable, Sequence
@@ -26,14 +26,14 @@ def coq_expression(expression: Expr) -> str:
     Raises
     ------
     CertificateError
-        If the expression holds anything but rational numbers, symbols, sums, products, integer powers, square roots,
+        If the expression contains anything but rational numbers, symbols, sums, products, integer powers, square roots,
         sines and cosines.
     """
     return _print(expression)[0]
 
 
 def _print(expression: Expr) -> tuple[str, int]:
-    """Return the Coq text of an expression, and the precedence of its outermost operation, for brackets."""
+    """Return the Coq text of an expression and the precedence of its outermost operation, which decides on brackets."""
     if isinstance(expression, Symbol):
         return str(expression), _ATOM
     if isinstance(expression, Rational):
@@ -98,7 +98,7 @@ def _power(expression: Pow) -> tuple[str, int]:
 
 
 def folded(text: str, indent: int = 0) -> str:
-    """Fold a text into lines of at most :data:`WIDTH` characters; all lines but the first are indented."""
+    """Return a text folded into lines of at most :data:`WIDTH` characters; all lines but the first are indented."""
     return fill(text, WIDTH, subsequent_indent=" " * indent, break_long_words=False, break_on_hyphens=False)
 
 
@@ -108,7 +108,7 @@ def comment(text: str) -> str:
 
 
 def _record(formulas: Sequence[Expr]) -> str:
-    """Return formulas as a Coq vector, quaternion or matrix (row by row); a single formula is returned as a number."""
+    """Return the Coq text of formulas as a vector, quaternion or matrix (row by row), or of a single formula."""
     if len(formulas) == 1:
         return folded(f"  {coq_expression(formulas[0])}", 4)
     texts = [_within(formula, _ATOM) for formula in formulas]
@@ -129,7 +129,7 @@ def matrix_text(name: str, variable_names: Iterable[str], formulas: Sequence[Exp
 
 
 def definition_text(kernel: Definition, name: str, output: str | None = None) -> str:
-    """Return an output of a kernel as a Coq function, whose arguments are the components of the inputs in order.
+    """Return the Coq definition of a function that computes one output of a kernel from the components of its inputs.
 
     Parameters
     ----------

@@ -1,11 +1,11 @@
-"""Prove that the operations of a C text compute the formulas of a kernel, exactly, as functions of real numbers.
+"""Proof that the operations of a C text compute a kernel's formulas exactly, as functions of real numbers.
 
-Both sides become fractions of polynomials over the inputs, pi and atoms; an atom is a symbol for the value of a
-function such as ``sin(psi)``. An atom of the C text equals an atom of the formula if their arguments are equal
-fractions. A function with a removable singularity (:mod:`symrot.kernels.removable`) is recognised by its two branches:
-one is proven to be the function's formula, the other its limit or its series, whose truncation error is bounded. A
-constant that is not a short binary fraction stands for the simplest fraction or multiple of pi that rounds to it. If
-the formula has another number there, the proof fails.
+C text and formulas are both turned into fractions of polynomials over the inputs, pi and atoms; an atom is a symbol for
+the value of a function such as ``sin(psi)``. An atom of the C text equals an atom of the formula if their arguments are
+equal fractions. A function with a removable singularity (:mod:`symrot.kernels.removable`) is recognised by its two
+branches: one is proven to be the function's formula, the other its limit or its series, whose truncation error is
+bounded. A constant of the C text that is not a short binary fraction stands for the simplest fraction or multiple of pi
+that rounds to it. If the formula has another number there, the proof fails.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -31,7 +31,10 @@ MOST_ATOMS = 80
 
 @dataclass(frozen=True)
 class Truncation:
-    """A truncated series in the C text: its function, the limit of x^2 below which it is used, and its error bound."""
+    """A truncated series in the C text: its function, the value of x^2 (``split``) below which it is used, its bound.
+
+    ``terms`` is the number of terms that the C text computes.
+    """
 
     function: str
     split: Fraction
@@ -55,9 +58,9 @@ class Equality:
 
 
 class _AtomField(FractionField):
-    """A field of fractions of polynomials over inputs, pi and symbols for function values such as ``sin(psi)``.
+    """The field of fractions of polynomials over inputs, pi and atoms, the symbols for function values.
 
-    An atom is a symbol for the value of a function, added at its first use.
+    The first use of a function with new arguments adds an atom.
     """
 
     def __init__(self, inputs: Sequence[str], name: str) -> None:
@@ -65,7 +68,7 @@ class _AtomField(FractionField):
         self.atoms: dict[tuple[str, tuple[Quotient, ...]], str] = {}
 
     def atom(self, function: str, arguments: tuple[Quotient, ...]) -> Quotient:
-        """Return the symbol (atom) for the value of a function; equal arguments give the same symbol."""
+        """Return the atom for the value of a function; equal arguments give the same atom."""
         key = (function, arguments)
         if key not in self.atoms:
             if len(self.atoms) == MOST_ATOMS:
@@ -77,7 +80,7 @@ class _AtomField(FractionField):
 
 
 class _Formulas(FormulaReader):
-    """A converter of SymPy formulas to fractions of polynomials; functions such as ``sin(x)`` become symbols."""
+    """A converter of SymPy formulas to fractions of polynomials; function values such as ``sin(x)`` become atoms."""
 
     def __init__(self, fractions: _AtomField, named: Sequence[tuple[Symbol, Expr]] = ()) -> None:
         self.fractions: _AtomField = fractions
@@ -116,7 +119,11 @@ FUNCTIONS_WITH_LIMIT = (
 
 
 class _EqualityProver:
-    """A prover that a C text computes the formulas: it evaluates the operations of the C text in exact fractions."""
+    """The evaluation of a C text's operations in exact fractions of polynomials.
+
+    ``symbol_of`` maps the index text of an input to its symbol, ``intended`` a symbol to the formula that it stands
+    for.
+    """
 
     def __init__(
         self,
@@ -142,7 +149,7 @@ class _EqualityProver:
         return {place: self.values[index] for place, index in self.operations.outputs}
 
     def _below(self, index: int, leaf: int) -> set[int]:
-        """Return the operations from node ``leaf`` to node ``index``, which must form a polynomial in the leaf."""
+        """Return the indices of all operations between nodes ``leaf`` and ``index``: a polynomial in the leaf."""
         if index == leaf:
             return set()
         node = self.operations.nodes[index]
@@ -176,7 +183,7 @@ class _EqualityProver:
         return fractions.atom(kind, tuple(arguments))
 
     def _constant(self, value: Fraction) -> Quotient:
-        """Return the exact number that a rounded constant of the C text stands for."""
+        """Return the exact number for which a rounded constant of the C text stands."""
         intended = intended_value(value, self.operations.precision)
         if intended.fraction != value or intended.times_pi:
             self.rounded[value] = intended
@@ -184,7 +191,7 @@ class _EqualityProver:
         return self.fractions.multiply(number, self.fractions.generator("pi")) if intended.times_pi else number
 
     def _choice(self, node: tuple[Any, ...]) -> Quotient:
-        """Return the value of ``a < b ? x : y`` in C: a function with a limit, or a conditional of the formulas."""
+        """Return the value of a C conditional such as ``a < b ? x : y``, which must also occur in the formulas."""
         _, relation, *places = node
         if relation == "<":
             return self._series(*places)
@@ -201,20 +208,23 @@ class _EqualityProver:
                     ):
                         return self.fractions.generator(atom)
         raise CertificateError(
-            f"{self.operations.name}: expected a conditional that the formula contains too, got one "
+            f"{self.operations.name}: expected a conditional that the formula contains too, got a conditional "
             f"with the relation {relation!r}"
         )
 
     def _is_limit_or_formula(
         self, function: FunctionWithLimit, arguments: tuple[Quotient, ...], then: Quotient, other: Quotient
     ) -> bool:
-        """Tell whether the branches of a conditional are a function's limit at zero and its formula elsewhere."""
+        """Return whether the branches of a conditional are a function's limit at zero and its formula elsewhere."""
         reader = _Formulas(self.fractions)
         reader.values.update(zip(function.arguments, arguments, strict=True))
         return then == reader.read(function.limit) and other == reader.read(function.formula)
 
     def _series(self, square: int, split: int, near: int, far: int) -> Quotient:
-        """Return the symbol for a function that the C text computes by a series near zero and a formula far from it."""
+        """Return the atom of a function that the C text computes by a series near zero and by its formula elsewhere.
+
+        The arguments are the indices of the operations x^2, bound of x^2, series and formula.
+        """
         for (name, arguments), atom in list(self.fractions.atoms.items()):
             if name not in REMOVABLE or self.fractions.multiply(arguments[0], arguments[0]) != self.values[square]:
                 continue
@@ -232,7 +242,7 @@ class _EqualityProver:
         )
 
     def _coefficients(self, index: int, leaf: int) -> list[Fraction]:
-        """Return the coefficients of a polynomial in the value of the node ``leaf``, the constant term first."""
+        """Return the coefficients of node ``index`` as a polynomial in node ``leaf``, constant term first."""
         if index == leaf:
             return [Fraction(0), Fraction(1)]
         node = self.operations.nodes[index]
@@ -248,7 +258,10 @@ class _EqualityProver:
         return product
 
     def _truncated(self, name: str, split: Fraction, written: list[Fraction]) -> Truncation:
-        """Check the coefficients of a truncated series in the C text; return the series with a bound of its error."""
+        """Check the coefficients of a truncated series in the C text; return the series with a bound of its error.
+
+        ``split`` is the value of x^2 below which the C text uses the series.
+        """
         exact = REMOVABLE[name].taylor(len(written) + 1)
         for value, true in zip(written, exact, strict=False):
             if not IntendedConstant(value, true, False).rounds(self.operations.precision):
@@ -258,7 +271,7 @@ class _EqualityProver:
         if sorted(terms, reverse=True) != terms or any(a * b >= 0 for a, b in pairwise(exact)):
             raise CertificateError(
                 f"{self.operations.name}: expected a series whose terms decrease up to x^2 = {split}, "
-                "got one whose terms do not"
+                "got a series whose terms do not"
             )
         return Truncation(name, split, len(written), terms[-1] / (terms[0] - terms[1]))
 
@@ -284,20 +297,20 @@ def prove_equal(
     Parameters
     ----------
     operations : Operations
-        The operations that were read back from C.
+        The operations that were read from the C text.
     symbol_of : mapping of str to str
-        Place of an input (``"q[1]"``) -> symbol in the formulas.
+        A map from the index text of an input, such as ``"q[1]"``, to its symbol in the formulas.
     formulas : mapping of str to Expr
-        Place of an output -> formula.
+        A map from the index text of an output to its formula.
     named : sequence of (Symbol, Expr)
         Intermediate quantities: symbols that later quantities and the formulas use, with their formulas.
     parameters : mapping of str to Expr, optional
-        Symbol of an input -> the formula that it stands for, in symbols that are not inputs.
+        A map from the symbol of an input to the formula for which it stands, in symbols that are not inputs.
 
     Raises
     ------
     CertificateError
-        If an output differs, or an operation has no counterpart in the formulas; the message names the first.
+        If an output differs, or an operation has no counterpart in the formulas; the message names it.
     """
     parameters = parameters or {}
     constants = {str(symbol) for value in parameters.values() for symbol in value.free_symbols}

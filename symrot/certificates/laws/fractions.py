@@ -1,7 +1,7 @@
 """Exact arithmetic with fractions of polynomials over the rationals, and SymPy formulas as such fractions.
 
-Two kinds of proof share this arithmetic: of the laws, and of the equality of C text and formulas. An independent check
-of both is :mod:`symrot.certificates.exact_check`, which uses no polynomials at all.
+Two kinds of proof share this arithmetic: proofs of laws, and proofs that a C text computes its formulas.
+:mod:`symrot.certificates.exact_check` checks both kinds independently, without any polynomials.
 """
 
 from abc import ABC, abstractmethod
@@ -38,10 +38,10 @@ class FractionField:
         return self.generators[name], self.ring.one
 
     def lowest(self, above: PolyElement, below: PolyElement) -> Quotient:
-        """Return ``above/below`` in lowest terms; the denominator is scaled to the leading coefficient 1."""
+        """Return ``above/below`` in lowest terms, scaled so that the denominator's leading coefficient is 1."""
         if not below:
             raise CertificateError(
-                f"{self.name}: expected a formula that is defined somewhere, got one that divides by "
+                f"{self.name}: expected a formula that is defined somewhere, got a formula that divides by "
                 "an expression that is zero everywhere"
             )
         if not below.is_ground:
@@ -94,7 +94,7 @@ class FormulaReader(ABC):
 
     @abstractmethod
     def symbol(self, name: str) -> Quotient:
-        """Return a symbol, or the number pi, as a fraction of polynomials."""
+        """Return the symbol of this name, or the number pi, as a fraction of polynomials."""
 
     @abstractmethod
     def root(self, square: Quotient) -> Quotient:

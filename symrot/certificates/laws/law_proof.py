@@ -1,7 +1,10 @@
-"""An attempt to prove a law: each expression that must be zero is written as a sum of cofactors times relations.
+"""One attempt to prove a law: every entry is written as a sum of cofactors times relations.
 
-An entry is an expression that the law states to be zero; a relation is a polynomial that is known to be zero. The value
-of each function, such as ``cos(x)``, is a variable (generator) of the ring.
+An entry is an expression that the law states to be zero; a relation is a polynomial that is known to be zero. Both are
+polynomials in the inputs and in generators: a generator is a variable for the value of a function such as ``cos(x)``.
+
+A base angle is an angle, such as x/2, whose sine and cosine are generators; every other angle must be a sum of integer
+multiples of base angles and of pi/2.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -32,7 +35,7 @@ __all__ = [
     "UndecidedChoice",
 ]
 
-Cofactors = tuple[tuple[int, str], ...]  # number of a relation, its cofactor; zero cofactors are left out
+Cofactors = tuple[tuple[int, str], ...]  # (index of a relation, its cofactor); zero cofactors are left out
 Choice = tuple[str, str, str]  # left side, ">=" or "<", right side
 ProofStep = tuple[Any, ...]  # kind, arguments
 
@@ -49,13 +52,13 @@ class EntryProof:
 class CaseProof:
     """The proof of a law in one case: for one selection of the branches of all conditionals in the formulas.
 
-    ``steps`` are the facts that the proof uses, in order: tuples that begin with a kind; x and y are expressions as
-    text::
+    ``steps`` are the facts that the proof uses, in order. Each is a tuple that begins with its kind; x and y are
+    expressions as text::
 
-        ("name", symbol, x)                       the function that a generator stands for
-        ("circle", x) ("root", x) ("sign", x)     the relation of sine and cosine, of sqrt(x), of copysign(1, x)
-        ("sum", x, y) ("odd", x) ("quarter", x)   sine and cosine of x + y, of -x, of x + pi/2
-        ("arc", y, x) ("wrap", x)                 sine and cosine of atan2(y, x), of x brought to [-pi, pi]
+        ("name", symbol, x)                       the generator ``symbol`` stands for the function value x
+        ("circle", x) ("root", x) ("sign", x)     sin(x)^2 + cos(x)^2 = 1; sqrt(x)^2 = x; copysign(1, x)^2 = 1
+        ("sum", x, y) ("odd", x) ("quarter", x)   sine and cosine of x + y; of -x; of x + pi/2
+        ("arc", y, x) ("wrap", x)                 sine and cosine of atan2(y, x); of x wrapped to [-pi, pi]
         ("square", x, y, factor, cofactors)       sqrt(x) is y: (x - y^2)*factor has these cofactors
     """
 
@@ -66,18 +69,18 @@ class CaseProof:
 
 
 class UndecidedChoice(Exception):
-    """Raised for a conditional whose branch is not chosen yet; the arguments are the two sides that it compares."""
+    """Raised for a conditional whose branch is not chosen yet; the arguments are the two values that it compares."""
 
 
 class BaseAngleTooLarge(Exception):
     """Raised for an angle, such as x/2, that is no integer multiple of its base angle, such as x.
 
-    The arguments are the monomial x of which both are multiples, and the coefficient of the smaller base angle needed.
+    The arguments are the monomial (here x) and the coefficient (here 1/2) of a smaller base angle that would do.
     """
 
 
 class OutOfGenerators(Exception):
-    """Raised if a proof needs more variables (generators) than the polynomial ring has."""
+    """Raised if a proof needs more generators than the polynomial ring has."""
 
 
 @dataclass
@@ -94,7 +97,7 @@ class LawProver(FormulaReader):
     hypotheses: list[PolyElement] = field(default_factory=list)
     rules: list[PolyElement] = field(
         default_factory=list
-    )  # relations of generators; each has a leading generator of its own
+    )  # relations between generators; no two have the same leading generator
     roots: dict[Quotient, Quotient] = field(default_factory=dict)
     radicals: dict[PolyElement, PolyElement] = field(default_factory=dict)  # a radicand -> its root
     signs: dict[Quotient, PolyElement] = field(default_factory=dict)
@@ -116,7 +119,9 @@ class LawProver(FormulaReader):
         self.decided = {(left, right): relation for left, relation, right in decided}
         hypotheses = [self.read(relation) for relation in self.law.relations]
         if any(below != 1 for _, below in hypotheses):
-            raise CertificateError(f"{self.name}: expected the hypotheses of {self.law.text!r} to be polynomials")
+            raise CertificateError(
+                f"{self.name}: expected polynomials as hypotheses of {self.law.text!r}, got a quotient"
+            )
         self.hypotheses = [above for above, _ in hypotheses]
         fractions = [self.read(entry) for entry in self.law.vanishing]
         entries = []
@@ -137,11 +142,11 @@ class LawProver(FormulaReader):
     # --- expressions --------------------------------------------------------------------------------------------------
 
     def symbol(self, name: str) -> Quotient:
-        """Return a symbol's value: its formula if it has one, otherwise the variable of the ring with its name."""
+        """Return a symbol as a fraction over the ring: its formula if it has one, else the variable of its name."""
         return self.read(self.formulas[name]) if name in self.formulas else self.fractions.generator(name)
 
     def function(self, expr: Expr) -> Quotient:
-        """Return a function call, such as ``sin(x)``, in variables of the ring, and record the facts used for it."""
+        """Return a function call, such as ``sin(x)``, as a fraction over the ring, and record the identities used."""
         name = "abs" if isinstance(expr, Abs) else expr.func.__name__
         if isinstance(expr, (cos, sin)):
             return self.cosine_and_sine(self.angle(expr.args[0]))[isinstance(expr, sin)]
@@ -162,14 +167,14 @@ class LawProver(FormulaReader):
         return self.read(plain)
 
     def takes_first_branch(self, choice: Expr) -> bool:
-        """Tell whether the current proof takes the first branch of a conditional in a formula."""
+        """Return whether the current case takes the first branch of a conditional."""
         left, right = (quotient_text(self.read(argument)) for argument in choice.args[:2])
         if (left, right) not in self.decided:
             raise UndecidedChoice(left, right)
         return self.decided[left, right] == ">="
 
     def generator(self, meaning: str) -> PolyElement:
-        """Return a new variable of the ring for the value of a function; raise OutOfGenerators if all are in use."""
+        """Return an unused generator for the function value ``meaning``; raise OutOfGenerators if all are used."""
         if self.generator_count == self.pool:
             raise OutOfGenerators
         self.generator_count += 1
@@ -178,12 +183,12 @@ class LawProver(FormulaReader):
         return self.fractions.generators[name]
 
     def root(self, square: Quotient) -> Quotient:
-        """Return the square root of a fraction, which is reduced by the relations first to find perfect squares."""
+        """Return the square root of a fraction; the relations reduce the fraction first, to find perfect squares."""
         if square not in self.roots:
             above, below = self.fractions.lowest(self.remainder(square[0]), self.remainder(square[1]))
             if not self.is_nonnegative(below):
                 raise CertificateError(
-                    f"{self.name}: expected a root divided by a sum of squares, got one divided by {below}"
+                    f"{self.name}: expected a root divided by a sum of squares, got a root divided by {below}"
                 )
             value = self.roots[square] = self.fractions.lowest(self.radical(above * below), below)
             if square != (above * below, below) or value[0] in self.radicals:
@@ -197,7 +202,7 @@ class LawProver(FormulaReader):
         return self.roots[square]
 
     def radical(self, inside: PolyElement) -> PolyElement:
-        """Return the square root of a polynomial: a polynomial if it is a perfect square, else a new variable."""
+        """Return the square root of a polynomial: a polynomial if it is a perfect square, else a generator."""
         if inside not in self.radicals:
             root = self.perfect(inside)
             if root is None:
@@ -209,7 +214,7 @@ class LawProver(FormulaReader):
         return self.radicals[inside]
 
     def perfect(self, inside: PolyElement) -> PolyElement | None:
-        """Return the root of a polynomial that is a perfect square, if the root is never negative; otherwise None."""
+        """Return the root of a polynomial if that is a perfect square whose root is never negative; otherwise None."""
         content, factors = inside.factor_list()
         roots = [isqrt(abs(int(number))) for number in (content.numerator, content.denominator)]
         if content < 0 or roots[0] ** 2 != content.numerator or roots[1] ** 2 != content.denominator:
@@ -222,14 +227,14 @@ class LawProver(FormulaReader):
         return value
 
     def is_nonnegative(self, value: PolyElement) -> bool:
-        """Tell whether every term of a polynomial is a product of even powers and of variables that are nonnegative."""
+        """Return whether every term of a polynomial is a product of even powers and of nonnegative generators."""
         return all(
             coefficient > 0 and all(not n % 2 or place in self.nonnegative for place, n in enumerate(monomial))
             for monomial, coefficient in value.items()
         )
 
     def sign(self, value: Quotient) -> PolyElement:
-        """Return the variable of the ring for the sign of a value, 1 or -1; sign times value is the absolute value."""
+        """Return the generator for the sign of a value (1 or -1); sign times value is the absolute value."""
         if value not in self.signs:
             generator = self.signs[value] = self.generator(f"copysign(1, {quotient_text(value)})")
             self.step("sign", quotient_text(value))
@@ -237,7 +242,7 @@ class LawProver(FormulaReader):
         return self.signs[value]
 
     def arc(self, y: Quotient, x: Quotient) -> PolyElement:
-        """Return the variable of the ring for ``atan2(y, x)``, and record the cosine and sine of this angle."""
+        """Return the generator for ``atan2(y, x)``, and record the cosine and sine of this angle."""
         if (y, x) not in self.arcs:
             radius = self.root(self.fractions.add(self.fractions.power(x, 2), self.fractions.power(y, 2)))
             generator = self.arcs[y, x] = self.generator(f"atan2({quotient_text(y)}, {quotient_text(x)})")
@@ -265,7 +270,7 @@ class LawProver(FormulaReader):
         return self.read(expr)
 
     def cosine_and_sine(self, angle: Quotient) -> tuple[Quotient, Quotient]:
-        """Return cosine and sine of an angle, which must be a sum of integer multiples of base angles and of pi/2."""
+        """Return the cosine and sine of an angle: a sum of integer multiples of base angles and of pi/2."""
         above, below = angle
         if below != 1:
             raise CertificateError(
@@ -307,13 +312,13 @@ class LawProver(FormulaReader):
         return result
 
     def _sum_of_angles(self, a: tuple[Quotient, Quotient], b: tuple[Quotient, Quotient]) -> tuple[Quotient, Quotient]:
-        """Return cosine and sine of ``a + b`` from cosine and sine of two angles."""
+        """Return the (cosine, sine) of the sum of two angles from the (cosine, sine) of each."""
         add, subtract, multiply = self.fractions.add, self.fractions.subtract, self.fractions.multiply
         cosine = subtract(multiply(a[0], b[0]), multiply(a[1], b[1]))
         return cosine, add(multiply(a[1], b[0]), multiply(a[0], b[1]))
 
     def _multiple(self, unit: PolyElement, coefficient: Fraction) -> tuple[Quotient, Quotient]:
-        """Return cosine and sine of ``coefficient*unit``, computed from the cosine and sine of the base angle."""
+        """Return the cosine and sine of ``coefficient*unit``, computed from the base angle's cosine and sine."""
         base = self._base(unit, coefficient)
         first = unit * QQ(base.numerator, base.denominator)
         result = pair = self._pair(unit, first)
@@ -326,12 +331,12 @@ class LawProver(FormulaReader):
         return result if times > 0 else (result[0], (-result[1][0], result[1][1]))
 
     def _base(self, unit: PolyElement, coefficient: Fraction) -> Fraction:
-        """Return the coefficient of a monomial's base angle; raise BaseAngleTooLarge if it must be smaller."""
+        """Return the coefficient of the base angle for a monomial; raise BaseAngleTooLarge if it must be smaller."""
         if unit in self.angle_functions and unit in self.arcs.values():
             if coefficient.denominator != 1:
                 raise CertificateError(
                     f"{self.name}: expected integer multiples of an arc tangent as the argument of a "
-                    "sine or cosine, got a fraction of one"
+                    "sine or cosine, got a fraction of an arc tangent"
                 )
             return Fraction(1)
         known = self.bases.get(str(unit), self.first_coefficients.setdefault(str(unit), abs(coefficient)))
@@ -344,7 +349,7 @@ class LawProver(FormulaReader):
         return known
 
     def _pair(self, unit: PolyElement, angle: PolyElement) -> tuple[Quotient, Quotient]:
-        """Return the cosine and sine of a base angle as two variables of the polynomial ring."""
+        """Return the cosine and sine of a base angle, each a generator."""
         if unit not in self.angle_functions:
             cosine, sine = self.generator(f"cos({angle})"), self.generator(f"sin({angle})")
             self.step("circle", str(angle))
@@ -360,11 +365,11 @@ class LawProver(FormulaReader):
         return value.rem(basis) if basis else value
 
     def cofactors(self, value: PolyElement) -> Cofactors | None:
-        """Return cofactors for which a polynomial is the sum of cofactors times relations, or None if not found.
+        """Return cofactors such that a polynomial is the sum of cofactors times relations, or None if none were found.
 
-        The relations have different leading variables, so division by them decides. If division by the relations and
-        the hypotheses leaves a remainder, constants and then linear polynomials are tried as cofactors, by linear
-        algebra.
+        Without hypotheses, division by the relations decides, since their leading generators differ. If division by
+        relations and several hypotheses leaves a remainder, linear algebra tries constants, and then linear
+        polynomials, as cofactors of the hypotheses.
         """
         if not value:
             return ()
@@ -379,14 +384,20 @@ class LawProver(FormulaReader):
         return tuple((place, str(cofactor)) for place, cofactor in enumerate(by_relation) if cofactor)
 
     def _combined(self, value: PolyElement, degree: int) -> tuple[list[PolyElement], PolyElement]:
-        """Divide a polynomial by the relations and the hypotheses; return the quotients and the remainder."""
+        """Divide a polynomial by the relations, and write the remainder with hypotheses times cofactors of a degree.
+
+        Return the cofactors of relations and hypotheses, and what remains: zero, or the remainder of the division.
+        """
         by_rules, remainder = value.div(self.rules) if self.rules else ([], value)
         by_hypotheses = _combination(remainder, self.hypotheses, degree)
         return (list(by_rules), remainder) if by_hypotheses is None else ([*by_rules, *by_hypotheses], self.ring.zero)
 
 
 def _combination(polynomial: PolyElement, relations: Sequence[PolyElement], degree: int) -> list[PolyElement] | None:
-    """Return cofactors of a degree (0 or 1) such that a polynomial is the sum of cofactors times relations, or None."""
+    """Return cofactors of degree at most ``degree`` (0 or 1) for which polynomial = sum of cofactors times relations.
+
+    Return None if there are no such cofactors.
+    """
     ring = polynomial.ring
     occurring = {
         place for p in (polynomial, *relations) for monomial in p for place, power in enumerate(monomial) if power

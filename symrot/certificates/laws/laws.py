@@ -1,11 +1,12 @@
-"""Prove the laws of a kernel, such as "the norm is 1", from its formulas, as polynomial identities with cofactors.
+"""Proofs of a kernel's laws, such as "the norm is 1", from its formulas, as polynomial identities with cofactors.
 
-In a law the outputs are replaced by their formulas. The result is a fraction of polynomials over the inputs and over
-generators: variables for cosine and sine of base angles, roots, signs and arc tangents. Its numerator is a sum of
-cofactors times relations: the hypotheses of the law, ``s^2 + c^2 - 1`` for a base angle, ``r^2 - P`` for a root, ``g^2
-- 1`` for a sign. The steps from functions to generators are recorded, each an instance of a fact about functions (the
-tables FACTS and RELATIONS of :mod:`symrot.certificates.exact_check`), so that a second program can follow the proof by
-multiplication. Each branch of a conditional is a case of its own. A law holds where no denominator is zero.
+A law states that expressions in inputs and outputs are zero. The outputs are replaced by their formulas. The result is
+a fraction of polynomials over the inputs and over generators: variables for the cosine and sine of base angles (such as
+x/2), for roots, signs and arc tangents. The proof writes its numerator as a sum of cofactors times relations, which are
+the hypotheses of the law, ``s^2 + c^2 - 1`` for a base angle, ``r^2 - P`` for a root and ``g^2 - 1`` for a sign. Every
+step from a function to its generator is recorded as an instance of a fact about functions (the tables FACTS and
+RELATIONS of :mod:`symrot.certificates.exact_check`), so that a second program can follow the proof by multiplication.
+Each branch of a conditional is a case of its own. A law holds where no denominator is zero.
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,7 +37,7 @@ FEWEST = 8  # generators in the ring of the first attempt at a proof; a later at
 
 @dataclass(frozen=True)
 class LawProof:
-    """A law of a kernel with its proof in every case (each selection of the branches of its conditionals).
+    """A law of a kernel with its proof in every case; a case chooses one branch of each conditional.
 
     ``vanishing`` are the expressions that the law says are zero, as text. ``hypothesis_names`` are the symbols that the
     hypotheses of the law are about: components of a unit vector or unit quaternion, or the nine entries of a rotation
@@ -56,10 +57,10 @@ def prove_law(name: str, law: Law, formulas: Mapping[str, Expr]) -> LawProof:
     Parameters
     ----------
     name : str
-        The name of the kernel, for errors.
+        The name of the kernel, for error messages.
     law : Law
     formulas : mapping of str to Expr
-        Name of a symbol -> its formula.
+        A map from the name of a symbol to its formula.
 
     Raises
     ------
@@ -95,18 +96,18 @@ ENTRIES = 9  # number of entries of a rotation matrix
 
 
 def hypotheses(symbols: Sequence[Symbol]) -> tuple[Expr, ...]:
-    """Return expressions that are zero if the symbols are a unit vector, a unit quaternion or a rotation matrix."""
+    """Return expressions that are all zero if the symbols form a unit vector, unit quaternion or rotation matrix."""
     if len(symbols) == ENTRIES:
         return rotation_relations(Matrix(3, 3, symbols))
     return (sum(each**2 for each in symbols) - 1,) if symbols else ()
 
 
 def _hypothesis_names(name: str, law: Law) -> tuple[str, ...]:
-    """Return the names of the symbols in a law's hypotheses, which must be about unit vectors or rotation matrices."""
+    """Return the names of the symbols in a law's hypotheses; these must form a unit vector or a rotation matrix."""
     symbols = sorted({symbol for relation in law.relations for symbol in relation.free_symbols}, key=str)
     if hypotheses(symbols) != law.relations:
         expected = "hypotheses that some numbers have squares that sum to one, or are the entries of a rotation"
-        raise CertificateError(f"{name}: expected {expected}, for {law.text!r}")
+        raise CertificateError(f"{name}: expected {expected}, for {law.text!r}, got others")
     return tuple(map(str, symbols))
 
 
@@ -119,7 +120,7 @@ UNIT: dict[int, tuple[int, ...]] = {
 
 
 def _witness(name: str, law: Law, hypothesis_names: Sequence[str], names: Sequence[str]) -> tuple[tuple[str, str], ...]:
-    """Return an exact point at which the hypotheses hold: unit vectors, unit quaternions, rotation matrices."""
+    """Return the exact coordinates of a point at which the law's hypotheses hold, as pairs (input, number as text)."""
     point: dict[str, Expr] = {each: Rational(2 * k + 3, 7) for k, each in enumerate(names)}
     numbers = UNIT.get(4 if len(hypothesis_names) == ENTRIES else len(hypothesis_names), ())
     unit = tuple(Rational(each) / sqrt(sum(n * n for n in numbers)) for each in numbers)
@@ -147,5 +148,5 @@ def _inputs(law: Law, formulas: Mapping[str, Expr]) -> list[str]:
 
 
 def _pool(size: int) -> list[str]:
-    """Return names for variables that a proof may add, last name first, so that later variables lead in monomials."""
+    """Return the names of generators that a proof may use; the last comes first, so that later generators lead."""
     return [f"g{k}_" for k in reversed(range(size))]

@@ -1,7 +1,7 @@
-"""Compile emitted C and compare the object code with the C text: the ``objects`` section of a certificate.
+"""The ``objects`` section of a certificate: whether compiled object code performs the roundings of the C text.
 
 The section names compilers and their versions, so it describes one machine. It is therefore written only on request,
-and left out where certificates are compared byte for byte.
+and left out when certificates are compared byte for byte.
 """
 
 from collections.abc import Iterable, Sequence
@@ -25,8 +25,10 @@ FLAGS: tuple[tuple[str, ...], ...] = (
     ("-O3", "-mavx2", "-mfma", "-fno-tree-slp-vectorize", *STRICT), ("-O3", "-mavx2", "-mfma", *STRICT),
     ("-O2", "-mavx2", "-mfma", "-ffp-contract=fast", "-fno-math-errno"),
 )  # fmt: skip
-"""Sets of flags that are tried: strict code for SSE2 and AVX2, a set under which gcc 12 fuses a*b + c although it is
-forbidden to, and contraction."""
+"""The sets of flags to try: strict code for SSE2 and AVX2, and contraction.
+
+With ``-O3 -mavx2 -mfma`` alone gcc 12 fuses a*b + c, although ``-ffp-contract=off`` forbids that.
+"""
 SECONDS, SECONDS_TO_ANSWER = 120, 20
 
 
@@ -36,7 +38,7 @@ def compile_object(compiler: str, flags: Sequence[str], source: Path, target: Pa
     Raises
     ------
     CompilerError
-        If the compiler is missing, takes too long, or reports an error, which is then quoted.
+        If the compiler is missing, takes too long, or reports an error; the message quotes that error.
     """
     path = which(compiler)
     if path is None:
@@ -54,7 +56,7 @@ def compiler_version(compiler: str) -> str:
     Raises
     ------
     CompilerError
-        If it cannot be run, or does not answer in time.
+        If the compiler cannot be run, or does not answer in time.
     """
     path = which(compiler)
     return "" if path is None else run_tool([path, "--version"], SECONDS_TO_ANSWER).stdout.split("\n")[0].strip()
@@ -66,24 +68,24 @@ def objects_section(
     compilers: Iterable[str] = COMPILERS,
     flags: Iterable[Sequence[str]] = FLAGS,
 ) -> dict[str, Any]:
-    """Compile a kernel with each compiler and each set of flags, and compare each object file with the C text.
+    """Compile a kernel with each compiler and each set of flags; return how each object file compares with the C text.
 
     Parameters
     ----------
     source : Path
         A C file that symrot emitted, with its header in the same folder.
     functions : sequence of str
-        One-sample functions; default: all that the text defines.
+        The functions to compare, each for one sample; default: all one-sample functions in the file.
     compilers, flags : iterables
-        The commands of compilers and the sets of flags; a compiler that is not installed is listed as missing.
+        The commands of the compilers, and the sets of flags; a compiler that is not installed is listed as missing.
 
     Returns
     -------
     dict
-        Data for JSON, the same for the same text and compilers: ``source`` (name, SHA-256), ``objects`` (for each,
-        compiler, version, flags, SHA-256, and functions with verdict, reason, cases, instructions), ``missing``
-        (compilers that are not installed), ``accepted`` (whether all verdicts accept), ``means`` (how to read the
-        verdicts).
+        Data for JSON, the same for the same text and compilers: ``source`` (name, SHA-256), ``objects`` (one entry per
+        object file: compiler, version, flags, SHA-256, and for each function its verdict, reason, cases and
+        instructions), ``missing`` (compilers that are not installed), ``accepted`` (whether every verdict is
+        "identical" or "identical up to contraction"), ``means`` (how to read the verdicts).
 
     Raises
     ------

@@ -1,9 +1,9 @@
-"""Prove that the object code of a kernel's one-sample functions performs the same roundings as the C text.
+"""Proofs that the object code of a kernel's one-sample functions performs the same roundings as the C text.
 
 The machine code of a function is executed on symbolic terms (:mod:`symrot.certificates.object_code.machine`), the C
 text is read back (:mod:`symrot.certificates.readback.readback`), and both results are compared as terms under bit-exact
-laws (:mod:`symrot.certificates.object_code.terms`). Where a result depends on comparisons of numbers, every case is
-compared.
+laws (:mod:`symrot.certificates.object_code.terms`). If a result depends on floating-point comparisons of numbers, the
+results are compared in every case: for every combination of outcomes of these comparisons.
 
 The verdict ``identical`` means: for all inputs the outputs have the same bits, signed zeros and infinities included,
 and are NaN together (payloads of NaN are not compared). It assumes rounding to nearest, the same functions of libm,
@@ -46,10 +46,11 @@ MAX_CASES = 20_000
 class ObjectVerdict:
     """The result of comparing the machine code of one function with its C text.
 
-    ``verdict`` is "identical"; "identical up to contraction" (each fused multiply-add replaces a product and a sum of
-    the C text with one rounding fewer; the sign of a sum that is zero may differ); "differs" (``output`` is the first
-    output that differs, ``reason`` says how); or "not understood" (``reason`` names the instruction and its address).
-    Only the first two verdicts accept the function.
+    ``verdict`` is "identical"; "identical up to contraction" (the code differs only by fused multiply-adds, which stand
+    for a product and a sum of the C text and save one rounding, and in the sign of sums that are zero); "differs"
+    (``output`` is the first output that differs, ``reason`` says how); or "not understood" (``reason`` names the
+    instruction and its address). Only the first two verdicts accept the function. ``cases`` is the number of compared
+    cases, ``instructions`` the largest number of instructions executed in a case.
     """
 
     function: str
@@ -80,11 +81,11 @@ def compare_object(
     text : str
         A C file that symrot emitted.
     path : Path
-        The object file that ``cc -c`` made of it, for x86-64 ELF.
+        The object file that ``cc -c`` made from the C file, for x86-64 ELF.
     functions : sequence of str
-        One-sample functions; default: all that the text defines.
+        The functions to compare, each for one sample; default: all one-sample functions in the file.
     where : str
-        The name of the C file, for errors.
+        The name of the C file, for error messages.
 
     Raises
     ------
@@ -160,7 +161,7 @@ def _compare(
 
 
 def _terms_from_operations(text: Operations, terms: Terms, width: int) -> list[int]:
-    """Return the outputs that the C text computes as symbolic terms."""
+    """Return the outputs of the C text's operations as symbolic terms."""
     known: list[int] = []
     binary = {"add": terms.add, "sub": terms.sub, "mul": terms.mul, "div": terms.div, "copysign": terms.copysign}
     unary = {"neg": terms.neg, "abs": terms.abs, "sqrt": terms.sqrt}
@@ -183,22 +184,22 @@ def _terms_from_operations(text: Operations, terms: Terms, width: int) -> list[i
 
 
 def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) -> list[int]:
-    """Return the symbolic terms in the output arrays when one path through the machine code has ended."""
+    """Return the symbolic terms that the output arrays contain at the end of a path through the machine code."""
     outputs = []
     for place, _ in text.outputs:
         name, index = place.removesuffix("]").split("[")
         words = [path.memory.get((name, (int(index) * width + 32 * part) // 8)) for part in range(width // 32)]
         if None in words:
-            raise NotUnderstood(f"expected every path through the code to write {place}, got one that does not")
+            raise NotUnderstood(f"expected every path through the code to write {place}, got a path that does not")
         outputs.append(words[0] if width == 32 else terms.join(*(word for word in words if word is not None)))
     return [item for item in outputs if item is not None]
 
 
 def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Known, str]:
-    """Return (terms, comparisons, text) of machine code whose fused multiply-adds are split into products and sums.
+    """Split each fused multiply-add of machine code into a product and a sum; return (terms, comparisons, text).
 
-    The text is a product that is fused in one place and rounded in another, or a number whose comparison contradicts
-    another comparison; it is empty if neither occurs.
+    The text shows a product that is fused in one place and rounded in another, or a number in comparisons that
+    contradict each other after the split; the text is empty if neither occurs.
     """
     pairs = [operand for pair in known for operand in pair]
     if not any(terms.kind(index) in ("fma", "fnma") for index in terms.order(got + pairs)):
@@ -217,7 +218,7 @@ def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Kno
 def _cases(
     terms: Terms, text: Operations, expected: list[int], got: list[int], known: Known, fused: bool
 ) -> Iterable[tuple[str, str]]:
-    """Compare the outputs of C text and machine code in every case of the comparisons that depend on the inputs.
+    """Compare the outputs of C text and machine code in every case: for every combination of comparison outcomes.
 
     Yield for each case the first output that differs and the reason, or two empty texts if all outputs agree.
     """
@@ -239,7 +240,7 @@ def _cases(
 
 
 def _apart_from_zeros(terms: Terms, first: list[int], second: list[int]) -> bool:
-    """Tell whether two lists of outputs differ at most in signs of zeros, as if gcc fuses -(a*b + c) to (-a)*b - c."""
+    """Return whether outputs differ at most in signs of zeros, as when gcc turns -(a*b + c) into a fused (-a)*b - c."""
     return terms.without_signs_of_zero(first) == terms.without_signs_of_zero(second)
 
 
@@ -255,7 +256,7 @@ def _split_product(terms: Terms, roots: list[int]) -> str:
 
 
 def _is_exact(terms: Terms, product: int) -> bool:
-    """Tell whether a product needs no rounding because one factor is 2."""
+    """Return whether a product needs no rounding because one factor is 2."""
     width = terms.width(product)
     return any(terms.constant(factor) == terms.constant(terms.number(width, Fraction(2)))
                for factor in terms.nodes[product][2:])  # fmt: skip

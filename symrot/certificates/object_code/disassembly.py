@@ -1,7 +1,8 @@
-"""Read an object file through the program ``objdump``: its instructions, its constants and its relocations.
+"""The content of an object file, read through the program ``objdump``: instructions, constants and relocations.
 
-Only the output of ``objdump`` is read, and a line that cannot be parsed is an error; the file itself is never opened.
-The meaning of instructions is defined in :mod:`symrot.certificates.object_code.machine`.
+A relocation is an address that the linker fills in later. Only the output of ``objdump`` is read, and a line that
+cannot be parsed is an error; the file itself is never opened. The meaning of instructions is defined in
+:mod:`symrot.certificates.object_code.machine`.
 """
 
 import re
@@ -28,7 +29,7 @@ __all__ = [
 
 FORMAT = "elf64-x86-64"
 SECONDS = 60
-"""The time that objdump may take."""
+"""The time in seconds that objdump may take."""
 
 SIZES = {"BYTE": 1, "WORD": 2, "DWORD": 4, "QWORD": 8, "XMMWORD": 16, "YMMWORD": 32}
 RELATIVE = (
@@ -57,7 +58,7 @@ _PART = re.compile(r"(?P<sign>[+-]?)(?:(?P<register>[a-z]\w*)(?:\*(?P<scale>[124
 
 @dataclass(frozen=True)
 class Register:
-    """A register operand of an instruction, by the name that the instruction uses."""
+    """A register operand: ``name`` as the instruction writes it, such as ``eax`` for the lower half of ``rax``."""
 
     name: str
 
@@ -86,7 +87,7 @@ Operand = Register | Constant | Memory
 
 @dataclass(frozen=True)
 class Relocation:
-    """An address in the code that the linker fills in later; ``addend`` is relative to the end of the instruction."""
+    """An address in an instruction that the linker fills in: symbol + ``addend`` - end of the instruction."""
 
     kind: str
     symbol: str
@@ -121,16 +122,16 @@ class Listing:
         Raises
         ------
         CertificateError
-            If the object file does not define it.
+            If the object file does not define the function.
         """
         section, address = self.symbols.get(name, ("", 0))
         if (section, address) in self.code:
             return section, address
         others = [other for other, place in self.symbols.items() if place in self.code and not other.startswith(".")]
         if not self.code:
-            why = "no code at all (an object of -flto has some with -ffat-lto-objects)"
+            why = "no code at all (with -flto, add -ffat-lto-objects)"
         else:
-            why = f"that of {', '.join(sorted(others)[:4])}" if others else "code without names"
+            why = f"only that of {', '.join(sorted(others)[:4])}" if others else "code without names"
         raise CertificateError(f"{self.where}: expected machine code of {name}, got {why}")
 
 
@@ -155,10 +156,10 @@ def read_listing(path: Path) -> Listing:
         raise CompilerError(why_no_objdump())
     where = path.name
     if not path.is_file():
-        got = "a folder" if path.is_dir() else "another kind of file" if path.exists() else "none"
+        got = "a folder" if path.is_dir() else "another kind of file" if path.exists() else "no file"
         raise CertificateError(f"{path}: expected an object file, got {got}")
     if not path.stat().st_size:
-        raise CertificateError(f"{path}: expected an object file, got an empty one")
+        raise CertificateError(f"{path}: expected an object file, got an empty file")
     header = _objdump(path, "-f")
     if "In archive " in header:
         raise CertificateError(f"{where}: expected one object file as `cc -c` makes it, got an archive of object files")
@@ -193,7 +194,7 @@ def _search_path() -> str:
 
 
 def _symbols(text: str, where: str) -> dict[str, tuple[str, int]]:
-    """Return the symbol table: name -> section and offset."""
+    """Return the symbol table: a map from each name to its section and offset."""
     symbols: dict[str, tuple[str, int]] = {}
     for line in text.splitlines():
         match = _SYMBOL.fullmatch(line)
@@ -207,7 +208,7 @@ def _symbols(text: str, where: str) -> dict[str, tuple[str, int]]:
 
 
 def _constants(path: Path, where: str) -> dict[str, bytes]:
-    """Return the bytes of the read-only sections that hold only constants, no addresses for the linker to fill in."""
+    """Return the bytes of each read-only section that holds only constants (no relocations), by section name."""
     constants: dict[str, bytes] = {}
     for line in _objdump(path, "-h", "-w").splitlines():
         match = _SECTION.fullmatch(line)
@@ -266,7 +267,7 @@ def _instruction(
     section: str, address: int, content: bytes, text: str,
     relocations: Mapping[tuple[str, int], tuple[str, str, int]], where: str,
 ) -> Instruction:  # fmt: skip
-    """Return the instruction in one line of objdump's listing, with the address that the linker fills in."""
+    """Return the instruction in one line of objdump's listing, with its relocation if it has one."""
     inside = [
         (at, relocations[section, at]) for at in range(address, address + len(content)) if (section, at) in relocations
     ]
@@ -274,7 +275,7 @@ def _instruction(
     if len(inside) > 1:
         raise CertificateError(
             f"{where}: expected at most one relocation (address filled in by the linker) in the "
-            f"instruction at {address:#x} of {section}, got more"
+            f"instruction at {address:#x} of {section}, got {len(inside)}"
         )
     for at, (kind, symbol, plus) in inside:
         relocation = Relocation(kind, symbol, plus + address + len(content) - at)
@@ -313,7 +314,7 @@ def _operand(text: str) -> Operand | None:
 
 
 def _address(inside: str, size: int, segment: str) -> Memory | None:
-    """Return the memory operand whose address is the text ``inside`` brackets, or None if it cannot be parsed."""
+    """Return a memory operand from the text between its square brackets, or None if it cannot be parsed."""
     base = index = ""
     scale, offset, position = 1, 0, 0
     while position < len(inside):

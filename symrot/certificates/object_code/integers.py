@@ -1,4 +1,8 @@
-"""The effect of machine instructions on integers and addresses; reading and writing of operands."""
+"""The effect of machine instructions on integers and addresses; reading and writing of operands.
+
+Values are lists of 32-bit words. An address is a pair (base, offset): the base is an array, the stack, a section or a
+symbol. Functions raise NotUnderstood for an effect that symbolic execution cannot follow.
+"""
 
 from collections.abc import Callable
 
@@ -47,15 +51,15 @@ def memory_place(state: MachineState, instruction: Instruction, operand: Memory)
     if operand.base != "rip":
         return state.address(operand)
     if operand.segment or operand.index:
-        raise NotUnderstood(f"expected an address without a segment, got one in the segment {operand.segment}")
+        raise NotUnderstood(f"expected an address without a segment, got an address in the segment {operand.segment}")
     return relocated_place(state, instruction, RELATIVE)
 
 
 def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[str, ...]) -> tuple[str, int]:
-    """Return (base, offset) of an address that the linker fills in; the base of another file's symbol is empty."""
+    """Return (base, offset) of an address that the linker fills in; the base is empty for a symbol of another file."""
     relocation = instruction.relocation
     if relocation is None or relocation.kind not in kinds:
-        raise NotUnderstood("expected an address that a relocation of a known kind defines, got another")
+        raise NotUnderstood("expected an address that a relocation of a known kind defines, got another address")
     place = state.context.listing.symbols.get(relocation.symbol)
     if place is None:
         raise NotUnderstood(f"expected a symbol that the code may read, got {relocation.symbol}")
@@ -64,10 +68,10 @@ def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[
 
 
 def symbol_of(state: MachineState, instruction: Instruction) -> int:
-    """Return the address of a symbol of another file, which the instruction reads from the global offset table."""
+    """Return the term for the address of another file's symbol, read from the global offset table."""
     base, offset = relocated_place(state, instruction, INDIRECT)
     if base or offset or instruction.relocation is None:
-        raise NotUnderstood("expected an address within the object file, got one that only the linker knows")
+        raise NotUnderstood("expected an address within the object file, got an address that only the linker knows")
     return state.context.terms.address(f"symbol {instruction.relocation.symbol}", 0)
 
 
@@ -87,7 +91,7 @@ def read(state: MachineState, instruction: Instruction, operand: object, size: i
         return state.halves(symbol_of(state, instruction))
     if operand.size not in (size, 0) or size < 4:
         raise NotUnderstood(
-            f"expected an access to memory of the instruction's operand size, got one to {operand.size} bytes"
+            f"expected an access to memory of the instruction's operand size, got an access to {operand.size} bytes"
         )
     return state.load(*memory_place(state, instruction, operand), size // 4)
 
@@ -141,7 +145,7 @@ def _lea(state: MachineState, instruction: Instruction) -> None:
 
 
 def operands_of(instruction: Instruction, count: int) -> tuple[object, ...]:
-    """Return the operands of an instruction; raise NotUnderstood unless there are ``count`` of them."""
+    """Return the operands of an instruction; raise NotUnderstood unless there are ``count`` operands."""
     if len(instruction.operands) != count:
         raise NotUnderstood(
             f"expected as many operands as the instruction table lists, got {len(instruction.operands)}"
@@ -224,7 +228,7 @@ def _flags(name: str, x: int, y: int, value: int, bits: int) -> tuple[int, int, 
 
 
 def _one(name: str, number: int) -> Callable[[MachineState, Instruction], None]:
-    """Return the function that executes ``inc`` or ``dec``: the operation ``name`` with the constant ``number``."""
+    """Return the function that executes ``inc`` or ``dec``: it adds or subtracts (``name``) the constant ``number``."""
 
     def step(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)
@@ -285,7 +289,7 @@ def pop_words(state: MachineState) -> Words:
 
 
 def stack_place(state: MachineState) -> tuple[str, int]:
-    """Return the base and offset to which the stack pointer points."""
+    """Return the address, base and offset, to which the stack pointer points."""
     node = state.context.terms.nodes[state.whole(state.general["rsp"])]
     if node[0] != "address" or node[2] != STACK:
         raise NotUnderstood("expected a stack pointer that points into the stack, got another value")
@@ -298,14 +302,14 @@ def _leave(state: MachineState, instruction: Instruction) -> None:
 
 
 def condition_holds(state: MachineState, condition: str) -> bool:
-    """Tell whether the condition of a jump, such as ``ne`` (not equal), holds for the processor's current flags."""
+    """Return whether the condition of a jump, such as ``ne`` (not equal), holds for the processor's current flags."""
     kind, values = state.flags
     if kind == "numbers" and condition in OF_NUMBERS:
         return state.decide(OF_NUMBERS[condition], values[0], values[1])
     if kind == "integers" and condition in OF_INTEGERS:
         zero, sign, carry, overflow = values
         return bool(OF_INTEGERS[condition](zero, sign, carry, overflow))
-    raise NotUnderstood("expected a condition whose outcome is known, got an unknown one")
+    raise NotUnderstood("expected a condition on flags whose values are known, got unknown flags")
 
 
 def _set(condition: str) -> Callable[[MachineState, Instruction], None]:

@@ -1,4 +1,4 @@
-"""Symbolic execution of a function of an object file, along every path that its comparisons allow.
+"""Symbolic execution of one function in an object file, along every path that its comparisons allow.
 
 Integers and addresses must have known values, so that each loop runs a known number of times. If the outcome of a
 floating-point comparison is not known, both branches are followed. An instruction that is in no table, or a state of
@@ -47,7 +47,10 @@ NO_OPERATION = {"nop", "endbr64"}
 
 @dataclass(frozen=True)
 class ExecutionPath:
-    """One path through a function: the memory when it returns, and the outcomes of comparisons that lead there."""
+    """One path through a function: the memory at the return, and the outcomes of comparisons that lead there.
+
+    ``known`` maps a pair of compared terms to their possible outcomes, ``visited`` holds the executed addresses.
+    """
 
     memory: Mapping[tuple[str, int], int]
     known: Mapping[tuple[int, int], Outcomes]
@@ -58,7 +61,7 @@ class ExecutionPath:
 def state_at_call(
     context: CallContext, names: tuple[str, ...], numbers: tuple[str, ...], start: tuple[str, int]
 ) -> MachineState:
-    """Return the processor's state at the call of a function with the given arrays and numbers as arguments."""
+    """Return the processor's state when a function is called; ``names`` are its array arguments."""
     terms = context.terms
     state = MachineState(context, start, {}, {})
     for name in (*CALLER_SAVED, *CALLEE_SAVED, "rsp"):
@@ -113,7 +116,7 @@ def execution_paths(state: MachineState) -> Iterator[ExecutionPath]:
 
 
 def _run_step(state: MachineState) -> None:
-    """Execute the next instruction; for an instruction that is not understood, raise NotUnderstood with its address."""
+    """Execute the next instruction; if symbolic execution cannot follow it, raise NotUnderstood with its address."""
     instruction = state.context.listing.code.get(state.at)
     if instruction is None:
         raise NotUnderstood(f"expected an instruction, got none at {state.at[1]:#x} of {state.at[0]}")
@@ -126,7 +129,7 @@ def _run_step(state: MachineState) -> None:
 
 
 def _run_instruction(state: MachineState, instruction: Instruction) -> tuple[str, int]:
-    """Execute one instruction and return the section and address of the next one."""
+    """Execute one instruction and return the section and address of the next instruction."""
     mnemonic = instruction.mnemonic
     following = (instruction.section, instruction.address + instruction.size)
     if (
@@ -134,7 +137,7 @@ def _run_instruction(state: MachineState, instruction: Instruction) -> tuple[str
         and mnemonic not in FLOW
         and not any(isinstance(item, Memory) and item.base == "rip" for item in instruction.operands)
     ):
-        raise NotUnderstood("expected an address within the object file, got one that only the linker knows")
+        raise NotUnderstood("expected an address within the object file, got an address that only the linker knows")
     if mnemonic in NO_OPERATION or (mnemonic == "xchg" and instruction.operands == (Register("ax"), Register("ax"))):
         return following
     flow = FLOW.get(mnemonic)
@@ -152,7 +155,7 @@ def _run_instruction(state: MachineState, instruction: Instruction) -> tuple[str
 
 
 def _target(state: MachineState, instruction: Instruction) -> tuple[str, int] | str:
-    """Return where a jump leads: an address in this object file, or the name of a function of another file."""
+    """Return the target of a jump: an address in this object file, or the name of another file's function."""
     (operand,) = operands_of(instruction, 1)
     if isinstance(operand, Constant):
         if instruction.relocation is None:
@@ -160,10 +163,10 @@ def _target(state: MachineState, instruction: Instruction) -> tuple[str, int] | 
         base, offset = relocated_place(state, instruction, RELATIVE)
         if base or not offset:
             return (base.removeprefix("section "), offset) if base else instruction.relocation.symbol
-        raise NotUnderstood("expected a jump to the beginning of a function, got one into its middle")
+        raise NotUnderstood("expected a jump to the beginning of a function, got a jump into its middle")
     node = state.context.terms.nodes[state.whole(read(state, instruction, operand, 8))]
     if node[0] != "address" or not node[2].startswith("symbol ") or node[3]:
-        raise NotUnderstood("expected a jump to a fixed address, got a computed one")
+        raise NotUnderstood("expected a jump to a fixed address, got a computed address")
     return str(node[2].removeprefix("symbol "))
 
 
@@ -179,7 +182,7 @@ def _jump_if(condition: str) -> Callable[[MachineState, Instruction, tuple[str, 
     def jump(state: MachineState, instruction: Instruction, following: tuple[str, int]) -> tuple[str, int]:
         target = _target(state, instruction)
         if isinstance(target, str):
-            raise NotUnderstood(f"expected a jump within the function, got one to {target}")
+            raise NotUnderstood(f"expected a jump within the function, got a jump to {target}")
         return target if condition_holds(state, condition) else following
 
     return jump
@@ -210,7 +213,7 @@ def _return(state: MachineState, instruction: Instruction, _: tuple[str, int]) -
                 )
         return "", 0
     if node[0] != "address" or not node[2].startswith("section "):
-        raise NotUnderstood("expected a return to the caller, got one to an unknown address")
+        raise NotUnderstood("expected a return to the caller, got a return to an unknown address")
     return node[2].removeprefix("section "), node[3]
 
 
@@ -220,7 +223,7 @@ FLOW: dict[str, Callable[[MachineState, Instruction, tuple[str, int]], tuple[str
 
 
 def _call_library(state: MachineState, name: str, on_stack: int) -> None:
-    """Execute a call of a C library function; registers that the call may change become unknown."""
+    """Execute a call of a C library function; every register that the call may change becomes unknown."""
     terms = state.context.terms
     _, offset = stack_place(state)
     if (offset + on_stack) % 16:
@@ -233,7 +236,7 @@ def _call_library(state: MachineState, name: str, on_stack: int) -> None:
         for pointer, function in (("rdi", "sin"), ("rsi", "cos")):
             node = terms.nodes[state.whole(state.general[pointer])]
             if node[0] != "address":
-                raise NotUnderstood("expected known addresses for the results of sincos, got unknown ones")
+                raise NotUnderstood("expected known addresses for the results of sincos, got unknown addresses")
             written.append((node[2], node[3], state.halves(terms.call(function, width, operands[:1]))))
     elif bare in LIBRARY:
         result = state.halves(terms.call(bare, width, operands[: LIBRARY[bare]]))

@@ -1,4 +1,7 @@
-"""The effect of SSE2 and AVX move instructions, and the table look-up of every other vector instruction."""
+"""The effect of SSE2 and AVX move instructions; all other vector instructions are looked up in the tables.
+
+``bare`` is the name of an instruction without the prefix ``v`` of its VEX form, ``is_vex`` whether it had that prefix.
+"""
 
 from collections.abc import Callable
 
@@ -24,7 +27,7 @@ def _source(state: MachineState, instruction: Instruction, operand: object, size
     is_vex = instruction.mnemonic.startswith("v")
     must_be_aligned = size >= 16 and bare not in UNALIGNED and (not is_vex or bare in ALIGNED)
     if must_be_aligned and (base in state.context.arrays or offset % size):
-        raise NotUnderstood(f"expected an aligned address, got one in {base} that may not be aligned")
+        raise NotUnderstood(f"expected an aligned address, got an address in {base} that may not be aligned")
     return state.load(base, offset, size // 4)
 
 
@@ -62,9 +65,9 @@ def run_vector_instruction(state: MachineState, instruction: Instruction) -> Non
 
 
 def _bytes_of(bare: str, operand: object, whole: int) -> int:
-    """Return the size in bytes of a source operand in memory; ``bare`` is the instruction's name without prefix ``v``.
+    """Return the size in bytes of a source operand: the size that the instruction reads from memory, or ``whole``.
 
-    A register operand has the size ``whole``.
+    ``whole`` is the size of a register operand.
     """
     if not isinstance(operand, Memory):
         return whole
@@ -83,7 +86,7 @@ def _move_whole(state: MachineState, instruction: Instruction, bare: str, is_vex
         words = _source(state, instruction, source, 0, bare)
         base, offset = memory_place(state, instruction, target)
         if bare in ALIGNED and (base in state.context.arrays or offset % (4 * len(words))):
-            raise NotUnderstood(f"expected an aligned address, got one in {base} that may not be aligned")
+            raise NotUnderstood(f"expected an aligned address, got an address in {base} that may not be aligned")
         write(state, instruction, target, words)
         return
     assert isinstance(target, Register)
@@ -129,7 +132,7 @@ def _move_bits(size: int) -> Callable[[MachineState, Instruction, str, bool], No
 
 
 def _move_half(start: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return the function that executes movlpd or movhpd: copy 64 bits between memory and half of a vector register."""
+    """Return the function that executes movlpd or movhpd: copy 64 bits between memory and half of a register."""
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources = instruction.operands

@@ -1,8 +1,10 @@
 """The effect of SSE2 and AVX instructions on numbers: arithmetic, comparisons, masks, fused operations.
 
-Each entry of the table takes the words of the sources and returns the words of the result. Instructions that only
-rearrange words are in :mod:`symrot.certificates.object_code.shuffles`. Scalar instructions keep the upper words of the
-first source; VEX forms (``v...``) name the first source, the older forms use their destination as the first source.
+Each entry of the table ``NUMERIC`` is a function that takes the 32-bit words of the sources and returns the words of
+the result. Packed instructions act on all numbers of a register; scalar instructions act on the first number and keep
+the upper words of the first source. VEX forms (``v...``) name the first source; the older forms use their destination
+as the first source. A suffix such as ``pd`` means packed (``p``) or scalar (``s``), doubles (``d``) or floats (``s``).
+Instructions that only rearrange words are in :mod:`symrot.certificates.object_code.shuffles`.
 """
 
 from collections.abc import Callable
@@ -29,14 +31,14 @@ _QUIET = (  # predicates of the same relation, which differ in the floating-poin
 
 
 def _lanes(state: MachineState, words: Words, width: int) -> list[int]:
-    """Return the numbers, each ``width`` bits long, in a list of 32-bit words; a double consists of two words."""
+    """Return a term for each number of ``width`` bits in a list of 32-bit words; a double consists of two words."""
     if width == 32:
         return list(words)
     return [state.whole(words[place : place + 2]) for place in range(0, len(words), 2)]
 
 
 def _each(suffix: str, operation: Callable[..., int], arguments: int = 2) -> Numeric:
-    """Return the function that executes arithmetic on all numbers (packed, ``p``) or the first one (scalar, ``s``)."""
+    """Return the function that executes arithmetic on the last ``arguments`` sources, packed or scalar."""
     width, is_packed = WIDTHS[suffix[1]], suffix[0] == "p"
 
     def numeric(state: MachineState, sources: list[Words], _: int) -> Words:
@@ -76,7 +78,7 @@ def _horizontal(suffix: str, operation: Callable[..., int]) -> Numeric:
 
 
 def _bitwise(operation: Callable[..., int]) -> Numeric:
-    """Return the function that executes a bitwise instruction, 64 bits at a time where a source is a 64-bit number."""
+    """Return the function that executes a bitwise instruction; a source that is a 64-bit number is not split."""
 
     def numeric(state: MachineState, sources: list[Words], _: int) -> Words:
         terms, results = state.context.terms, list[int]()
@@ -94,12 +96,15 @@ def _bitwise(operation: Callable[..., int]) -> Numeric:
 
 
 def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
-    """Return the function that executes a comparison, whose result is a mask of ones where the comparison holds."""
+    """Return the function that executes a comparison; the bits of its result are all 1 where it holds, else all 0.
+
+    If ``outcomes`` is None, the instruction's constant selects the comparison.
+    """
     by_number = list(PREDICATES.values())
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         if outcomes is None and not 0 <= constant < 32:
-            raise NotUnderstood(f"expected a known code of comparison, got {constant}")
+            raise NotUnderstood(f"expected the number of a comparison, 0 to 31, got {constant}")
         chosen = by_number[constant % 16] if outcomes is None else outcomes
         return _each(suffix, lambda terms, a, b: terms.mask(WIDTHS[suffix[1]], chosen, a, b))(state, sources, 0)
 
@@ -109,8 +114,8 @@ def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
 def _fused(suffix: str, order: str, negated: bool, subtracted: tuple[bool, ...]) -> Numeric:
     """Return the function that executes a fused multiply-add: a*b + c, rounded once.
 
-    ``order`` says which operands are a, b and c. ``subtracted`` says whether c is subtracted, first for the numbers at
-    even positions of the register, then for those at odd positions.
+    ``order``, such as "132", gives the numbers of the operands a, b and c. ``subtracted`` says whether c is subtracted:
+    one Boolean for all numbers of the register, or one for the even positions and one for the odd positions.
     """
     places = tuple(int(digit) - 1 for digit in order)
 
@@ -135,7 +140,7 @@ def _greater(terms: Terms, a: int, b: int) -> int:
 
 
 def _blended(suffix: str) -> Numeric:
-    """Return the function that executes a blend: a sign bit of the last source chooses between the other two."""
+    """Return the function that executes a blend: the sign bit of the third source chooses the first or the second."""
 
     def one(terms: Terms, a: int, b: int, mask: int) -> int:
         value = terms.constant(mask)
@@ -152,12 +157,12 @@ def _approximate(name: str) -> Callable[..., int]:
 
 def _same(state: MachineState, sources: list[Words], _: int) -> Words:
     if sources[0] != sources[1]:
-        raise NotUnderstood("expected a comparison of floating-point numbers, got one of integers")
+        raise NotUnderstood("expected a comparison of floating-point numbers, got a comparison of integers")
     return [state.context.terms.bits(32, -1)] * len(sources[0])
 
 
 def _shifted(width: int, shift: Callable[[int, int, int], int]) -> Numeric:
-    """Return the function that executes a shift; only constants can be shifted, as kernels need no more."""
+    """Return the function that executes a shift; the shifted number must be constant, as it is in kernels."""
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         terms, results = state.context.terms, list[int]()
@@ -223,7 +228,7 @@ def _table() -> dict[str, Numeric]:
     return table | {"pcmpeqd": _same, "pcmpeqq": _same, "pcmpeqb": _same, "pcmpeqw": _same}
 
 
-_FUSED = (  # name, whether the product is negated, whether the last operand is subtracted, by lane
+_FUSED = (  # name, whether the product is negated, whether c is subtracted (for all, or for even and odd positions)
     ("madd", False, (False,)), ("msub", False, (True,)), ("nmadd", True, (False,)), ("nmsub", True, (True,)),
     ("maddsub", False, (True, False)), ("msubadd", False, (False, True)),
 )  # fmt: skip

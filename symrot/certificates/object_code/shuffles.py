@@ -1,6 +1,8 @@
 """The effect of SSE2 and AVX instructions that only rearrange 32-bit words: unpack, shuffle, blend, insert, broadcast.
 
-Each entry of the table takes the words of the sources and a constant, and returns the words of the result.
+Each entry of the table ``SHUFFLES`` is a function that takes the words of the sources and the instruction's constant,
+and returns the words of the result. Most instructions treat each 128 bits (four words) of a register alike; words 0 to
+3 are then in the first source, and words 4 to 7 in the last.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,7 +15,7 @@ Shuffle = Callable[[MachineState, list[Words], int], Words]
 
 
 def _pick(places: Sequence[int]) -> Shuffle:
-    """Return the function that executes a shuffle with the same word numbers in every 128 bits.
+    """Return the function that executes a shuffle which picks the words numbered ``places`` in every 128 bits.
 
     Words 0 to 3 are in the first source, and words 4 to 7 in the last.
     """
@@ -29,7 +31,7 @@ def _pick(places: Sequence[int]) -> Shuffle:
 
 
 def _by_constant(places: Callable[[int, int], Sequence[int]]) -> Shuffle:
-    """Return the function that executes a shuffle whose word numbers follow from the instruction's constant."""
+    """Return the function that executes a shuffle; ``places`` computes the word numbers from the constant."""
 
     def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:
         picked: Words = []
@@ -77,7 +79,7 @@ def _pblendw(_: MachineState, sources: list[Words], constant: int) -> Words:
     for place in range(len(sources[0])):
         chosen = constant >> 2 * (place % 4) & 3
         if chosen not in (0, 3):
-            raise NotUnderstood("expected a blend of 32-bit words, got one of 16-bit words")
+            raise NotUnderstood("expected a blend of 32-bit words, got a blend of 16-bit words")
         blended.append(sources[1 if chosen else 0][place])
     return blended
 
@@ -93,7 +95,7 @@ def _permute_lanes(state: MachineState, sources: list[Words], constant: int) -> 
 
 
 def _permps(state: MachineState, sources: list[Words], _: int) -> Words:
-    """Execute vpermps or vpermd: the first source holds the numbers of the words to pick from the second source."""
+    """Execute vpermps or vpermd: the first source contains the numbers of the words to pick from the second."""
     return [sources[1][_constant(state, word) & 7] for word in sources[0]]
 
 
@@ -124,7 +126,7 @@ def _insertps(state: MachineState, sources: list[Words], constant: int) -> Words
 
 def _align(_: MachineState, sources: list[Words], constant: int) -> Words:
     if constant % 4 or constant > 16:
-        raise NotUnderstood("expected a shift by whole 32-bit words, got one by single bytes")
+        raise NotUnderstood("expected a shift by whole 32-bit words, got a shift by single bytes")
     aligned: Words = []
     for start in range(0, len(sources[0]), 4):
         aligned += (sources[1][start : start + 4] + sources[0][start : start + 4])[constant // 4 :][:4]
@@ -134,7 +136,7 @@ def _align(_: MachineState, sources: list[Words], constant: int) -> Words:
 def _shift_bytes(left: bool) -> Shuffle:
     def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:
         if constant % 4:
-            raise NotUnderstood("expected a shift by whole 32-bit words, got one by single bytes")
+            raise NotUnderstood("expected a shift by whole 32-bit words, got a shift by single bytes")
         moved, shifted = min(constant // 4, 4), list[int]()
         for start in range(0, len(sources[-1]), 4):
             words, zeros = sources[-1][start : start + 4], state.zeros(moved)
@@ -147,7 +149,7 @@ def _shift_bytes(left: bool) -> Shuffle:
 def _constant(state: MachineState, word: int) -> int:
     value = state.context.terms.constant(word)
     if value is None:
-        raise NotUnderstood("expected a shuffle by constant word numbers, got variable ones")
+        raise NotUnderstood("expected a shuffle by constant word numbers, got variable word numbers")
     return value
 
 
@@ -160,12 +162,12 @@ def _pshufb(state: MachineState, sources: list[Words], _: int) -> Words:
         elif control[0] % 4 == 0 and all((byte & 0x8F) == (control[0] & 15) + i for i, byte in enumerate(control)):
             shuffled.append(sources[0][(place & ~3) + (control[0] & 15) // 4])
         else:
-            raise NotUnderstood("expected a shuffle of 32-bit words, got one of single bytes")
+            raise NotUnderstood("expected a shuffle of 32-bit words, got a shuffle of single bytes")
     return shuffled
 
 
 def _broadcast(count: int) -> Shuffle:
-    """Return the function that executes a broadcast: it repeats the first ``count`` words over the register."""
+    """Return the function that executes a broadcast: it fills the register with the first ``count`` words."""
     return lambda _, sources, __: sources[-1][:count] * (8 // count)
 
 
@@ -200,4 +202,4 @@ SOURCE_BYTES: dict[str, int] = {
     "insertps": 4,
     "extractf128": 32,
     "extracti128": 32,
-}  # size of the last source, if in memory
+}  # bytes of the last source, if it is in memory

@@ -1,6 +1,7 @@
 """The state of an x86-64 processor whose values are symbolic terms: registers, memory, flags, known comparisons.
 
-Values are stored as words of 32 bits.
+Values are lists of words; a word is a term of 32 bits. The outcome of a comparison is less, equal, greater or, with a
+NaN, unordered.
 """
 
 from collections.abc import Mapping
@@ -39,13 +40,13 @@ VECTORS: dict[str, tuple[str, int]] = {  # name -> the full register, size in wo
 
 
 class NotUnderstood(Exception):
-    """The exception for an instruction, or its effect in the current state, that symbolic execution cannot follow."""
+    """Raised for an instruction, or its effect in the current state, that symbolic execution cannot follow."""
 
 
 class UndecidedBranch(Exception):
-    """The exception for a branch on a comparison of unknown outcome: execution must continue along both branches.
+    """Raised for a branch on a comparison of unknown outcome: execution must continue along both branches.
 
-    ``pair`` are the two terms that are compared; ``branches`` are the outcomes that lead to each branch.
+    ``pair`` are the two compared terms; ``branches`` are two sets: the outcomes that lead to each branch.
     """
 
     def __init__(self, pair: Pair, first: Outcomes, second: Outcomes) -> None:
@@ -63,7 +64,7 @@ class ArrayArgument:
 
 @dataclass(frozen=True)
 class CallContext:
-    """The facts about a call that stay the same while the function runs: its arrays, constants and type of numbers."""
+    """The facts about a call that do not change while the function runs: its arrays, constants and number type."""
 
     terms: Terms
     listing: Listing
@@ -88,7 +89,7 @@ class MachineState:
     flags: tuple[str, tuple[int, ...]] = ("unknown", ())
 
     def branch(self, pair: Pair, outcomes: Outcomes) -> "MachineState":
-        """Return a copy of the state in which the comparison of ``pair`` has one of the given outcomes."""
+        """Return a copy of the state in which the comparison of the terms ``pair`` has one of ``outcomes``."""
         return replace(
             self,
             general={name: list(words) for name, words in self.general.items()},
@@ -100,7 +101,7 @@ class MachineState:
     # --- numbers ------------------------------------------------------------------------------------------------------
 
     def decide(self, outcomes: Outcomes, a: int, b: int) -> bool:
-        """Tell whether the comparison of ``a`` with ``b`` has one of the outcomes; raise UndecidedBranch if unknown."""
+        """Return whether comparing ``a`` with ``b`` has one of ``outcomes``; raise UndecidedBranch if unknown."""
         terms = self.context.terms
         a, b = terms.rebuilt((a, b), self.known)
         inner = terms.undecided((a, b))
@@ -137,7 +138,7 @@ class MachineState:
     # --- registers ----------------------------------------------------------------------------------------------------
 
     def register(self, name: str) -> Words:
-        """Return the words of a general register of 4 or 8 bytes, or of a vector register."""
+        """Return the words of a general-purpose register of 4 or 8 bytes, or of a vector register."""
         if name in VECTORS:
             whole, count = VECTORS[name]
             return self.vector[whole][:count]
@@ -147,7 +148,7 @@ class MachineState:
         return self.general[whole][: size // 4]
 
     def set_register(self, name: str, words: Words) -> None:
-        """Write a general register; writing its lower half sets the upper half to zero."""
+        """Write words to a general-purpose register; writing its lower half sets the upper half to zero."""
         whole, size = GENERAL.get(name, ("", 0))
         if size < 4 or len(words) != size // 4:
             raise NotUnderstood(f"expected a register that kernels use, got {name}")
@@ -168,7 +169,9 @@ class MachineState:
     def address(self, operand: Memory) -> tuple[str, int]:
         """Return the base and offset of a memory operand whose address is known without the linker."""
         if operand.segment:
-            raise NotUnderstood(f"expected an address without a segment, got one in the segment {operand.segment}")
+            raise NotUnderstood(
+                f"expected an address without a segment, got an address in the segment {operand.segment}"
+            )
         base, offset = "", operand.offset
         for name, scale in ((operand.base, 1), (operand.index, operand.scale)):
             if not name:
@@ -189,9 +192,9 @@ class MachineState:
         return base, offset
 
     def load(self, base: str, offset: int, count: int) -> Words:
-        """Return ``count`` 32-bit words of memory from a base and offset."""
+        """Return the ``count`` 32-bit words of memory that begin at an address (base and offset)."""
         if offset % 4:
-            raise NotUnderstood("expected an address that is a multiple of 4, got another")
+            raise NotUnderstood(f"expected an address that is a multiple of 4, got the offset {offset}")
         return [self._load(base, offset + 4 * place) for place in range(count)]
 
     def _load(self, base: str, offset: int) -> int:
@@ -202,30 +205,30 @@ class MachineState:
             return terms.unknown()
         if array is not None:
             if not 0 <= offset < array.size:
-                raise NotUnderstood(f"expected a read inside the array {array.name}, got one outside")
+                raise NotUnderstood(f"expected a read inside the array {array.name}, got the offset {offset}")
             if array.is_output:
-                raise NotUnderstood(f"expected a value in {array.name} before it is read, got none")
+                raise NotUnderstood(f"expected {array.name} to be written before it is read, got a read before")
             size = self.context.width // 8
             place = terms.input(self.context.width, f"{array.name}[{offset // size}]")
             return terms.word(place, offset % size // 4) if size == 8 else place
         content = self.context.listing.constants.get(base.removeprefix("section "), b"")
         if not base.startswith("section ") or not 0 <= offset <= len(content) - 4:
-            raise NotUnderstood(f"expected a read of a known constant, got one from {base.removeprefix('section ')}")
+            raise NotUnderstood(f"expected a read of a known constant, got a read from {base.removeprefix('section ')}")
         return terms.bits(32, int.from_bytes(content[offset : offset + 4], "little"))
 
     def store(self, base: str, offset: int, words: Words) -> None:
         """Write words to memory: to the function's own part of the stack, or to an output array."""
         array = self.context.arrays.get(base)
         if offset % 4:
-            raise NotUnderstood("expected an address that is a multiple of 4, got another")
+            raise NotUnderstood(f"expected an address that is a multiple of 4, got the offset {offset}")
         for place, word in enumerate(words):
             at = offset + 4 * place
             if array is None and not (base == STACK and at < self.context.top):
                 raise NotUnderstood(
-                    f"expected writes to the stack or to output arrays, got one to {base.removeprefix('section ')}"
+                    f"expected writes to the stack or to output arrays, got a write to {base.removeprefix('section ')}"
                 )
             if array is not None and not (array.is_output and 0 <= at < array.size):
-                raise NotUnderstood(f"expected writes inside the output arrays, got one outside, to {array.name}")
+                raise NotUnderstood(f"expected writes inside the output arrays, got a write outside, to {array.name}")
             self.memory[base, at] = word
 
     def forget_below(self, offset: int) -> None:

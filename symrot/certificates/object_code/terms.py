@@ -1,8 +1,8 @@
 """Symbolic values of machine code, simplified on creation by laws that keep every bit.
 
-A term stands for 32 or 64 bits. Two terms with the same index have the same bits on every input, in rounding to
-nearest; zeros of different sign count as different, NaNs of different payload as equal. The laws hold exactly, also
-under overflow and underflow and for signed zeros::
+A term stands for 32 or 64 bits, and is passed as its index (an int) in the store :class:`Terms`. Equal indices mean
+equal bits on every input, in rounding to nearest; zeros of different sign count as different, NaNs of different payload
+as equal. The laws hold exactly, also under overflow and underflow and for signed zeros::
 
     a - b = a + (-b)      a + b = b + a      a*b = b*a      (-a)*b = -(a*b)      (-a)/b = a/(-b) = -(a/b)
     a + a = 2*a           2^j*(2^k*a) = 2^(j+k)*a, j, k >= 0                     a/2^k = a*2^-k
@@ -69,12 +69,12 @@ def _bits_from_number(value: float, width: int) -> int | None:
 
 
 def swapped(outcomes: Iterable[str]) -> Outcomes:
-    """Return the outcomes of comparing b with a that correspond to given outcomes of comparing a with b."""
+    """Return the outcomes of comparing b with a that correspond to ``outcomes`` of comparing a with b."""
     return frozenset(_SWAPPED[item] for item in outcomes)
 
 
 class Terms:
-    """A store of symbolic terms that holds equal terms once; a term is referred to by its index in the store."""
+    """A store of symbolic terms, in which equal terms have one index; all methods take and return indices."""
 
     def __init__(self) -> None:
         self.nodes: list[Term] = []
@@ -105,7 +105,7 @@ class Terms:
         return self._add("bits", width, value & ((1 << width) - 1))
 
     def number(self, width: int, value: Fraction) -> int:
-        """Return the constant term with a value; raise ValueError if ``width`` bits cannot represent it exactly."""
+        """Return the constant term of a number; raise ValueError if ``width`` bits cannot represent it exactly."""
         bits = _bits_from_number(float(value), width)
         if bits is None or Fraction(number_from_bits(bits, width)) != value:
             raise ValueError(f"expected a number that {width} bits represent exactly, got {value}")
@@ -121,7 +121,7 @@ class Terms:
         return None if value is None else int(value) & 0xFF
 
     def token(self, name: str) -> int:
-        """Return a 64-bit term of which only its name is known, such as a register's content before the call."""
+        """Return a named 64-bit term about which nothing is known, such as a register's content before the call."""
         return self._add("token", 64, name)
 
     def address(self, base: str, offset: int) -> int:
@@ -136,7 +136,7 @@ class Terms:
         bits = self.constant(a)
         return None if bits is None else number_from_bits(bits, self.width(a))
 
-    # --- words: a 64-bit term consists of two of 32 bits ----------------------------------------------------------
+    # --- words: a 64-bit term consists of two 32-bit terms --------------------------------------------------------
 
     def word(self, a: int, part: int) -> int:
         """Return the low (``part`` is 0) or high (1) 32 bits of a 64-bit term."""
@@ -163,7 +163,7 @@ class Terms:
         return 1 << self.width(a) - 1
 
     def bit_and(self, a: int, b: int) -> int:
-        """Return ``a & b``."""
+        """Return the term ``a & b``."""
         if self.constant(b) is None:
             a, b = b, a
         mask, width = self.constant(b), self.width(a)
@@ -180,7 +180,7 @@ class Terms:
         return a if a == b else self._add("and", width, *sorted((a, b)))
 
     def bit_andn(self, a: int, b: int) -> int:
-        """Return ``~a & b``."""
+        """Return the term ``~a & b``."""
         mask = self.constant(a)
         if mask is not None:
             return self.bit_and(self.bits(self.width(a), ~mask), b)
@@ -189,7 +189,7 @@ class Terms:
         return self._add("andn", self.width(a), a, b)
 
     def bit_or(self, a: int, b: int) -> int:
-        """Return ``a | b``."""
+        """Return the term ``a | b``."""
         if self.constant(b) is None:
             a, b = b, a
         mask, value = self.constant(b), self.constant(a)
@@ -202,7 +202,7 @@ class Terms:
         return self._add("or", self.width(a), *sorted((a, b)))
 
     def bit_xor(self, a: int, b: int) -> int:
-        """Return ``a ^ b``."""
+        """Return the term ``a ^ b``."""
         if self.constant(b) is None:
             a, b = b, a
         mask, value, width = self.constant(b), self.constant(a), self.width(a)
@@ -220,14 +220,14 @@ class Terms:
         return self._add("xor", width, *sorted((a, b)))
 
     def neg(self, a: int) -> int:
-        """Return ``a`` with its sign bit inverted."""
+        """Return the term ``-a``: the bits of ``a`` with the sign bit inverted."""
         node = self.nodes[a]
         if node[0] == "bits":
             return self.bits(node[1], node[2] ^ self._sign_bit(a))
         return int(node[2]) if node[0] == "neg" else self._add("neg", node[1], a)
 
     def abs(self, a: int) -> int:
-        """Return ``a`` with its sign bit cleared."""
+        """Return the term ``|a|``: the bits of ``a`` with the sign bit cleared."""
         node = self.nodes[a]
         if node[0] == "bits":
             return self.bits(node[1], node[2] & (self._sign_bit(a) - 1))
@@ -236,7 +236,7 @@ class Terms:
         return self.abs(node[2]) if node[0] == "neg" else self._add("abs", node[1], a)
 
     def sign(self, a: int) -> int:
-        """Return the sign bit of a term, with all other bits 0."""
+        """Return the term that has the sign bit of ``a``, with all other bits 0."""
         node = self.nodes[a]
         if node[0] == "bits":
             return self.bits(node[1], node[2] & self._sign_bit(a))
@@ -245,7 +245,7 @@ class Terms:
         return self._add("sign", node[1], a)
 
     def copysign(self, a: int, b: int) -> int:
-        """Return the magnitude of ``a`` with the sign of ``b``."""
+        """Return the term that has the magnitude of ``a`` and the sign of ``b``."""
         return self.bit_or(self.abs(a), self.sign(b))
 
     # --- rounded operations -------------------------------------------------------------------------------------------
@@ -344,13 +344,13 @@ class Terms:
         return self._add("call", width, name, *arguments)
 
     def opaque(self, name: str, width: int, *arguments: int) -> int:
-        """Return a term for the result of an instruction whose rounding no operation of C expresses."""
+        """Return a term for the result of an instruction that no C operation rounds like, such as ``rcpps``."""
         return self.call(f"[{name}]", width, arguments)
 
     # --- choices ------------------------------------------------------------------------------------------------------
 
     def compared(self, outcomes: Outcomes, a: int, b: int) -> tuple[Outcomes, int, int]:
-        """Return a comparison in a normal form, which is the same for ``a < b`` and ``b > a``, for example."""
+        """Return a comparison in normal form, so that ``a < b`` and ``b > a``, for example, become the same."""
         zero = self.bits(self.width(a), 0)
         a, b = (zero if self._value(item) == 0.0 else item for item in (a, b))
         if self.constant(a) is not None and self.constant(b) is None:
@@ -363,7 +363,7 @@ class Terms:
         return outcomes, a, b
 
     def mask(self, width: int, outcomes: Outcomes, a: int, b: int) -> int:
-        """Return the mask of a comparison: all bits 1 if comparing ``a`` with ``b`` has one of the outcomes, else 0."""
+        """Return the mask of a comparison: all bits 1 if comparing ``a`` with ``b`` has one of ``outcomes``, else 0."""
         outcomes, a, b = self.compared(outcomes, a, b)
         x, y = self._value(a), self._value(b)
         if x is not None and y is not None:
@@ -374,7 +374,7 @@ class Terms:
         return self._add("mask", width, outcomes, a, b)
 
     def choose(self, mask: int, x: int, y: int) -> int:
-        """Return the term that is ``x`` if the bits of a mask are all one, and ``y`` if they are all zero."""
+        """Return the term that is ``x`` if all bits of a mask are 1, and ``y`` if all are 0."""
         decided = self.constant(mask)
         if decided is not None and decided in (0, self._ones(mask)):
             return x if decided else y
@@ -388,7 +388,7 @@ class Terms:
         return tuple(node[_FIRST_OPERAND[node[0]] :]) if node[0] in _FIRST_OPERAND else ()
 
     def order(self, roots: Iterable[int]) -> list[int]:
-        """Return the terms ``roots`` and all terms on which they depend, each after its operands."""
+        """Return the terms ``roots`` and all terms on which these depend; each term comes after its operands."""
         seen: set[int] = set()
         ordered: list[int] = []
         stack = [(root, False) for root in reversed(list(roots))]
@@ -466,7 +466,7 @@ class Terms:
         return [new[root] for root in roots]
 
     def undecided(self, roots: Iterable[int]) -> int | None:
-        """Return a comparison mask on which the terms ``roots`` depend and which depends on no other mask, or None."""
+        """Return a comparison mask in the terms ``roots`` that depends on no other mask; None if there is no mask."""
         return next((index for index in self.order(roots) if self.kind(index) == "mask"), None)
 
 

@@ -1,4 +1,4 @@
-"""Split C text into its functions, each a list of tokens; raise an error for any C that symrot does not emit.
+"""The functions in a C text, each as a list of tokens; any C that symrot does not emit raises an error.
 
 This module shares no code with the emitter, so that a mistake there cannot hide here.
 """
@@ -24,7 +24,7 @@ _DIRECTIVE = re.compile(r'\s*#\s*(?:include\s*(?:<(?:math|stddef)\.h>|"\w+\.h")|
 
 @dataclass(frozen=True)
 class Token:
-    """A token of C: its kind (``name``, ``number`` or ``mark``), its text and its line."""
+    """A token of C: its kind (``name``, ``number`` or ``mark``), its text and the number of its line."""
 
     kind: str
     text: str
@@ -56,7 +56,7 @@ def _tokens(text: str, where: str) -> list[Token]:
     """Return the tokens of a C file without comments and directives."""
     if "??" in text or "\\" in text:  # trigraphs and spliced lines are never emitted, and could hide code from a reader
         raise CertificateError(
-            f"{where}: expected C without backslashes and trigraphs, as symrot emits it, got one of these"
+            f"{where}: expected C without backslashes and trigraphs, as symrot emits it, got a text with one of these"
         )
     bare = _COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
     lines = bare.split("\n")
@@ -89,19 +89,19 @@ class Cursor:
         self.tokens, self.where, self.index = tokens, where, 0
 
     def peek(self, ahead: int = 0) -> str:
-        """Return the text of the next token, or of the token ``ahead`` places later; empty beyond the end."""
+        """Return the text of the next token, or of the token ``ahead`` positions later; empty beyond the end."""
         index = self.index + ahead
         return self.tokens[index].text if index < len(self.tokens) else ""
 
     def next(self) -> Token:
         """Return the next token and move past it."""
         if self.index >= len(self.tokens):
-            raise self.fail("more text before the end of the file")
+            raise self.fail("another token")
         self.index += 1
         return self.tokens[self.index - 1]
 
     def fail(self, expected: str, got: str = "") -> CertificateError:
-        """Return a CertificateError that names the line, the expected text, and the text found there."""
+        """Return a CertificateError that names the line, the expected text, and the text at that position."""
         at = min(self.index, len(self.tokens) - 1)
         if not got:
             got = repr(self.tokens[at].text) if 0 <= self.index < len(self.tokens) else "the end"
@@ -116,13 +116,13 @@ class Cursor:
             self.index += 1
 
     def name(self) -> str:
-        """Return the next token, which must be a name, and move past it."""
+        """Return the text of the next token, which must be a name, and move past the token."""
         if self.index >= len(self.tokens) or self.tokens[self.index].kind != "name":
             raise self.fail("a name")
         return self.next().text
 
     def integer(self) -> int:
-        """Return the next token, which must be an integer, as a number, and move past it."""
+        """Return the value of the next token, which must be an integer, and move past the token."""
         if not self.peek().isdigit():
             raise self.fail("an index")
         return int(self.next().text)
@@ -145,7 +145,7 @@ def functions_of(text: str, where: str = "kernel") -> Mapping[str, CFunction]:
     Raises
     ------
     CertificateError
-        For any C that symrot does not emit, with its line.
+        If the text contains C that symrot does not emit; the message names the line.
     """
     cursor = Cursor(_tokens(text, where), where)
     functions: dict[str, CFunction] = {}

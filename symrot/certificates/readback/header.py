@@ -1,8 +1,8 @@
-"""Check the header of an emitted kernel: it holds the fixed lines listed here and the prototypes of its C file.
+"""The check that the header of an emitted kernel contains only fixed lines and the prototypes of its C file.
 
-A header can change what a C file means: a macro called ``sin`` is enough. So, apart from comments, every line must be
-one of the lines below, in this order, or belong to the prototype of a function that the C file defines. Only the
-standard library is used.
+A header can change what a C file means; a macro called ``sin`` is enough. So every line outside comments must be one of
+the lines below, in this order, or belong to the prototype of a function that the C file defines. Only the standard
+library is used.
 """
 
 import re
@@ -54,7 +54,7 @@ _END = """
 
 
 def check_header(header: str, source: str, name: str) -> None:
-    """Raise CertificateError if a header holds anything but the fixed lines and the prototypes of its C file.
+    """Raise CertificateError if a header contains anything but the fixed lines and the prototypes of its C file.
 
     Parameters
     ----------
@@ -66,11 +66,11 @@ def check_header(header: str, source: str, name: str) -> None:
     Raises
     ------
     CertificateError
-        If a line is unexpected or a prototype has no function; the message names the first.
+        If a line is unexpected or a prototype has no function; the message names the first such line or prototype.
     """
     if re.search(r"\\|\?\?|[\0-\x09\x0b-\x1f]", header):
         raise CertificateError(
-            f"{name}.h: expected a header without backslash, trigraph or control character, got one of these"
+            f"{name}.h: expected a header without backslash, trigraph or control character, got such a character"
         )
     lines = [line.strip() for line in _COMMENT.sub(" ", header).split("\n")]
     lines = [line for line in lines if line]
@@ -83,7 +83,7 @@ def check_header(header: str, source: str, name: str) -> None:
             raise CertificateError(f"{name}.h: expected the line {fixed!r}, got {got[:80]!r}")
     middle = lines[len(top) : len(lines) - len(end)]
     if len(lines) < len(top) + len(end) or lines[len(lines) - len(end) :] != end:
-        raise CertificateError(f"{name}.h: expected the lines {' '.join(end)!r} at the end")
+        raise CertificateError(f"{name}.h: expected the lines {' '.join(end)!r} at the end, got others")
     if any("#" in line for line in middle):
         raise CertificateError(f"{name}.h: expected nothing but prototypes between the fixed lines, got other text")
     declared = {_words(each) for each in " ".join(middle).split(";") if each.strip()}

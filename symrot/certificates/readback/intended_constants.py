@@ -1,4 +1,4 @@
-"""Recover the number that a rounded constant stands for: the simplest fraction, or multiple of pi, that rounds to it.
+"""The exact number behind a rounded constant: the simplest fraction, or multiple of pi, that rounds to the constant.
 
 Only the standard library is used.
 """
@@ -13,25 +13,25 @@ from symrot.formula.exact_numbers import PI
 
 __all__ = ["IntendedConstant", "intended_value", "rounds_to"]
 
-SHORT = 12  # a number of at most so many significant bits stands for itself
+SHORT = 12  # a number with at most this many significant bits stands for itself
 SIMPLE = 2**32  # largest product of numerator and denominator of a fraction that a constant may stand for
 
 
 @dataclass(frozen=True)
 class IntendedConstant:
-    """A constant as the C text writes it, and the number it stands for: ``fraction``, times pi if ``times_pi``."""
+    """A constant as the C text writes it, and its exact number: ``fraction``, times pi if ``times_pi``."""
 
     written: Fraction
     fraction: Fraction
     times_pi: bool
 
     def rounds(self, precision: str) -> bool:
-        """Tell whether the intended number, rounded to a precision, is the written constant."""
+        """Return whether the exact number, rounded to a precision, is the written constant."""
         return rounds_to(self.fraction * PI if self.times_pi else self.fraction, precision) == self.written
 
 
 def rounds_to(value: Fraction, precision: str) -> Fraction:
-    """Return a value rounded to the nearest number of a precision, such as ``"binary64"``; ties to even."""
+    """Return a value rounded to a precision, such as ``"binary64"``: to the nearest number, ties to even."""
     if precision == "binary64":
         return Fraction(value.numerator / value.denominator)  # Python rounds a quotient of integers correctly
     near = float(unpack("f", pack("f", float(value)))[0])
@@ -47,7 +47,8 @@ def rounds_to(value: Fraction, precision: str) -> Fraction:
 def intended_value(value: Fraction, precision: str) -> IntendedConstant:
     """Return the exact number for which a constant of the C text stands, such as 1/3 for 0.3333333333333333.
 
-    A constant with few binary digits stands for itself; a longer constant for a simple fraction or multiple of pi.
+    A constant with few binary digits stands for itself; a longer constant stands for a simple fraction or multiple of
+    pi.
 
     Raises
     ------

@@ -2,7 +2,8 @@
 
 The reader of C text (:mod:`symrot.certificates.readback.readback`) makes such graphs; certificates compare them and
 bound their rounding errors. This module uses only the standard library and no code of the emitter: a checker that
-shared code with it would repeat its mistakes.
+shared code with the emitter would repeat the emitter's mistakes. A place is the text of an input or output component,
+such as ``"q[1]"`` or ``"t"``.
 
 A node is a tuple; operands are indices of earlier nodes::
 
@@ -10,7 +11,7 @@ A node is a tuple; operands are indices of earlier nodes::
     ("add", i, j)  ("sub", i, j)  ("mul", i, j)  ("div", i, j)  ("copysign", i, j)
     ("call", name, (i, ...))          ("select", relation, i, j, x, y): x if node i relation node j, else y
 
-Equal operations on equal operands are one node: rounding is a function, so that sharing them is exact.
+Equal operations on equal operands share one node, since they have the same rounded value.
 """
 
 import hashlib
@@ -35,7 +36,7 @@ RELATIONS: dict[str, Callable[[Any, Any], bool]] = {
 
 
 def operands(node: Node) -> tuple[int, ...]:
-    """Return the indices of the operands of an operation (node)."""
+    """Return the indices of a node's operands."""
     kind = node[0]
     if kind in ("in", "const"):
         return ()
@@ -49,8 +50,8 @@ class Operations:
     """The operations of a C function: a graph in which each node is one rounded operation.
 
     ``precision`` is ``"binary64"`` or ``"binary32"``; ``inputs`` are places such as ``"q[1]"`` or ``"t"`` in the order
-    of the arguments; ``outputs`` are pairs (place, index of its node) in the order of the arguments. ``nodes`` holds
-    only what some output needs, operands before the operations that use them.
+    of the arguments; ``outputs`` are pairs (place, index of its node) in the order of the arguments. ``nodes`` contains
+    only operations that some output needs, each after its operands.
     """
 
     name: str
@@ -65,12 +66,12 @@ class Operations:
         functions: Mapping[str, Callable[..., Any]],
         number: Callable[[Fraction], Any],
     ) -> dict[str, Any]:
-        """Return the outputs by name, such as ``"q[1]"``, computed in the arithmetic of the inputs, such as intervals.
+        """Return a map from the place of each output to its value, in any arithmetic, such as that of intervals.
 
         Parameters
         ----------
         values : mapping of str
-            Place of an input -> its value.
+            A map from the place of each input to its value.
         functions : mapping of str to callable
             The functions that the nodes call (``sin``, ...), and ``sqrt``, ``abs``, ``copysign`` and ``select`` (with
             the arguments relation, i, j, x, y) if the kind of number has no operator for them.
@@ -99,7 +100,7 @@ class Operations:
         )  # fmt: skip
 
     def counts(self) -> dict[str, int]:
-        """Return the number of operations of each kind; calls count under the name of their function."""
+        """Return the number of operations of each kind; a call is counted under the name of its function."""
         names = [node[1] if node[0] == "call" else node[0] for node in self.nodes if node[0] not in ("in", "const")]
         return {name: names.count(name) for name in sorted(set(names))}
 
@@ -113,7 +114,7 @@ def _node_value(
     node: Node, known: Sequence[Any], values: Mapping[str, Any],
     functions: Mapping[str, Callable[..., Any]], number: Callable[[Fraction], Any],
 ) -> Any:  # fmt: skip
-    """Return the value of a node of the graph from the values of the nodes before it."""
+    """Return the value of a node from ``known``, the values of the nodes before it."""
     kind = node[0]
     if kind == "in":
         return values[node[1]]

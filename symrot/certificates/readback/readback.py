@@ -1,9 +1,9 @@
-"""Parse emitted C into the operations that it computes; refuse all C that symrot does not emit.
+"""The reader of emitted C: it returns the operations that the text performs, and refuses C that symrot does not emit.
 
-The accepted subset of C: functions of ``double`` or ``float``; ``const`` temporaries that are assigned once;
-``+ - * /``, unary minus, ``a < b ? x : y``; calls of the C library and of ``static inline`` functions of the same
-file; each element of an output array assigned once; in a batch, one loop over samples. This module shares no code with
-the emitter.
+The accepted subset of C: functions of ``double`` or ``float``; ``const`` temporaries that are assigned once; ``+ - *
+/``, unary minus, ``a < b ? x : y``; calls of the C library and of ``static inline`` functions of the same file; each
+element of an output array assigned once; in a batch (a function for many samples), one loop over samples, or loops over
+blocks of samples. This module shares no code with the emitter.
 """
 
 from collections.abc import Mapping
@@ -24,10 +24,10 @@ LIBRARY: dict[str, int] = {  # functions of <math.h> that kernels call, without 
 }  # fmt: skip
 ROUNDED = {"sqrt": ("sqrt", 1), "fabs": ("abs", 1), "copysign": ("copysign", 2)}  # exact, or rounded correctly
 VECTORISED = {"symrot_sin": "sin", "symrot_cos": "cos"}  # vectorised, from symrot_math.h; their error is assumed
-ARC = {"symrot_atan2": "atan2"}  # likewise, accurate for all arguments
+ARC = {"symrot_atan2": "atan2"}  # also from symrot_math.h, but accurate for all arguments
 # from symrot_math.h: choices without a branch
 SELECT = {"symrot_select_lt": "<", "symrot_select_eq": "==", "symrot_choose_ge": ">="}
-SPAN = "SYMROT_SPAN"  # samples in a block that several loops of a batch process one after the other
+SPAN = "SYMROT_SPAN"  # number of samples in a block, which several loops of a batch process one after the other
 DEEPEST = 200  # limit on the nesting of an expression
 
 
@@ -60,7 +60,7 @@ class _BodyReader:
         return self.inputs.setdefault(place, self.builder.add("in", place))
 
     def statements(self, cursor: Cursor, scope: _Scope) -> int | None:
-        """Read statements to the end of a body; return the node of its ``return``, or None if it has no return."""
+        """Read statements to the end of a body; return the node that ``return`` returns, or None without ``return``."""
         while cursor.peek():
             if cursor.peek() == "(":
                 cursor.expect("(", "void", ")")
@@ -91,7 +91,7 @@ class _BodyReader:
             raise cursor.fail("the name of a parameter", repr(name))
 
     def _assignment(self, cursor: Cursor, scope: _Scope) -> None:
-        """Read an assignment to one element of an output array."""
+        """Read an assignment to one element of an output array, and record it in ``scope.written``."""
         name = cursor.name()
         array = scope.arrays.get(name)
         if array is None or array.is_const:
@@ -105,7 +105,7 @@ class _BodyReader:
         scope.written[name, index] = value
 
     def _index(self, cursor: Cursor, scope: _Scope, array: Parameter) -> int:
-        """Read an array index and return the component i: ``[i]`` for one sample, ``[i*n + k]`` for sample k of n."""
+        """Read an array index, ``[i]`` for one sample or ``[i*n + k]`` for sample k of n; return the component i."""
         cursor.expect("[")
         if array.size > 0:
             index = cursor.integer()
@@ -261,7 +261,7 @@ def _nearest_float(digits: str, value: float) -> float:
 
 
 def _defined(functions: Mapping[str, CFunction], name: str, where: str) -> CFunction:
-    """Return the function with a given name; raise CertificateError if the C text does not define it."""
+    """Return the function of this name; raise CertificateError if the C text does not define it."""
     if name not in functions:
         raise CertificateError(
             f"{where}: expected a function named {name}, got {', '.join(functions) or 'no function'}"
@@ -293,13 +293,13 @@ def read_kernel(text: str, name: str, where: str = "kernel") -> Operations:
     name : str
         The name of the function.
     where : str
-        The file's name, for errors.
+        The file's name, for error messages.
 
     Raises
     ------
     CertificateError
-        For any C that symrot does not emit: an unknown call, a name without a value, an output that is assigned twice
-        or never, an index beyond its array.
+        If the text contains C that symrot does not emit, such as an unknown call, a name without a value, an output
+        that is assigned twice or never, or an index beyond its array.
     """
     functions = functions_of(text, where)
     function = _defined(functions, name, where)
@@ -324,14 +324,14 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
     Raises
     ------
     CertificateError
-        As :func:`read_kernel`, and if a loop does not run over all samples.
+        In the cases of :func:`read_kernel`, and if a loop does not run over all samples.
 
     Notes
     -----
-    ``symrot_sin``, ``symrot_cos`` and ``symrot_atan2`` are read as sine, cosine and arc tangent: that
-    ``symrot_math.h`` computes them to its stated error is an assumption. ``symrot_sin`` and ``symrot_cos`` hold for a
-    range of angles only. They are accepted if the loop tests each of their arguments for that range, and a second loop
-    computes the block again with the C library if a test fails.
+    ``symrot_sin``, ``symrot_cos`` and ``symrot_atan2`` are read as sine, cosine and arc tangent; it is assumed that
+    ``symrot_math.h`` computes them to its stated accuracy. ``symrot_sin`` and ``symrot_cos`` are accurate in a range of
+    angles only. They are accepted if the loop tests whether each of their arguments is in that range, and a second loop
+    computes the block of samples again with the C library if a test fails.
     """
     functions = functions_of(text, where)
     function = _defined(functions, name, where)
@@ -375,7 +375,7 @@ def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token
 
 
 def _parts(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
-    """Read several loops over the same block of samples, where each loop assigns other outputs."""
+    """Read several loops over the same block of samples; each loop must assign different outputs."""
     _heads(cursor, scope, SPAN)
     while cursor.peek() != "}":
         part = _Scope(arrays=scope.arrays, scalars=scope.scalars, count=scope.count)
@@ -394,9 +394,9 @@ def _heads(cursor: Cursor, scope: _Scope, size: str) -> None:
 
 
 def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
-    """Read a loop over blocks that computes with ``symrot_math.h``, or with the C library if an angle is too large.
+    """Read a loop over blocks that computes with ``symrot_math.h``, and again with the C library for large angles.
 
-    Both computations must be the same operations, and the test for large angles must cover every argument of
+    Both computations must perform the same operations, and the test for large angles must cover every argument of
     ``symrot_sin`` and ``symrot_cos``.
     """
     _heads(cursor, scope, "SYMROT_BLOCK")
@@ -429,7 +429,7 @@ def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
 def _finished(
     reader: _BodyReader, scope: _Scope, function: CFunction, places: list[tuple[str, int]], where: str
 ) -> Operations:
-    """Return the operations of a C function after its body was read; refuse an output that is not assigned."""
+    """Return the operations of a C function whose body was read; raise CertificateError for an unassigned output."""
     missing = [f"{name}[{index}]" for name, index in places if (name, index) not in scope.written]
     if missing or not places:
         raise CertificateError(f"{where}: expected {function.name} to assign {', '.join(missing) or 'an output'}")

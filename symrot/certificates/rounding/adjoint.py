@@ -1,16 +1,18 @@
 """Bounds of the rounding error of one output on many boxes at once: the sum of local errors times derivatives.
 
-Let the operations 1 to k be computed with rounding and the others exactly. As k grows from 0 to the number of
-operations, the output moves from its exact to its computed value, one rounding error at a time. By the mean value
-theorem,
+A box is one range per input. Let the operations 1 to k be computed with rounding and the others exactly. As k grows
+from 0 to the number of operations, the output moves from its exact to its computed value, one rounding error at a time.
+By the mean value theorem,
 
     computed - exact = sum over operations of (derivative of the output by the result) * (rounding error of the result),
 
 where the derivatives are evaluated between exact and computed values, and each operation acts on computed operands.
-Interval arithmetic encloses all these values, one pass backwards through the graph of operations encloses the
-derivatives, and half a unit in the last place bounds each rounding error. No term of second order is neglected.
+Interval arithmetic encloses all these values (forward pass), one pass backwards through the graph of operations
+encloses the derivatives, and half a unit in the last place bounds each rounding error. No second-order term is
+neglected.
 
-Conditionals compare computed numbers: the condition of a branch narrows the rounding errors, not the derivatives.
+Conditionals compare computed numbers. So the condition of a branch narrows the intervals of computed numbers, from
+which rounding errors are bounded, but not the intervals in which derivatives are evaluated.
 """
 
 from collections.abc import Callable, Sequence
@@ -42,10 +44,10 @@ LIBM_ULP = 1.0  # error of sin, cos and atan2, in units in the last place of the
 class Evaluation:
     """The bounds of the rounding error on many boxes; every field has one entry for each box.
 
-    ``bound`` is the error bound: infinite if no bound was found, -1 if the box holds no point of the region (the
-    allowed inputs). ``obstacle`` is the node that prevents a finite bound, or -1. ``undecided`` is a condition that may
-    hold or not on the box, or -1. ``value`` is the largest absolute value of the output. ``turns`` says whether an
-    atan2 may jump by 2 pi.
+    ``bound`` is the error bound: infinite if no bound was found, -1 if the box contains no point of the region (the
+    allowed inputs). ``obstacle`` is the node that prevents a finite bound, or -1. ``undecided`` is a condition that
+    holds on a part of the box only, or -1. ``value`` is the largest absolute value of the output. ``turns`` says
+    whether an atan2 may jump by 2 pi.
     """
 
     bound: Array
@@ -57,7 +59,7 @@ class Evaluation:
 
 @dataclass
 class _ErrorPass:
-    """The error bounds computed so far, on many boxes, while the operations of a graph are visited in order."""
+    """The state of a forward pass over the nodes of a graph: values and error bounds so far, on many boxes."""
 
     graph: OutputGraph
     boxes: Array  # (2, inputs, n)
@@ -75,25 +77,25 @@ class _ErrorPass:
         self.unit = 2.0 ** -DIGITS[self.precision]
 
     def rounded(self, exact: Array, factor: float = 1.0) -> tuple[Array, Array]:
-        """Return intervals of computed values and of errors, for errors of ``factor`` half units in the last place."""
+        """Return intervals of computed values, and error bounds of ``factor`` half units in the last place."""
         error = intervals.half_ulp(intervals.magnitude(exact), self.precision) * factor
         if factor != 1.0:
             return intervals.widened(exact, error), error
         return intervals.rounded_to(exact, self.precision), error
 
     def refined(self, node: Node, values: Sequence[Array], plain: Array) -> Array:
-        """Return an interval that contains an exact result, tightened by the mean value form if one is used."""
+        """Return an interval that contains a node's exact result: ``plain``, narrowed by mean value forms if in use."""
         if self.centred is None:
             return plain
         return self.centred.refined(node, operand_places(node), values, plain)
 
     def relative(self, exact: Array, units: float, least: float) -> tuple[Array, Array]:
-        """Return intervals of computed values and of errors, for errors of ``units`` unit roundoffs plus ``least``."""
+        """Return intervals of computed values, and error bounds of ``units`` unit roundoffs plus ``least``."""
         error = intervals.magnitude(exact) * (units * self.unit * (1 + 2.0**-20)) + least
         return intervals.widened(exact, error), error
 
 
-# --- forward: the values of a node and a bound of its rounding error, None if it has no error -------------------------
+# --- forward: each function returns the values of a node and a bound of its rounding error, None without error --------
 
 Forward = Callable[[_ErrorPass, Node, Sequence[Array]], tuple[Array, Array | None]]
 
@@ -113,10 +115,10 @@ def _constant(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple
 
 @cache
 def _constant_error(written: Fraction, precision: str, use_intended: bool) -> float:
-    """Return a bound of the distance between a constant of the C text and the exact number that it stands for.
+    """Return a bound of the distance between a constant of the C text and the exact number for which it stands.
 
     With ``use_intended`` that number is the simple fraction or multiple of pi that the reader of the C text recovers.
-    Otherwise the constant may be a coefficient of a Taylor series, and the bound covers any number that rounds to it.
+    Otherwise the constant may be a Taylor coefficient, and the bound covers any number that rounds to the constant.
     """
     if is_short(written):
         return 0.0
@@ -131,7 +133,7 @@ def _constant_error(written: Fraction, precision: str, use_intended: bool) -> fl
 
 
 def _grid_step(state: _ErrorPass, index: int) -> Array:
-    """Return a power of two that divides all values of a node, by which some sums are known to be exact."""
+    """Return, for each box, a power of two that divides all values of a node; it shows that some sums are exact."""
     node, value = state.graph.nodes[index], state.values[index]
     if node[0] == "const":
         above, below = abs(node[1].numerator), node[1].denominator
@@ -210,7 +212,7 @@ def _angle(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Ar
 
 
 def _error_of_root(state: _ErrorPass, operands: Sequence[Array], total: Array) -> Array:
-    """Return a bound of the error in a root of a sum of squares, caused by rounding the squares and their sum."""
+    """Return a bound of the error that rounding the squares and their sum causes in the root of a sum of squares."""
     squares = [intervals.half_ulp(intervals.magnitude(intervals.square(part)), state.precision) for part in operands]
     size = intervals.magnitude(total) * (1 + len(operands) * 2.0**-22)  # bound of a partial sum, its rounding included
     error = sum(squares, (len(operands) - 1) * intervals.half_ulp(size, state.precision))
@@ -255,7 +257,10 @@ GAP_CELLS = 8192
 
 @cache
 def _gap_errors(own: OutputGraph, libm_ulp: float) -> tuple[Array, ...]:
-    """Return error bounds of (x - sin x)/x^3, or a similar function, on all runs of 2^k cells of [0, GAP_END], by k."""
+    """Return error bounds of a gap function, such as (x - sin x)/x^3, on ranges of [0, GAP_END].
+
+    Entry k of the result holds the bound on every run of 2^k neighbouring cells, of which there are GAP_CELLS.
+    """
     ends = np.linspace(0.0, GAP_END, GAP_CELLS + 1)
     boxes = np.stack([ends[:-1], ends[1:]])[:, None]
     sides = [evaluate(own, boxes, np.full((1, GAP_CELLS), side, np.int8), libm_ulp=libm_ulp).bound for side in (0, 1)]
@@ -309,7 +314,7 @@ FORWARD: dict[str, Forward] = {
     "norm": _norm, "sinc": _sinc, "arc_ratio": _arc_ratio, "gap": _gap, "select": _choice,
 }  # fmt: skip
 
-# --- backward: the derivative of the output by each operand, from its derivative by the node --------------------------
+# --- backward: the derivative of the output by each operand of a node, from its derivative by that node ---------------
 
 _multiply = intervals.multiply_loosely
 
@@ -412,7 +417,7 @@ def evaluate(
     graph: OutputGraph, boxes: Array, decided: NDArray[np.int8], region: Region = EVERYWHERE,
     libm_ulp: float = LIBM_ULP, centred: bool = False,
 ) -> Evaluation:  # fmt: skip
-    """Return bounds of the rounding error of an output, one for each of some boxes.
+    """Return bounds of the rounding error of an output, one bound for each box.
 
     Parameters
     ----------
@@ -421,7 +426,7 @@ def evaluate(
     boxes : ndarray, shape (2, inputs, n)
         Least and largest value of each input.
     decided : ndarray of int8, shape (conditions, n)
-        The branch of each condition: 1 where the relation holds, 0 where it does not, -1 if both are possible.
+        The branch of each condition on each box: 1 if the relation holds, 0 if not, -1 if both are possible.
     region : Region
         Restrictions of the inputs; a box without a point of the region gets the bound -1.
     libm_ulp : float
@@ -456,7 +461,7 @@ def evaluate(
 
 
 def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array | None:
-    """Enclose the exact and the computed values of a node in intervals; return a bound of its own rounding error."""
+    """Append intervals of a node's exact and computed values to both states; return a bound of its rounding error."""
     value, error = FORWARD[node[0]](state, node, [state.values[i] for i in operand_places(node)])
     state.values.append(value)
     if state.centred is not None:
@@ -469,10 +474,11 @@ def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array 
 
 
 def _backward_pass(state: _ErrorPass) -> tuple[Array, NDArray[np.int64], NDArray[np.bool_]]:
-    """Return (sum of errors times derivatives, the node that makes it infinite or -1, where an angle may jump by 2 pi).
+    """Return, for each box, the sum of errors times derivatives, the obstacle, and whether an angle may jump by 2 pi.
 
-    An angle that may jump by 2 pi must enter the output with derivative 1 or -1; the error of the output is then
-    meant modulo 2 pi. A node that no possible branch uses may have any value; every other node must be finite.
+    The obstacle is the node that makes the sum infinite, or -1. An angle that may jump by 2 pi must enter the output
+    with derivative 1 or -1; the error of the output is then meant modulo 2 pi. A node that no possible branch uses may
+    have any value; every other node must be finite.
     """
     nodes = state.graph.nodes
     count = state.boxes.shape[2]

@@ -1,11 +1,13 @@
 """Bounds of the rounding error of a kernel's outputs on a box of inputs: the ``rounding`` section of a certificate.
 
 :func:`rounding_section` returns the section as data that is the same, byte for byte, on every machine.
-:func:`check_section` checks it quickly by evaluations at single points; with ``rerun``, it computes all bounds again.
+:func:`check_section` checks a section quickly, by evaluations at single points; with ``rerun``, it computes all bounds
+again.
 
-A bound limits the absolute error of an output against the exact formula at the same floating-point inputs. If a choice
-compares rounded numbers, the exact formula follows the branch that the kernel took; such choices are listed. An angle
-that is wrapped is compared modulo 2 pi. Every intermediate number is finite on the box, so that nothing overflows.
+A bound limits the absolute error of an output against the exact formula at the same floating-point inputs. A choice is
+a conditional in the formula. If a choice compares rounded numbers, the exact formula follows the branch that the kernel
+took; such choices are listed. An angle that is wrapped is compared modulo 2 pi. Every intermediate number is finite on
+the box, so that nothing overflows.
 """
 
 import hashlib
@@ -56,9 +58,10 @@ class OutputBound:
     """Bounds of the error of one output: ``bound`` on the whole box, and ``pointwise`` at the point ``at``.
 
     ``scale`` is a power of two that is at least the largest value of the output at the evaluated points (or 2^1023).
-    ``turns`` says that the error is measured modulo 2 pi. ``choices`` are the comparisons of rounded numbers; the exact
-    formula takes the same branch as the rounded computation. ``contraction_safe`` says that the bound also holds with
-    fused multiply-adds.
+    ``evaluations`` is the number of boxes evaluated; ``converged`` says that ``bound`` is at most 2 % above
+    ``pointwise``. ``turns`` says that the error is measured modulo 2 pi. ``choices`` are the comparisons of rounded
+    numbers, in which the exact formula takes the branch of the rounded computation. ``contraction_safe`` says that the
+    bound also holds with fused multiply-adds.
     """
 
     output: str
@@ -75,9 +78,10 @@ class OutputBound:
 
 @dataclass(frozen=True)
 class BoundTask:
-    """The task to bound the rounding error of one output on one box.
+    """The task to bound the rounding error of one output on one box; equal tasks of different kernels run once.
 
-    Equal tasks of different kernels are computed once.
+    ``low`` and ``high`` are the ends of the box, ``budget`` the largest number of evaluations, ``libm_ulp`` the
+    largest error of sin, cos and atan2, in units in the last place.
     """
 
     graph: OutputGraph
@@ -89,7 +93,7 @@ class BoundTask:
 
     @property
     def key(self) -> str:
-        """The key under which the bound is stored, a hash; equal tasks have equal keys."""
+        """The hash under which the bound is stored; equal tasks have equal hashes."""
         numbers = {place: k for k, place in enumerate(self.graph.places)}
         groups = sorted(tuple(numbers.get(place, -1) for place in group) for group in self.region.unit)
         ends = [x.hex() for x in (*self.low, *self.high)]
@@ -98,14 +102,14 @@ class BoundTask:
 
     @property
     def box(self) -> Array:
-        """Least and largest value of each input, shape (2, inputs)."""
+        """The least and the largest value of each input, as an array of shape (2, inputs)."""
         return np.array([self.low, self.high])
 
 
 def bound_tasks(
     operations: Operations, box: Box, region: Region = EVERYWHERE, budget: int = BUDGET, libm_ulp: float = LIBM_ULP
 ) -> dict[str, BoundTask]:
-    """Return for each output the task to bound its rounding error.
+    """Return a map from the place of each output, such as ``"q[1]"``, to the task to bound its rounding error.
 
     Raises
     ------
@@ -133,7 +137,7 @@ def bound_tasks(
 
 
 def _outward(value: Fraction, direction: float) -> float:
-    """Return a fraction rounded to a float, downward or upward: ``direction`` is -inf or inf."""
+    """Return a fraction rounded to a float in the direction -inf (downward) or inf (upward)."""
     near = float(value)
     exact = Fraction(near)
     return near if exact == value or (exact < value) == (direction < 0) else nextafter(near, direction)
@@ -148,7 +152,7 @@ def _check_box(operations: Operations, box: Box) -> None:
         )
     for place in operations.inputs:
         if place not in box:
-            raise InputError(f"{operations.name}: expected a range of {place} in the box, got none")
+            raise InputError(f"{operations.name}: expected a range of {place} in the box, but it is missing")
         low, high = box[place]
         if not all((isinstance(x, Fraction) or isfinite(x)) and abs(Fraction(x)) <= LARGEST for x in (low, high)):
             raise InputError(f"{operations.name}: expected a finite range of {place}, got {show(low)} to {show(high)}")
@@ -160,7 +164,7 @@ def _check_box(operations: Operations, box: Box) -> None:
 
 
 def bound_task(task: BoundTask, fresh: bool = False) -> SearchResult:
-    """Return the error bound that a task asks for, from the store or by a search; always by a search if ``fresh``."""
+    """Return the error bound for a task: from the store, or by a search if it is not there or ``fresh`` is true."""
     result = None if fresh else STORE.get(task.key)
     if result is None:
         with np.errstate(all="ignore"):  # a range may be a single point
@@ -178,22 +182,22 @@ def bound_outputs(
     Parameters
     ----------
     operations : Operations
-        The operations read back from C (:func:`symrot.certificates.readback.readback.read_kernel`).
+        The operations read from the C text (:func:`symrot.certificates.readback.readback.read_kernel`).
     box : mapping
-        Place of an input, such as ``"q[1]"`` -> least and largest value, both exact.
+        A map from the place of an input, such as ``"q[1]"``, to its least and its largest value, both exact.
     region : Region
         Restrictions of the inputs in the box.
     budget : int
-        Number of evaluations of boxes per output after which the search stops.
+        The number of evaluated boxes per output at which the search stops.
     libm_ulp : float
         Largest error of sin, cos and atan2, in units in the last place.
     fresh : bool
-        Search again for bounds that the store holds.
+        Whether to search again for bounds that are in the store.
 
     Raises
     ------
     InputError
-        If the box is not valid, or an output has no bound on it; the message names the output and a point near the
+        If the box is not valid, or an output has no bound on the box; the message names the output and a point near the
         singularity.
     """
     return tuple(
@@ -210,7 +214,7 @@ def _output_bound(operations: Operations, place: str, task: BoundTask, result: S
         where = ", ".join(f"{name} = {x:.6g}" for k, (name, x) in enumerate(at) if k in inputs)
         what = task.graph.text(result.obstacle)
         raise InputError(
-            f"{operations.name}: expected a box without singular points, got one where {place} has no bound: "
+            f"{operations.name}: expected a box without singular points, got a box where {place} has no bound: "
             f"{what} is not known to stay away from its singular values near {where}"
         )
     mantissa, exponent = frexp(result.largest_value)
@@ -253,7 +257,7 @@ def rounding_section(
     Parameters
     ----------
     operations_double, operations_float : Operations
-        The operations of the one-sample functions NAME and NAMEf; None if there is no function for floats.
+        The operations of the one-sample functions for doubles (NAME) and for floats (NAMEf, or None without one).
     box, region, budget, libm_ulp, fresh
         As for :func:`bound_outputs`; :func:`symrot.certificates.rounding.library.library_problem` returns box and
         region of a library kernel.
@@ -270,7 +274,7 @@ def rounding_section(
     Raises
     ------
     InputError
-        As :func:`bound_outputs`.
+        In the cases of :func:`bound_outputs`.
     """
     kernels = [operations_double] if operations_float is None else [operations_double, operations_float]
     return _section_head(box, region, budget, libm_ulp) | {
@@ -304,7 +308,7 @@ def _precision_part(operations: Operations, outputs: list[dict[str, Any]]) -> di
 
 
 def _alike(a: object, b: object) -> bool:
-    """Tell whether two values have the same JSON text; unlike ``==``, this distinguishes true from 1."""
+    """Return whether two values have the same JSON text; unlike ``==``, this distinguishes true from 1."""
     return json.dumps(a, sort_keys=True) == json.dumps(b, sort_keys=True)
 
 
@@ -319,7 +323,7 @@ def _plain_output(bound: OutputBound, unit: float) -> dict[str, Any]:
 
 
 def _units(value: Fraction) -> str:
-    """Return a number as decimal text with four significant digits, rounded up."""
+    """Return a number, rounded up to four significant digits, as decimal text."""
     if value == 0:
         return "0"
     exponent = len(str(int(value))) - 1 if value >= 1 else -1
@@ -337,14 +341,14 @@ def check_section(
 ) -> None:
     """Check a ``rounding`` section by evaluating the error at single points; with ``rerun``, compute all bounds again.
 
-    The section must be about these operations and all their outputs; its numbers must be finite, in order and in the
-    printed form; no bound may be below the error bound at the stored point. :func:`check_bounds` proves that the bounds
-    hold on the whole box.
+    The section must be about these operations and all their outputs; its numbers must be finite, in order and printed
+    as symrot prints them; no bound may be below the error bound at the stored point. :func:`check_bounds` proves that
+    the bounds hold on the whole box.
 
     Raises
     ------
     CertificateError
-        If the section is wrong; the message names the part.
+        If the section is wrong; the message names the wrong part.
     """
     kernels = {kernel.precision: kernel for kernel in (operations_double, operations_float) if kernel is not None}
     try:
@@ -361,7 +365,7 @@ def check_section(
         if isinstance(error, CertificateError | InputError):
             raise CertificateError(str(error)) from None
         raise CertificateError(
-            f"expected a section of rounding bounds, got one in which this is missing or wrong: {error}"
+            f"expected a section of rounding bounds, got a section in which this is missing or wrong: {error}"
         ) from None
     if precisions != list(kernels):
         raise CertificateError(f"expected bounds for {' and '.join(kernels)}, got {' and '.join(precisions) or 'none'}")
@@ -377,13 +381,13 @@ def check_bounds(
 ) -> None:
     """Check every bound of a section that :func:`check_section` accepted, by computing the bounds again.
 
-    With ``fresh`` every bound is searched again; otherwise bounds in the store are used. The section must not ask for
-    more evaluations than :data:`BUDGET`.
+    With ``fresh``, every bound is searched again; without it, bounds in the store are used. The budget in the section
+    must not exceed :data:`BUDGET`.
 
     Raises
     ------
     CertificateError
-        If a bound differs; the message names the first.
+        If a bound differs; the message names the first such output.
     """
     region = Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
     box = {
@@ -425,7 +429,9 @@ def _check_precision(
     tasks_by_output = bound_tasks(operations, box, region, 0, libm_ulp)
     unit = 2.0 ** -DIGITS[operations.precision]
     if [item["output"] for item in part["outputs"]] != list(tasks_by_output) or float.fromhex(part["unit"]) != unit:
-        raise CertificateError(f"{name}: expected bounds of {', '.join(tasks_by_output)}")
+        raise CertificateError(
+            f"{name}: expected bounds of {', '.join(tasks_by_output)} in units of {unit:g}, got other outputs or units"
+        )
     for item in part["outputs"]:
         task, bound = tasks_by_output[item["output"]], float.fromhex(item["absolute"])
         at = np.array([float.fromhex(item["at"][place]) for place in task.graph.places])
@@ -434,11 +440,11 @@ def _check_precision(
         choices, safe = _choice_phrases(task), task.graph.contraction_safe
         if item["choices"] != choices or item["contraction_safe"] is not safe:
             raise CertificateError(
-                f"{name}: expected the same choices for {item['output']} as in the operations of the C text"
+                f"{name}: expected the same choices for {item['output']} as in the operations of the C text, got others"
             )
         if at.size and not ((task.box[0] <= at) & (at <= task.box[1])).all():
             raise CertificateError(
-                f"{name}: expected a point inside the box as the worst point of {item['output']}, got one outside"
+                f"{name}: expected a point inside the box as the worst point of {item['output']}, got a point outside"
             )
         least = error_at_point(task, at)
         if not least <= float.fromhex(item["pointwise"]) * (1 + 1e-9) or float.fromhex(item["pointwise"]) > bound:
@@ -449,9 +455,9 @@ def _check_precision(
 
 
 def error_at_point(task: BoundTask, at: Array) -> float:
-    """Return a bound of the error at one point, 0 if there is no error.
+    """Return the error bound at one point: 0 if no finite bound was found, -1 if the point is not in the region.
 
-    Any bound on a box that contains the point is at least as large.
+    The bound on any box that contains the point is at least as large.
     """
     point = np.stack([at, at])[:, :, None]
     evaluation = evaluate(

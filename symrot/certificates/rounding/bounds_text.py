@@ -1,6 +1,6 @@
-"""The bounds of a library kernel on its own box: as a section of its certificate, and as text for its C header comment.
+"""Rounding bounds of a library kernel on its own box: a section of its certificate, and text for its header comment.
 
-Both are computed from the operations that are read back from the C text, so that the comment and the certificate agree.
+Both are computed from the operations that are read from the C text, so that the comment and the certificate agree.
 """
 
 from collections.abc import Mapping
@@ -33,20 +33,20 @@ def _sections(name: str, double: Operations, single: Operations) -> Section | st
 
 
 def library_section(name: str, source: str) -> Section | str:
-    """Return the ``rounding`` section of a library kernel on its own box, or the reason, as text, why it has no bound.
+    """Return the ``rounding`` section of a library kernel on its own box, or a text that says why there is no bound.
 
     Parameters
     ----------
     name : str
         The name of the kernel.
     source : str
-        Its C text, with or without the comment at its head.
+        The kernel's C text, with or without the comment at its head.
     """
     return _sections(name, *operations_of(name, source))
 
 
 def library_region(name: str, source: str) -> Section:
-    """Return the conditions of a kernel's section ``rounding``: restrictions of inputs, error of libm, budget."""
+    """Return the part of a kernel's section ``rounding`` with restrictions of inputs, error of libm and budget."""
     region = library_problem(definition(name), operations_of(name, source)[0]).region
     return {
         "unit_groups": [list(group) for group in region.unit], "clearance": float(region.clearance).hex(),
@@ -55,7 +55,7 @@ def library_region(name: str, source: str) -> Section:
 
 
 def bounds_sentence(name: str, section: Section | str) -> str:
-    """Return the bounds of a library kernel, the largest error of each output array, as text without a full stop.
+    """Return the largest error bound of each output array of a library kernel, as text without a full stop.
 
     ``section`` is the result of :func:`library_section`.
     """
@@ -71,7 +71,7 @@ def bounds_sentence(name: str, section: Section | str) -> str:
 
 
 def _result_phrase(section: Section, name: str, units: list[str]) -> str:
-    """Return a phrase with the largest errors of one output array, in double and in float."""
+    """Return a phrase about the largest errors of the output array ``name``, in double and in float."""
     double, single = (
         rounded_up(max(
             Fraction(float.fromhex(each["absolute"]))
@@ -84,7 +84,7 @@ def _result_phrase(section: Section, name: str, units: list[str]) -> str:
 
 
 def rounded_up(value: Fraction) -> str:
-    """Return a number as decimal text with three significant digits, rounded up."""
+    """Return a number, rounded up to three significant digits, as decimal text."""
     if not value:
         return "0"
     exponent = 0

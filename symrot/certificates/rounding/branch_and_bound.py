@@ -1,10 +1,10 @@
-"""Bound the largest rounding error on a box by branch and bound: split the worst sub-boxes until the bound is tight.
+"""Branch and bound for the largest rounding error on a box: split the worst sub-boxes until the bound is tight.
 
-The parts (sub-boxes) with the largest bounds are split first, in batches. A part on which a condition may hold or not
-is split into the two branches. Any other part is halved in the input that lowers the bound most when its range is
-shrunk about the middle, and at once in a second input if that is worthwhile. A part is finished when its bound is at
-most ``GAP`` times the error at a single point. The budget counts evaluations of boxes, not time, so that the result is
-the same on every machine.
+The box is split into parts (sub-boxes); those with the largest bounds are split first, in batches. A part on which a
+condition may hold or not is split into the two branches. Any other part is halved in one input: the input whose range,
+when shrunk about its middle, lowers the bound most. The halves are halved at once in a second input if that lowers the
+bound enough. A part is finished when its bound is at most ``GAP`` times the largest error found at a single point. The
+budget counts evaluations of boxes, not time, so that the result is the same on every machine.
 """
 
 from dataclasses import dataclass, replace
@@ -20,21 +20,21 @@ from symrot.certificates.rounding.region import EVERYWHERE, Region, narrowed
 
 __all__ = ["SearchResult", "search"]
 
-GAP = 1.02  # a bound within 2 % of the error at a point has converged
+GAP = 1.02  # a bound has converged if it is at most 2 % above the error at a point
 BATCH = 256  # parts that are split at once
 CHUNK = 2048  # boxes that are evaluated at once
 MOST_CENTRED = 8  # largest number of inputs of a polynomial that is searched again with mean value forms
-SECOND = 0.25  # a second input is halved too if its gain (reduction of the bound) exceeds this fraction of the first's
-SHRUNK = 8.0  # a range is shrunk to an eighth to estimate the effect of halving it repeatedly
+SECOND = 0.25  # a second input is halved too if its gain (reduction of the bound) is this part of the first gain
+SHRUNK = 8.0  # a range is shrunk to an eighth of its width to estimate the effect of halving it repeatedly
 NARROWEST = 2.0**-24  # relative to the box: a part this narrow without a bound is at a singular point
 
 
 @dataclass(frozen=True)
 class SearchResult:
-    """The result of a search: no error on the box is larger than ``bound``; at ``worst`` the bound is ``pointwise``.
+    """The result of a search: no error on the box exceeds ``bound``; the bound at the point ``worst`` is ``pointwise``.
 
     ``turns`` says that errors are measured modulo 2 pi. If no bound was found, ``bound`` is infinite and ``obstacle``
-    is the operation (node) that prevents it, near the point ``worst``.
+    is the operation (node) that prevents a bound near the point ``worst``.
     """
 
     bound: float
@@ -49,7 +49,7 @@ class SearchResult:
 
 @dataclass
 class _Parts:
-    """The parts (sub-boxes) of a search: the branches chosen for each, error bounds, and nodes that prevent a bound."""
+    """The parts (sub-boxes) of a search, with their chosen branches, error bounds and obstacles, as in Evaluation."""
 
     boxes: Array  # (2, inputs, n)
     decided: NDArray[np.int8]  # (conditions, n)
@@ -72,7 +72,7 @@ class _Parts:
 
 
 class _BoundSearch:
-    """A search for the largest rounding error on a box: the problem, and the largest error at a single point so far."""
+    """A search for the largest rounding error on a box: the problem, and the largest error found at a point so far."""
 
     def __init__(self, graph: OutputGraph, box: Array, region: Region, libm_ulp: float, centred: bool) -> None:
         self.centred = centred
@@ -92,7 +92,7 @@ class _BoundSearch:
         self.largest_value, self.turns = 0.0, False
 
     def evaluate(self, boxes: Array, decided: NDArray[np.int8]) -> Evaluation:
-        """Return the error bounds of boxes, computed for a limited number of boxes at a time to limit memory."""
+        """Return the error bounds of boxes; a limited number of boxes is evaluated at a time, to limit memory."""
         count = boxes.shape[2]
         self.evaluations += count
         chunks = [
@@ -109,7 +109,7 @@ class _BoundSearch:
         return Evaluation(*(np.concatenate([getattr(part, name) for part in chunks]) for name in _FIELDS))
 
     def parts(self, boxes: Array, decided: NDArray[np.int8]) -> _Parts:
-        """Return the boxes that hold allowed inputs (such as unit quaternions), shrunk to these, with error bounds."""
+        """Return the boxes that contain allowed inputs (unit quaternions), shrunk to these, with their error bounds."""
         boxes = narrowed(boxes, self.region, self.graph.places)
         evaluation = self.evaluate(boxes, decided)
         inside = evaluation.bound >= 0
@@ -117,7 +117,7 @@ class _BoundSearch:
         return _Parts(boxes, decided, evaluation.bound, evaluation.obstacle, evaluation.undecided).take(inside)
 
     def look_at_points(self, parts: _Parts) -> None:
-        """Evaluate the error at the middle and a corner of each part (sub-box): lower bounds of the largest error."""
+        """Evaluate the error at the middle and a corner of each part, and remember the worst point so far."""
         low, high = parts.boxes
         outermost = np.where(np.abs(high) >= np.abs(low), high, low)
         points = np.concatenate([(low + high) / 2, outermost], axis=1)
@@ -134,7 +134,7 @@ class _BoundSearch:
             self.pointwise, self.worst = float(reached[best]), tuple(float(x) for x in points[:, best])
 
     def halves(self, parts: _Parts) -> tuple[Array, NDArray[np.int8]]:
-        """Split each part (sub-box) in two or four; return the new boxes and the branches already chosen for them."""
+        """Split each part in two or four; return the new boxes and the branches already chosen for them."""
         choosing = parts.undecided >= 0
         boxes, decided = [], []
         if choosing.any():
@@ -157,9 +157,9 @@ class _BoundSearch:
         return np.concatenate(boxes, axis=2), np.concatenate(decided, axis=1)
 
     def cut(self, parts: _Parts, branch: int) -> Array:
-        """Return the boxes of parts (sub-boxes) restricted to one branch of a condition that may hold or not on them.
+        """Return the boxes of parts, restricted to the branch ``branch`` (1 or 0) of each part's undecided condition.
 
-        A box is cut at the constant if the condition compares an input with a constant.
+        A box is cut only if the condition compares an input with a constant: at that constant.
         """
         boxes = parts.boxes.copy()
         for number, (relation, i, j) in enumerate(self.graph.conditions):
@@ -172,7 +172,7 @@ class _BoundSearch:
         return boxes
 
     def directions(self, parts: _Parts) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return for each part (sub-box) the input in which to halve it, and a second input (or -1) for the halves."""
+        """Return, for each part, the input in which to halve it, and a second input (or -1) in which to halve again."""
         relative = np.where(self.width[:, None] > 0, (parts.boxes[1] - parts.boxes[0]) / self.width[:, None], 0.0)
         widest = np.argmax(relative * np.where(parts.obstacle < 0, True, self.depends[parts.obstacle].T), axis=0)
         second = np.full_like(widest, -1)
@@ -184,9 +184,10 @@ class _BoundSearch:
     def best(
         self, parts: _Parts, relative: Array, otherwise: NDArray[np.int64]
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return for each part (sub-box) the two inputs whose ranges, when shrunk, lower the bound most.
+        """Return, for each part, the two inputs whose ranges, when shrunk, lower the bound most.
 
-        The second best is -1 if it lowers the bound by no more than ``SECOND`` times the gain of the best.
+        The second input is -1 if its gain (reduction of the bound) is at most ``SECOND`` times the first gain.
+        ``otherwise`` is the first input where no range lowers the bound.
         """
         inputs, count = parts.boxes.shape[1:]
         middle = parts.boxes.mean(axis=0) + (parts.boxes - parts.boxes.mean(axis=0)) / SHRUNK
@@ -208,7 +209,7 @@ class _BoundSearch:
 
 
 def _halved(boxes: Array, which: NDArray[np.int64]) -> Array:
-    """Return the lower halves, then the upper halves, of boxes that are halved in one input each."""
+    """Return the lower halves of boxes, then their upper halves; box k is halved in the input ``which[k]``."""
     column = np.arange(which.size)
     low, high = boxes.copy(), boxes.copy()
     low[1, which, column] = high[0, which, column] = (boxes[0, which, column] + boxes[1, which, column]) / 2
@@ -223,7 +224,7 @@ def search(
     graph: OutputGraph, box: Array, region: Region = EVERYWHERE, budget: int = 100_000, libm_ulp: float = LIBM_ULP,
     target: float | None = None,
 ) -> SearchResult:  # fmt: skip
-    """Return a bound of the largest rounding error of an output on a box, by repeated splitting of the box.
+    """Return a bound of the largest rounding error of an output on a box, computed by repeated splitting of the box.
 
     Parameters
     ----------
@@ -234,7 +235,7 @@ def search(
     region : Region
         Restrictions of the inputs in the box.
     budget : int
-        Number of evaluations of boxes after which no further batch is split.
+        The number of evaluated boxes after which no further batch is split.
     libm_ulp : float
         Largest error of sin, cos and atan2, in units in the last place.
     target : float, optional
@@ -255,7 +256,7 @@ def search(
 
 
 def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchResult:
-    """Run one search, which encloses polynomials by mean value forms or by plain intervals; return its result."""
+    """Run one search, with mean value forms or with plain intervals only, and return its result."""
     graph, box = run.graph, run.box
     conditions = len(graph.conditions)
     parts = run.parts(box[:, :, None].copy(), np.full((conditions, 1), -1, np.int8))
@@ -286,27 +287,30 @@ def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchR
 
 
 def _narrow(run: _BoundSearch, parts: _Parts) -> NDArray[np.bool_]:
-    """Tell which parts (sub-boxes) have no error bound although they are almost as small as a point."""
+    """Return a Boolean array: whether each part has no error bound although it is almost as small as a point."""
     stuck = np.isinf(parts.bound) & (parts.obstacle >= 0) & (parts.undecided < 0)
     return stuck & (_spread(run, parts) < NARROWEST)
 
 
 def _spread(run: _BoundSearch, parts: _Parts) -> Array:
-    """Return for each part (sub-box) its largest relative width among the inputs of the node that prevents a bound."""
+    """Return, for each part, its largest relative width among the inputs of the node that prevents a bound."""
     width = np.where(run.width > 0, run.width, 1.0)
     relative = (parts.boxes[1] - parts.boxes[0]) / width[:, None]
     return np.asarray((relative * run.depends[np.maximum(parts.obstacle, 0)].T).max(axis=0, initial=0.0))
 
 
 def _narrowest(run: _BoundSearch, parts: _Parts) -> tuple[tuple[float, ...], int]:
-    """Return the middle of the narrowest part (sub-box) without a bound, and the node that prevents a bound there."""
+    """Return the middle of the narrowest part without a bound, and the node that prevents a bound there."""
     first = int(np.argmin(np.where(np.isinf(parts.bound) & (parts.obstacle >= 0), _spread(run, parts), inf)))
     obstacle = int(parts.obstacle[first])
     return tuple(float(x) for x in parts.boxes[:, :, first].mean(axis=0)), run.graph.singular_operand(obstacle)
 
 
 def _result(run: _BoundSearch, parts: _Parts, settled: float) -> SearchResult:
-    """Return the result of a search that ends with some parts (sub-boxes) whose bounds could still be tightened."""
+    """Return the result of a search that ends with the parts ``parts`` still unfinished.
+
+    ``settled`` is the largest bound of the finished parts.
+    """
     bound = max(settled, float(parts.bound.max(initial=-1.0)), 0.0)
     pointwise, worst, obstacle = max(run.pointwise, 0.0), run.worst, -1
     if np.isinf(bound):

@@ -1,8 +1,9 @@
 """Intervals that contain a polynomial on a box, from its value at the middle and its derivatives (mean value form).
 
 Plain interval arithmetic for ``x*y - x*z`` ignores that both factors x are the same number. The mean value form ``f(c)
-+ sum of f_k'(box)*(x_k - c_k)`` accounts for it, to first order in the width. The enclosed values lie between exact and
-computed: values of the polynomial, plus at most the rounding errors of the operations so far.
++ sum of f_k'(box)*(x_k - c_k)``, with c the middle of the box, accounts for this to first order in the width. The
+intervals contain exact and computed values: the values of the polynomial, widened by the rounding errors of the
+operations so far.
 """
 
 from collections.abc import Sequence
@@ -28,7 +29,7 @@ class _CentredForm:
 
 
 def _scaled_gradient(gradient: Array, values: Array) -> Array:
-    """Return the products of gradients and intervals, rounded outward."""
+    """Return intervals that contain the products of gradients and ``values``, rounded outward."""
     products = gradient[:, None] * values[None, :, None]
     extremes = np.stack([products.min(axis=(0, 1)), products.max(axis=(0, 1))])
     return widened(extremes, 0.0)
@@ -45,7 +46,7 @@ class CentredForms:
         self.waiting: _CentredForm | None = None
 
     def refined(self, node: Node, places: Sequence[int], values: Sequence[Array], plain: Array) -> Array:
-        """Return an interval that contains a node's exact result: ``plain``, cut by the node's mean value form."""
+        """Return an interval that contains a node's exact result: ``plain``, narrowed by the node's mean value form."""
         self.waiting = form = self._combined(node, [self.forms[i] for i in places], values)
         if form is None:
             return plain

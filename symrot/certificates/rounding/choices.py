@@ -1,4 +1,4 @@
-"""Conditionals on boxes of inputs: the possible branches, and the ranges of the compared numbers in each branch.
+"""Conditionals on boxes of inputs: which branches are possible, and the ranges of the compared numbers in each branch.
 
 A conditional compares computed numbers, so only ranges of computed numbers may be narrowed. If a >= b in a branch, the
 range of a starts no lower than the range of b. If b is computed as the larger of RN(p + q) and RN(p - q) (RN rounds to
@@ -34,10 +34,10 @@ _NOT_LESS = {  # relation -> the branch in which left >= right, the branch in wh
 def decide_branches(
     relation: str, a: Array, b: Array, decision: NDArray[np.int8]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Decide a condition on the boxes where only one branch is possible; the array ``decision`` is changed in place.
+    """Write the branch of a condition into ``decision`` for all boxes on which only one branch is possible.
 
-    Return two masks: the boxes that contradict the branch decided for them before, and the boxes on which both branches
-    are possible.
+    Return two Boolean arrays: on which boxes the branch that was decided before is impossible, and on which boxes both
+    branches are possible.
     """
     holds, fails = _POSSIBLE[relation](a, b)
     outside = ((decision == 1) & ~holds) | ((decision == 0) & ~fails)
@@ -48,7 +48,7 @@ def decide_branches(
 
 
 def narrow_to_branch(graph: OutputGraph, number: int, decision: NDArray[np.int8], computed: list[Array]) -> None:
-    """Shrink the ranges of computed numbers, in place, to the values possible in the branch chosen for a condition."""
+    """Shrink the ranges in ``computed``, in place, to the values that are possible in a condition's chosen branch."""
     relation, i, j = graph.conditions[number]
     larger, smaller = _NOT_LESS[relation]
     _narrow_ordered(graph.nodes, i, j, decision == larger, computed)
@@ -56,7 +56,7 @@ def narrow_to_branch(graph: OutputGraph, number: int, decision: NDArray[np.int8]
 
 
 def _narrow_ordered(nodes: Sequence[Node], i: int, j: int, here: NDArray[np.bool_], computed: list[Array]) -> None:
-    """Shrink the ranges of the numbers ``i`` and ``j`` on the boxes ``here``, where number i is at least number j."""
+    """Shrink the ranges of nodes ``i`` and ``j`` on the boxes ``here``, on which node i is at least node j."""
     least, most = computed[j][0], computed[i][1]
     middle = _middle(nodes[i], nodes[j])
     if middle is not None:
@@ -66,7 +66,7 @@ def _narrow_ordered(nodes: Sequence[Node], i: int, j: int, here: NDArray[np.bool
 
 
 def _narrow_end(nodes: Sequence[Node], k: int, row: int, end: Array, computed: list[Array]) -> None:
-    """Raise the lower end (``row`` 0) or reduce the upper end (``row`` 1) of a number's range to ``end``."""
+    """Raise the lower end (``row`` 0) or reduce the upper end (``row`` 1) of the range of node ``k`` to ``end``."""
     kind = nodes[k][0]
     if kind in ("mul", "square"):  # a fused sum uses the unrounded product, for which the comparison says nothing
         return

@@ -1,7 +1,7 @@
 """Ranges of a scene kernel's parameters, computed from ranges of the physical constants by interval arithmetic.
 
-The arguments of a kernel are parameters such as ``(B - C)/A``, not the moments of inertia themselves. If the moments
-may vary, each parameter gets a range that contains all its values. Only the standard library is used.
+The arguments of a kernel are parameters such as ``(B - C)/A``, not the moments of inertia A, B, C. If the moments of
+inertia may vary, each parameter gets a range that contains all its values. Only the standard library is used.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -16,7 +16,7 @@ from symrot.formula.tree import Node, evaluate, names, text
 __all__ = ["ExactRange", "parameter_range"]
 
 PIECES = 256  # parts into which the box of the constants is cut for a tighter enclosure
-SPARE = Fraction(1, 2**240)  # larger than the error of irrational numbers, which are rounded to 2^-250
+SPARE = Fraction(1, 2**240)  # larger than the error of irrational numbers, which are correct to 2^-250
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class ExactRange:
         return ExactRange(base.low**exponent, base.high**exponent)
 
     def parts(self, count: int) -> Iterator["ExactRange"]:
-        """Split this range into ``count`` equal ranges."""
+        """Yield ``count`` ranges of equal width that together make up this range."""
         step = (self.high - self.low) / count
         return (ExactRange(self.low + k * step, self.low + (k + 1) * step) for k in range(count))
 
@@ -71,7 +71,7 @@ def _sqrt(value: ExactRange) -> ExactRange:
 
 
 def _bounded_by_one(value: ExactRange) -> ExactRange:
-    """Return the range of a sine or cosine whose argument is unknown, [-1, 1]."""
+    """Return [-1, 1], the range of every sine and cosine."""
     return ExactRange(Fraction(-1), Fraction(1))
 
 
@@ -86,18 +86,18 @@ _FUNCTIONS: dict[str, Callable[[ExactRange], ExactRange]] = {
 def parameter_range(
     name: str, formula: Node, constants: Mapping[str, Fraction], ranges: Mapping[str, tuple[Fraction, Fraction]]
 ) -> tuple[Fraction, Fraction]:
-    """Return a lower and an upper bound of a parameter whose formula contains constants with given ranges.
+    """Return a lower and an upper bound of a parameter whose formula contains constants that vary.
 
     Parameters
     ----------
     name : str
-        The name of the parameter, for errors.
+        The name of the parameter, for error messages.
     formula : Node
-        Its formula in the physical constants.
+        The parameter's formula in the physical constants.
     constants : mapping of str to Fraction
         The values of the constants in the scene.
     ranges : mapping of str to (Fraction, Fraction)
-        Constants that vary between two ends instead.
+        The two ends between which a constant varies, by the name of the constant.
 
     Raises
     ------

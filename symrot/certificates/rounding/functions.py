@@ -1,7 +1,7 @@
 """Intervals that contain sine, cosine, arc tangent and related functions, computed from ``+ - * / sqrt`` alone.
 
 The C library's sine differs between machines, but bounds must be the same everywhere. So arguments are reduced by
-multiples of pi/2, which is split in two parts, and Taylor series are summed. The absolute error stays below 1e-15;
+multiples of pi/2 (stored as a sum of two floats), and Taylor series are summed. The absolute error stays below 1e-15;
 every result is widened by more than that.
 """
 
@@ -86,14 +86,14 @@ def cosine(x: Array) -> Array:
 
 
 def _size(x: Array) -> Array:
-    """Return intervals that contain |x| for every x in given intervals."""
+    """Return, for each interval, an interval that contains |x| for every x in it."""
     size = np.abs(x)
     return np.stack([np.where(contains_zero(x), 0.0, size.min(axis=0)), size.max(axis=0)])
 
 
 @dataclass(frozen=True)
 class _EvenFunction:
-    """An even function of x: its series in x^2 for |x| < 2, its formula at numbers and on intervals for |x| >= 2.
+    """An even function of x: a series in x^2 for |x| < 2; for |x| >= 2 a formula for numbers and one for intervals.
 
     The function decreases for 0 <= x <= ``end``, and its absolute value is at most ``crude`` everywhere.
     """
@@ -105,7 +105,7 @@ class _EvenFunction:
     crude: float
 
     def __call__(self, x: Array) -> Array:
-        """Return intervals that contain the values of the even function on given intervals."""
+        """Return, for each interval, an interval that contains all values of the function on it."""
         size = _size(x)
         low = np.minimum(size, self.end)
         far = np.maximum(low, 2.0)
@@ -155,7 +155,7 @@ _tangent_gap_factor = _EvenFunction(
 def tangent_gap_slope(x: Array) -> Array:
     """Return intervals that contain the derivative of ``tangent_gap``, the function (sin x - x cos x)/x^3.
 
-    It is -x times ``j2(x)/x^2``, which decreases from 1/15 at x = 0 until x = 5.7.
+    The derivative is -x times ``j2(x)/x^2``, which decreases from 1/15 at x = 0 until x = 5.7.
     """
     return negative(multiply_loosely(x, _tangent_gap_factor(x)))
 
@@ -163,7 +163,7 @@ def tangent_gap_slope(x: Array) -> Array:
 def sine_gap_slope(x: Array) -> Array:
     """Return intervals that contain the derivative of ``sine_gap``, the function (x - sin x)/x^3.
 
-    It is -x times the integral of (1-s)^2 s sin(xs)/(2x) over s from 0 to 1, which decreases until x = 4.4.
+    The derivative is -x times the integral of (1-s)^2 s sin(xs)/(2x) over s from 0 to 1, which decreases until x = 4.4.
     """
     return negative(multiply_loosely(x, _sine_gap_factor(x)))
 
@@ -174,7 +174,7 @@ def sinc_slope(x: Array) -> Array:
 
 
 def _arc(z: Array) -> Array:
-    """Return arctan of finite numbers, to an absolute error below 1e-15."""
+    """Return the arc tangent of finite numbers, with an absolute error below 1e-15."""
     size = np.abs(z)
     inverted = size > 1
     small = np.where(inverted, 1 / np.where(inverted, size, 1.0), size)
@@ -195,15 +195,15 @@ def arc_tangent(y: Array, x: Array) -> Array:
 
 
 def arc_slope(a: Array, b: Array) -> Array:
-    """Return the tightest intervals of a/(a^2 + b^2), a derivative of atan2; infinite where both contain zero."""
+    """Return narrow intervals of a/(a^2 + b^2), a derivative of atan2; infinite where both a and b contain zero."""
     return np.stack([-_steepest(negative(a), b), _steepest(a, b)])
 
 
 def _steepest(a: Array, b: Array) -> Array:
-    """Return an upper bound of a/(a^2 + b^2) for given intervals of a and b.
+    """Return an upper bound of a/(a^2 + b^2) on intervals of a and b.
 
-    If a may be positive, the quotient is largest at the least |b|, otherwise at the largest |b|. As a function of a, it
-    increases until a = |b| and decreases from there on.
+    If a may be positive, the quotient is largest at the least |b|, otherwise at the largest |b|. As a function of a,
+    the quotient increases until a = |b| and decreases from there on.
     """
     size = _size(b)
     near, far = size
@@ -220,8 +220,8 @@ def _slope_at(a: Array, b: Array) -> Array:
 def arc_ratio_terms(s: Array, c: Array, radius: Array) -> tuple[Array, Array, Array]:
     """Return intervals of atan2(s, c)/s and of its derivatives by s and by c, for s, c >= 0, not both 0.
 
-    With ``s = r sin(a)``, ``c = r cos(a)`` they are ``1/(r sinc a)``, ``-4 a sine_gap(2a)/(r sinc a)^2`` and
-    ``-1/r^2``, which are finite at ``a = 0``.
+    With ``s = r sin(a)``, ``c = r cos(a)`` and the radius r, these three are ``1/(r sinc a)``, ``-4 a sine_gap(2a)/(r
+    sinc a)^2`` and ``-1/r^2``, which are finite at ``a = 0``.
     """
     angle = np.clip(arc_tangent(s, c), 0.0, pi / 2 + SLACK)
     one = np.ones_like(s)

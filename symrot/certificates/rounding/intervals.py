@@ -1,9 +1,10 @@
 """Interval arithmetic for rounding bounds: float64 arrays of shape (2, n), the lower and upper ends of n intervals.
 
-Results are rounded outward, but an end is moved only if the operation was inexact, so that 1*1 stays 1: the size of a
-rounding error jumps at powers of two. TwoSum decides whether a sum is exact, Veltkamp's split whether a product is. A
-step outward is Rump's: ``c + (phi |c| + eta)`` is never less than the next number. Overflow and division by zero give
-ends that are not finite. Only ``+ - * / sqrt`` are used, so that results are the same on every machine.
+Results are rounded outward, but an end is moved only if the operation was inexact. So 1*1 stays 1, which matters
+because the size of a rounding error jumps at powers of two. TwoSum decides whether a sum is exact; Veltkamp's split
+decides whether a product is exact. A step outward is Rump's: ``c + (phi |c| + eta)`` is never less than the next
+number. Overflow and division by zero give ends that are not finite. Only ``+ - * / sqrt`` are used, so that results are
+the same on every machine.
 
 Source: Ogita, Rump, Oishi, SIAM J. Sci. Comput. 26 (2005) 1955 (TwoSum, Split); Rump, Zimmermann, Boldo, Melquiond,
 BIT 49 (2009) 419 (successor in rounding to nearest).
@@ -29,7 +30,7 @@ _LEAST = {"binary64": ETA, "binary32": 2.0**-150}  # bound of the error of a sub
 
 
 def point(value: float, count: int) -> Array:
-    """Return ``count`` intervals that each hold only the number ``value``."""
+    """Return ``count`` intervals that each contain only the number ``value``."""
     return np.full((2, count), value)
 
 
@@ -50,7 +51,7 @@ def magnitude(a: Array) -> Array:
 
 
 def contains_zero(a: Array) -> NDArray[np.bool_]:
-    """Tell which intervals contain zero."""
+    """Return a Boolean array: whether each interval contains zero."""
     return np.asarray((a[0] <= 0) & (a[1] >= 0))
 
 
@@ -72,7 +73,7 @@ def add(a: Array, b: Array) -> Array:
 
 
 def _short(a: Array) -> NDArray[np.bool_]:
-    """Tell which numbers have at most 26 significant bits; the product of two such numbers is an exact double."""
+    """Return a Boolean array: whether each number has at most 26 significant bits, so that products are exact."""
     large = a * SPLIT
     return np.asarray(large - (large - a) == a)
 
@@ -92,7 +93,7 @@ def multiply(a: Array, b: Array) -> Array:
 def multiply_loosely(a: Array, b: Array) -> Array:
     """Return intervals that contain all products of numbers in ``a`` and ``b``, always rounded outward.
 
-    This is cheaper than :func:`multiply`, for derivatives, where the last bit does not matter.
+    It is faster than :func:`multiply`, and meant for derivatives, where the last bit does not matter.
     """
     products = (a[:, None] * b[None]).reshape(4, -1)
     return widened(np.stack([products.min(axis=0), products.max(axis=0)]), 0.0)
@@ -110,7 +111,7 @@ def square(a: Array) -> Array:
 
 
 def divide(a: Array, b: Array) -> Array:
-    """Return intervals that contain all quotients of numbers in ``a`` and ``b``, infinite where ``b`` contains zero."""
+    """Return intervals that contain all quotients of numbers in ``a`` and ``b``; infinite where ``b`` contains zero."""
     quotients = a[:, None] / b[None]
     exact = _short(quotients) & _short(b)[None] & (quotients * b[None] == a[:, None]) & (np.abs(quotients) > TINY)
     exact |= (a == 0)[:, None] & (b != 0)[None]
@@ -121,7 +122,7 @@ def divide(a: Array, b: Array) -> Array:
 
 
 def square_root(a: Array) -> Array:
-    """Return intervals that contain the square roots of all numbers in ``a``, infinite where ``a`` is negative."""
+    """Return intervals that contain the roots of all numbers in ``a``; infinite where ``a`` has negative numbers."""
     roots = np.sqrt(np.maximum(a, 0.0))
     step = (roots * PHI + ETA) * ~(_short(roots) & (roots * roots == a))
     result = np.stack([np.maximum(roots[0] - step[0], 0.0), roots[1] + step[1]])
@@ -130,19 +131,19 @@ def square_root(a: Array) -> Array:
 
 
 def binade(size: Array) -> Array:
-    """Return the largest power of two that is at most each number, 0 for 0."""
+    """Return, for each number, the largest power of two that is at most this number; 0 for 0."""
     return (size.view(np.int64) & _EXPONENT).view(np.float64)
 
 
 def half_ulp(size: Array, precision: str) -> Array:
-    """Return a bound of the rounding error of numbers up to ``size``: half a unit in the last place just below it."""
+    """Return a bound of the rounding error of numbers up to ``size``: half a unit in the last place below ``size``."""
     below = ((size.view(np.int64) - 1) & _EXPONENT).view(np.float64)
     unit = np.maximum(below * 2.0 ** -DIGITS[precision], _LEAST[precision])
     return np.where(size > 0, unit, 0.0)
 
 
 def rounded_to(a: Array, precision: str) -> Array:
-    """Return intervals that contain given intervals and all numbers in them rounded to a precision."""
+    """Return intervals that contain the intervals ``a`` and all numbers in these, rounded to a precision."""
     if precision == "binary64":
         return a
     with np.errstate(over="ignore"):

@@ -1,4 +1,4 @@
-"""Rounding error bounds of the library's kernels: their boxes, a parallel search, and the largest box for an error.
+"""Rounding error bounds of the library's kernels: their boxes, a parallel search, and the largest box for a bound.
 
 :func:`library_problem` returns the box and region of a kernel. :func:`prepare` bounds many kernels in several
 processes, so that :func:`symrot.certificates.rounding.bounds.rounding_section` finds every bound in the store.
@@ -37,7 +37,7 @@ class RoundingProblem:
     symbols: Mapping[str, str]  # place -> component, such as "angles[1]" -> "theta"
 
     def place(self, name: str) -> str:
-        """Return the index text of an input, such as ``"q[1]"``, from this text or its symbol; refuse other texts."""
+        """Return the index text of an input, such as ``"q[1]"``, from this text or the input's symbol."""
         for place, symbol in self.symbols.items():
             if name in (place, symbol):
                 return place
@@ -47,9 +47,9 @@ class RoundingProblem:
 def library_problem(kernel: Definition, operations: Operations) -> RoundingProblem:
     """Return the box of a library kernel's inputs and the restrictions of the inputs in it, such as unit norm.
 
-    Usually there is no restriction: a matrix is any nine numbers in [-1, 1], a quaternion any four. Only kernels that
-    compute angles from a quaternion are bounded for unit quaternions, at a distance of at least 1/10 from the points
-    where an angle is undefined.
+    Usually there is no restriction: a matrix is any nine numbers in [-1, 1], a quaternion any four. Only for kernels
+    that compute angles from a quaternion must the quaternion have unit norm, and stay at least 1/10 away from the
+    points where an angle is undefined.
     """
     symbols = {
         (each.name if each.is_scalar else f"{each.name}[{i}]"): component[0]
@@ -83,7 +83,7 @@ def prepare(
     kernels: Iterable[tuple[str, str]], workers: int = 2, budget: int = BUDGET, libm_ulp: float = LIBM_ULP,
     progress: Callable[[str], object] = lambda text: None, with_table: bool = True,
 ) -> int:  # fmt: skip
-    """Compute the error bounds of library kernels in several processes, each computation once, and store them.
+    """Compute the error bounds of library kernels in several processes, and store them; equal tasks are computed once.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def prepare(
     Returns
     -------
     int
-        The number of computations that were bounded.
+        The number of bounds that were computed.
     """
     waiting: dict[str, BoundTask] = {}
     for name, text in kernels:
@@ -122,7 +122,7 @@ def prepare(
 
 
 def resized(box: Box, size: float, places: Sequence[str]) -> dict[str, tuple[Fraction, Fraction]]:
-    """Return a box in which the ranges of the inputs ``places`` are widened ``size`` times about their middles."""
+    """Return a box in which the ranges of the inputs ``places`` are ``size`` times as wide, about the same middles."""
     wider = dict(box)
     for place in places:
         low, high = box[place]
@@ -137,13 +137,13 @@ def largest_box(
 ) -> tuple[float, dict[str, tuple[Fraction, Fraction]]]:  # fmt: skip
     """Return the largest size, and the box of that size, on which every error is proven to be at most ``target``.
 
-    A size is a factor on the widths of ``box`` about its middle, at all inputs or at ``places`` only. It is determined
-    by doubling and bisection, to 1 part in 2^12.
+    The size multiplies the widths of the ranges in ``box``, of all inputs or of the inputs ``places`` only, about their
+    middles. It is found by doubling and 12 steps of bisection.
 
     Raises
     ------
     InputError
-        If no size meets the target, a place does not exist, or the target is not a positive number.
+        If no size meets the target, a name in ``places`` is not an input, or the target is not a positive number.
     """
     if not 0 < target < inf:
         raise InputError(f"expected a target error above 0, such as 1e-13, got {target!r}")

@@ -1,7 +1,8 @@
 """The computation of one output as a graph, in the form in which its rounding error is bounded.
 
-A graph holds the operations on which an output depends. Inputs are numbered by first use, so that equal computations
-of different kernels are equal graphs. A computation whose derivative is finite only as a whole is a single node:
+A graph contains the operations on which an output depends. Inputs are numbered by first use, so that equal computations
+of different kernels are equal graphs. Some computations have a finite derivative although their steps do not, such as
+sin(x)/x at 0; such a computation is a single node:
 
 ``norm``: the root of a sum of squares, whose derivative x/|x| is at most 1 even at zero;
 ``sinc``: ``x == 0 ? 1 : sin(x)/x``;  ``arc_ratio``: ``s == 0 ? 1/c : atan2(s, c)/s``, with s a root and c not negative;
@@ -30,10 +31,10 @@ CALLS = ("sin", "cos", "atan2")
 class OutputGraph:
     """The computation of one output: nodes, each after its operands; the last node is the output.
 
-    In addition to the nodes of :class:`Operations` there are ``("square", i)``, ``("sin", i)``, ``("cos", i)``,
-    ``("atan2", i, j)``, ``("norm", roundings, i, ...)``, ``("sinc", i)``, ``("arc_ratio", i, j)``,
-    ``("gap", name, OutputGraph, i)`` and ``("select", condition, x, y)``; an input is ``("in", number)``.
-    ``conditions`` are tuples (relation, i, j).
+    The nodes are those of :class:`Operations`, and ``("square", i)``, ``("sin", i)``, ``("cos", i)``, ``("atan2", i,
+    j)``, ``("norm", roundings, i, ...)``, ``("sinc", i)``, ``("arc_ratio", i, j)``, ``("gap", name, OutputGraph, i)``
+    and ``("select", condition, x, y)``; an input is ``("in", number)``. ``conditions`` are tuples (relation, i, j) that
+    compare the nodes i and j.
     """
 
     precision: str
@@ -50,7 +51,7 @@ class OutputGraph:
 
     @cached_property
     def inputs_of(self) -> tuple[frozenset[int], ...]:
-        """The indices of the inputs on which each node depends."""
+        """For each node, the set of the numbers of the inputs on which it depends."""
         inputs: list[frozenset[int]] = []
         for node in self.nodes:
             if node[0] == "in":
@@ -69,11 +70,11 @@ class OutputGraph:
 
     @cached_property
     def contraction_safe(self) -> bool:
-        """Whether the bound also holds with fused multiply-adds: each product in a sum is used nowhere else.
+        """Whether the bound also holds with fused multiply-adds: whether each product in a sum is used nowhere else.
 
-        A fused product has no rounding error of its own, and the error of the sum is at most the error of both
-        operations. A product that is fused in one place and rounded in another has two different errors, which no
-        longer cancel where derivatives have opposite signs.
+        A fused multiply-add makes one rounding error, at most the sum of the two errors that it replaces. A product
+        that is fused in one place and rounded in another has two different errors, which no longer cancel where
+        derivatives have opposite signs.
         """
         users: list[list[int]] = [[] for _ in self.nodes]
         for index in range(len(self.nodes) - 1, -1, -1):
@@ -88,7 +89,7 @@ class OutputGraph:
 
     @cached_property
     def exact(self) -> tuple[bool, ...]:
-        """Whether each node has no rounding error: inputs, their signs and absolute values, short constants."""
+        """For each node, whether it has no rounding error: inputs, their signs and absolute values, short constants."""
         flags: list[bool] = []
         for node in self.nodes:
             kind = node[0]
@@ -98,7 +99,7 @@ class OutputGraph:
 
     @cached_property
     def choices(self) -> tuple[tuple[str, bool], ...]:
-        """The conditions that compare rounded numbers: text, and whether branches differ by multiples of 2 pi only."""
+        """The conditions that compare rounded numbers: (text, whether their branches are equal modulo 2 pi)."""
         choices = []
         for number, (relation, i, j) in enumerate(self.conditions):
             if (self.exact[i] and self.exact[j]) or relation == "<":
@@ -125,12 +126,12 @@ class OutputGraph:
         return f"{node[0]}({', '.join(operands)})"
 
     def singular_operand(self, index: int) -> int:
-        """Return the operand that can make a node infinite, such as a divisor or radicand, or the node itself."""
+        """Return the index of the divisor or radicand that can make a node infinite, or of the node itself."""
         node = self.nodes[index]
         return int({"div": node[-1], "sqrt": node[-1]}.get(node[0], index))
 
     def text(self, index: int) -> str:
-        """Return an operation (node) as a short formula for messages."""
+        """Return a node as a short formula for messages."""
         return self._text(index)
 
 
@@ -147,14 +148,17 @@ def operand_places(node: Node) -> tuple[int, ...]:
 
 
 def is_short(value: Fraction) -> bool:
-    """Tell whether a constant has so few significant bits that it stands for itself, as the reader of C decides."""
+    """Return whether a constant has so few significant bits that it stands for itself, not for a rounded number."""
     above = abs(value.numerator)
     odd = above // (above & -above) if above else 0
     return odd.bit_length() <= SHORT and value.denominator & (value.denominator - 1) == 0
 
 
 def _modulo_two_pi(graph: OutputGraph, index: int, sign: int = 1) -> tuple[int, int]:
-    """Return (node, sign) whose product equals a node modulo 2 pi: constants near 2 pi are dropped from sums."""
+    """Return (node, sign) such that sign*node equals ``sign`` times node ``index`` modulo 2 pi.
+
+    Constants near 2 pi are dropped from sums.
+    """
     node = graph.nodes[index]
     if node[0] == "neg":
         return _modulo_two_pi(graph, node[1], -sign)
@@ -195,7 +199,7 @@ class _GraphReader:
         return self.known[node]
 
     def read(self, index: int) -> int:
-        """Return the index of the graph's node for an operation of the kernel, which is copied if necessary."""
+        """Return the index of the graph's node for the kernel's operation ``index``; the operation is copied once."""
         if index not in self.done:
             self.done[index] = self._read(self.source[index], index)
         return self.done[index]
@@ -229,7 +233,7 @@ class _GraphReader:
         return self.put(kind, *(self.read(i) for i in operands(node)))
 
     def squares(self, index: int, depth: int = 0) -> list[tuple[int, int]] | None:
-        """Return the squared terms of a sum of squares, each with its number of roundings, or None for another node."""
+        """Return the terms x of a sum of squares x^2, each with its number of roundings; None for any other node."""
         node = self.source[index]
         if node[0] == "mul" and node[1] == node[2]:
             return [(node[1], depth + 1)]

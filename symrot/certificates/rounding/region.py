@@ -1,7 +1,7 @@
 """Regions: restrictions of the inputs in a box, such as a quaternion of unit norm.
 
-For a unit quaternion in a box, the ranges of three components limit the fourth, because the squares sum to 1.
-Halving a box in three components therefore narrows the fourth as well.
+In a box of unit quaternions, the ranges of three components limit the fourth component, because the squares sum to 1.
+Halving the box in three components therefore narrows the fourth as well.
 """
 
 from collections.abc import Sequence
@@ -34,12 +34,12 @@ EVERYWHERE = Region()
 
 
 def _numbers(region: Region, places: Sequence[str]) -> list[list[int]]:
-    """Return, for each group of inputs with unit norm, the positions of its inputs within the list ``places``."""
+    """Return, for each group of inputs with unit norm, the positions of its inputs in the list ``places``."""
     return [[places.index(place) for place in group if place in places] for group in region.unit]
 
 
 def off_unit(boxes: Array, region: Region, places: Sequence[str]) -> NDArray[np.bool_]:
-    """Tell which boxes, shape (2, inputs, n), hold no allowed inputs because no squares in them sum to 1."""
+    """Return a Boolean array: whether each box, shape (2, inputs, n), contains no inputs whose squares sum to 1."""
     outside = np.zeros(boxes.shape[2], bool)
     for group, numbers in zip(region.unit, _numbers(region, places), strict=True):
         total = intervals.point(0.0, boxes.shape[2])
@@ -52,7 +52,10 @@ def off_unit(boxes: Array, region: Region, places: Sequence[str]) -> NDArray[np.
 
 
 def narrowed(boxes: Array, region: Region, places: Sequence[str]) -> Array:
-    """Return boxes shrunk to the allowed inputs in them, such as unit quaternions; without any, a box is unchanged."""
+    """Return boxes shrunk to the allowed inputs in them, such as unit quaternions.
+
+    A range that contains no allowed value is not changed.
+    """
     shrunk = boxes
     for group, numbers in zip(region.unit, _numbers(region, places), strict=True):
         for number in numbers:

@@ -1,6 +1,6 @@
-"""Rounding bounds for the kernel of a scene: its box of inputs, and the lines about bounds in its C header comment.
+"""Rounding bounds for the kernel of a scene: the box of its inputs, and the lines about bounds in its header comment.
 
-A scene fixes the parameters and the time span, but not the ranges of the states: the user has to state these.
+A scene fixes the parameters and the time span, but not the ranges of the states; the user has to state these ranges.
 """
 
 from collections.abc import Mapping
@@ -27,8 +27,8 @@ ANY, UNIT = (-LARGEST, LARGEST), (Fraction(-1), Fraction(1))
 class SceneInputs:
     """The arguments of a scene's kernel, the values of its parameters, and its first and last time (s).
 
-    ``formulas`` maps a parameter's index text (``"p[0]"``) to its name and formula; ``constants`` holds the values of
-    the physical constants in these formulas.
+    ``formulas`` maps a parameter's index text, such as ``"p[0]"``, to its name and formula; ``constants`` maps the name
+    of each physical constant in these formulas to its value.
     """
 
     arguments: tuple[Argument, ...]
@@ -39,7 +39,7 @@ class SceneInputs:
 
     @property
     def components(self) -> dict[str, tuple[str, str]]:
-        """The symbol and unit of each input component, by its index text such as ``"y[0]"``."""
+        """A map from the index text of each input component, such as ``"y[0]"``, to its symbol and unit."""
         return {
             (each.name if each.is_scalar else f"{each.name}[{i}]"): component[:2]
             for each in self.arguments
@@ -48,9 +48,10 @@ class SceneInputs:
 
 
 def scene_problem(inputs: SceneInputs, operations: Operations) -> RoundingProblem:
-    """Return the box and the restrictions that a scene sets: fixed parameters, its time span, a unit quaternion.
+    """Return the box and the restrictions that follow from a scene: fixed parameters, time span, unit quaternion.
 
-    States other than the quaternion are missing from the box; an input that the kernel does not use may be any number.
+    States other than the quaternion are missing from the box, for the user to add; an input that the kernel does not
+    use may be any number.
     """
     symbols = {place: inputs.components[place][0] for place in operations.inputs}
     used = {place for _, index in operations.outputs for place in output_graph(operations, index).places}

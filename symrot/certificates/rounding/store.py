@@ -26,14 +26,14 @@ _NUMBERS = ("bound", "pointwise", "largest_value")
 
 @cache
 def method() -> str:
-    """Return the SHA-256 of the source files that compute bounds; bounds stored by other versions are not used."""
+    """Return the SHA-256 of the source files that compute bounds; bounds cached under another hash are not used."""
     here = Path(__file__).parent
     return hashlib.sha256(b"".join((here / f"{name}.py").read_bytes() for name in _METHOD)).hexdigest()
 
 
 @cache
 def table() -> Mapping[str, Any]:
-    """Return the table of bounds that comes with symrot, and the hash of the source files that computed it."""
+    """Return the table that comes with symrot: ``bounds``, and ``method``, the hash of the sources that made them."""
     try:
         return dict(json.loads(TABLE.read_text(encoding="utf-8")))
     except OSError:
@@ -41,7 +41,7 @@ def table() -> Mapping[str, Any]:
 
 
 def printed_table(bounds: Iterable[tuple[str, SearchResult]]) -> str:
-    """Return the text of a table of bounds, one bound a line, in the order of their keys."""
+    """Return the text of a table of bounds, one bound per line, in the order of the keys."""
     rows = [f'  "{key}": {json.dumps(_to_json(bound))}' for key, bound in sorted(dict(bounds).items())]
     return f'{{\n "method": "{method()}",\n "bounds": {{\n' + ",\n".join(rows) + "\n }\n}\n"
 
@@ -63,7 +63,7 @@ class Store:
         self.memory: dict[str, SearchResult] = {}
 
     def get(self, key: str, with_table: bool = True) -> SearchResult | None:
-        """Return the bound of a rounding error by its key, or None.
+        """Return the bound stored under a key, or None if there is no such bound.
 
         With ``with_table=False`` the table of bounds that comes with symrot is not searched.
         """

@@ -51,19 +51,19 @@ def two_product(a: Any, b: Any) -> Pair:
 
 
 def normalized(high: Any, low: Any) -> Pair:
-    """Return a pair with the same sum, whose low part is at most half a unit in the last place of its high part."""
+    """Return two doubles with the same sum; the second is at most half a unit in the last place of the first."""
     total = high + low
     return total, low - (total - high)
 
 
 def add(a: Pair, b: Pair) -> Pair:
-    """Return the sum of two double-double numbers, with an error of 2^-104 of the larger of the two."""
+    """Return the sum of two double-double numbers, with an error of 2^-104 times the larger number."""
     total, error = two_sum(a[0], b[0])
     return normalized(total, error + (a[1] + b[1]))
 
 
 def subtract(a: Pair, b: Pair) -> Pair:
-    """Return the difference of two double-double numbers, with an error of 2^-104 of the larger of the two."""
+    """Return the difference of two double-double numbers, with an error of 2^-104 times the larger number."""
     return add(a, (-b[0], -b[1]))
 
 
@@ -74,7 +74,7 @@ def multiply(a: Pair, b: Pair) -> Pair:
 
 
 def divide(a: Pair, b: Pair) -> Pair:
-    """Return the quotient of two double-double numbers by long division: three quotients of doubles."""
+    """Return the quotient of two double-double numbers, computed by long division with three quotients of doubles."""
     first = a[0] / b[0]
     rest = subtract(a, multiply((first, 0.0), b))
     second = rest[0] / b[0]
@@ -83,7 +83,7 @@ def divide(a: Pair, b: Pair) -> Pair:
 
 
 def square_root(a: Pair) -> Pair:
-    """Return the square root of positive double-double arrays, by two Newton steps from the root of the high part."""
+    """Return the square root of positive double-double numbers, by two Newton steps from the root of the high part."""
     root: Pair = (np.sqrt(a[0]), 0.0)
     for _ in range(2):
         root = add(root, (subtract(a, multiply(root, root))[0] / (2.0 * root[0]), 0.0))
@@ -92,7 +92,7 @@ def square_root(a: Pair) -> Pair:
 
 @cache
 def ln2(bits: int) -> Fraction:
-    """Return ln 2 to an absolute error below 2^-bits: the sum of 2/((2 k + 1) 3^(2 k + 1))."""
+    """Return ln 2 with an absolute error below 2^-bits, as the sum of 2/((2 k + 1) 3^(2 k + 1))."""
     total, power, k = 0, (2 << (bits + 16)) // 3, 0
     while power:
         total += power // (2 * k + 1)
@@ -107,9 +107,9 @@ def _coefficients() -> list[tuple[float, float]]:
 
 @cache
 def _octave() -> tuple[tuple[Floats, Floats], tuple[float, float, float]]:
-    """Return the table of 2^(j/8) as pairs of doubles, and ln 2/8 as a sum of three doubles.
+    """Return the powers 2^(j/8), j = 0 to 7, as pairs of doubles, and ln 2/8 as a sum of three doubles.
 
-    The first two of the three doubles have few bits, so that their products with any j are exact.
+    The first and second of the three doubles have so few bits that their products with any j are exact.
     """
     root, step = Fraction(2), _PARTS
     while step > 1:
@@ -138,7 +138,7 @@ def second(x: Pair) -> Pair:
 
 
 def exponential(x: Pair) -> Pair:
-    """Return exp(x) of double-double numbers x <= 709; results near the smallest doubles have a low part of zero."""
+    """Return exp(x) of double-double numbers x <= 709. For results near the smallest doubles the low part is zero."""
     (high, low), (first, middle, last) = _octave()
     above = np.maximum(x[0], _LEAST)
     j = np.rint(above * (_PARTS / float(ln2(number.BITS))))

@@ -11,7 +11,7 @@ Rows = Sequence[Sequence[Fraction]]
 
 
 def quaternion_of(r: Rows) -> tuple[Fraction, ...]:
-    """Return the unit quaternion of a proper rotation matrix, dividing by its largest component (Shepperd)."""
+    """Return the unit quaternion of a proper rotation matrix, computed without loss of digits (Shepperd's method)."""
     trace = r[0][0] + r[1][1] + r[2][2]
     candidates = (
         (1 + trace, r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]),

@@ -1,4 +1,4 @@
-"""Sums ``hi + lo`` of two doubles that represent exact numbers to 31 digits. Standard library only."""
+"""Sums ``hi + lo`` of two doubles (pairs), which represent exact numbers to 31 digits. Standard library only."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -32,13 +32,13 @@ SMALLEST = 1e-205
 """Smallest moment of inertia, kg m^2."""
 
 GRID = 2.0**-33
-"""``lo`` of an attitude is rounded to multiples of GRID times the last bit of ``hi``."""
+"""``lo`` of an attitude component is rounded to a multiple of GRID times the last bit of ``hi``."""
 
 _BITS = 600  # 2^600 and its inverse lie inside these bounds
 
 
 def quotient(numerator: int, denominator: int) -> tuple[float, float]:
-    """Return numerator/denominator as a sum of two doubles (hi, lo).
+    """Return two doubles (hi, lo) whose sum approximates numerator/denominator.
 
     Both doubles are correctly rounded, because Python rounds quotients of integers correctly.
     """
@@ -49,12 +49,12 @@ def quotient(numerator: int, denominator: int) -> tuple[float, float]:
 
 
 def pair(value: Number) -> tuple[float, float]:
-    """Return a number as a sum of two doubles (hi, lo)."""
+    """Return two doubles (hi, lo) whose sum approximates a number."""
     return (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
 
 
 def flatten_pairs(values: Sequence[Number]) -> list[float]:
-    """Return several numbers as one list hi, lo, hi, lo, ..: each number is the sum of two doubles."""
+    """Return several numbers as one list hi, lo, hi, lo, ..; each sum hi + lo approximates a number."""
     result: list[float] = []
     for value in values:
         result += (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
@@ -62,10 +62,10 @@ def flatten_pairs(values: Sequence[Number]) -> list[float]:
 
 
 def attitude(values: Sequence[Number]) -> list[float]:
-    """Return a quaternion as one list of 8 doubles: hi and lo of each component, correct to 2^-86 of the component.
+    """Return a quaternion as a list of 8 doubles: hi and lo of each component, with a relative error of 2^-86.
 
-    An attitude needs no more digits. Thanks to this rounding, double-double arithmetic on arrays of attitudes gives the
-    same doubles.
+    An attitude needs no more digits. Because of this rounding, double-double arithmetic on arrays of attitudes gives
+    the same doubles.
     """
     result: list[float] = []
     for value in values:
@@ -74,7 +74,7 @@ def attitude(values: Sequence[Number]) -> list[float]:
 
 
 def on_grid(values: Sequence[tuple[int, int]]) -> list[float]:
-    """Return ratios of integers as one list hi, lo, hi, lo, ..; each lo is a multiple of GRID last bits of its hi."""
+    """Return ratios of integers as one list hi, lo, hi, lo, ..; lo is a multiple of GRID times the last bit of hi."""
     result: list[float] = []
     for top, bottom in values:
         hi = top / bottom
@@ -101,9 +101,10 @@ def over_common_denominator(values: Sequence[Number]) -> tuple[list[int], int]:
 
 
 def numbers(what: str, values: Sequence[Number], length: int, least: float = -LARGEST) -> list[Number]:
-    """Return ``values`` unchanged if they are ``length`` real numbers in the range for which motions are computed.
+    """Return ``values`` as a list after checks: they must be ``length`` real numbers of a size that motions allow.
 
-    Floats (also NumPy's), ints and Fractions are accepted; ``what`` is the name of the argument in error messages.
+    Floats, ints and Fractions are returned unchanged; other real numbers, such as NumPy's, are converted to floats.
+    ``what`` is the name of the argument in error messages.
 
     Raises
     ------
@@ -132,7 +133,7 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
 
 
 def _moderate(value: Fraction, least: float) -> bool:
-    """Return whether a quick comparison of bit lengths proves that a fraction is within the bounds of `numbers`."""
+    """Return whether bit lengths alone prove that a fraction is within the bounds that :func:`numbers` allows."""
     top, bottom = value.as_integer_ratio()
     size = top.bit_length() - bottom.bit_length()  # the exponent of the next power of two, or one more
     return size < _BITS and (least < 0 or (top > 0 and size > -_BITS))

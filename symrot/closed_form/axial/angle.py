@@ -3,10 +3,10 @@
 After time t the angle is ``rate t (exp(x) - 1)/x + push t^2 (exp(x) - 1 - x)/x^2`` revolutions, with ``x = -decay t``.
 Away from ``x = 0`` the equal expression ``(push/decay) t + (rate - push/decay) (1 - exp(x))/decay`` is used.
 
-The arithmetic depends on the angle. Doubles have a relative error of 1e-16, which suffices for small angles. Larger
-angles use double-double numbers, with an error of 1e-20 of a revolution. Angles above 1e10 revolutions, and
-calls with only a few times, use integers with as many bits as the motion needs; for a few times they are faster than
-one call of NumPy. Double-double numbers and integers round to the same double.
+The arithmetic depends on the angle. Small angles are computed in doubles, whose relative error is 1e-16. Larger angles
+are computed in double-double numbers (sums of two doubles), with an error of 1e-20 of a revolution. Angles above 1e10
+revolutions, and angles at only a few times, are computed in integers with as many bits as the motion needs; for a few
+times this is faster than one call of NumPy. Double-double numbers and integers round to the same double.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -41,13 +41,13 @@ _TERMS = 20  # terms of the series of (exp(x) - 1 - x)/x^2 for |x| <= 1; the nex
 
 
 def exp_and_expm1(high: Floats, low: Floats) -> tuple[Floats, Floats]:
-    """Return exp(x) and exp(x) - 1 of double-double numbers x = high + low, both rounded to doubles."""
+    """Return exp(x) and exp(x) - 1, rounded to doubles, for double-double numbers x = high + low."""
     grown = np.exp(high)
     return grown * (1.0 + low), np.expm1(high) + grown * low
 
 
 def _second(x: Floats) -> Floats:
-    r"""Return (exp(x) - 1 - x)/x^2 of doubles with \|x\| <= 1, by its power series."""
+    r"""Return (exp(x) - 1 - x)/x^2 for doubles with \|x\| <= 1, by its power series."""
     series = np.full_like(x, 1.0 / (_TERMS + 2))
     for n in range(_TERMS + 1, 1, -1):
         series = (1.0 + series * x) / n
@@ -61,18 +61,18 @@ def _less_whole_turns(turns: dd.Pair) -> Floats:
 
 
 class Turning:
-    """A multiple of the angle of rotation of a driven body, as a function of time, from constants of fractions.
+    """A multiple of the angle of rotation of a driven body, as a function of time.
 
     Parameters
     ----------
     share : Fraction
-        The factor by which the angle is multiplied.
+        The factor by which the angle of rotation is multiplied.
     rate : Fraction
         Angular velocity at the start, rad/s.
     push : Fraction
-        Angular acceleration by the constant torque, rad/s^2.
+        Angular acceleration that the constant torque causes, rad/s^2.
     decay : Fraction
-        Decay rate by the damping, 1/s.
+        Decay rate that the damping causes, 1/s.
     """
 
     def __init__(self, share: Fraction, rate: Fraction, push: Fraction, decay: Fraction) -> None:
@@ -85,7 +85,7 @@ class Turning:
             self._final, self._rest = pair(final * turn), pair(rest * turn)
         except OverflowError:
             raise InputError(
-                "expected no damping, or one with a final angle that doubles can represent, got a decay of "
+                "expected no damping, or a damping under which the final angle is a finite double, got a decay rate of "
                 f"{float(decay)!r} 1/s under {float(push)!r} rad/s^2"
             ) from None
         self._bits = _BITS + max(int(abs(x)) for x in self._exact).bit_length()
@@ -93,7 +93,7 @@ class Turning:
 
     @np.errstate(over="ignore")  # only upper bounds overflow; such angles are computed in integers
     def __call__(self, t: Floats) -> Floats:
-        """Return the angle at each time in revolutions, reduced to -1/2 .. 1/2."""
+        """Return the angle at each time t, s, in revolutions, reduced to the range from -1/2 to 1/2."""
         if len(t) > _BLOCK:
             return np.concatenate([self(t[k : k + _BLOCK]) for k in range(0, len(t), _BLOCK)])
         x = self._decay[0] * t
@@ -121,7 +121,7 @@ class Turning:
         return self._rate[0] * t * (1.0 + x * series) + self._push[0] * t * t * series
 
     def _near(self, t: Floats) -> Floats:
-        """Return the angle in revolutions as double-double numbers, by the series for small ``x = -decay t``."""
+        """Return the angle modulo one revolution, in double-double numbers, by the series for small ``-decay t``."""
         time = t, np.zeros_like(t)
         x = dd.multiply(time, self._decay)
         series = dd.second(x) if self._decay[0] else (0.5, 0.0)
@@ -130,7 +130,7 @@ class Turning:
         return _less_whole_turns(dd.add(dd.multiply(dd.multiply(time, self._rate), first), pushed))
 
     def _far(self, t: Floats) -> Floats:
-        """Return the angle in revolutions as double-double numbers, as the sum of a steady and a transient part."""
+        """Return the angle modulo one revolution, in double-double numbers, as a steady plus a transient part."""
         time = t, np.zeros_like(t)
         high, low = dd.exponential(dd.multiply(time, self._decay))
         left = dd.multiply(dd.add((1.0, 0.0), (-high, -low)), self._rest)
@@ -140,9 +140,10 @@ class Turning:
         return np.array([self._exactly(time) for time in t.tolist()])
 
     def _integers(self, bits: int) -> tuple[int, int, int, int]:
-        """Return four constants as fixed-point integers of ``bits`` bits, for exact computation of the angle.
+        """Return four constants as fixed-point integers with ``bits`` bits after the binary point.
 
-        They are the final rate and the excess of the initial rate, in revolutions, the decay rate and ln 2.
+        They are: the final rate (or the initial rate without damping), in revolutions per second; the factor of the
+        transient (or quadratic) part of the angle, in revolutions; the decay rate; and ln 2.
         """
         if bits not in self._scaled:
             from mpmath import mp
@@ -178,7 +179,7 @@ class Turning:
 
 
 def _exponential(x: int, bits: int, octave: int) -> int:
-    """Return exp(x) of a fixed-point integer x, with ``bits`` bits after the binary point as in x."""
+    """Return exp(x) for a fixed-point integer x; x and the result have ``bits`` bits after the binary point."""
     if x < -bits << bits:
         return 0
     octaves, rest = divmod(x << _GUARD, octave)

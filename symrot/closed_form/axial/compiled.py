@@ -1,7 +1,7 @@
-"""Rotation about one axis by compiled loops: :file:`axial_at.c`, with constants from exact integers.
+"""Rotation about one axis by the compiled loops of :file:`axial_at.c`, whose constants are computed in integers.
 
-The angle of a driven body grows with the square of time, so its phase at 1e15 s needs constants of 212 bits. Python's
-integers compute these constants to any number of bits; C receives each constant as a sum of several doubles.
+The angle of a driven body grows with the square of time, so its phase at 1e15 s needs constants of 212 bits. They are
+computed in Python's integers; C receives each constant as a sum of several doubles.
 """
 
 import ctypes
@@ -23,7 +23,7 @@ Ratio = tuple[int, int]
 """A rational number: numerator and positive denominator."""
 
 TOO_MANY_TURNS, OUT_OF_RANGE = 1, 2
-"""Return values of the loops: a sample has too many revolutions, or its numbers exceed the range of doubles."""
+"""Return values of the loops: a sample has too many revolutions, or a number exceeds the range of doubles."""
 
 _LARGEST = 200  # 2^200 replaces larger numbers: a product with it exceeds the revolutions that the loops can count
 _BITS = 260  # more bits than a sum of four doubles represents
@@ -36,9 +36,10 @@ _bound: dict[str, tuple[Any, Any]] = {}
 
 
 def parts(top: int, bottom: int, count: int) -> list[float]:
-    """Return top/bottom as a list of ``count`` doubles whose sum is nearest to the ratio.
+    """Return ``count`` doubles whose sum approximates the ratio top/bottom.
 
-    Each double is the rounded remainder that the previous doubles leave. Equal ratios give the same doubles.
+    Each double is the rounded difference of the ratio and the sum of the previous doubles. Equal ratios give the same
+    doubles.
     """
     sign, top = (-1, -top) if top < 0 else (1, top)
     size = top.bit_length() - bottom.bit_length()
@@ -57,18 +58,18 @@ def parts(top: int, bottom: int, count: int) -> list[float]:
 
 
 class Loops(NamedTuple):
-    """The constants of one motion, and the compiled loops that compute its samples."""
+    """The constants of one motion, and the compiled loop that computes its samples."""
 
     evaluate: Any
     constants: Any
     place: int
 
     def __call__(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> int:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times into arrays; None skips a quantity.
+        """Write angular velocity and attitude at the times into ``omega`` (n, 3) and ``quaternion`` (n, 4).
 
-        Return 0 if all samples are valid; :data:`TOO_MANY_TURNS` if some samples have too many revolutions for this
-        arithmetic (their rows are NaN); :data:`OUT_OF_RANGE` if a number exceeds the range of doubles (then nothing is
-        written).
+        A quantity whose array is None is not computed. Return 0 if all samples are valid; :data:`TOO_MANY_TURNS` if
+        some samples have too many revolutions for this arithmetic (their rows are NaN); :data:`OUT_OF_RANGE` if a
+        number exceeds the range of doubles (then nothing is written).
         """
         status: int = self.evaluate(self.place, len(times), address(times), address(omega), address(quaternion))
         return status
@@ -80,17 +81,19 @@ def available() -> bool:
 
 
 def functions() -> tuple[Any, Any]:
-    """Return the compiled loop over samples, and the ctypes type of the record of constants that it reads.
+    """Return the compiled loop over samples, and the ctypes type of the constants that it reads.
 
     Raises
     ------
     CompilerError
-        If there is no C compiler, or if it breaks error-free arithmetic.
+        If there is no C compiler, or if it does not round every operation separately.
     """
     if not _bound:
         (compiled,) = library.load("axial")
         if not compiled.symrot_axial_sound():
-            raise CompilerError("the C compiler breaks error-free arithmetic: it must round every operation as written")
+            raise CompilerError(
+                "expected a C compiler that rounds every operation separately, got one that combines some"
+            )
         evaluate, length = compiled.symrot_axial_at, compiled.symrot_axial_length
         pointer, size = ctypes.c_void_p, ctypes.c_ssize_t
         evaluate.argtypes, evaluate.restype = (pointer, size, pointer, pointer, pointer), ctypes.c_int
@@ -100,20 +103,20 @@ def functions() -> tuple[Any, Any]:
 
 
 class Constants:
-    """The constants of a body driven about one axis; a call with an initial state returns the compiled :class:`Loops`.
+    """The constants of a body driven about one axis; a call with an initial state returns :class:`Loops`.
 
     Parameters
     ----------
     axis : 0, 1 or 2
     moments : 2 ratios
-        Across the axis and about it, kg m^2. A ratio is a pair of integers, the second positive.
-    torque, damping, damping_across : ratios
-        N m and N m s.
+        Moments of inertia across the axis and about it, kg m^2, each a pair of integers (numerator, denominator > 0).
+    torque, damping, across : ratios
+        Torque about the axis, N m; damping coefficients about the axis and across it, N m s.
 
     Raises
     ------
     InputError
-        If a rate or an acceleration exceeds the range of a double; a call raises it too.
+        If a rate or an acceleration exceeds the range of doubles; a call raises the same error.
     """
 
     def __init__(self, axis: int, moments: tuple[Ratio, Ratio], torque: Ratio, damping: Ratio, across: Ratio) -> None:
@@ -132,14 +135,14 @@ class Constants:
         self._turns: dict[bool, tuple[int, int, list[float]]] = {}
 
     def head(self, turned: bool) -> list[float]:
-        """Return the first numbers of the C record; ``turned`` means that the body also rotates across the axis."""
+        """Return the first numbers of the C struct `axial`; ``turned``: the body also rotates across the axis."""
         return [float(bool(self._decay)), 1.0, float(turned), *self._head]
 
     def moving(self, rate: Fraction | float, turned: bool) -> list[float]:
-        """Return the numbers of the C struct `axial` (axial.h) for an initial rate about the axis, rad/s.
+        """Return the values of those members of the C struct `axial` (axial.h) that depend on the initial rate, rad/s.
 
-        One is a struct `turning`: with ``turned`` it is `lag`, the rotation of the transverse angular velocity in
-        the body; otherwise it is `half`, half the rotation angle, for the attitude.
+        They are four numbers and one struct `turning`: `lag` if ``turned`` (the angle by which the transverse angular
+        velocity rotates in the body), otherwise `half` (half the angle of rotation, for the attitude).
         """
         turn, bits, fixed = self._turns.get(turned) or self._turning(turned)
         top, bottom = rate.as_integer_ratio()
@@ -158,7 +161,7 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, turned: bool) -> tuple[int, int, list[float]]:
-        """Return the factor that converts radians to a multiple of the angle in revolutions, and the constants for C.
+        """Return the factor that converts the angle in radians to `lag` or `half` in revolutions, and constants for C.
 
         The first two results are the factor as an integer, and the number of its bits after the binary point.
         """
@@ -175,7 +178,7 @@ class Constants:
         return self._turns[turned]
 
     def __call__(self, rates: Sequence[Fraction], attitude: tuple[list[float], list[float]]) -> Loops:
-        """Return the compiled loops of the motion from one initial state.
+        """Return the constants and the compiled loop of the motion from one initial state.
 
         Parameters
         ----------
@@ -195,7 +198,10 @@ class Constants:
         return Loops(evaluate, constants, ctypes.addressof(constants))
 
     def shapes(self, one: Any, other: Any) -> list[Any]:
-        """Return the matrix `omega` of axial.h row by row: it maps axial and transverse rates to body components."""
+        """Return the entries of the matrix `omega` of axial.h, row by row.
+
+        The matrix maps transverse and axial rates to body components of the angular velocity.
+        """
         rows: list[list[Any]] = [[0.0] * 3 for _ in range(3)]
         rows[self.axis][2] = 1.0
         rows[self.axis - 2][:2] = one, -other
@@ -204,7 +210,7 @@ class Constants:
 
 
 def _turns_of(top: int, bottom: int) -> tuple[int, int]:
-    """Return top/bottom radians in revolutions: an integer, and the number of its bits after the binary point."""
+    """Return top/bottom rad in revolutions, as an integer and its number of bits after the binary point."""
     top, bottom = top * _PI_BOTTOM, 2 * bottom * _PI_TOP
     bits = max(0, _TURN_BITS + bottom.bit_length() - top.bit_length())
     return (top << bits) // bottom, bits

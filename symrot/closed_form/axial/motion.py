@@ -1,14 +1,15 @@
 """Rotation driven and damped about one axis, at any time, in closed form: C dw/dt = N - c w.
 
-For a rotation about one principal axis this is the whole motion. If a symmetric body also rotates across its axis, the
-transverse angular velocity rotates in the body by ``(C - A)/A`` times the angle about the axis, and decays by its own
-damping. The attitude then needs parabolic cylinder functions (see :mod:`symrot.closed_form.spin_up.motion`); with
-damping it has no closed form here.
+C is the moment of inertia about the axis, w the angular velocity, N the torque and c the damping coefficient. If the
+body rotates only about this principal axis, the equation describes the whole motion. If a symmetric body also rotates
+across its axis, the transverse angular velocity rotates in the body by ``(C - A)/A`` times the angle about the axis,
+and decays by its own damping. The attitude then needs parabolic cylinder functions
+(:mod:`symrot.closed_form.spin_up.motion`); with damping it has no closed form here.
 
 Angles are sums of two doubles, in revolutions modulo 1, so the error of the attitude stays at a few 1e-16 for any
-number of revolutions, with or without damping. With a compiler, C computes the samples (:file:`axial_at.c`). NumPy and
-Python's integers compute all samples without a compiler, and in any case samples with more than 1e10 revolutions
-during the transient or 1e30 revolutions in all.
+number of revolutions, with or without damping. If there is a compiler, C computes the samples (:file:`axial_at.c`).
+Without a compiler, NumPy and Python's integers compute all samples; with a compiler, they compute only samples with
+more than 1e10 revolutions during the transient or 1e30 revolutions in all.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -33,7 +34,7 @@ __all__ = ["AxialMotion", "Driven", "motion", "starts", "turned_about"]
 
 
 class AxialMotion:
-    """The motion of one body driven and damped about one axis. Times are counted from the initial state, s."""
+    """The motion of one body driven and damped about one axis. Times, s, are counted from the initial state."""
 
     regime = "steady"  # elementary functions only, see symrot.closed_form.motion.REGIMES
 
@@ -48,7 +49,7 @@ class AxialMotion:
 
     @property
     def has_attitude(self) -> bool:
-        """Whether the attitude can be computed, which requires that the body does not rotate across the driven axis."""
+        """Whether the attitude can be computed: only if the body does not rotate across the driven axis."""
         return not any(self._across)
 
     def evaluate(
@@ -64,8 +65,8 @@ class AxialMotion:
         """
         if quaternion and not self.has_attitude:
             raise InputError(
-                "expected no request for the attitude of a body that also rotates across the driven axis; use "
-                "symrot.closed_form.spin_up.motion, or steps if the body is damped"
+                "quaternion: expected False for a body that also rotates across the driven axis, got True; use "
+                "symrot.closed_form.spin_up.motion, or numerical integration if the body is damped"
             )
         times = times_of(t)
         if self._loops is None:
@@ -85,12 +86,12 @@ class AxialMotion:
 
     def _refuse(self, times: Floats) -> NoReturn:
         raise InputError(
-            f"expected times after {self._first!r} s, before which the damped angular velocity was "
-            f"beyond all doubles, got {float(times.min())!r} s"
+            f"t: expected times after {self._first!r} s, before which the damped angular velocity exceeded the range "
+            f"of doubles, got {float(times.min())!r} s"
         )
 
     def _angle(self, t: Floats, share: Fraction) -> tuple[Floats, Floats]:
-        """Return sine and cosine of ``share`` times the angle of rotation about the driven axis."""
+        """Return the sine and the cosine of ``share`` times the angle of rotation about the driven axis."""
         turning = self._known.get(share)
         if turning is None:
             turning = self._known[share] = Turning(share, self._rate, self._push, self._decay)
@@ -168,7 +169,7 @@ def motion(
 def starts(
     inertia: Sequence[Number], axis: int, torque: Number, damping: Number = 0.0, damping_across: Number = 0.0
 ) -> Callable[[Initial], AxialMotion]:
-    """Return a function from initial states to motions of one driven body; arguments as for :func:`motion`.
+    """Return a function from initial states to motions of one driven body; the arguments are as for :func:`motion`.
 
     Constants that do not depend on the initial state are computed once.
     """
@@ -215,7 +216,7 @@ class Driven:
         return self._moving(rates, [float(x) for x in number.unit(components)])
 
     def moving(self, rates: Sequence[Number], attitude: list[float]) -> AxialMotion:
-        """Return the motion from initial rates and a unit attitude that :meth:`motion` has already checked."""
+        """Return the motion from initial rates, rad/s, and a unit quaternion; only the rates are checked."""
         return self._moving([Fraction(x) for x in numbers("omega", rates, 3)], attitude)
 
     def _moving(self, rates: list[Fraction], attitude: list[float]) -> AxialMotion:
@@ -223,7 +224,7 @@ class Driven:
 
 
 def turned_about(axis: int, q: Sequence[Any]) -> list[Any]:
-    """Return the product ``q * e`` with the unit quaternion e of a rotation by 180 degrees about a body axis."""
+    """Return the product ``q * e``, where e is the unit quaternion of a rotation by 180 degrees about the body axis."""
     product: list[Any] = [None] * 4
     product[0], product[axis + 1] = -q[axis + 1], q[0]
     product[(axis + 1) % 3 + 1], product[(axis + 2) % 3 + 1] = q[(axis + 2) % 3 + 1], -q[(axis + 1) % 3 + 1]

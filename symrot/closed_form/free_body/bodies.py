@@ -1,7 +1,10 @@
-"""Constants of many free bodies, computed in one call of C (:file:`bodies_at.c`).
+"""Constants of many free bodies, computed in one call of a C function (:file:`bodies_at.c`).
 
-Each constant is a correctly rounded sum of two doubles. If 248 bits do not decide how to round it, it is marked as
-doubtful, and the caller computes it with fractions.
+Each constant is a pair of doubles (hi, lo), both correctly rounded, whose sum approximates the exact value to 31
+digits. If 248 bits do not determine how to round a constant, its body is reported as doubtful, and the caller computes
+the constant with fractions. The defect of a motion is |L|^2 - 2 T I_mid, with the angular momentum L, the kinetic
+energy T and the middle moment of inertia I_mid; its sign tells whether the motion goes around the axis of the smallest
+or of the largest moment of inertia.
 """
 
 from collections.abc import Sequence
@@ -49,9 +52,9 @@ def _functions() -> tuple[Any, Any, Any]:
 
 
 def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray[np.uint64]:
-    """Return principal moments and principal axes of one body as integers for C, in units of 2^-248.
+    """Return the principal moments and the principal axes of one body as integers for C, in units of 2^-248.
 
-    The moments are scaled by a power of two so that the largest lies between 1/2 and 1.
+    The moments are scaled by a power of two so that the largest moment lies between 1/2 and 1.
     """
     largest = max(moments)
     length = largest.numerator.bit_length() - largest.denominator.bit_length()  # the power of two, or one more
@@ -63,10 +66,10 @@ def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray
 
 
 def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floats, Doubtful]:
-    """Return angular velocities of a :func:`fixed_body` along its principal axes, their defects, and a mask of doubt.
+    """Return angular velocities of a :func:`fixed_body` along its principal axes, their defects, and doubtful rows.
 
-    The shapes are (n, 6) and (n, 2), hi and lo of each number. A defect is |L|^2 - 2 T I_mid; its sign tells whether
-    the motion goes around the axis of the smallest or of the largest moment. Rows in the mask need exact arithmetic.
+    The first two results have the shapes (n, 6) and (n, 2): hi and lo of each number. The third result holds the
+    indices of the rows that must be computed exactly.
     """
     n = len(omega)
     rates, exact, doubtful = np.empty((n, 6)), np.empty((n, 8)), np.empty(n, np.uint8)
@@ -76,10 +79,10 @@ def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floa
 
 
 def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
-    """Return the defects |L|^2 - 2 T I_mid of free bodies, shape (n, 2), and a mask of rows that need exact arithmetic.
+    """Return the defects |L|^2 - 2 T I_mid of free bodies, shape (n, 2), and the indices of doubtful rows.
 
-    ``moments`` are principal moments and ``omega`` angular velocities along the principal axes, both of shape (n, 3).
-    The sign of a defect tells whether the motion goes around the axis of the smallest or of the largest moment.
+    Doubtful rows must be computed exactly. ``moments`` are principal moments and ``omega`` angular velocities along the
+    principal axes, both of shape (n, 3).
     """
     n = len(omega)
     exact, doubtful = np.empty((n, 8)), np.empty(n, np.uint8)
@@ -89,7 +92,7 @@ def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
 
 
 class PrincipalBodies(NamedTuple):
-    """Arguments of the C function symrot_free_body_prepare for many bodies, and a mask of bodies needing fractions."""
+    """Arguments of the C function symrot_free_body_prepare for many bodies, and the indices of doubtful bodies."""
 
     moments: Floats  # (n, 6)
     rates: Floats  # (n, 6)
@@ -99,10 +102,10 @@ class PrincipalBodies(NamedTuple):
 
 
 def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodies | None:
-    """Return bodies in principal axes from inertia tensors and angular velocities.
+    """Return the constants of bodies in principal axes, computed from inertia tensors and angular velocities.
 
-    ``entries`` are xx, yy, zz, xy, xz and yz, kg m^2: arrays with a value for each body, or one value for all. The
-    result is None if a constant that all bodies share is too large or too small to be a sum of doubles.
+    ``entries`` are the components xx, yy, zz, xy, xz and yz, kg m^2: arrays with one value per body, or one Fraction
+    for all bodies. Return None if such a Fraction is too large or too small to be a sum of doubles.
     """
     n, tensors, arrays = len(omega), _Tensors(terms=_TERMS), []
     for k, entry in enumerate(entries):
@@ -123,7 +126,7 @@ def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodie
 
 
 def _sum_of_doubles(value: Fraction) -> tuple[Floats, bool]:
-    """Return a few doubles whose sum is nearest to a fraction, and whether the sum equals it."""
+    """Return a few doubles whose sum approximates a fraction, and whether the sum equals the fraction."""
     terms = np.zeros(_TERMS)
     for k in range(_TERMS):
         terms[k] = float(value)

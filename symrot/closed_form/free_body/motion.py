@@ -1,9 +1,12 @@
 """Motion of a free rigid body at any time in closed form, for spherical, symmetric and asymmetric bodies.
 
-All motions are covered: about the axis of smallest or largest moment, and on the separatrix between the two. No steps
-are taken: each sample costs the same however far it lies from the start, forward or backward. Its error is a few 1e-16,
-because the constants of the motion have 31 digits and phases are reduced to a fraction of a revolution. The formulas
-are in :file:`free_body.c`.
+All motions are covered: around the axis of the smallest or of the largest moment of inertia, and on the separatrix
+between these motions. Each sample takes the same time, however far before or after the start it lies. Its error is a
+few 1e-16, because the constants of the motion have 31 digits and phases are reduced to a fraction of a revolution. The
+formulas are in :file:`free_body.c`.
+
+The defect of a motion is |L|^2 - 2 T I_mid, with the angular momentum L, the kinetic energy T and the middle moment
+I_mid; its sign tells around which axis the motion goes. A pair is a sum hi + lo of two doubles.
 
 Source: Whittaker, Analytical Dynamics, 4th ed., section 69; van Zon & Schofield, J. Comput. Phys. 225 (2007) 145.
 
@@ -49,7 +52,7 @@ def motion(
     Raises
     ------
     InputError
-        If a number is outside its domain.
+        If a number is outside its domain, such as a moment that is not positive.
 
     Examples
     --------
@@ -64,10 +67,10 @@ def motion(
 
 
 def starts(principal: Principal) -> Callable[[Initial], ExactMotion]:
-    """Return a function from initial states to motions of one body, whose axes need not be principal.
+    """Return a function from initial states to motions of one free body, whose given axes need not be principal.
 
-    Angular velocity and attitude refer to the given axes. The principal axes have 110 digits, and the constants of the
-    motion are computed from them before any rounding to a double.
+    Angular velocity and attitude refer to the given axes. The principal axes are known to 110 digits; the constants of
+    the motion are computed from them before they are rounded to doubles.
     """
     body = FreeRigidBody(principal)
     return lambda start: body.motion(start.omega_b, start.quaternion)
@@ -92,13 +95,13 @@ class FreeRigidBody:
 
     @cached_property
     def fixed(self) -> Any:
-        """Moments and axes as integers for the C function that finds many angular velocities along these axes."""
+        """Moments and principal axes as integers, for the C function that computes components along these axes."""
         from symrot.closed_form.free_body.bodies import fixed_body
 
         return fixed_body(self._principal.moments, [x for row in self._principal.axes for x in row])
 
     def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
-        """Return an angular velocity along the principal axes as integer numerators over one common denominator."""
+        """Return an angular velocity along the principal axes: integer numerators and their common denominator."""
         rates, shared = over_common_denominator(omega0)
         x, y, z = rates
         largest = max(abs(x), abs(y), abs(z))
@@ -126,16 +129,17 @@ class FreeRigidBody:
 
 
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
-    """Return constants of a free body as one list hi, lo, hi, lo, ..: I2 - I3, I3 - I1, I1 - I2 and |L|^2 - 2 T I_mid.
+    """Return I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid of a free body as one list hi, lo, hi, lo, ..
 
-    They are scaled as free_body.c expects. They are computed exactly, since differences of doubles would lose digits.
+    The defect is scaled as in :class:`Defect`. All are computed exactly, since differences of doubles would lose
+    digits.
     """
     integers, shared = over_common_denominator(moments)
     return [*gaps(integers, shared), *Defect(integers)(over_common_denominator(omega)[0])]
 
 
 def gaps(i: list[int], shared: int) -> list[float]:
-    """Return the differences I2 - I3, I3 - I1, I1 - I2 of moments as one list hi, lo, hi, lo, ..
+    """Return the differences I2 - I3, I3 - I1, I1 - I2 of the principal moments as one list hi, lo, hi, lo, ..
 
     The moments are integer numerators ``i`` over the common denominator ``shared``.
     """
@@ -149,10 +153,10 @@ def gaps(i: list[int], shared: int) -> list[float]:
 
 
 class Defect:
-    """The exact, scaled quantity |L|^2 - 2 T I_mid of one free body as a function of its rates.
+    """The defect |L|^2 - 2 T I_mid of one free body as a function of its rates, computed exactly.
 
-    Its sign tells whether the motion goes around the axis of the smallest or of the largest moment. The scale is the
-    square of the largest moment times the largest rate; the moments are integers.
+    Its sign tells whether the motion goes around the axis of the smallest or of the largest moment of inertia. It is
+    divided by the square of (largest moment times largest rate). The moments are integers.
     """
 
     def __init__(self, i: list[int]) -> None:
@@ -182,7 +186,7 @@ def _prepared(
         "free_body",
         (moments, omega, start, exact, axes),
         lambda: (
-            "a free body has three positive moments of inertia (kg m^2), a finite angular velocity (rad/s) and a "
-            f"quaternion that is not zero; got moments {moments[::2]}, omega {omega[::2]}, quaternion {start[::2]}"
+            "free body: expected three positive moments of inertia in kg m^2, a finite angular velocity in rad/s and a "
+            f"quaternion that is not zero, got moments {moments[::2]}, omega {omega[::2]}, quaternion {start[::2]}"
         ),
     )

@@ -1,4 +1,6 @@
-"""A free symmetric body with a rotor of constant relative momentum along its axis: two steady rotations.
+"""A free symmetric body with a rotor along its axis, at any time, in closed form: the sum of two steady rotations.
+
+The angular momentum of the rotor relative to the body is constant.
 
 The formulas are in :file:`gyrostat.c`. Source: Landau & Lifshitz, Mechanics, 3rd ed., section 33, for a body without a
 rotor.
@@ -27,22 +29,23 @@ def motion(
     Parameters
     ----------
     inertia : 3 numbers
-        Principal moments, kg m^2, including the mass of the rotor; the two across the rotor's axis are equal.
+        Principal moments of inertia of body and rotor together, kg m^2; those about the two axes across the rotor are
+        equal.
     rotor : 3 numbers
-        Angular momentum of the rotor relative to the body, kg m^2/s, constant; along one principal axis, or zero.
+        Constant angular momentum of the rotor relative to the body, kg m^2/s, along one principal axis, or zero.
     omega0, quaternion0 : 3 and 4 numbers
         Angular velocity along the principal axes, rad/s; attitude, body to space, scalar first.
 
     Raises
     ------
     InputError
-        If the body is not symmetric about the rotor's axis, or a number is outside its domain.
+        If the body is not symmetric about the axis of the rotor, or if a number is outside its domain.
     """
     return Gyrostat(inertia, rotor).motion(omega0, quaternion0)
 
 
 def starts(inertia: Sequence[Number], rotor: Sequence[Number]) -> Callable[[Initial], ExactMotion]:
-    """Return a function from initial states to motions of one gyrostat; arguments as for :func:`motion`."""
+    """Return a function from initial states to motions of one gyrostat; the arguments are as for :func:`motion`."""
     body = Gyrostat(inertia, rotor)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
@@ -72,7 +75,7 @@ class Gyrostat:
             "gyrostat",
             (self.moments, self.rotor, named, start, [*map(float, self.named), 0.0]),
             lambda: (
-                "a gyrostat has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
-                f"not zero, got moments {[float(x) for x in self._inertia]}, omega {[float(x) for x in rates]}"
+                "gyrostat: expected positive moments in kg m^2, a finite angular velocity in rad/s and a quaternion "
+                f"that is not zero, got moments {[float(x) for x in self._inertia]}, omega {[float(x) for x in rates]}"
             ),
         )

@@ -1,8 +1,8 @@
 """The symmetric heavy top at any time in closed form: Lagrange's top, and spherical and physical pendulums.
 
 All initial states are covered: hanging, upright, exactly vertical, passing through the vertical, near and on the
-separatrix of the sleeping top. Each sample takes the same time however far it is from the start, with an error of a few
-1e-16. The formulas are in :file:`heavy_top.c`.
+separatrix of the sleeping top. Each sample takes the same time, however far it lies from the start, and its error is a
+few 1e-16. The formulas are in :file:`heavy_top.c`.
 
 Source: Klein & Sommerfeld, Theory of the Top, vol. 2, chapter 6; Whittaker, Analytical Dynamics, 4th ed., section 72.
 
@@ -48,8 +48,8 @@ def motion(
     Parameters
     ----------
     inertia : 3 numbers
-        Moments about the fixed point along the body's axes, kg m^2; the two across the axis of the centre of mass are
-        equal. Fractions, ints and floats are taken at their exact values.
+        Principal moments of inertia with respect to the fixed point, kg m^2; those about the two axes across the axis
+        of the centre of mass are equal. Fractions, ints and floats are taken at their exact values.
     weight : number
         Weight, N.
     center_of_mass : 3 numbers
@@ -64,7 +64,7 @@ def motion(
     Raises
     ------
     InputError
-        If the body is not symmetric about the axis of its centre of mass, or a number is outside its domain.
+        If the body is not symmetric about the axis of its centre of mass, or if a number is outside its domain.
 
     Examples
     --------
@@ -77,7 +77,7 @@ def motion(
 def starts(
     inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number] = _DOWN
 ) -> Callable[[Initial], ExactMotion]:
-    """Return a function from initial states to motions of one heavy top; arguments as for :func:`motion`.
+    """Return a function from initial states to motions of one heavy top; the arguments are as for :func:`motion`.
 
     Constants that do not depend on the initial state are computed once.
     """
@@ -123,14 +123,14 @@ class Top:
             "heavy_top",
             (self.moments, self.pull, flatten_pairs(named), frame.start(attitude), frame.space, frame.axes),
             lambda: (
-                "a heavy top has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
-                f"not zero, got moments {[float(x) for x in self._inertia]}, omega {[float(x) for x in named]}"
+                "heavy top: expected positive moments in kg m^2, a finite angular velocity in rad/s and a quaternion "
+                f"that is not zero, got moments {[float(x) for x in self._inertia]}, omega {[float(x) for x in named]}"
             ),
         )
 
 
 class Frame:
-    """Axes of space and of the body in which the formulas of a heavy top hold.
+    """The axes of space and of the body in which the formulas of a heavy top hold, and the conversion to these axes.
 
     The third axis in space points up, and the third axis of the body is the symmetry axis.
 
@@ -139,7 +139,8 @@ class Frame:
     axis : 0, 1 or 2
         The symmetry axis of the body.
     up : 3 numbers
-        Third axis of space in the formulas: opposite to gravity if the centre of mass is on the positive axis.
+        Direction of the third axis of space in the formulas: opposite to gravity if the centre of mass lies on the
+        positive symmetry axis, otherwise along gravity.
     """
 
     def __init__(self, axis: int, up: Sequence[Number]) -> None:
@@ -159,13 +160,13 @@ class Frame:
 
     @property
     def plain(self) -> bool:
-        """Whether the scene already uses these axes, so that no attitude has to be converted."""
+        """Whether the axes of the scene are the same, so that no attitude has to be converted."""
         return self._before is self._after is None
 
     def start(self, quaternion: Sequence[Number]) -> list[float]:
         """Return an attitude converted to these axes of body and space, as 8 doubles: hi and lo of each component.
 
-        See :func:`symrot.closed_form.arithmetic.pairs.attitude`.
+        They are rounded as in :func:`symrot.closed_form.arithmetic.pairs.attitude`.
         """
         if self.plain:
             return attitude(quaternion)

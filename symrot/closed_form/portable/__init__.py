@@ -1,8 +1,8 @@
-"""Motions in closed form for use without a C compiler: mpmath computes the constants, NumPy the samples.
+"""Motions in closed form that need no C compiler: mpmath computes the constants, NumPy the samples.
 
-They use the formulas of the C files. They are slower (milliseconds for the constants, about a microsecond for each
-sample) but equally accurate: constants have 120 digits, and phases are reduced to a fraction of a revolution. Tests
-compare them with the results of C.
+The formulas are the same as in the C files. The motions are slower (milliseconds for the constants, about a microsecond
+for each sample) but equally accurate: constants have 120 digits, and phases are reduced to a fraction of a revolution.
+Tests compare the samples with those of the C code.
 """
 
 from collections.abc import Callable
@@ -19,4 +19,4 @@ MOTIONS: dict[str, Callable[..., Any]] = {
     "gyrostat": PortableGyrostat,
     "heavy_top": PortableHeavyTop,
 }
-"""The motions of this folder by the names of the corresponding C files; arguments as for the C functions."""
+"""The motions of this folder by the names of the corresponding C files; arguments are those of the C functions."""

@@ -1,4 +1,4 @@
-"""The motion of a free body by mpmath and NumPy, without a C compiler; formulas as in :file:`free_body.h`."""
+"""The motion of a free body by mpmath and NumPy, without a C compiler; formulas of :file:`free_body.h`."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -33,7 +33,8 @@ NEGLIGIBLE = mpf(10) ** -150  # size, relative to the largest component of omega
 class PortableFreeBody:
     """The motion of a free body, computed with mpmath and NumPy.
 
-    Its arguments are as for the C function ``symrot_free_body_prepare``: lists hi, lo, hi, lo, ..
+    The arguments are those of the C function ``symrot_free_body_prepare``: lists hi, lo, hi, lo, .. of pairs of doubles
+    whose sums are the numbers.
     """
 
     @mp.workdps(DIGITS)  # type: ignore[untyped-decorator]
@@ -43,7 +44,7 @@ class PortableFreeBody:
     ) -> None:  # fmt: skip
         moments, w = vector(inertia), vector(omega)
         if min(moments) <= 0 or not any(vector(quaternion)):
-            raise ValueError("moments or quaternion")
+            raise ValueError("expected positive moments of inertia and a quaternion that is not zero")
         fastest = max(abs(x) for x in w)
         self.scale = power_of_two(fastest)
         w = [mpf(0) if abs(x) < NEGLIGIBLE * self.scale else x / self.scale for x in w]
@@ -170,7 +171,7 @@ class PortableFreeBody:
         return kappa - slope * mp.pi / k * rate, start, u / k / 2 * slope
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times into arrays; None skips a quantity."""
+        """Write the samples into ``omega`` (n, 3) and ``quaternion`` (n, 4); skip an array that is None."""
         t = times * float(self.scale)
         if self.regime == "steady":
             if omega is not None:
@@ -191,8 +192,8 @@ class PortableFreeBody:
     def _sums(self, t: Floats) -> tuple[Any, Any, Floats]:
         """Return the elliptic functions, the theta sum of the attitude, and the phase in half revolutions.
 
-        The elliptic functions are cn, sn and dn times their amplitudes. The complex theta sum is returned as its real
-        and imaginary part.
+        The elliptic functions are cn, sn and dn, each times its amplitude. The complex theta sum is a pair: its real
+        and its imaginary part.
         """
         if self.regime == "circular":
             sine, cosine = self.axial.circle(t)
@@ -227,7 +228,7 @@ class PortableFreeBody:
 
 
 def _differences(inertia: list[float], omega: list[float], w: list[Any]) -> tuple[list[Any], Any]:
-    """Return I2 - I3, I3 - I1, I1 - I2 and |L|^2 - 2 T I_mid with 120 digits, so that cancellation is harmless."""
+    """Return the list I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid, computed from exact fractions."""
     moments = [Fraction(high) + Fraction(low) for high, low in zip(inertia[::2], inertia[1::2], strict=True)]
     rates = [Fraction(high) + Fraction(low) for high, low in zip(omega[::2], omega[1::2], strict=True)]
     middle = sorted(moments)[1]
@@ -243,7 +244,7 @@ def _rounded(x: Fraction) -> Any:
 def _canonical(
     moments: list[Any], w: list[Any], differences: list[Any], defect: Any
 ) -> tuple[list[int], list[int], int]:
-    """Return the assignment of principal axes to e1, e2, e3: their indices, their signs, and the sign of I3 - I2."""
+    """Return which principal axes, with which signs, are e1, e2, e3 of the formulas, and the sign of I3 - I2."""
     above = [differences[2] >= 0, differences[0] >= 0, differences[1] >= 0]  # I_i >= I_(i+1)
     largest = 0 if above[0] and not above[2] else 1 if above[1] else 2
     a, b = (largest + 1) % 3, (largest + 2) % 3

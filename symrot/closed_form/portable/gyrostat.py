@@ -1,4 +1,4 @@
-"""The motion of a gyrostat by mpmath and NumPy, without a C compiler; formulas as in :file:`gyrostat.h`."""
+"""The motion of a gyrostat by mpmath and NumPy, without a C compiler; formulas of :file:`gyrostat.h`."""
 
 import numpy as np
 from mpmath import mp, mpf
@@ -14,7 +14,8 @@ __all__ = ["PortableGyrostat"]
 class PortableGyrostat:
     """The motion of a gyrostat, computed with mpmath and NumPy.
 
-    Its arguments are as for the C function ``symrot_gyrostat_prepare``: lists hi, lo, hi, lo, ..
+    The arguments are those of the C function ``symrot_gyrostat_prepare``: lists hi, lo, hi, lo, .. of pairs of doubles
+    whose sums are the numbers.
     """
 
     regime = "steady"
@@ -26,7 +27,7 @@ class PortableGyrostat:
         a, c = vector(moments)
         extra, w = number(*rotor) / a, vector(omega)
         if a <= 0 or not any(vector(quaternion)):
-            raise ValueError("moments or quaternion")
+            raise ValueError("expected positive moments of inertia and a quaternion that is not zero")
         self.scale = power_of_two(max(abs(extra), *(abs(x) for x in w)))
         w = [x / self.scale for x in w]
         along = (c / a) * w[2] + extra / self.scale  # L3/A
@@ -48,7 +49,7 @@ class PortableGyrostat:
         self.attitude = mapping([hamilton(column, renaming) for column in columns])
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times into arrays; None skips a quantity."""
+        """Write the samples into ``omega`` (n, 3) and ``quaternion`` (n, 4); skip an array that is None."""
         t = times * float(self.scale)
         s, c = self.spin.circle(t)
         if omega is not None:

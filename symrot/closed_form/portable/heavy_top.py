@@ -1,6 +1,7 @@
-"""The motion of a symmetric heavy top by mpmath and NumPy, without a C compiler; formulas as in :file:`heavy_top.h`.
+"""The motion of a symmetric heavy top, computed by mpmath and NumPy without a C compiler.
 
-With 120 digits the cancellation in differences is harmless, so the constants follow directly from the roots of the
+The formulas are those of :file:`heavy_top.h`; alpha and beta are the Cayley-Klein parameters of the attitude. Numbers
+have 120 digits, so that differences may lose many of them and the constants follow directly from the roots of the
 cubic.
 """
 
@@ -34,7 +35,8 @@ NOTHING = mpf(10) ** -31  # size, relative to alpha or beta, that counts as zero
 class PortableHeavyTop:
     """The motion of a symmetric heavy top, computed with mpmath and NumPy.
 
-    Its arguments are as for the C function ``symrot_heavy_top_prepare``: lists hi, lo, hi, lo, ..
+    The arguments are those of the C function ``symrot_heavy_top_prepare``: lists hi, lo, hi, lo, .. of pairs of doubles
+    whose sums are the numbers.
     """
 
     @mp.workdps(DIGITS)  # type: ignore[untyped-decorator]
@@ -44,7 +46,7 @@ class PortableHeavyTop:
     ) -> None:  # fmt: skip
         a, c = vector(moments)
         if a <= 0 or not any(vector(quaternion)):
-            raise ValueError("moments or quaternion")
+            raise ValueError("expected positive moments of inertia and a quaternion that is not zero")
         force, w = number(*pull) / a, vector(omega)
         self.scale = power_of_two(max(mp.sqrt(force), *(abs(x) for x in w)))
         self.frame, self.space = Axes(axes), vector(space)
@@ -158,10 +160,10 @@ class PortableHeavyTop:
         return numerators, kappas, leads, speed, v, below
 
     def _functions(self, i: int, place: Any) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-        """Return the functions in the numerator of alpha or beta, and their derivatives, at an elliptic argument.
+        """Return the functions of the theta series of alpha (i = 0) or beta (i = 1) at ``place``, in four lists.
 
-        The four lists are: functions in the real part, their derivatives, functions in the imaginary part, their
-        derivatives.
+        The lists are: the functions in the real part, the functions in the imaginary part, the derivatives of the
+        former, and the derivatives of the latter.
         """
         odd = (
             [2 * n + 1 for n in range(TERMS)] if self.regime == "circular" or i == 0 else [2 * n for n in range(TERMS)]
@@ -187,7 +189,7 @@ class PortableHeavyTop:
         self, numerators: Any, kappas: Any, leads: Any, speed: Any, place: Any, below: Any, start: Any, across: Any,
         spin: Any,
     ) -> None:  # fmt: skip
-        """Compute the constant factors of the theta series from alpha and beta at the start, or from their rates."""
+        """Set the constant factors of the theta series: alpha and beta, or their rates, get the initial values."""
         alpha, beta = start
         initial_rates = [
             mpc(0, spin / 2) * alpha - beta * mp.conj(across) / 2,
@@ -225,7 +227,7 @@ class PortableHeavyTop:
                                 float(r[2] * spin * self.scale)] for r in rows])  # fmt: skip
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times into arrays; None skips a quantity."""
+        """Write the samples into ``omega`` (n, 3) and ``quaternion`` (n, 4); skip an array that is None."""
         t = times * float(self.scale)
         (a, b), (da, db), whole = self._values(t)
         inverse = 1.0 / ((a * a.conj()).real + (b * b.conj()).real)
@@ -240,9 +242,9 @@ class PortableHeavyTop:
             quaternion[:] = np.stack([a.real, a.imag, b.real, b.imag], axis=1) @ self.attitude.T
 
     def _values(self, t: Floats) -> tuple[Any, Any, Floats]:
-        """Return the Cayley-Klein parameters alpha and beta, their rates, and the phase in half revolutions.
+        """Return the Cayley-Klein parameters (alpha, beta), their rates, and the phase in half revolutions.
 
-        Alpha and beta are not normalised, and their phase factors are not included.
+        Alpha and beta are not normalised and do not include their phase factors.
         """
         none = np.zeros_like(t)
         if self.regime == "steady":
@@ -279,7 +281,7 @@ class PortableHeavyTop:
 
 
 def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
-    """Return the roots S1 >= S2 >= S3 of 2 (E - M + M s) s (2 - s) - (D + l s)^2, made equal if nearly so."""
+    """Return the roots S1 >= S2 >= S3 of 2 (E - M + M s) s (2 - s) - (D + l s)^2. Nearly equal roots are made equal."""
     # -2M s^3 + (4M - 2(E - M) - l^2) s^2 + (4 (E - M) - 2 D l) s - D^2
     cubic = [-2 * pull, 4 * pull - twice - spin**2, 2 * twice - 2 * d * spin, -(d**2)]
     roots = sorted((mp.re(x) for x in mp.polyroots(cubic, maxsteps=400, extraprec=800)), reverse=True)

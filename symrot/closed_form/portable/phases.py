@@ -27,7 +27,7 @@ def number(high: float, low: float) -> Any:
 
 
 def vector(pairs: list[float]) -> list[Any]:
-    """Return the numbers of a list hi, lo, hi, lo, .. as mpmath numbers."""
+    """Return the sums hi + lo of a list hi, lo, hi, lo, .. as mpmath numbers."""
     return [number(high, low) for high, low in zip(pairs[::2], pairs[1::2], strict=True)]
 
 
@@ -43,25 +43,25 @@ def quarter_periods(m: Any, complement: Any) -> tuple[Any, Any]:
 
 
 class Phase(NamedTuple):
-    """A phase that grows linearly with time, in revolutions: its rate and its value at the start, each as hi, lo."""
+    """A phase that grows linearly with time, in revolutions: its rate and its start, each as a pair hi, lo."""
 
     rate: tuple[float, float]
     start: tuple[float, float]
 
     @classmethod
     def of(cls, rate: Any, start: Any = 0, periodic: bool = True) -> "Phase":
-        """Return the phase with a given rate and start.
+        """Return the phase with a given rate, in revolutions per unit of time, and start, in revolutions.
 
-        The start of a periodic phase is reduced to half a revolution.
+        If the phase is periodic, the start is reduced to the range from -1/2 to 1/2.
         """
         start = mpf(start) - mp.nint(start) if periodic else start
         high = [float(rate), float(start)]
         return cls((high[0], float(rate - high[0])), (high[1], float(start - high[1])))
 
     def rest(self, t: Floats, parts: int, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
-        """Return the phase plus ``more`` modulo 1/``parts`` of a revolution, and the number of parts removed.
+        """Return the phase plus ``more``, reduced modulo 1/``parts`` of a revolution, and the number of removed parts.
 
-        The number is reduced modulo ``parts``, because whole revolutions do not matter.
+        The number is only correct modulo ``parts``, because whole revolutions do not matter.
         """
         product, error = two_product(t, self.rate[0])
         small = error + t * self.rate[1]
@@ -78,7 +78,7 @@ class Phase(NamedTuple):
         return phase
 
     def circle(self, t: Floats, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
-        """Return sine and cosine of the phase plus ``more``, which is in revolutions."""
+        """Return the sine and the cosine of the phase plus ``more`` revolutions."""
         rest, quarters = self.rest(t, 4, more)
         sine, cosine = np.sin(2.0 * np.pi * rest), np.cos(2.0 * np.pi * rest)
         quarter = quarters.astype(np.int64) & 3
@@ -87,10 +87,10 @@ class Phase(NamedTuple):
         return sign * np.where(odd, cosine, sine), sign * np.where(odd, -sine, cosine)
 
     def argument(self, t: Floats, stretch: float) -> tuple[Floats, Floats, Floats]:
-        """Return the argument of a theta series, a sign, and the argument times ``stretch``.
+        """Return the phase in half revolutions, a sign, and the argument of a theta series.
 
-        The argument is the phase in half revolutions, reduced to -1/2 .. 1/2. The sign changes with each half
-        revolution that the reduction removes.
+        The phase is reduced to the range from -1/2 to 1/2. The sign is -1 if the reduction removes an odd number of
+        half revolutions. The argument is the reduced phase times ``stretch``.
         """
         rest, halves = self.rest(t, 2)
         whole = 2.0 * rest
@@ -98,24 +98,24 @@ class Phase(NamedTuple):
         return whole, flip, np.clip(stretch * whole, -LARGEST, LARGEST)
 
     def argument_once(self, t: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return the result of :meth:`argument` for a phase that is not periodic: 0, 1 and the phase itself."""
+        """Return the results of :meth:`argument` for a phase that is not periodic: 0, 1 and the phase itself."""
         return np.zeros_like(t), np.ones_like(t), np.clip(self.whole(t), -LARGEST, LARGEST)
 
 
 def turned_by(real: Floats, imaginary: Floats, sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
-    """Return real and imaginary part of a complex number times ``cosine + i sine``."""
+    """Return the real and the imaginary part of a complex number times ``cosine + i sine``."""
     return real * cosine - imaginary * sine, real * sine + imaginary * cosine
 
 
 def hyperbolic(log_nome: float, weight: float, order: float, v: Floats) -> tuple[Floats, Floats]:
-    """Return nome**weight times cosh(order*v) and times sinh(order*v), without the overflow of cosh alone."""
+    """Return nome**weight*cosh(order*v) and nome**weight*sinh(order*v), even if cosh would overflow."""
     log = log_nome * weight if weight else 0.0
     up, down = np.exp(log + order * v), np.exp(log - order * v)
     return 0.5 * (up + down), (np.sinh(order * v) if log == 0.0 else 0.5 * (up - down))
 
 
 def multiples(sine: Floats, cosine: Floats) -> list[tuple[Floats, Floats]]:
-    """Return sine and cosine of 0, 1, 2 .. times an angle, for twice as many multiples as a series has terms."""
+    """Return the pairs (sine, cosine) of 0, 1, 2, .. times an angle, twice as many as a series has terms."""
     pairs = [(np.zeros_like(sine), np.ones_like(sine))]
     for _ in range(2 * TERMS - 1):
         s, c = pairs[-1]

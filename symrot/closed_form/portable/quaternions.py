@@ -1,4 +1,4 @@
-"""Quaternions and changes of axes with arrays and numbers of any precision; formulas as in :file:`series.h`."""
+"""Quaternions and changes of axes with arrays and numbers of any precision; formulas of :file:`series.h`."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -15,7 +15,7 @@ UNIT = [mpf(1), mpf(0), mpf(0), mpf(0)]
 
 
 def conjugate(a: Sequence[Any]) -> list[Any]:
-    """Return the conjugate of a quaternion, scalar first: the inverse rotation."""
+    """Return the conjugate of a quaternion, scalar first: of a unit quaternion it is the inverse rotation."""
     return [a[0], -a[1], -a[2], -a[3]]
 
 
@@ -26,7 +26,7 @@ def unit(a: Sequence[Any]) -> list[Any]:
 
 
 def matrix_quaternion(r: Sequence[Sequence[Any]]) -> list[Any]:
-    """Return the unit quaternion of a proper rotation matrix, dividing by its largest component (Shepperd)."""
+    """Return the unit quaternion of a proper rotation matrix, computed without loss of digits (Shepperd's method)."""
     trace = r[0][0] + r[1][1] + r[2][2]
     rows = (
         [1 + trace, r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]],
@@ -40,8 +40,8 @@ def matrix_quaternion(r: Sequence[Sequence[Any]]) -> list[Any]:
 class Axes:
     """The rotation from the internal axes of a motion to the given axes of the body: v_given = matrix*v.
 
-    It is made from 26 numbers, hi and lo of the 9 entries of the matrix and of its quaternion, or from None: the
-    identity.
+    The argument is a list of 26 numbers: hi and lo of the 9 entries of the matrix and of the 4 components of its
+    quaternion. None means the identity.
     """
 
     def __init__(self, axes: list[float] | None) -> None:
@@ -50,5 +50,5 @@ class Axes:
 
 
 def mapping(images: Sequence[Sequence[Any]]) -> Floats:
-    """Return the matrix whose columns are ``images``, rounded to doubles once."""
+    """Return the matrix whose columns are ``images``; each entry is rounded to a double."""
     return np.array([[float(x) for x in image] for image in images]).T

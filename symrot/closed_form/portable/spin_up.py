@@ -1,4 +1,7 @@
-"""The motion of a symmetric body driven about its axis, by NumPy; formulas as in :file:`spin_up.h`."""
+"""The motion of a symmetric body driven about its axis, computed by NumPy; the formulas are those of :file:`spin_up.h`.
+
+The words resonance, sweep and rotating axes are explained in :mod:`symrot.closed_form.spin_up.motion`.
+"""
 
 from collections.abc import Callable, Sequence
 from itertools import islice
@@ -31,7 +34,7 @@ def _atanh_ratio(x: dd.Pair) -> dd.Pair:
 def _asinh_ratio(z: dd.Pair, root: dd.Pair) -> dd.Pair:
     """Return asinh(z)/z of double-double numbers, where ``root`` is sqrt(1 + z^2).
 
-    The argument is halved until the power series converges fast.
+    The value asinh(z) is halved repeatedly until its power series converges fast.
     """
     size = (np.abs(z[0]), np.where(z[0] < 0.0, -z[1], z[1]))
     small, above, times = size, dd.add(root, (1.0, 0.0)), np.ones_like(z[0])
@@ -53,10 +56,10 @@ def _circle(turns: dd.Pair) -> tuple[Floats, Floats]:
 
 
 class PortableSpinUp:
-    """The motion of a symmetric body driven about its axis, with constants computed in integers.
+    """The motion of a symmetric body driven about its axis.
 
-    A table of Taylor polynomials is made only if samples lie near resonance (see
-    :mod:`symrot.closed_form.spin_up.motion`).
+    ``constants`` are the numbers that :class:`symrot.closed_form.spin_up.integers.Integers` computes. ``table`` holds
+    the Taylor polynomials for samples near resonance; it may be None if there are no such samples.
     """
 
     def __init__(self, constants: Sequence[float], table: Floats | None) -> None:
@@ -78,7 +81,7 @@ class PortableSpinUp:
         self._near, self._table = np.array(take(16)).reshape(4, 4), table
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write angular velocity (n, 3) and attitude (n, 4) at the times into arrays; None skips a quantity."""
+        """Write the samples into ``omega`` (n, 3) and ``quaternion`` (n, 4); skip an array that is None."""
         t = (times * self._scale, np.zeros_like(times))
         sine, cosine = _circle(dd.multiply(t, dd.add(self._turn[0], dd.multiply(t, self._turn[1]))))
         if omega is not None:
@@ -101,7 +104,7 @@ class PortableSpinUp:
                 quaternion[chosen] = np.stack([a.real, b.real, b.imag, a.imag], axis=1) @ mapping.T
 
     def _far(self, side: Any, t: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
-        """Return q0 + i q3 and q1 + i q2 of the attitude in the rotating axes, for times far from resonance.
+        """Return q0 + i q3 and q1 + i q2 of the attitude relative to the rotating axes, at times far from resonance.
 
         ``side`` holds the constants of the motion before or after resonance.
         """
@@ -140,9 +143,9 @@ class PortableSpinUp:
         )
 
     def _close(self, _: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
-        """Return q0 + i q3 and q1 + i q2 of the attitude in the rotating axes, for times near resonance.
+        """Return q0 + i q3 and q1 + i q2 of the attitude relative to the rotating axes, at times near resonance.
 
-        Taylor polynomials in x = Omega/sqrt(s) give the rotation from x = 0 on.
+        Taylor polynomials in x = Omega/sqrt(s) give the rotation since x = 0.
         """
         assert self._table is not None
         sign = np.where(omega[0] < 0.0, -1.0, 1.0)

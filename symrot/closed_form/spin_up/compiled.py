@@ -1,4 +1,4 @@
-"""Compiled constants and loops of driven symmetric bodies (:file:`spin_up.c`, :file:`spin_up_at.c`)."""
+"""Driven symmetric bodies by compiled code: constants (:file:`spin_up.c`) and samples (:file:`spin_up_at.c`)."""
 
 import ctypes
 from typing import Any, NamedTuple
@@ -32,7 +32,7 @@ _bound: list[_Functions] = []
 
 
 def limits() -> tuple[float, float, float]:
-    """Return the third argument of the C function ``symrot_spin_up_prepare``: limits of its series and phases."""
+    """Return the third argument of the C function ``symrot_spin_up_prepare``: NEAR, WIDE and MOST of series.py."""
     return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
 
@@ -42,7 +42,7 @@ def available() -> bool:
 
 
 def functions() -> _Functions:
-    """Return the compiled functions of a driven symmetric body, with the types of their arguments.
+    """Return the compiled functions for driven symmetric bodies, with the ctypes types of their arguments.
 
     Raises
     ------
@@ -62,9 +62,9 @@ def functions() -> _Functions:
 
 
 class Compiled:
-    """The constants of one motion, computed by C, and the compiled loops over its samples.
+    """The constants of one motion, computed by C, and the compiled loop over its samples.
 
-    Beyond the time ``longest``, s, the number of revolutions may be too large for double-double numbers.
+    At times beyond ``longest``, s, the number of revolutions may be too large for double-double numbers.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class Compiled:
     Raises
     ------
     CompilerError
-        If the C compiler rejects the source, or breaks error-free arithmetic.
+        If the C compiler rejects the source, or does not round every operation separately.
     """
 
     def __init__(self, axis: int, numbers: list[float]) -> None:
@@ -85,19 +85,21 @@ class Compiled:
         self.longest: float = constants[1] / constants[0]
 
     def _prepared(self, table: Floats | None) -> tuple[Any, int, Floats | None]:
-        """Return the C record of constants, its address, and the table of Taylor polynomials.
+        """Return the constants as a ctypes array, the address of this array, and the table of Taylor polynomials.
 
-        If an array is passed, C fills it with the table.
+        If an array is passed as ``table``, the C function fills it with the polynomials.
         """
         bound = functions()
         constants = bound.record()
         place = ctypes.addressof(constants)
         if bound.prepare(self._axis, self._numbers, bound.limits(*limits()), address(table), place):
-            raise CompilerError("the C compiler breaks error-free arithmetic: it must round every operation as written")
+            raise CompilerError(
+                "expected a C compiler that rounds every operation separately, got one that combines some"
+            )
         return constants, place, table
 
     def fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> bool:
-        """Write samples into arrays; None skips a quantity.
+        """Write the samples at the times into ``omega`` and ``quaternion``; skip an array that is None.
 
         Return whether some times lie beyond :attr:`longest`; the samples there are not valid.
         """

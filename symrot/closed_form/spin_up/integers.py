@@ -1,9 +1,11 @@
 """A symmetric body under a constant torque about its axis, in integer arithmetic, for any number of revolutions.
 
-The rotation far from resonance (:mod:`~symrot.closed_form.spin_up.off_resonance`) and the rotation near resonance
-(:mod:`~symrot.closed_form.spin_up.resonance`) are composed at the boundary between them. This module computes, one by
-one, the samples whose number of revolutions is too large for double-double numbers. Without a C compiler it also
-computes the constants for NumPy. The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
+Resonance is the time at which the axial component Omega of the angular velocity, in axes that rotate with its
+transverse component, passes through zero (:mod:`symrot.closed_form.spin_up.motion`). The rotation far from resonance
+(:mod:`~symrot.closed_form.spin_up.off_resonance`) and the rotation near resonance
+(:mod:`~symrot.closed_form.spin_up.resonance`) are multiplied at the boundary. This module computes, one by one, the
+samples whose number of revolutions is too large for double-double numbers. Without a C compiler it also computes the
+constants for NumPy. The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
 
 import math
@@ -39,33 +41,33 @@ _LARGEST = Fraction(10) ** 300
 
 
 def _scale(*values: Fraction) -> Fraction:
-    """Return a power of two near the largest of some numbers, at least one of which is not zero."""
+    """Return a power of two near the largest of the values, at least one of which is not zero."""
     largest = max(map(abs, values))
     size = largest.numerator.bit_length() - largest.denominator.bit_length()
     return Fraction(2) ** max(-900, min(900, size))
 
 
 def _map(left: Quaternion, right: Quaternion) -> list[float]:
-    """Return the 4 x 4 matrix that maps a quaternion q to the product left*q*right, row by row."""
+    """Return the entries, row by row, of the 4 x 4 matrix that maps a quaternion q to the product left*q*right."""
     units = ((ONE[0] if i == k else 0 for i in range(4)) for k in range(4))
     columns = [product(left, (a, b, c, d), right) for a, b, c, d in units]
     return [column[i] / ONE[0] for i in range(4) for column in columns]
 
 
 class Integers:
-    """The motion of a body driven about its axis, computed in integers. Times are counted from the initial state, s.
+    """The motion of a body driven about its axis, computed in integers. Times, s, are counted from the initial state.
 
     Parameters
     ----------
     moments : 2 Fractions
-        A across the axis and C about it, kg m^2.
+        Moments of inertia across the axis and about it, kg m^2.
     axis : 0, 1 or 2
     torque : Fraction
         Torque about the axis, N m.
     rates : 3 Fractions
         Angular velocity at the start, rad/s, not parallel to the axis.
     attitude : 4 Fractions
-        Attitude at the start, not zero.
+        Quaternion of the attitude at the start, of any norm except zero.
     """
 
     def __init__(
@@ -98,7 +100,7 @@ class Integers:
 
     @staticmethod
     def _body_axes(axis: int, sign: int, first: Fraction, second: Fraction) -> Quaternion:
-        """Return the rotation from the axes of the formulas, e1, e2, e3, to the body's axes.
+        """Return the rotation from the axes e1, e2, e3 of the formulas to the axes of the body.
 
         e3 points along the torque, e1 along the transverse angular velocity at the start.
         """
@@ -113,7 +115,7 @@ class Integers:
         return Near(rounded(self._sweep.across * self._scale / self._root))
 
     def _side(self, omega: Fraction) -> int:
-        """Return -1 if a rate Omega about the axis lies before resonance, 1 after resonance, 0 near resonance."""
+        """Return -1, 0 or 1 if the motion with the axial rate ``omega`` is before, near or after resonance."""
         if self._sweep.series.wide:
             return 1
         return 0 if abs(omega) < self._edge else 1 if omega > 0 else -1
@@ -123,7 +125,7 @@ class Integers:
 
     @cached_property
     def _resonance(self) -> Quaternion:
-        """Return the rotation of the body from the start to resonance (Omega = 0), seen from the body at resonance."""
+        """The rotation of the body from the start to resonance (Omega = 0)."""
         side, sweep = self._side(self._start), self._sweep
         if not side:
             return conjugate(self._near.quaternion(self._x(self._start)))
@@ -132,9 +134,9 @@ class Integers:
         return product(leaving, conjugate(self._near.quaternion(Fraction(side * int(NEAR)))))
 
     def _begin(self, side: int) -> tuple[Fraction, Fraction, Quaternion]:
-        """Return time, rate Omega and attitude at which the formulas for one side of resonance begin.
+        """Return the time, the rate Omega and the rotation from which formulas before or after resonance count.
 
-        The attitude is the rotation of the body since the start.
+        ``side`` is -1 before and 1 after resonance. The rotation is that of the body since the start.
         """
         if self._side(self._start) == side:
             return Fraction(0), self._start, ONE
@@ -142,7 +144,7 @@ class Integers:
         return rounded((edge - self._start) / self._sweep.s), edge, product(self._resonance, crossed)
 
     def _constants(self, near: bool) -> list[float]:
-        """Return the constants for NumPy; ``near`` adds those that only samples near or beyond resonance need."""
+        """Return the constants for NumPy; if not ``near``, those for samples near and beyond resonance are zero."""
         sweep, back, wide = self._sweep, conjugate(self._axes), self._sweep.series.wide
         turns = [x / (4 * number.PI) for x in self._turn]
         inverse = self._scale / self._root if near else Fraction(0)
@@ -173,14 +175,14 @@ class Integers:
         return 2.0 * MOST / (even + math.sqrt(even * even + 4.0 * (s + growth) * MOST)) / float(self._scale)
 
     def _far(self, first: float, last: float) -> bool:
-        """Return whether all times between ``first`` and ``last`` surely lie on one side of resonance, far from it."""
+        """Return whether all times from ``first`` to ``last`` certainly lie far before resonance, or far after it."""
         start, s, scale = float(self._start), float(self._sweep.s), float(self._scale)
         ends, edge = (start + s * first * scale, start + s * last * scale), float(self._edge)
         edge += _DOUBT * (edge + max(map(abs, (start, *ends))))
         return self._sweep.series.wide or ends[1] <= -edge or ends[0] >= edge
 
     def fill(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> bool:
-        """Write samples by NumPy; None skips a quantity.
+        """Write the samples, computed by NumPy, into ``rates`` and ``attitudes``; skip an array that is None.
 
         Return whether some times lie beyond :attr:`longest`; the samples there are not valid.
         """
@@ -192,11 +194,11 @@ class Integers:
         return not max(last, -first) <= self.longest
 
     def finite(self, time: float) -> bool:
-        """Return whether the angular velocity at a time is within the range of doubles."""
+        """Return whether the angular velocity at a time, s, is within the range of doubles."""
         return abs(self._spin[0] + self._spin[1] * Fraction(time) * self._scale) < number.LARGEST
 
     def put(self, i: int, time: float, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Write sample ``i`` into the arrays; None skips a quantity."""
+        """Write one sample, at a time in s, into row i of ``rates`` and ``attitudes``; skip an array that is None."""
         t = Fraction(time) * self._scale
         angle = self._turn[0] * t + self._turn[1] * t * t
         if rates is not None:

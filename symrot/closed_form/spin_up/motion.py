@@ -1,15 +1,15 @@
 """A symmetric body under a constant torque about its axis, at any time, in closed form.
 
-The transverse angular velocity has a constant length W and rotates in the body by a phase quadratic in time. In axes
-that rotate with it, the body rotates at ``(W, 0, Omega)``, with Omega linear in time. This is the equation of a
-two-level system swept through resonance (Zener, Proc. R. Soc. A 137 (1932) 696); resonance is at Omega = 0. The
-solutions are parabolic cylinder functions of ``x = Omega/sqrt(s)``, with the sweep rate s and the only parameter
-``kappa = W/sqrt(s)``.
+The transverse angular velocity (its part normal to the axis) has a constant length W and rotates in the body by an
+angle that is quadratic in time. In axes that rotate with the transverse angular velocity, the body rotates at ``(W, 0,
+Omega)``, with Omega linear in time. This is the equation of a two-level system swept through resonance (Zener, Proc. R.
+Soc. A 137 (1932) 696): resonance is the time at which Omega = 0, and the sweep rate s is dOmega/dt. The solutions are
+parabolic cylinder functions of ``x = Omega/sqrt(s)`` with the only parameter ``kappa = W/sqrt(s)``.
 
-Far from resonance, or for a large kappa, asymptotic series are accurate to a double: they describe a slowly rotating
-vector and the rotation about it. Near resonance, Taylor series at 40 points are used. Phases are sums of two doubles,
-in revolutions, so the error of the attitude stays at a few 1e-16 for any number of revolutions. A sample takes the same
-time at any t; samples beyond 1e13 rad are computed in integers.
+Far from resonance, or for a large kappa, asymptotic series are as accurate as doubles: they describe a slowly rotating
+vector and the rotation of the body about this vector. Near resonance, Taylor series at 40 points are used. Phases are
+sums of two doubles, in revolutions, so the error of the attitude stays at a few 1e-16 for any number of revolutions. A
+sample takes the same time at any t; samples beyond 1e13 rad are computed in integers.
 
 The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
@@ -38,7 +38,7 @@ __all__ = ["SpinUp", "SpunBody", "motion", "starts"]
 
 
 class SpinUp:
-    """The motion of a symmetric body driven about its axis. Times are counted from the initial state, s.
+    """The motion of a symmetric body driven about its axis. Times, s, are counted from the initial state.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class SpinUp:
     rates : 3 numbers
         Angular velocity at the start, rad/s, not parallel to the axis.
     attitude : 4 numbers
-        Attitude at the start, not zero.
+        Quaternion of the attitude at the start, of any norm except zero.
     """
 
     regime = "circular"
@@ -78,7 +78,7 @@ class SpinUp:
         Raises
         ------
         InputError
-            If a time is not finite, or the angular velocity at a time exceeds the range of a double.
+            If a time is not finite, or if the angular velocity at a time exceeds the range of doubles.
         """
         times = times_of(t)
         rates = np.empty((len(times), 3)) if omega else None
@@ -88,7 +88,7 @@ class SpinUp:
         return rates, attitudes
 
     def _by_integers(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Write samples with too many revolutions for double-double numbers into arrays, by integer arithmetic."""
+        """Compute in integers, and write, the samples with too many revolutions for double-double numbers."""
         for time in (float(times.min()), float(times.max())):
             if not self.integers.finite(time):
                 raise InputError(f"expected times at which the angular velocity is a finite number, got {time!r} s")
@@ -109,7 +109,7 @@ def motion(
     Parameters
     ----------
     inertia : 3 numbers
-        Principal moments, kg m^2, positive; the two across the axis are equal.
+        Principal moments of inertia, kg m^2, positive; those about the two axes across the driven axis are equal.
     axis : 0, 1 or 2
     torque : number
         Torque about the axis, N m, fixed in the body.
@@ -126,7 +126,7 @@ def motion(
 
 
 def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[Initial], SpinUp]:
-    """Return a function from initial states to motions of one driven body; arguments as for :func:`motion`.
+    """Return a function from initial states to motions of one driven body; the arguments are as for :func:`motion`.
 
     Constants that do not depend on the initial state are computed once.
     """

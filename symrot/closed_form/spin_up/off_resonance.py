@@ -1,7 +1,8 @@
 """Rotation of a driven symmetric body between two times far from resonance, in fractions, to 90 digits.
 
 In axes that rotate with its transverse angular velocity, the body rotates at ``(W, 0, Omega)``, with
-``Omega = Omega0 + s t``. The angle of rotation is the integral of ``S = sqrt(Omega^2 + W^2)`` over a time t:
+``Omega = Omega0 + s t``; resonance is at Omega = 0. The angle of rotation is the integral of
+``S = sqrt(Omega^2 + W^2)`` over a time t, with S0 = S at the start:
 
     t/(2 D) (E sqrt(1 + z^2) + W^2 asinh(z)/z),  E = S0 S + Omega0 Omega,  D^2 = (W^2 + E)/2,  z = s t/(2 D).
 
@@ -33,7 +34,7 @@ _SMALL = Fraction(1, 1 << _HALVINGS)
 
 
 def fixed(values: Sequence[Fraction]) -> Quaternion:
-    """Return a unit quaternion in fixed-point integers, from fractions."""
+    """Return a unit quaternion, given in fractions, as fixed-point integers."""
     q0, q1, q2, q3 = ((x.numerator << FIXED) // x.denominator for x in values)
     return q0, q1, q2, q3
 
@@ -47,19 +48,19 @@ def product(a: Quaternion, *others: Quaternion) -> Quaternion:
 
 
 def conjugate(q: Quaternion) -> Quaternion:
-    """Return the inverse of a unit quaternion, whose vector part has the opposite sign."""
+    """Return the inverse of a unit quaternion: the vector part changes its sign."""
     return (q[0], -q[1], -q[2], -q[3])
 
 
 def about_third(angle: Fraction) -> Quaternion:
-    """Return the rotation by an angle, rad, about the third axis, as a unit quaternion."""
+    """Return the unit quaternion of a rotation by an angle, rad, about the third axis."""
     return fixed([number.cos(angle / 2), Fraction(0), Fraction(0), number.sin(angle / 2)])
 
 
 def _asinh_ratio(z: Fraction) -> Fraction:
     """Return asinh(z)/z with a relative error near 2^-320.
 
-    The argument is halved until the series of atanh(z/sqrt(1 + z^2)) is short.
+    The value asinh(z) is halved repeatedly until the series of atanh(z/sqrt(1 + z^2)) is short.
     """
     if not z:
         return Fraction(1)
@@ -85,7 +86,7 @@ def _polynomial(coefficients: Floats, y: float) -> float:
 class Sweep:
     """The constants of a sweep through resonance: W, the sweep rate s, and the asymptotic series for kappa^2 = W^2/s.
 
-    See :mod:`symrot.closed_form.spin_up.motion` for the quantities.
+    :mod:`symrot.closed_form.spin_up.motion` explains these quantities.
     """
 
     def __init__(self, across: Fraction, s: Fraction, series: Series) -> None:
@@ -97,22 +98,22 @@ class Sweep:
         """Return the size S = sqrt(Omega^2 + W^2) of the angular velocity in the rotating axes, rad/s."""
         return number.sqrt(rounded(omega * omega + self._square))
 
-    def _places(self, omega: Fraction) -> tuple[float, float, float]:
-        """Return sine and cosine of the angle from third axis to angular velocity, and the variable y of the series."""
+    def _direction(self, omega: Fraction) -> tuple[float, float, float]:
+        """Return sine and cosine of the angle from the third axis to omega, and the variable y of the series."""
         speed = self.speed(omega)
         return float(self.across / speed), float(omega / speed), float(rounded(self.unit / (speed * speed)))
 
     def delta(self, omega: Fraction) -> float:
         """Return the correction delta, rad, by which the angle of rotation exceeds the integral of S."""
-        _, cosine, y = self._places(omega)
+        _, cosine, y = self._direction(omega)
         return cosine * _polynomial(self.series.e, y)
 
     def axes(self, omega: Fraction) -> Quaternion:
-        """Return the rotation that takes the third axis to the vector at rest in space near the axis of rotation.
+        """Return the rotation from the third axis to the vector that rests in space near the axis of rotation.
 
         In the rotating axes this vector rotates slowly, as the axis of rotation does.
         """
-        sine, cosine, y = self._places(omega)
+        sine, cosine, y = self._direction(omega)
         g, c = _polynomial(self.series.g, y), _polynomial(self.series.c, y)
         m1, m2 = Fraction(sine * cosine * y * y * g), Fraction(sine * y * c)
         m3 = 1 + number.sqrt(1 - m1 * m1 - m2 * m2)
@@ -123,7 +124,7 @@ class Sweep:
         return product(turn, fixed(number.unit((m3, -m2, m1, Fraction(0)))))
 
     def angle(self, start: Fraction, time: Fraction) -> Fraction:
-        """Return the angle of rotation in a time about a vector that rotates slowly, from Omega = ``start`` on."""
+        """Return the angle, rad, of rotation about the vector of :meth:`axes` in ``time`` s after Omega = start."""
         omega = start + self.s * time
         here, there, product = self.speed(omega), self.speed(start), rounded(omega * start)
         if product >= 0:
@@ -137,6 +138,6 @@ class Sweep:
         return rounded(steady) + Fraction(self.delta(omega)) - Fraction(self.delta(start))
 
     def rotation(self, start: Fraction, time: Fraction) -> Quaternion:
-        """Return the rotation of the body, in body axes, during a time in which it stays far from resonance."""
+        """Return the rotation of the body in ``time`` s after Omega = ``start``, all of it far from resonance."""
         end = conjugate(self.axes(start + self.s * time))
         return product(self.axes(start), about_third(self.angle(start, time)), end)

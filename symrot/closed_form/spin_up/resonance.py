@@ -1,13 +1,14 @@
 """Attitude of a driven symmetric body near resonance, by Taylor series at evenly spaced points, in integers.
 
-A body that rotates at ``(kappa, 0, x)`` and is aligned with space at ``x = 0`` has the attitude ``(alpha, beta)``,
+The scaled time x is zero at resonance, see :mod:`symrot.closed_form.spin_up.motion`. A body that rotates at
+``(kappa, 0, x)`` and whose axes agree with the space axes at ``x = 0`` has the attitude ``(alpha, beta)``,
 ``alpha = q0 + i q3``, ``beta = q1 + i q2``, with
 
     2 alpha' = i x alpha - kappa beta,  2 beta' = kappa alpha - i x beta.
 
-The solutions are parabolic cylinder functions of x. For ``-x``, q1 and q2 have the opposite signs. At each point the
-equations give each Taylor coefficient from the two previous coefficients; each series begins with the final value of
-the previous series.
+The solutions are parabolic cylinder functions of x. At ``-x``, q1 and q2 have the opposite signs. At each point the
+equations determine each Taylor coefficient from the two previous coefficients; each series begins with the final value
+of the previous series.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -50,7 +51,7 @@ class Near:
         return (value.numerator << FIXED) // value.denominator
 
     def _coefficients(self, spinor: _Spinor, place: Fraction) -> list[_Spinor]:
-        """Return the Taylor series of the attitude about a point x, whose denominator is a power of two."""
+        """Return the Taylor coefficients of the attitude at x = ``place``, whose denominator is a power of two."""
         top, shift, kappa = place.numerator, place.denominator.bit_length() - 1, self._kappa
         coefficients: list[_Spinor] = [spinor]
         before: _Spinor = (0, 0, 0, 0)
@@ -75,16 +76,17 @@ class Near:
         return total[0], total[1], total[2], total[3]
 
     def quaternion(self, x: Fraction) -> Quaternion:
-        """Return the attitude at one x, with an error of 1e-30."""
+        """Return the attitude at x as a quaternion in fixed-point integers, with an error of 1e-30."""
         piece = min(int(abs(x) * PIECES), len(self._series) - 1)
         q0, q3, q1, q2 = self._sum(self._series[piece], abs(x) - Fraction(2 * piece + 1, 2 * PIECES))
         sign = -1 if x < 0 else 1
         return q0, sign * q1, sign * q2, q3
 
     def table(self) -> Floats:
-        """Return the Taylor coefficients as an array, for the compiled loops and NumPy.
+        """Return the Taylor coefficients as an array of doubles, for NumPy.
 
-        The indices are: interval of x, power of the distance from the interval's middle, component of the quaternion.
+        The indices are: the interval of x, the power of the distance from the middle of the interval, and the component
+        of the quaternion.
         """
         one = 1 << FIXED
         return np.array(

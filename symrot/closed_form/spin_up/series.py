@@ -1,19 +1,21 @@
 """Asymptotic series for a driven symmetric body far from resonance, in inverse powers of its angular velocity.
 
-In axes in which a body rotates at ``(kappa, 0, x)``, ``x`` the time, a vector ``n`` at rest in space obeys ``n' = n x
-(kappa, 0, x)``. One such vector follows the axis of rotation. With ``r^2 = x^2 + kappa^2``, ``v = 1/r^2`` and
+In axes in which a body rotates at ``(kappa, 0, x)``, where ``x`` is the scaled time, a vector ``n`` at rest in space
+obeys ``n' = n x (kappa, 0, x)``. One such vector follows the axis of rotation. With ``r^2 = x^2 + kappa^2``,
+``v = 1/r^2`` and
 
     n1 = (kappa/r) a(v),  n2 = (kappa/r) v c(v),  n3 = (x/r) b(v),
 
 the equation becomes ``c = -(a + 2 v a')``, ``b - a = -v^2 (3 c + 2 v c')``, ``2 (1 - kappa^2 v) b' = kappa^2 (b + c)``,
-so each coefficient follows from the previous coefficients. They are ordered by powers of ``v^2``; each order is a
-polynomial in ``kappa^2 v``, which is at most 1. The series does not converge, but for x above :data:`NEAR`, or kappa
-above :data:`WIDE`, its terms fall below 1e-18 before they grow.
+so each coefficient of a series follows from the previous coefficients. The coefficients are ordered by powers of
+``v^2``; the coefficient of each power is a polynomial in ``kappa^2 v``, which is at most 1. The series do not converge,
+but for x above :data:`NEAR`, or kappa above :data:`WIDE`, their terms fall below 1e-18 before they grow.
 
-In axes whose third axis is the axis of rotation, the components of ``n`` normal to it are
-``m = (kappa/r) (x/r v^2 g, v c, ..)``. The angle about it exceeds the integral of ``r`` by ``delta = (x/r) e(v)``.
+In axes whose third axis is the axis of rotation, the first components of ``n`` are
+``m = (kappa/r) (x/r v^2 g, v c, ..)``. The angle of rotation about ``n`` exceeds the integral of ``r`` by
+``delta = (x/r) e(v)``.
 
-Source: DLMF 12.9 and 12.10, for the functions of which these are modulus and phase. Proof:
+Source: DLMF 12.9 and 12.10, for the parabolic cylinder functions whose modulus and phase these series are. Proof:
 ``derivations/driven_rotation.md``.
 """
 
@@ -44,10 +46,10 @@ _TERMS = 32  # powers of kappa^2 v that are used where kappa^2 v <= _SMALL
 
 
 class Series(NamedTuple):
-    """The functions of the asymptotic series of one motion, as polynomials in ``y = v radius2``, lowest power first.
+    """The functions g, c and e of the asymptotic series of one motion, as polynomials in ``y = v radius2``.
 
-    The range is 0 <= y <= 1. If the series is accurate for every x (``wide``), ``radius2`` is kappa^2; otherwise it is
-    the smallest r^2 for which the series is accurate.
+    The coefficients begin with the lowest power, and 0 <= y <= 1. If the series is accurate for every x (``wide``),
+    ``radius2`` is kappa^2; otherwise it is the smallest r^2 for which the series is accurate.
     """
 
     wide: bool
@@ -58,13 +60,13 @@ class Series(NamedTuple):
 
 @cache
 def _nodes() -> tuple[Floats, Floats]:
-    """Return Chebyshev's points between 0 and 1, as many as a series has coefficients, and the powers of each point."""
+    """Return DEGREE + 1 Chebyshev points between 0 and 1, and the powers of each point."""
     y = 0.5 - 0.5 * np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
     return y, np.vander(y, 3 * _ORDERS + 1, increasing=True)
 
 
 def _first(share: float, v: float) -> Floats:
-    """Return the coefficients of the function a by the power of y; ``share`` is kappa^2/radius2, v is 1/radius2."""
+    """Return the coefficients of the function a, lowest power of y first; ``share`` is kappa^2/radius2, v 1/radius2."""
     order, total = {0: 1.0}, [0.0] * (3 * _ORDERS + 1)
     total[0] = 1.0
     for _ in range(_ORDERS):
@@ -81,7 +83,7 @@ def _first(share: float, v: float) -> Floats:
 
 
 def _angle(share: float, v: float, h: Floats) -> Floats:
-    """Return the function e at Chebyshev's points from the coefficients of h, where delta' = kappa^2 v^(5/2) h."""
+    """Return the values of e at the Chebyshev points, from the coefficients of h, where delta' = kappa^2 v^(5/2) h."""
     powers = _nodes()[1]
     if share >= _SMALL:  # from x = 0
         e = np.zeros(len(h) + 2)
@@ -96,7 +98,7 @@ def _angle(share: float, v: float, h: Floats) -> Floats:
 
 
 def series(kappa2: float, inverse: float) -> Series:
-    """Return the asymptotic series of a motion from kappa^2 and its inverse; one may be zero and the other infinite."""
+    """Return the asymptotic series of a motion with the given kappa^2 and 1/kappa^2; one of these may be zero."""
     wide = kappa2 >= WIDE * WIDE
     radius2 = kappa2 if wide else NEAR * NEAR + kappa2
     share, v = (1.0, inverse) if wide else (kappa2 / radius2, 1.0 / radius2)

@@ -1,1 +1,1 @@
-"""Enclosures of right-hand sides: terms with features that a step could miss, such as pulses, and C code of bounds."""
+"""Enclosures of right-hand sides: bounds, and their C code, for terms in which a step could miss a pulse."""

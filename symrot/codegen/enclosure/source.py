@@ -1,7 +1,8 @@
 """C code that bounds how far the rates dy/dt deviate from constants near a step, so that no step misses a pulse.
 
 The bounds (enclosures) hold on discs of complex times and states. The code is placed between
-:file:`propagation/enclosures/disc.h`, which has the rules of disc arithmetic, and a stepper. Standard library only.
+:file:`propagation/enclosures/disc.h`, which contains the rules of disc arithmetic, and a stepper. Standard library
+only.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,7 +20,7 @@ __all__ = ["enclosure_definitions", "enclosure_source"]
 def enclosure_source(program: Program, order: int, edges: Sequence[int]) -> str:
     """Return C code that bounds the rates of a program on complex discs; see :func:`enclosure_definitions`.
 
-    Rates without a Taylor series, such as those with abs, get no bounds.
+    For rates without a Taylor series, such as rates with abs, the code contains no bounds.
     """
     try:
         return enclosure_definitions(enclosure(recurrences(program)), order, edges)
@@ -28,7 +29,7 @@ def enclosure_source(program: Program, order: int, edges: Sequence[int]) -> str:
 
 
 def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequence[int]) -> str:
-    """Return the C code of an enclosure: the function ``symrot_deviations``, which bounds the rates, and its tables.
+    """Return the C code of an enclosure: the function ``symrot_deviations``, which bounds the rates, and tables for it.
 
     Parameters
     ----------
@@ -36,8 +37,8 @@ def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequen
         The terms to bound; None for a right-hand side that needs no bounds.
     order : int
         Order N of the polynomials that approximate the states; the table of radii depends on it. If the rates
-        deviate by at most D on a disc of ``reach`` steps, a step of size h has an error of at most ``h D
-        reach^-N/((N + 1)(1 - 1/reach))``.
+        deviate by at most D on a disc whose radius in time is ``reach`` steps, a step of length h has an error of at
+        most ``h D reach^-N/((N + 1)(1 - 1/reach))``.
     edges : sequence of int
         State i is in block j if ``edges[j] <= i < edges[j + 1]``; each block of states has its own error.
     """
@@ -83,7 +84,7 @@ def _constant(node: Node, places: Mapping[str, str]) -> str:
 
 
 def _disc(system: Recurrences, number: int, places: Mapping[str, str]) -> str:
-    """Return the C expression for a disc that contains all values of a series; ``places`` gives parameters in C."""
+    """Return the C expression for a disc that contains all values of a series; ``places`` maps parameters to C."""
     series = system.series[number]
     own = [f"d{operand}" for operand in value_operands(series)]
     if series.rule == "state":

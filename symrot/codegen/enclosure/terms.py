@@ -1,12 +1,13 @@
 """Selection of the terms of a right-hand side that must be bounded (enclosed), because a step may miss a pulse in them.
 
-A stepper knows a right-hand side only at the points where it evaluates it. A pulse, a switch or a pole between two such
-points has no effect there, but evaluating the formula over complex discs (:file:`propagation/enclosures/disc.h`) shows
-it: the result bounds all Taylor coefficients that a step omits.
+A stepper evaluates a right-hand side only at some points. A pulse, a switch or a pole between two of these points has
+no effect there, but an evaluation of the formula over complex discs (:file:`propagation/enclosures/disc.h`) shows it:
+the resulting disc bounds all Taylor coefficients that a step omits.
 
-Polynomials of low degree in the states, in time and in sine and cosine of ``a*t + b`` need no enclosure: they have no
-feature narrower than their coefficients show. Therefore each rate is split into its terms, and only the other terms
-are enclosed; a right-hand side without such terms costs nothing.
+Polynomials of low degree in the states, in time and in sine and cosine of ``a*t + b`` need no bounds: they vary no
+faster than their coefficients show. Therefore each rate is split into its terms, and only the terms that are not such
+polynomials are bounded. The term "series" stands for the Taylor series of one quantity, see
+:mod:`symrot.codegen.taylor.recurrences`.
 
 Standard library only.
 """
@@ -18,7 +19,7 @@ from symrot.formula.tree import Node
 
 __all__ = ["LOW_ORDER", "REACHES", "Enclosure", "enclosure", "value_operands"]
 
-HIGHEST_DEGREE = 6  # degree of a polynomial without narrow features: cos(t)**6 is as broad as a pulse of 0.5 rad
+HIGHEST_DEGREE = 6  # degree of a polynomial without short pulses: cos(t)**6 is as broad as a pulse of 0.5 rad
 BEYOND = HIGHEST_DEGREE + 1
 REACHES = {  # whether the order is low -> radii of the discs, in steps: low orders need larger discs
     False: (1.3, 1.8, 2.6, 3.6, 5.0, 7.0, 10.0, 16.0),
@@ -33,7 +34,7 @@ class Enclosure(NamedTuple):
 
     ``series`` lists the Taylor series to evaluate, each after its operands, as indices into ``system.series``.
     ``terms`` holds for each rate the pairs (weight, series) of its bounded terms, and ``states`` the indices of the
-    states on which they depend.
+    states on which these terms depend.
     """
 
     system: Recurrences
@@ -43,7 +44,7 @@ class Enclosure(NamedTuple):
 
 
 def value_operands(series: Series) -> tuple[int, ...]:
-    """Return the operands that give coefficient 0 of a series, without those used for later coefficients only."""
+    """Return the operands from which coefficient 0 of a series is computed, without those of later coefficients."""
     first = {"driven": 2, "primitive": 3}.get(series.rule, 0)
     return () if series.rule == "clock" else series.operands[first:]
 

@@ -1,1 +1,1 @@
-"""Lowering: translation of SymPy formulas into straight-line programs with few operations."""
+"""Lowering: translation of SymPy formulas into straight-line programs (lists of assignments) with few operations."""

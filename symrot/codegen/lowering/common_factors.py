@@ -1,4 +1,4 @@
-"""Common factors and common sums of several formulas, each computed once."""
+"""Common factors and common sums of several formulas, each of which is computed only once."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable
@@ -11,10 +11,10 @@ __all__ = ["Share"]
 
 
 class Share:
-    """Formula trees in which common factors and sums are found: the most frequent pair becomes a shared node.
+    """A collection of formula trees in which the most frequent pair of factors or terms becomes a shared node.
 
-    Among equally frequent pairs, the first to appear is chosen. Equal nodes are stored once, under a number: their
-    identity.
+    Among equally frequent pairs, the pair that appears first is chosen. Equal nodes are stored only once, and each has
+    a number, its identity.
     """
 
     def __init__(self) -> None:
@@ -22,7 +22,7 @@ class Share:
         self.nodes: list[tuple[Any, ...]] = []  # nodes by identity; their operands are identities
 
     def intern(self, node: Tree) -> int:
-        """Return the number of a node, which equal nodes share; its operands are given by their numbers."""
+        """Return the number (identity) of a node whose operands are given by their numbers; add the node if new."""
         if node not in self.identity:
             self.identity[node] = len(self.nodes)
             self.nodes.append(node)
@@ -80,7 +80,7 @@ class Share:
         return pair[0] == "add" or not any(self.nodes[i][0] == "num" for part in pair[1:] for i in part)
 
     def _replace(self, kind: str, pair: tuple[Any, ...], swap: Callable[..., tuple[Any, ...]]) -> None:
-        """Replace a pair of factors or terms in every node by one node, which is created if necessary."""
+        """Replace a pair of factors or terms in every node by the node for the pair, which is created if necessary."""
         if pair not in self.nodes:
             self.nodes.append(pair)
         new = self.nodes.index(pair)
@@ -130,5 +130,5 @@ def _without(part: tuple[int, ...], item: int) -> tuple[int, ...]:
 
 
 def _negated(pair: Any) -> Any:
-    """Return a sorting key in the opposite order, so that ``max`` selects the pair that appeared first."""
+    """Return a sort key that reverses the order of numbers, so that ``max`` selects the pair that appeared first."""
     return tuple(_negated(item) if isinstance(item, tuple) else -item for item in pair if not isinstance(item, str))

@@ -1,4 +1,4 @@
-"""Constant parts of expressions: a part without variables becomes a parameter, computed once before a motion."""
+"""Constant parts of expressions: each part without variables becomes a parameter that is computed once per motion."""
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
@@ -13,24 +13,24 @@ from symrot.errors import InputError
 __all__ = ["HOISTED", "Gather", "Tree"]
 
 Tree = tuple[Any, ...]
-"""A tree: sym name | num Fraction | mul factors divisors | add (sign, tree)... | call name args"""
+"""A formula tree: sym name | num Fraction | mul factors divisors | add (sign, tree)... | call name args"""
 
 HOISTED = "$"
-"""First letter of a constant that has not been numbered yet."""
+"""First character of the name of a constant that has no number yet."""
 
 LARGEST_POWER = 64  # largest power that is written as a single product
 ONE: Tree = ("num", Fraction(1))
 
 
 class Gather:
-    """Splits expressions into a constant times a variable part, the core; constants are computed once per motion.
+    """Splits expressions into a constant times a core, the part that contains variables, and collects the constants.
 
     Parameters
     ----------
     variables : iterable of Symbol
         Symbols that change with time or state.
     flat : bool
-        Whether a sum inside a sum is merged into it.
+        Whether a sum inside another sum is merged into the outer sum.
     """
 
     def __init__(self, variables: Iterable[Symbol], flat: bool = False) -> None:
@@ -43,7 +43,7 @@ class Gather:
         return bool(expr.free_symbols & self.variables)
 
     def constant(self, value: Expr) -> tuple[int, Tree | None]:
-        """Return (sign, number or symbol) for a constant; the second is None if the constant is 1 or -1."""
+        """Return (sign, tree) for a constant; the tree is a number, a symbol, or None if the constant is 1 or -1."""
         sign, value = _oriented(value)
         if value == 1:
             return sign, None
@@ -83,15 +83,15 @@ class Gather:
         return S.One, ("call", name, tuple(self.whole(argument) for argument in expr.args))
 
     def whole(self, expr: Expr) -> Tree:
-        """Return the formula tree of an expression, including its constant factor."""
+        """Return the formula tree of a whole expression, the constant factor included."""
         sign, tree = self.scaled(*self.split(expr))
         return tree if sign > 0 else ("add", ((-1, tree),))
 
     def _distributed(self, ordered: Sequence[Expr]) -> list[Expr]:
-        """Return the terms of a constant times a sum, expanded: c*(a + b*x) is c*a + (c*b)*x, one operation less.
+        """Return the terms of an expanded product of a constant and a sum, or an empty list for any other product.
 
-        A sum that may tend to zero, such as 1 + tanh(u), is not expanded, because the rounding error of c would remain
-        there.
+        For example, c*(a + b*x) is expanded to c*a + (c*b)*x, which has one operation less. A sum that may tend to
+        zero, such as 1 + tanh(u), is not expanded, because a rounding error proportional to c would remain.
         """
         sums = [argument for argument in ordered if self.is_variable(argument)]
         if len(sums) != 1 or not sums[0].is_Add or sums[0].atoms(*LEVELLING):
@@ -173,7 +173,7 @@ class Gather:
 
 
 def _repeated(tree: Tree, count: int) -> Tree:
-    """Return a large power of a tree by repeated squaring, since a product of so many factors would be too long."""
+    """Return the tree of a large power, written by repeated squaring: a product of all factors would be too long."""
     if count <= LARGEST_POWER:
         return ("mul", (tree,) * count, ())
     half = _repeated(tree, count // 2)
@@ -181,7 +181,7 @@ def _repeated(tree: Tree, count: int) -> Tree:
 
 
 def _oriented(value: Expr) -> tuple[int, Expr]:
-    """Return (sign, magnitude) for a constant, with the same magnitude for a and -a, so that it is computed once.
+    """Return (sign, magnitude) for a constant. The magnitude is the same for a and -a, so that it is computed once.
 
     For example, (A - C)/A and (C - A)/A have the same magnitude.
     """

@@ -13,12 +13,12 @@ __all__ = ["chain", "function_name", "to_node"]
 
 
 def to_node(expr: Expr) -> Node:
-    """Return a SymPy expression as a formula tree, translated term by term.
+    """Return the formula tree of a SymPy expression, translated term by term.
 
     Raises
     ------
     InputError
-        For a float, a function or a power that kernels cannot contain.
+        If the expression contains a float, or a function or power that kernels do not support.
     """
     if expr.is_Rational:
         return ("number", Fraction(int(expr.p), int(expr.q)))
@@ -54,7 +54,7 @@ def to_node(expr: Expr) -> Node:
 
 
 def chain(mark: str, nodes: Sequence[Node]) -> Node:
-    """Return ``a + b + c`` for nodes a, b, c, grouped from the left; ``mark`` is the operator."""
+    """Return the tree of ``(a + b) + c`` for the nodes a, b, c; ``mark`` is the operator, such as ``+``."""
     result = nodes[0]
     for node in nodes[1:]:
         result = (mark, result, node)

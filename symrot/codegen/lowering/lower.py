@@ -1,7 +1,8 @@
 """Lowering of SymPy expressions to a straight-line program with few operations.
 
-There are three exact steps. Parts that do not depend on time or state become constants, computed once for given
-parameters (:mod:`symrot.codegen.lowering.constants`). Common factors and sums are shared
+A straight-line program consists of assignments: first temporaries (intermediate results), then outputs. Three exact
+steps lead to it. Parts that do not depend on time or state become constants, which are computed once per motion
+(:mod:`symrot.codegen.lowering.constants`). Common factors and sums are computed once
 (:mod:`symrot.codegen.lowering.common_factors`). Temporaries get names
 (:mod:`symrot.codegen.lowering.temporary_names`). The result depends only on the expressions, never on the order of a
 hash table.
@@ -26,19 +27,19 @@ from symrot.formula.tree import Node, children, names, rename, text
 __all__ = ["Lowered", "lower"]
 
 ANONYMOUS = "#"
-"""First letter of a temporary that has not been named yet."""
+"""First character of the name of a temporary that has no descriptive name yet."""
 
 
 @dataclass(frozen=True)
 class Lowered:
-    """A program, and the formulas of its parameters: ``parameters[k]`` is (name, formula of physical constants)."""
+    """A program and its parameters: ``parameters[k]`` is a pair (name, formula in terms of physical constants)."""
 
     program: Program
     parameters: tuple[tuple[str, Node], ...]
 
 
 class _Writer:
-    """Writes formulas as statements in order of computation; a node that is used repeatedly becomes a temporary."""
+    """Writes formulas as assignments in order of computation; a node that is used repeatedly becomes a temporary."""
 
     def __init__(self, share: Share, roots: Sequence[int], named: dict[int, str]) -> None:
         self.nodes, self.named = share.nodes, dict(named)
@@ -88,7 +89,7 @@ class _Writer:
         return bool(kind == "num" or (kind == "sym" and first.startswith(HOISTED)))
 
     def _is_sum(self, index: int) -> bool:
-        """Return whether a node is written as a sum in brackets, which comes first in a product: (A - B) x y."""
+        """Return whether a node is written as a sum in brackets. In a product such a sum comes first: (A - B) x y."""
         return bool(self.nodes[index][0] == "add" and self.uses[index] < 2 and index not in self.named)
 
     def _formula(self, index: int) -> Node:
@@ -116,12 +117,13 @@ def lower(
     Parameters
     ----------
     signature : Signature
-        The variables are the components of its input arguments; every other symbol is a physical constant. It must
-        not contain the parameter argument, which is appended here once its size is known.
+        Name and arguments of the program. The components of the input arguments are the variables; every other symbol
+        is a physical constant. The signature must not contain the parameter argument, which this function adds.
     outputs : sequence of (component name, Expr)
         Component names and expressions, in the order of the output arguments.
     definitions : sequence of (Symbol, Expr)
-        Quantities with a physical name; later definitions and the outputs use this symbol.
+        Quantities with a physical name: pairs of the symbol and its expression. Later definitions and the outputs may
+        contain the symbol.
     parameter_argument : str
         Name of the array argument for the constants that are computed once.
 
@@ -133,7 +135,7 @@ def lower(
     Raises
     ------
     InputError
-        For a function or a power that kernels do not support.
+        If an expression contains a function or a power that kernels do not support.
     """
     ways = [_lowered(signature, outputs, definitions, parameter_argument, flat) for flat in (False, True)]
     lowered, anonymous = min(ways, key=lambda way: way[0].program.operations().total())
@@ -172,7 +174,7 @@ def _lowered(
 
 
 def _numbers(parameters: Iterable[tuple[str, Node]]) -> dict[str, Node]:
-    """Return those parameters that are printed as numbers: multiples of pi, and roots of integers."""
+    """Return the parameters, by name, that are printed as numbers, such as multiples of pi and roots of integers."""
     return {name: formula for name, formula in parameters if names(formula) <= {"pi"}}
 
 
@@ -184,7 +186,7 @@ def _numbered(
     formulas: Sequence[Node],
     parameter_argument: str,
 ) -> Lowered:
-    """Return the program with its constants as parameters, numbered in order of use and added to the signature."""
+    """Return the program in which constants are parameters, numbered in order of use and added to the signature."""
     order: dict[str, str] = {}
     for node in [node for _, node in temporaries] + list(formulas):
         for name in _leaves(node):

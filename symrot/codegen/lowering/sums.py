@@ -1,4 +1,4 @@
-"""Sums of formulas with few minus signs: a sign is moved into a difference or a number, where it costs no operation.
+"""Sums of formulas with few negations: a minus sign is moved to where it costs no operation.
 
 The difference or number may also be a factor of a product.
 """
@@ -31,13 +31,13 @@ def negative(node: Node) -> Node:
 
 
 def _turned(sign: int, node: Node) -> tuple[int, Node]:
-    """Return a signed term with a minus sign moved into a difference: -(a - b)*c becomes (b - a)*c."""
+    """Return a signed term; if possible, a minus sign is moved into a difference: -(a - b)*c becomes +(b - a)*c."""
     turned = _with_difference_turned(node) if sign < 0 else None
     return (sign, node) if turned is None else (1, turned)
 
 
 def _with_difference_turned(node: Node) -> Node | None:
-    """Return minus a product by reversing a factor that is a difference, or None if no factor is a difference."""
+    """Return the negative of a product, with one difference among its factors reversed; None if there is none."""
     if node[0] == "-":
         return negative(node)
     if node[0] != "*":

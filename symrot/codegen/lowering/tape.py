@@ -1,8 +1,8 @@
 """Tapes: straight-line programs as lists of single operations, in which equal operations occur only once.
 
-C code that treats each operation separately is made from a tape: double-double values with gradients
-(:mod:`symrot.codegen.taylor.invariant_source`), and values with bounds of their rounding errors
-(:mod:`symrot.codegen.printing.event_source`). Standard library only.
+Two kinds of C code treat each operation separately and are therefore printed from a tape: conserved quantities with
+their gradients (:mod:`symrot.codegen.taylor.invariant_source`), and event functions with bounds of their rounding
+errors (:mod:`symrot.codegen.printing.event_source`). Standard library only.
 """
 
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ class Tape(NamedTuple):
     outputs: tuple[int, ...]
 
     def of(self, output: int) -> list[int]:
-        """Return the indices of the operations that one output needs, in order."""
+        """Return the indices of the operations that one output needs, in the order of computation."""
         needed = {self.outputs[output]}
         for index in range(self.outputs[output], -1, -1):
             if index in needed:
@@ -73,9 +73,9 @@ class _Writer:
 
 
 def tape_of(program: Program, outputs: Sequence[str], more: Sequence[Node] = ()) -> Tape:
-    """Return the single operations that compute some outputs of a program and additional formulas ``more``.
+    """Return the tape that computes the named outputs of a program and the additional formulas ``more``.
 
-    The additional formulas may use the inputs and outputs of the program.
+    The additional formulas may contain inputs and outputs of the program.
     """
     writer = _Writer()
     formulas = dict(program.outputs)

@@ -1,8 +1,9 @@
 """Descriptive names of temporaries: sin_theta, q1_q2, omega_1_sq, two_q3_sq, A_minus_B, inv_det.
 
-A product of inputs is named by its factors, a small sum by its terms, a call by the function and its argument. A
-temporary whose name would be long is named after the output that needs it first: ``domega_1_term_2`` is the second such
-temporary of domega_1. A name depends only on the program and is a valid name in C, C++ and Python.
+A temporary is an intermediate result of a straight-line program. A product of inputs is named by its factors, a small
+sum by its terms, a call by the function and its argument. If such a name would be too long, the temporary is named
+after the first output that needs it: ``domega_1_term_2`` is the second such temporary of domega_1. A name depends only
+on the program and is a valid name in C, C++ and Python.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -34,7 +35,7 @@ class _Product:
     powers: tuple[tuple[str, int], ...]
 
     def times(self, other: "_Product", sign: int = 1) -> "_Product":
-        """Return the product with another product, or, with ``sign`` -1, the quotient."""
+        """Return this product times ``other``, or, if ``sign`` is -1, this product divided by ``other``."""
         powers = dict(self.powers)
         for symbol, power in other.powers:
             powers[symbol] = powers.get(symbol, 0) + sign * power
@@ -67,7 +68,7 @@ def with_names(program: Program, anonymous: Collection[str], numbers: Mapping[st
     anonymous : collection of str
         The temporaries to name.
     numbers : mapping of str to Node
-        Constants that are printed as numbers, each with its formula, which becomes part of the name.
+        Constants that are printed as numbers, each with its formula; names of temporaries are built from the formula.
     """
     arguments = program.signature.arguments
     used = {a.name for a in arguments} | {name for a in arguments for name, *_ in a.components} | set(RESERVED)
@@ -105,7 +106,7 @@ def _numbered(stem: str) -> Iterable[str]:
 
 
 def _noun(node: Node) -> str:
-    """Return the last word of the name of a temporary: the function that it calls, or ``term``."""
+    """Return the last word of the name of a temporary: the name of the function that it calls, or ``term``."""
     return NOUNS.get(node[1], str(node[1])) if node[0] == "call" else "term"
 
 
@@ -124,9 +125,9 @@ def _first_outputs(program: Program) -> dict[str, str]:
 
 
 def _product_of(node: Node, products: Mapping[str, _Product]) -> _Product | None:
-    """Return a formula as a product of powers of symbols, or None if it is not such a product.
+    """Return a formula as a product of powers of symbols, or None if the formula is not such a product.
 
-    A temporary that is itself a product is replaced by its factors.
+    Temporaries that are products themselves are replaced by their factors.
     """
     kind = node[0]
     if kind == "number":
@@ -145,7 +146,7 @@ def _product_of(node: Node, products: Mapping[str, _Product]) -> _Product | None
 
 
 def _structural_name(node: Node, product: _Product | None, products: Mapping[str, _Product]) -> str | None:
-    """Return a name for a formula made of the names inside it, or None if no short name exists."""
+    """Return a name for a formula, composed of the names in the formula, or None if there is no short name."""
     if product is not None:
         return product.name()
     if node[0] in ("+", "-"):
@@ -160,7 +161,7 @@ def _structural_name(node: Node, product: _Product | None, products: Mapping[str
 
 
 def _name_of_term(node: Node, products: Mapping[str, _Product]) -> str | None:
-    """Return the name of one term, which is a number, a symbol or a product, or None if no short name exists."""
+    """Return the name of one term of a sum (a number, a symbol or another formula); None if no short one exists."""
     if node[0] == "number":
         word = "one" if node[1] == 1 else WORDS.get(node[1])
         return word or None
@@ -171,7 +172,7 @@ def _name_of_term(node: Node, products: Mapping[str, _Product]) -> str | None:
 
 
 def _name_of_sum(node: Node, products: Mapping[str, _Product]) -> str | None:
-    """Return a name such as ``A_minus_B`` for a small sum, from its terms and their signs; None for a larger sum."""
+    """Return a name such as ``A_minus_B`` for a sum of few terms, or None for a sum of more terms."""
     terms: list[tuple[str, Node]] = []
     while node[0] in ("+", "-"):
         terms.insert(0, ("plus" if node[0] == "+" else "minus", node[2]))

@@ -1,4 +1,4 @@
-"""The head comment of every emitted file: title, arguments, domain, certificate, cost, derivation, release."""
+"""The head comment of every emitted file: title, arguments, domain, certificate, cost, derivation and release."""
 
 import re
 from collections.abc import Iterable
@@ -26,7 +26,7 @@ CONTRACT = (  # lines in the head of a C file: place of the certificate, its ass
 
 @dataclass(frozen=True)
 class Description:
-    """Texts in the head of an emitted file that cannot be computed from the program."""
+    """The texts in the head comment of an emitted file that cannot be computed from the program."""
 
     title: str
     domain: str
@@ -37,10 +37,10 @@ class Description:
 
 
 def _harmless(text: str) -> str:
-    """Return a text that is safe in a comment or docstring: it cannot end it, nor mean anything to a compiler.
+    """Return the text in a form that neither ends a comment or docstring nor means anything to a compiler.
 
     Titles and names of scenes may contain any characters. Characters that are not printable ASCII are written as
-    ``<U+00E9>``: readers of certified C accept only ASCII, and compilers warn about characters that reverse the
+    ``<U+00E9>``: the checker of certified C accepts only ASCII, and compilers warn about characters that reverse the
     direction of a line.
     """
     text = text.replace("\\", "/").replace('"""', "'''")
@@ -49,17 +49,17 @@ def _harmless(text: str) -> str:
 
 
 def cost(program: Program) -> str:
-    """Return the operation counts in words, e.g. ``5 mul, 3 add, 1 div, 2 sin, 2 cos``."""
+    """Return the numbers of operations of a program as a text, e.g. ``5 mul, 3 add, 1 div, 2 sin, 2 cos``."""
     counts = program.operations()
     order = ["mul", "add", "neg", "div", *sorted(set(counts) - set(NAMES))]
     return ", ".join(f"{counts[name]} {name}" for name in order if counts[name]) or "none"
 
 
 def _rows(argument: Argument) -> list[tuple[str, str, str, str]]:
-    """Return the rows for an argument in the table of a head comment: argument, components, unit and meaning.
+    """Return the rows of the table of arguments for one argument, each as (argument, components, unit, meaning).
 
-    Components with the same unit and meaning share a row. A constant of a scene has its own row with its formula and
-    value.
+    Components with the same unit and meaning share a row. A constant of a scene has a row of its own, in which the
+    meaning is its formula and value.
     """
     size = "" if argument.is_scalar else f"[{argument.size}]"
     heads = chain([f"{argument.role:<4} {argument.name}{size}"], repeat(""))
@@ -90,9 +90,9 @@ def banner(program: Program, description: Description, start: str, each: str, en
     program : Program
         The kernel.
     description : Description
-        Title, domain, derivation, command.
+        The further texts: title, domain, derivation, command.
     start, each, end : str
-        Comment marks of the language: first line, before each line, last line.
+        Comment marks of the language: the first line, the start of each line, and the last line.
     """
     name = program.signature.name
     lines = [*wrap(_harmless(" ".join(f"{name}: {description.title}".split())), WIDTH), ""]

@@ -1,6 +1,6 @@
 """Build files for C and C++ projects that use the library of kernels: a CMake target and a pkg-config file.
 
-Every kernel is also one self-contained file that can be compiled alone: ``cc -c KERNEL.c``.
+Each kernel is also a self-contained file that can be compiled alone: ``cc -c KERNEL.c``.
 """
 
 __all__ = ["FLAGS", "build_files"]
@@ -62,7 +62,7 @@ Libs: -L${libdir} -lsymrot -lm
 
 
 def build_files() -> dict[str, str]:
-    """Return the build files of the folder of C kernels, as file name -> text."""
+    """Return the texts of the build files for the folder of C kernels, by file name."""
     clang = " ".join(flag for flag in FLAGS if "tree" not in flag)
     cmake = _CMAKE.replace("@GNU@", " ".join(FLAGS)).replace("@CLANG@", clang)
     return {"CMakeLists.txt": cmake, "symrot.pc.in": _PKG_CONFIG}

@@ -1,6 +1,6 @@
-"""C99 code of programs, which is also valid C++: a function for one sample, and one for a batch of samples.
+"""C99 code of programs, which is also valid C++: one function computes a single sample, another a batch of n samples.
 
-In a batch, component i of all n samples is stored in one row (structure of arrays).
+In a batch, component i of all n samples is stored in one array, at the indices i*n to i*n + n - 1.
 """
 
 from collections.abc import Callable, Sequence
@@ -48,27 +48,27 @@ class Real:
     precision: str
 
     def literal(self, value: Fraction) -> str:
-        """Return the nearest number of this type as a C literal, the shortest that is read back as the same number."""
+        """Return the C literal of the number of this type that is nearest to a value: the shortest such literal."""
         digits = _shortest_float(value) if self.suffix else repr(float(value))
         return (digits if "." in digits or "e" in digits or "n" in digits else f"{digits}.0") + self.suffix
 
     @cached_property
     def functions(self) -> dict[str, str]:
-        """Return the C name, for this type, of each function that kernels call: ``sinf`` for sin in float."""
+        """The C names, for this type, of all functions that kernels call, such as ``sinf`` for sin in float."""
         own = {name: f"symrot_{name}" for name in OWN_FUNCTIONS}
         in_c = {name: name for name in FUNCTIONS} | own | {"abs": "fabs", "copysign": "copysign"}
         return {name: f"{called}{self.suffix}" for name, called in in_c.items()}
 
     @cached_property
     def near_functions(self) -> dict[str, str]:
-        """Return the C names of functions in batches, where ``symrot_math.h`` replaces <math.h> for moderate angles."""
+        """The C names of all functions that batches call; for moderate angles ``symrot_math.h`` replaces <math.h>."""
         own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
         shared = {"sin": "sin", "cos": "cos", "atan2": "atan2", "select_ge": "choose_ge"}
         return self.functions | own | {name: f"symrot_{other}{self.suffix}" for name, other in shared.items()}
 
     @property
     def bits(self) -> str:
-        """Return the unsigned integer type of C with the same number of bits."""
+        """The unsigned integer type of C with the same number of bits."""
         return "uint32_t" if self.suffix else "uint64_t"
 
 
@@ -89,9 +89,9 @@ def _as_float(value: float) -> float:
 
 
 def c_expression(node: Node, real: Real = DOUBLE, near: bool = False) -> str:
-    """Return a formula as a C expression, with the brackets that its order of evaluation needs.
+    """Return a formula as a C expression, with brackets that preserve the order of evaluation.
 
-    ``near`` selects the functions of ``symrot_math.h`` for batches, which need moderate angles.
+    If ``near`` is true, the functions of ``symrot_math.h`` are called, which are valid for moderate angles only.
     """
     return text(rename(node, functions=real.near_functions if near else real.functions), 0, real.literal)
 
@@ -102,7 +102,7 @@ def c_arguments(program: Program, real: Real = DOUBLE) -> str:
 
 
 def _head(name: str, arguments: str, qualifier: str = "", returns: str = "void") -> str:
-    """Return the head of a C function, with arguments on separate lines if one line is too long."""
+    """Return the head of a C function; if it is too long for one line, its arguments stand on further lines."""
     head = f"{qualifier}{returns} {name}({arguments})"
     if len(head) <= WIDTH:
         return head
@@ -144,8 +144,9 @@ def _body(
 ) -> list[str]:  # fmt: skip
     """Return the statements of a function; each value is computed just before the first output that needs it.
 
-    So few values are needed at the same time. ``index_of`` returns the index of a component in its array. With
-    ``late``, all results are computed, in another order, and kept in temporaries before the first one is stored.
+    In this order few values have to be kept at the same time. ``index_of`` returns the C index of a component in its
+    array. With ``late``, all results are computed in another order, and the first one is stored after the last one is
+    computed.
     """
     results = dict(program.outputs)
     lines: list[str] = []
@@ -182,10 +183,11 @@ def _body(
 def _computed_in_turn(program: Program) -> list[Argument]:
     """Return the output arguments in order of computation, for a loop that stores its results last.
 
-    The output with fewest inputs comes first; if all inputs and results fit into registers, the order is unchanged.
-    With gcc 12 on Zen 3 (geometric mean over n = 512, 1000, 1024, 4096, 10^6) the new order takes 0.88 of the time for
-    inertia_tetrahedron, 0.95 for heavy_top (1.03 at 1000, 0.97 at 10^6), and 0.98 for heavy_top_symmetric. Of the
-    kernels with fewer values, inertia_triangular_prism and inertia_frustum would take 1.06.
+    The output with the fewest inputs comes first; if all inputs and results fit into registers, the order is unchanged.
+    Measured with gcc 12 on Zen 3 (geometric mean over n = 512, 1000, 1024, 4096, 10^6), the new order reduces the time
+    by the factor 0.88 for inertia_tetrahedron, 0.95 for heavy_top (1.03 at 1000, 0.97 at 10^6), and 0.98 for
+    heavy_top_symmetric. For two kernels with fewer values, inertia_triangular_prism and inertia_frustum, the factor
+    would be 1.06.
     """
     outputs = [a for a in program.signature.arguments if a.role == "out"]
     if _streams(program) <= REGISTERS:
@@ -194,7 +196,7 @@ def _computed_in_turn(program: Program) -> list[Argument]:
 
 
 def _reserved(program: Program, real: Real) -> set[str]:
-    """Return the names already in use in the C code of a batch, which new temporaries must not have."""
+    """Return the names already used in the C code of a batch; new temporaries must have other names."""
     arguments = program.signature.arguments
     inputs = {name for a in arguments if a.role == "in" for name, *_ in a.components}
     functions = {*real.functions.values(), *real.near_functions.values()}
@@ -203,7 +205,7 @@ def _reserved(program: Program, real: Real) -> set[str]:
 
 
 def _due(needed: set[str], waiting: dict[str, tuple[set[str], list[str]]]) -> list[str]:
-    """Remove from ``waiting`` all statements that the values ``needed`` depend on, and return them in order."""
+    """Remove from ``waiting`` all statements on which the values ``needed`` depend, and return them in order."""
     for name, (of, _) in reversed(waiting.items()):
         if name in needed:
             needed = needed | of
@@ -227,7 +229,7 @@ def c_name(kernel: str, real: Real = DOUBLE) -> str:
 
 
 def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> str:
-    """Return the C text of the one-sample function, without includes and head comment.
+    """Return the C text of the function for one sample, without includes and head comment.
 
     Parameters
     ----------
@@ -236,7 +238,7 @@ def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> st
     qualifier : str
         Text in front of the definition, e.g. ``"static inline "``.
     real : Real
-        ``DOUBLE`` or ``FLOAT``; the name of the function for floats ends in ``f``.
+        ``DOUBLE`` or ``FLOAT``. The name of a function for floats ends in ``f``.
     """
     head = _head(c_name(program.signature.name, real), c_arguments(program, real), qualifier)
     lines = [head, "{", *_silenced(program, "    "), *_body(program, _index_of_one, "    ", real), "}"]
@@ -244,7 +246,7 @@ def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> st
 
 
 def _own_function(name: str, real: Real) -> list[str]:
-    """Return the C definition of a function, such as sinc, that kernels call and <math.h> does not have."""
+    """Return the C definition of a function, such as sinc, that kernels call and <math.h> does not contain."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
     lines = [_head(real.functions[name], arguments, "static inline ", real.type), "{"]
@@ -255,7 +257,7 @@ def _own_function(name: str, real: Real) -> list[str]:
 
 
 def _near_function(name: str, real: Real) -> list[str]:
-    """Return the branch-free C definition for batches of a function, such as sinc, that <math.h> does not have."""
+    """Return the C definition of a function that <math.h> lacks, such as sinc, for batches: it contains no branches."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
     lines = [_head(real.near_functions[name], arguments, "static inline ", real.type), "{"]
@@ -279,7 +281,8 @@ def _batch_arguments(program: Program, real: Real) -> str:
 def _batch(program: Program, real: Real, near: bool) -> list[str]:
     """Return the C text of the batch function, which computes n samples.
 
-    With ``near``, a block that contains an angle out of range is computed again with the functions of <math.h>.
+    With ``near``, functions of ``symrot_math.h`` are called; a block of samples that contains an angle out of their
+    range is computed again with the functions of <math.h>.
     """
     head = [
         _head(f"{c_name(program.signature.name, real)}_batch", _batch_arguments(program, real)),
@@ -325,11 +328,11 @@ def _blocks(size: str) -> list[str]:
 
 
 def _split(program: Program) -> list[Program]:
-    """Return one program for each output argument if separate loops are faster, else the whole program.
+    """Return one program for each output argument if separate loops are faster, otherwise a list of the whole program.
 
     Separate loops are faster if the whole program accesses more arrays than processors prefetch and each part does not,
-    provided that no operation is done twice and the number of arrays read or written grows by at most a fifth. Programs
-    with sines are not split, because sines take longer than memory access.
+    provided that no operation is done twice and the number of accessed arrays grows by at most a fifth. Programs with
+    sines are not split, because sines take longer than memory access.
     """
     whole = _streams(program)
     scalars = any(a.is_scalar for a in program.signature.arguments if a.role == "in")
@@ -363,13 +366,13 @@ def _streams(program: Program) -> int:
 
 
 def _stores_last(program: Program) -> bool:
-    """Return whether the loop of a batch computes all results before it stores the first.
+    """Return whether the loop of a batch computes all results before it stores the first one.
 
-    It does if it accesses more arrays than fit in one set of the first cache: compilers read values again after a
-    store, and these values are then no longer in the cache. With gcc 12 on Zen 3, the kernels of the library that store
-    last take 0.9 of the time of immediate stores if n is a multiple of 512 (heavy_top 0.7, but heavy_top_symmetric 1.1)
-    and the same time at other n. quaternion_product, with 12 arrays, would take 1.15 at n = 1000 with gcc tuned for Zen
-    3: it needs 26 loads per iteration instead of 22.
+    It does if it accesses more arrays than fit in one set of the first cache: compilers load values again after a
+    store, and these values may then no longer be in the cache. Measured with gcc 12 on Zen 3, late stores reduce the
+    time of such kernels by the factor 0.9 if n is a multiple of 512 (heavy_top 0.7, but heavy_top_symmetric 1.1), and
+    do not change it for other n. For quaternion_product, with 12 arrays, the factor would be 1.15 at n = 1000 with gcc
+    tuned for Zen 3, since the loop would need 26 loads per iteration instead of 22.
     """
     return _streams(program) > WAYS
 
@@ -390,7 +393,7 @@ def _loop(
 
 
 def _with_names(program: Program, names: dict[str, str]) -> Program:
-    """Return the program with some of its inputs renamed."""
+    """Return the program with its inputs renamed as ``names`` says."""
     signature = program.signature
     arguments = tuple(
         replace(a, components=tuple((names.get(c[0], c[0]), *c[1:]) for c in a.components)) for a in signature.arguments
@@ -439,14 +442,14 @@ def c_header(program: Program, description: Description, reals: Sequence[Real] =
 
 
 def c_source(program: Program, description: Description, reals: Sequence[Real] = (DOUBLE,), near: bool = False) -> str:
-    """Return the C99 text of a kernel; it depends only on the arguments, not on clock, path or environment.
+    """Return the C99 text of a kernel, which depends only on the arguments, not on time, paths or the environment.
 
     Parameters
     ----------
     program : Program
         The kernel.
     description : Description
-        Further texts for the head comment.
+        Title and other texts for the head comment.
     reals, near
         As for :func:`c_functions`.
     """
@@ -454,7 +457,7 @@ def c_source(program: Program, description: Description, reals: Sequence[Real] =
 
 
 def with_head(program: Program, description: Description, functions: str) -> str:
-    """Return the C text of a kernel: its head comment, then the text that :func:`c_functions` printed."""
+    """Return the C text of a kernel: its head comment, then ``functions``, the result of :func:`c_functions`."""
     return "\n".join([*banner(program, description, "/*", " *", " */"), functions])
 
 
@@ -466,10 +469,10 @@ def c_functions(program: Program, reals: Sequence[Real] = (DOUBLE,), near: bool 
     program : Program
         The kernel.
     reals : sequence of Real
-        The types of numbers, each with its one-sample and its batch function.
+        The types of numbers; for each type a function for one sample and a batch function are printed.
     near : bool
-        Whether batches use sine and cosine of ``symrot_math.h``, which compilers vectorise; blocks with an angle out of
-        its range are computed again with the C library.
+        Whether batches call the functions of ``symrot_math.h``, which compilers vectorise. A block of samples with an
+        angle out of the range of these functions is computed again with the C library.
     """
     near = near and without_branches(program)
     lines = _includes(program, near)

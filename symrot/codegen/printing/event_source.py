@@ -1,10 +1,11 @@
 """C code of event functions, whose zeros are located: values with bounds of their rounding errors, and enclosures.
 
-The bound is computed together with the value, operation by operation, to first order. A value smaller than its bound
-has no reliable sign; so the bound distinguishes a curve that touches zero from one that only comes close to zero.
+The bound is computed together with the value, operation by operation, to first order. If a value is smaller than its
+bound, its sign is not known; so the bound distinguishes a curve that touches zero from a curve that only comes close to
+zero.
 
-Enclosures (real intervals and complex discs) contain all values of the formula over an interval of time. They show
-where there is no zero, and bound features that samples of the formula cannot show.
+Enclosures (real intervals and complex discs) contain all values of the formula over an interval of time. They prove
+where there is no zero, and they also cover pulses between the points at which the formula is evaluated.
 
 The code is placed between :file:`event_enclosures.h` and :file:`events.c`.
 """
@@ -39,13 +40,14 @@ def event_definitions(
     Parameters
     ----------
     program : Program
-        Quantities of t, states and parameters; the formulas may use its outputs by name.
+        Quantities that depend on t, states and parameters; the formulas may contain the names of these quantities.
     formulas : sequence of Node
+        The event functions.
     states : sequence of str
         Names of the states, in order.
     edges, scales
-        Blocks of states, as for :func:`symrot.propagation.steppers.dop853.translation_unit`. A state is known to a few
-        units in the last place of the largest state of its block, or of the scale.
+        Blocks of states, as for :func:`symrot.propagation.steppers.dop853.translation_unit`. The error of a state is
+        assumed to be a few units in the last place of the largest state in its block, or of the scale of the block.
     """
     places = {"t": "t", **{name: f"y[{i}]" for i, name in enumerate(states)}}
     for argument in program.signature.arguments:
@@ -125,7 +127,7 @@ def _largest(terms: Sequence[str]) -> str:
 
 
 def _statements(index: int, op: Operation, places: dict[str, str], known: dict[str, str]) -> tuple[str, str]:
-    """Return the C definitions of an operation's value and of the bound of its rounding error."""
+    """Return two C definitions: of the value of an operation, and of the bound of its rounding error."""
     v, e = f"v{index}", f"e{index}"
     values, errors = [f"v{i}" for i in op.operands], [f"e{i}" for i in op.operands]
     own = f"SYMROT_ROUNDING*fabs({v})"
@@ -153,7 +155,7 @@ def _statements(index: int, op: Operation, places: dict[str, str], known: dict[s
 
 
 def _enclosed(kind: str, around: str, op: Operation, places: dict[str, str], known: dict[str, str]) -> str:
-    """Return the C expression for the enclosure of an operation, a call of a function of :file:`event_enclosures.h`."""
+    """Return the C expression for the enclosure of an operation: a call of a function of :file:`event_enclosures.h`."""
     if op.kind == "number":
         return f"symrot_{kind}_point({c_expression(('number', op.value))})"
     if op.kind == "symbol":

@@ -1,6 +1,7 @@
-"""Formulas of functions, such as sinc, that kernels call and <math.h> does not have.
+"""Formulas of functions, such as sinc, that kernels call and <math.h> does not contain.
 
-See :mod:`symrot.kernels.removable`."""
+See :mod:`symrot.kernels.removable`.
+"""
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
@@ -40,23 +41,26 @@ def _calls(program: Program) -> Iterator[tuple[str, tuple[Node, ...]]]:
 
 
 def turning_arguments(program: Program) -> list[Node]:
-    """Return the distinct angles whose sine or cosine a program computes, directly or inside another function."""
+    """Return the distinct formulas of angles whose sine or cosine a program computes, maybe inside another function."""
     return list(dict.fromkeys(arguments[0] for name, arguments in _calls(program) if name in ("sin", "cos", *TURNING)))
 
 
 def without_branches(program: Program) -> bool:
-    """Return whether a program calls a function for which ``symrot_math.h`` has a form without branches."""
+    """Return whether a program calls a function for which ``symrot_math.h`` contains a version without branches."""
     return any(name in ("sin", "cos", "atan2", "select_ge", *NEAR) for name, _ in _calls(program))
 
 
 def called(program: Program) -> list[str]:
-    """Return the functions, such as sinc, that a program calls and C does not have, in the order of their table."""
+    """Return the names of the functions, such as sinc, that a program calls and <math.h> does not contain.
+
+    They are in the order of the table :data:`symrot.kernels.removable.FUNCTIONS`.
+    """
     used = {name for name, _ in _calls(program)}
     return [name for name in FUNCTIONS if name in used and (name in _CHOICES or name in REMOVABLE)]
 
 
 def series(coefficients: Iterable[Fraction], variable: str) -> Node:
-    """Return the formula of a polynomial, lowest coefficient first, by Horner's rule."""
+    """Return the formula of a polynomial by Horner's rule; ``coefficients`` begin with the lowest power."""
     first, *rest = reversed(tuple(coefficients))
     node: Node = ("number", first)
     for coefficient in rest:
@@ -65,9 +69,10 @@ def series(coefficients: Iterable[Fraction], variable: str) -> Node:
 
 
 def own_function(name: str, precision: str) -> tuple[tuple[str, ...], list[Statement], Choice]:
-    """Return the parameters, temporaries and result of a function, such as sinc, that C does not have.
+    """Return the parameters, the temporaries and the result of a function, such as sinc, not in <math.h>.
 
-    The result is a choice between two formulas: (relation, left, right, then, else).
+    The result is a choice between two formulas, as (relation, left, right, then, else): the formula ``then`` if the
+    relation between ``left`` and ``right`` holds, otherwise ``else``.
     """
     if name in _CHOICES:
         parameters, choice = _CHOICES[name]

@@ -1,13 +1,14 @@
 """The file ``symrot_math.h``: sine, cosine and arc tangent without branches, in double and float, for batches.
 
-Compilers can vectorise such functions. An angle is reduced by the nearest multiple of pi/2, which is subtracted in
-parts so short that each product is exact, with and without fused operations (Cody and Waite, Software Manual for the
-Elementary Functions, 1980). Sine and cosine of the remainder are polynomials; bits select the function and its sign.
-The arc tangent is computed from a quotient z of at most 1/2: the smaller coordinate over the larger, or their
-difference over their sum. The rounding error of the quotient is computed exactly from half-length factors and
-corrected. The coefficients are computed here, in fractions, by interpolation of the exact series at Chebyshev points.
+Compilers can vectorise such functions. The nearest multiple of pi/2 is subtracted from the angle, in parts with so few
+bits that each product is exact, with and without fused operations (Cody and Waite, Software Manual for the Elementary
+Functions, 1980). Sine and cosine of the remainder are polynomials; bits of the multiple select the function and its
+sign. The arc tangent is computed from a quotient z of at most 1/2: the smaller coordinate divided by the larger, or
+their difference divided by their sum. The rounding error of the quotient is computed exactly from factors of half
+length and added. The coefficients of the polynomials are computed here, in fractions, by interpolation of the exact
+series at Chebyshev points.
 
-Stated error: at most 1 unit in the last place, of sine and cosine for ``|x|`` up to ``FAR``. It is measured by
+The error is at most 1 unit in the last place, for sine and cosine if ``|x|`` is at most ``FAR``. It is measured by
 ``python -m symrot.bench.ulps`` and, for every float and all multiples of pi/2, by tests/kernels/test_in_c.py
 (tests/reference/sine_harness.c).
 """
@@ -36,7 +37,7 @@ _RAISED = {"binary64": (900, 200), "binary32": (90, 40)}  # a quotient below 2^-
 
 @cache
 def tail_coefficients(first: int, count: int) -> tuple[Fraction, ...]:
-    """Return the coefficients of the polynomial in t = x^2 nearest to the tail of sine or cosine, lowest power first.
+    """Return the coefficients, lowest power first, of the polynomial in t = x^2 for the tail of sine or cosine.
 
     The tail is the series of sine (``first = 3``) or cosine (``first = 4``) from the term ``x^first/first!`` on,
     divided by ``x^first``.
@@ -47,7 +48,7 @@ def tail_coefficients(first: int, count: int) -> tuple[Fraction, ...]:
 
 @cache
 def _arc_coefficients(count: int) -> tuple[Fraction, ...]:
-    """Return the coefficients of the polynomial in t = z^2 nearest to (atan(z)/z - 1)/t, lowest power first."""
+    """Return the coefficients, lowest power first, of the polynomial in t = z^2 that approximates (atan(z)/z - 1)/t."""
     return _nearest([Fraction((-1) ** (k + 1), 2 * k + 3) for k in range(_ARC_TERMS)], _ARC_SQUARE, count)
 
 
@@ -72,7 +73,7 @@ def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fra
 
 
 def quarter_turn_parts(precision: str) -> list[Fraction]:
-    """Return pi/2 as a list of parts to add: several with few bits, and a last part with full precision."""
+    """Return a list of numbers whose sum is pi/2: all have few bits except the last one, which has full precision."""
     rest, parts = PI / 2, []
     for bits in _PARTS[precision]:
         parts.append(_leading(rest, bits))
@@ -112,7 +113,7 @@ def _wrapped(head: str, formula: str) -> list[str]:
 
 
 def _reduction(real: Real) -> list[str]:
-    """Return the C statements that reduce x to a remainder ``high + low``, its square t, and the count of pi/2."""
+    """Return the C statements that compute the remainder ``high + low`` of x, its square t, and the multiple."""
     parts = [real.literal(part) for part in quarter_turn_parts(real.precision)]
     digits = _DIGITS[real.precision]
     lines = [
@@ -209,7 +210,7 @@ def _functions(real: Real) -> list[str]:
 
 
 def _arc(real: Real) -> list[str]:
-    """Return the C text of the arc tangent of y/x in all four quadrants (atan2)."""
+    """Return the C text of the function atan2, the angle of the point (x, y) in all four quadrants."""
     kind, s = real.type, real.suffix
     bits, sign, fraction, bias = ("uint64_t", 63, 52, 1023) if kind == "double" else ("uint32_t", 31, 23, 127)
     tiny, up = _RAISED[real.precision]

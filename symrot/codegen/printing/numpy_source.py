@@ -1,4 +1,4 @@
-"""NumPy text of programs: a function for one sample, or for arrays of samples along the last axis."""
+"""NumPy text of programs: a function that computes one sample, or arrays of samples along the last axis."""
 
 from fractions import Fraction
 
@@ -27,7 +27,7 @@ _NAMES["copysign"] = "np.copysign"
 
 
 def _own_function(name: str) -> list[str]:
-    """Return the Python definition of a function that NumPy does not have; it computes both sides of its choice."""
+    """Return the Python definition of a function, such as sinc, that NumPy lacks; it evaluates both alternatives."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, "binary64")
     condition = f"{_expression(left)} {relation} {_expression(right)}"
     return [
@@ -42,7 +42,7 @@ def _unpacked(argument: Argument, used: set[str]) -> list[str]:
 
 
 def numpy_source(program: Program, description: Description) -> str:
-    """Return the text of a Python module with one function; the same program gives the same bytes.
+    """Return the text of a Python module with one function. The text depends only on the arguments.
 
     The function takes the input arguments in order and returns each output argument as an array of shape (size,) or
     (size, n).

@@ -1,1 +1,1 @@
-"""Recurrences of Taylor coefficients, and C code that computes them, for one motion or for many motions at once."""
+"""Recurrences of Taylor coefficients, and C code that computes the coefficients, for one motion or for many at once."""

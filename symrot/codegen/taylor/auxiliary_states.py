@@ -1,14 +1,14 @@
 """Auxiliary states ("companions") of a Taylor series: quantities of the attitude that have equations of their own.
 
 The components of a direction fixed in space, seen from the body, ``gamma = R(q)^T e``, are sums of products of q0..q3.
-They occur in further products, so at each order of the series one convolution waits for another. But because
-``gamma' = gamma x omega``, gamma is known one order earlier, like a state. Such equations are found automatically: a
-quantity that contains only the attitude and functions of time is differentiated along the motion; each factor that
-multiplies a rate in the result becomes a companion too, and so on until no new companion appears. If this does not end
-soon, the system stays unchanged.
+They occur in further products, so at each order of the series one convolution needs the result of another. But because
+``gamma' = gamma x omega``, gamma can be integrated like a state, and its coefficients are then known one order earlier.
+Such equations are found automatically: a quantity that contains only the attitude and functions of time is
+differentiated along the motion; each factor in the result that multiplies a component of omega becomes a companion too,
+and so on, until no new companion appears. If more than nine would be needed, the system stays unchanged.
 
-A companion is computed from the attitude at the start of every step, so it cannot drift. The identities hold for a unit
-quaternion; its norm must be constant along the motion.
+At the start of every step the companions are computed from the attitude, so that they cannot drift. The identities hold
+for a unit quaternion; its norm must be constant along the motion.
 """
 
 from collections.abc import Iterable
@@ -27,11 +27,11 @@ ONE: Node = ("number", Fraction(1))
 
 
 class _Open(Exception):
-    """Raised if the rates of the auxiliary states contain ever more new quantities, or are not of the right form."""
+    """Raised if the rates of the auxiliary states contain too many new quantities, or do not have the required form."""
 
 
 class _Term(NamedTuple):
-    """One term of a sum: a number times a constant formula, optionally times an auxiliary state and a state."""
+    """One term of a sum: a number times a constant formula, times an auxiliary state and a state; None stands for 1."""
 
     companion: int | None
     number: Fraction
@@ -55,14 +55,14 @@ def with_companions(system: Recurrences) -> Recurrences:
 
 
 def _times(a: Polynomial, b: Polynomial) -> Polynomial:
-    """Return a product of polynomials; raise _Open if it has too many monomials, counted before any of them cancel."""
+    """Return a product of polynomials; raise _Open if it has too many monomials before equal monomials are combined."""
     if len(a.terms) * len(b.terms) > MOST_TERMS and len(products_of_monomials(a, b)) > MOST_TERMS:
         raise _Open
     return a * b
 
 
 class _Closure:
-    """A system, and the auxiliary states that its rates and the rates of these states need."""
+    """A system, and the auxiliary states that are needed for its rates and for the rates of the auxiliary states."""
 
     def __init__(self, system: Recurrences) -> None:
         self.system, self.series = system, system.series
@@ -89,7 +89,7 @@ class _Closure:
         return generator(self.variable(kind, what))
 
     def constant(self, node: Node) -> Polynomial:
-        """Return a constant formula as a polynomial; each part that is not a polynomial becomes a new variable."""
+        """Return a constant formula as a polynomial, in which each part that is not a polynomial is a variable."""
         if node[0] == "number":
             return constant(node[1])
         if node[0] not in ("neg", "*", "+", "-"):
@@ -102,7 +102,7 @@ class _Closure:
         return parts[0] + (parts[1] if node[0] == "+" else _times(parts[1], constant(-1)))
 
     def polynomial(self, i: int) -> Polynomial | None:
-        """Return a series as a polynomial in states, functions of time and constants, or None if it is not one."""
+        """Return the polynomial in states, functions of time and constants that equals a series, or None."""
         if i not in self.polynomials:
             s = self.series[i]
             result: Polynomial | None = None
@@ -119,7 +119,7 @@ class _Closure:
         return self.polynomials[i]
 
     def sum(self, s: Series, only: Iterable[int] | None = None) -> Polynomial | None:
-        """Return a sum of series, or of some of its operands, as a polynomial, or None if it is not a polynomial."""
+        """Return the polynomial that equals a sum of series, or its part with the operands ``only``, or None."""
         *weights, constant = s.weights
         total = self.constant(constant) if constant is not None and only is None else Polynomial({})
         for operand, weight in zip(s.operands, weights, strict=True):
@@ -168,7 +168,7 @@ class _Closure:
         return sum(power for variable, power in monomial if variable in self.attitude)
 
     def split(self, form: Polynomial) -> list[tuple[Node, int | None, Polynomial]]:
-        """Return the terms of a polynomial, each as (constant, state or None, polynomial in attitude and time)."""
+        """Return the terms of a polynomial as (constant, state or None, polynomial in attitude and functions of t)."""
         groups: dict[Monomial, dict[Monomial, Fraction]] = {}
         for monomial, x in form.terms.items():
             outer = tuple((v, p) for v, p in monomial if not self.is_inner(v))
@@ -190,10 +190,11 @@ class _Closure:
     # -------------------------------------------------------------------------------------------- closing
 
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
-        """Return (state, factor, number) with ``inner = factor*state + number`` for an auxiliary state.
+        """Return (index, factor, number) with ``inner = factor*state + number`` for the auxiliary state ``index``.
 
-        The state is added if it is new. To recognise equal states, all terms are brought to one degree by powers of
-        the squared norm, which is 1; from a form of degree 2 a multiple of the squared norm is moved to ``number``.
+        The state is added if it is new; the index is None if ``inner`` is a number. To recognise equal states, all
+        terms are brought to one degree by powers of the squared norm, which is 1. From a polynomial of degree 2, a
+        multiple of the squared norm is moved to ``number``.
         """
         degrees = {self.degree(monomial) for monomial in inner.terms}
         top = max(degrees)
@@ -230,7 +231,7 @@ class _Closure:
         return result
 
     def seek(self, i: int) -> None:
-        """Replace every polynomial of the attitude in a series and its operands by auxiliary states."""
+        """Replace the polynomials of the attitude in a series and its operands, in ``self.replaced``."""
         s = self.series[i]
         if i in self.replaced or s.rule not in ("sum", "product"):
             return
@@ -245,7 +246,7 @@ class _Closure:
     def seek_in(self, s: Series) -> None:
         """Replace the polynomials of the attitude in a sum of series by auxiliary states.
 
-        Products that are operands of the sum itself are replaced together; then the other operands are searched.
+        Products among the operands of the sum are replaced together; then the other operands are searched.
         """
         alone = {
             i for i in s.operands if self.series[i].rule == "product" and self.of_attitude(self.polynomial(i))
@@ -273,7 +274,7 @@ class _Closure:
         return _rebuilt(self, rates)
 
     def seed(self, form: Polynomial) -> Node:
-        """Return the formula of an auxiliary state at the start of a step, with terms grouped by functions of time."""
+        """Return the formula for an auxiliary state at the start of a step; terms are grouped by functions of time."""
         groups: dict[Monomial, dict[Fraction, list[Node]]] = {}
         for monomial, x in sorted(form.terms.items()):
             clocks = tuple((v, p) for v, p in monomial if v not in self.attitude)
@@ -314,7 +315,7 @@ def _total(terms: list[Node]) -> Node:
 
 
 def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
-    """Return the system that computes the auxiliary states as states, without the series that these replace."""
+    """Return the system in which the auxiliary states are states, without the series that they replace."""
     system, old = closure.system, closure.series
     count = len(system.states)
     alias = {
@@ -323,7 +324,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     }  # fmt: skip
 
     def left(s: Series) -> list[int]:
-        """Return the operands of a series that remain after the replacement by auxiliary states."""
+        """Return the operands of a series that are not replaced by auxiliary states."""
         return [i for i in s.operands if i not in closure.parts.get(s, (set(),))[0]]
 
     needed: set[int] = set()
@@ -346,7 +347,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     def summed(
         terms: list[_Term], pairs: Iterable[tuple[int, Node | None]] = (), constant: Node | None = None
     ) -> Series:
-        """Return the series for a sum of weighted series, auxiliary states and a constant."""
+        """Return the series of a sum of weighted series, weighted auxiliary states and a constant."""
         for term in terms:
             if term.companion is None:
                 constant = weight(term) if constant is None else ("+", constant, weight(term))

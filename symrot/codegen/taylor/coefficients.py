@@ -1,7 +1,7 @@
 """Taylor coefficients of a system, computed from its recurrences with any kind of number.
 
-With Fractions they are exact, which tests use to prove the rules; with numbers of 40 digits they serve as a reference.
-Standard library only.
+With Fractions the coefficients are exact, which tests use to prove the rules; computed with numbers of 40 digits, they
+serve as a reference. Standard library only.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -15,7 +15,7 @@ __all__ = ["coefficients"]
 
 
 class _Run(NamedTuple):
-    """State of one computation: constants as numbers, functions, and the coefficients computed so far."""
+    """State of one computation: a function that evaluates constants, functions by name, and the coefficients so far."""
 
     constant: Callable[[Node], Any]
     functions: Mapping[str, Callable[..., Any]]
@@ -35,13 +35,13 @@ def coefficients(
     Parameters
     ----------
     values : mapping
-        States, parameters and t by name.
+        Values of states, parameters and t, by name.
     functions, number
         As for :func:`symrot.formula.tree.evaluate`.
 
     Examples
     --------
-    With Fractions the coefficients are exact, which is how the rules are proven
+    With Fractions the coefficients are exact; tests prove the rules with them
     (``tests/codegen/test_recurrences.py``).
     """
     run = _Run(
@@ -125,4 +125,4 @@ _RULES: dict[str, Callable[[_Run, Series, int, list[Any]], Any]] = {
     "primitive": _primitive_rule,
     "clock": _clock_rule,
 }
-"""Function that computes coefficient n, for each rule."""
+"""For each rule, the function that computes coefficient n of a series."""

@@ -1,10 +1,10 @@
 """C code of the Taylor coefficients of an ensemble: each SIMD lane (element of a vector) holds one trajectory.
 
-The code computes the jet, which is the list of all Taylor coefficients at one time. Lanes never exchange values: a
-series is an array of vectors, and each operation is done for all trajectories at once. Convolutions that occur with the
-same weight in the same sums share an accumulator. Orders n and n + 1 are computed together: loops over the known
-coefficients read each number once for both; then the terms with the newest coefficients are added. No loop over the
-order is unrolled.
+The code computes the jet, which is the list of the Taylor coefficients of all states at one time. Lanes never exchange
+values: a series is an array of vectors, and each operation is done for all trajectories at once. A slot is a C variable
+that sums up (accumulates) convolutions; convolutions that occur with the same weight in the same sums share a slot.
+Orders n and n + 1 are computed together: loops over the known coefficients read each number once for both orders; then
+the terms with the newest coefficients are added. No loop over the order is unrolled.
 
 The code is placed between :file:`lanes.h` and :file:`lanes.c` of :mod:`symrot.ensemble`.
 """
@@ -27,7 +27,7 @@ LOAD_OF_LOOP = 24  # accumulators and factors of a loop: by measurement, half mo
 
 
 class Convolution(NamedTuple):
-    """A convolution ``sum(a[k] b[n-k])`` of series a and b, and which of the terms k = 0 and k = n it includes.
+    """A convolution ``sum(a[k] b[n-k])`` of series a and b; ``ends`` says whether it includes the terms k = 0 and n.
 
     ``ends`` is ``both``, ``last`` (only k = n, with the newest coefficient of a) or ``none``.
     """
@@ -42,7 +42,7 @@ class Convolution(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """The convolutions that are added up in one C variable, each with its sign."""
+    """The convolutions that are summed up in one C variable, each with its sign."""
 
     terms: tuple[tuple[int, Convolution], ...]
 
@@ -69,7 +69,7 @@ def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[fl
     Raises
     ------
     InputError
-        For an operation without a Taylor series, or an order or blocks that cannot be used.
+        If an operation has no Taylor series, or if the order or the blocks cannot be used.
     """
     system = checked_system(program, edges, scales, order)
     inverses = ", ".join(["0.0", *(f"1.0/{n}" for n in range(1, order + 1))])
@@ -99,8 +99,9 @@ def multiplications(program: Program, order: int) -> int:
 class _Jet:
     """Writes the C function that computes the jet (all Taylor coefficients) of one system.
 
-    In C, ``v{i}`` is the newest coefficient of series i, and ``u{i}``, or ``x[..]`` for a state, the array of all of
-    its coefficients.
+    In C, ``v{i}`` is the newest coefficient of series i, and ``u{i}`` is the array of all coefficients of the series
+    (for a state the array is ``x[..]``). A phase is ``first`` for order 0, ``second`` for order 1, and ``later`` for
+    all other orders.
     """
 
     def __init__(self, system: Recurrences) -> None:
@@ -117,7 +118,7 @@ class _Jet:
         self.divided = [i for i, s in enumerate(self.series) if s.rule in ("quotient", "root", "primitive")]
 
     def _make_slots(self) -> None:
-        """Give each convolution a C variable that adds it up; products with equal weights in the same sums share it."""
+        """Assign each convolution to a slot; products that occur with equal weights in the same sums share a slot."""
         uses: dict[int, list[tuple[int, Node, int]]] = {}
         own: set[int] = set()
         for place, s in enumerate((*self.series, *self.system.rates)):
@@ -155,20 +156,20 @@ class _Jet:
         return f"x[{self.state[series]}][{n}]" if series in self.state else f"u{series}[{n}]"
 
     def weight(self, node: Node) -> str:
-        """Return a positive constant as C: a literal, or an element of a table if it is a formula of parameters."""
+        """Return the C expression of a positive constant: a literal, or an array element for a formula."""
         if not names(node) and node[0] == "number":
             return f"V_ALL({c_expression(node)})"
         return f"c[{self.constants.setdefault(node, len(self.constants))}]"
 
     def signed(self, node: Node | None) -> str:
-        """Return the C expression of a constant of either sign; None is written as zero."""
+        """Return the C expression of a constant of any sign; None stands for zero."""
         sign, size = split_sign(node or ("number", 0))
         return self.weight(size) if sign > 0 else f"V_SUB(V_ALL(0.0), {self.weight(size)})"
 
     def slot(self, number: int, phase: str, sums: str) -> str:
-        """Return the C expression for coefficient n of a sum of convolutions that share an accumulator.
+        """Return the C expression for coefficient n of a slot (a sum of convolutions).
 
-        It adds two independent chains of operations, so that neither waits for all of the newest coefficients.
+        It is the sum of two independent chains of operations, so that neither chain waits for all newest coefficients.
         """
         older = f"{sums}{number}" if phase == "later" else ""
         newer = ""
@@ -261,7 +262,7 @@ class _Jet:
     def _clock(self, s: Series, name: str, n: str) -> list[str]:
         """Return the C statement for coefficient n of a function of ``a t + b``.
 
-        It uses coefficient n - 1 of the function's derivative, for example of cosine if the function is sine.
+        It uses coefficient n - 1 of the derivative of the function, for example of cosine if the function is sine.
         """
         rate, _ = s.weights
         assert rate is not None
@@ -274,7 +275,7 @@ class _Jet:
     def _clock_start(self, i: int, s: Series) -> list[str]:
         """Return the C statements for coefficient 0 of a pair of functions of ``a t + b``, such as sine and cosine.
 
-        The statements of both functions are returned with the first one.
+        For the first function of the pair, the statements of both are returned; for the second function, none.
         """
         both = sorted({i, s.operands[0]})
         if i != both[0]:
@@ -323,7 +324,7 @@ class _Jet:
         return lines
 
     def _partners(self) -> list[int]:
-        """Return the series whose coefficient n - 1 gives coefficient n of another, as cosine does for sine."""
+        """Return the series from which coefficient n of another series is computed, as cosine for sine."""
         return sorted({s.operands[0] for s in self.series if s.rule == "clock"})
 
     def loops(self) -> list[str]:
@@ -334,9 +335,9 @@ class _Jet:
         return [line for group in self._groups() for line in self._loop(group)]
 
     def _groups(self) -> list[list[int]]:
-        """Return, for each C loop, the numbers of the convolution sums (slots) that it computes.
+        """Return, for each C loop, the indices of the slots (sums of convolutions) that it computes.
 
-        Sums with common factors share a loop as long as registers suffice.
+        Slots with common factors share a loop as long as registers suffice.
         """
         left = list(range(len(self.slots)))
         groups: list[list[int]] = []
@@ -354,7 +355,7 @@ class _Jet:
         return groups
 
     def _load(self, group: Sequence[int]) -> int:
-        """Return how many registers a loop over a group of slots needs: two sums for each slot, and the factors."""
+        """Return the number of registers for a loop over a group of slots: two sums for each slot, and the factors."""
         terms = [c for i in group for _, c in self.slots[i].terms]
         return 2 * len(group) + 2 * len({c.a for c in terms}) + len({c.b for c in terms})
 
@@ -379,7 +380,7 @@ class _Jet:
     def _products(
         self, terms: Sequence[tuple[int, int, Convolution]], left: Sequence[int], right: Sequence[int]
     ) -> list[str]:
-        """Return the C loop over k that adds the products u[k] v[n-k] to the accumulators, two values of k per pass."""
+        """Return the C loop over k that adds the products u[k] v[n-k] to the sums, two values of k at a time."""
         lines = ["{", *(f"    symrot_v f{i} = {self.at(i, '1')};" for i in left)]
         lines.append("    for (int64_t k = 1; k < n - 1; k += 2) {")
         for new, old, ahead, behind in (("g", "f", "k + 1", "n - k"), ("f", "g", "k + 2", "n - k - 1")):
@@ -447,14 +448,14 @@ class _Jet:
 
 
 def _plus(value: str, sign: int, factors: str) -> str:
-    """Return the C expression of a value plus or minus a product; an empty value is zero."""
+    """Return the C expression of a value plus or minus a product; an empty text as value stands for zero."""
     if value:
         return f"V_{'FMA' if sign > 0 else 'FNMA'}({factors}, {value})"
     return f"V_MUL({factors})" if sign > 0 else f"V_SUB(V_ALL(0.0), V_MUL({factors}))"
 
 
 def _add(name: str, sign: int, factors: str) -> str:
-    """Return the C statement that adds a product to a sum or subtracts it."""
+    """Return the C statement that adds a product to the variable ``name``, or subtracts it if ``sign`` is negative."""
     return f"{name} = V_{'FMA' if sign > 0 else 'FNMA'}({factors}, {name});"
 
 

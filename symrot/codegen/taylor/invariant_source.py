@@ -1,8 +1,9 @@
 """C code of the conserved quantities of a motion: values in double-double arithmetic, gradients in doubles.
 
-A value is a sum of two doubles with about 32 digits. It shows a drift of the invariants long before a double could. The
-gradients give the smallest change of the states that restores the invariants. They are computed by reverse
-differentiation, in one pass over the list of operations for each invariant.
+A value in double-double arithmetic is a sum of two doubles with about 32 digits, so that a drift of a conserved
+quantity is visible long before a double would show it. From the gradients follows the smallest change of the states
+that restores the conserved values. Gradients are computed by reverse differentiation: one pass over the list of
+operations, from the last to the first, for each quantity.
 
 The code is placed between :file:`taylor.h` and :file:`taylor.c`; :file:`projection.c` uses it.
 """
@@ -23,11 +24,14 @@ _OPERATIONS = {  # C functions of operations on pairs of doubles
     "neg": "dd_negative", "sqrt": "symrot_pair_root",
 }  # fmt: skip
 IN_PAIRS = {*_OPERATIONS, "number", "symbol"}
-"""Operations and operands that exist for pairs of doubles."""
+"""Operations and operands for which double-double arithmetic is available."""
 
 
 def projectable(program: Program, outputs: Sequence[str]) -> list[str]:
-    """Return the outputs that double-double arithmetic can compute: those made of + - * / and square roots only."""
+    """Return the names of the outputs that double-double arithmetic can compute.
+
+    Their formulas contain only + - * / and square roots.
+    """
     return [name for name in outputs if {op.kind for op in tape_of(program, [name]).operations} <= IN_PAIRS]
 
 
@@ -39,13 +43,14 @@ def invariant_definitions(
     Parameters
     ----------
     program : Program
-        Quantities of t, states and parameters.
+        Quantities that depend on t, states and parameters.
     outputs : sequence of str
-        The conserved quantities. Those that are not :func:`projectable` are left out. The quaternion's norm is added.
+        Names of the conserved quantities. Quantities that are not :func:`projectable` are left out; the squared norm of
+        the quaternion is added.
     states : sequence of str
         Names of the states, in order.
     parameters : sequence of str
-        Names of the parameters; the text takes two numbers for each, a value and its rounding error.
+        Names of the parameters; the C code reads two numbers for each: its value, and the rounding error of this value.
     """
     norm = set(QUATERNION) <= set(states)
     tape = tape_of(program, projectable(program, outputs), [parse(NORM)] if norm else [])

@@ -1,7 +1,8 @@
-"""C functions of SIMD vectors for ensembles: phases ``a t + b`` as sums of two doubles, their sine and cosine.
+"""C functions of SIMD vectors for ensembles: phases ``a t + b`` as sums of two doubles, and their sine and cosine.
 
-They use the argument reduction and polynomials of :mod:`symrot.codegen.printing.math_header`. A trajectory whose angle
-is too large for these calls the C library, so that its result does not depend on the other angles of the vector.
+They use the argument reduction and the polynomials of :mod:`symrot.codegen.printing.math_header`. For a trajectory
+whose angle is too large for the polynomials, the C library is called, so that its result does not depend on the other
+angles in the vector.
 """
 
 from fractions import Fraction
@@ -67,7 +68,10 @@ static inline void symrot_circle(symrot_v high, symrot_v low, symrot_v *sine, sy
 
 
 def _horner(name: str, coefficients: tuple[Fraction, ...]) -> str:
-    """Return C statements of Horner's rule in ``square``; the C variable ``name`` must hold the last coefficient."""
+    """Return the C statements of Horner's rule for a polynomial in ``square``.
+
+    At the start, the C variable ``name`` must contain the last coefficient; at the end, it contains the result.
+    """
     return "\n".join(
         f"    {name} = V_FMA(square, {name}, V_ALL({DOUBLE.literal(each)}));" for each in coefficients[-2::-1]
     )

@@ -1,10 +1,10 @@
 """Arrangement of the Taylor series of one motion in SIMD vectors of four elements, called lanes.
 
-A row is a vector of up to four series that one rule computes together; states have their own rows. A pack is a vector
-of any four series, and a column the element-wise convolution of two packs. A slot is a weighted sum of columns; each
-lane of a row that is a sum takes its products with one constant from one slot. A pack whose four lanes are the same
-series is broadcast and needs no storage. So ``dq/dt = 1/2 q*(0, omega)`` becomes three broadcasts times a permuted
-quaternion.
+A row is a vector of up to four series that have the same recurrence rule and are computed together; states have rows of
+their own. A pack is a vector of any four series. A column is the convolution of two packs, lane by lane. A slot is a
+sum of columns, multiplied by one constant per lane; in a row with the rule ``sum``, a slot adds up the products that
+have the same constant. A pack whose four lanes hold the same series is read as one number for all lanes (broadcast) and
+needs no storage. For example, ``dq/dt = 1/2 q*(0, omega)`` is computed as three broadcasts times a permuted quaternion.
 """
 
 from collections.abc import Iterable, Sequence
@@ -24,7 +24,7 @@ ONE: Node = ("number", Fraction(1))
 
 
 class Address(NamedTuple):
-    """The position of a series in a row (a vector of four series), with a sign to apply; sign 0 means the value 0."""
+    """The position of a series: its row, its lane in the row, and a sign as factor (0 gives the value 0)."""
 
     sign: int
     row: int
@@ -36,9 +36,9 @@ _Pair = tuple[tuple[int, int], tuple[int, int]]  # two factors, each given by it
 
 
 class Column(NamedTuple):
-    """An element-wise convolution ``sum(a[k] b[n-k])`` of two vectors of series; ``ends`` gives the range of k.
+    """The convolutions ``sum(a[k] b[n-k])`` of two vectors of four series, lane by lane; ``ends`` gives the range of k.
 
-    ``both``: k = 0 to n; ``last``: k = 1 to n, without b[n]; ``none``: k = 1 to n - 1, without a[n] and b[n].
+    The range is k = 0 to n for ``both``, k = 1 to n for ``last``, and k = 1 to n - 1 for ``none``.
     """
 
     a: Pack
@@ -47,25 +47,25 @@ class Column(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """A sum of columns (convolutions of four series at once), times one constant per lane."""
+    """A sum of columns, multiplied by one constant per lane. A column is the convolution of two series in each lane."""
 
     columns: tuple[int, ...]
     weights: tuple[Node, ...]
 
 
 class Term(NamedTuple):
-    """Four series times one constant each, as one addend of a vector sum."""
+    """One term of a vector sum: four series, each multiplied by its own constant."""
 
     pack: Pack
     weights: tuple[Node, ...]
 
 
 class Row(NamedTuple):
-    """Up to four series that one rule computes together, one in each lane of a SIMD vector.
+    """Up to four series with the same recurrence rule that are computed together, one in each lane of a SIMD vector.
 
-    ``lanes`` holds the indices of the series, or None for an unused lane, which holds zero. ``slots`` holds the
-    convolutions, ``terms`` the addends of the rule ``sum`` or the operands of another rule in their order, and
-    ``constant`` the number that is added to coefficient 0.
+    ``lanes`` holds the indices of the series, or None for an unused lane, whose value is zero. ``slots`` holds the sums
+    of convolutions, ``terms`` the other terms of the rule ``sum`` or the operands of another rule, and ``constant`` the
+    numbers that are added to coefficient 0.
     """
 
     rule: str
@@ -78,8 +78,8 @@ class Row(NamedTuple):
 class Layout(NamedTuple):
     """The series of a system in rows of four, in order of computation: states, auxiliary states, other series.
 
-    For auxiliary states see :mod:`symrot.codegen.taylor.auxiliary_states`. ``rates`` holds the time derivative of each
-    row of states and of auxiliary states, and ``seeds`` the formulas for coefficient 0 of auxiliary states.
+    :mod:`symrot.codegen.taylor.auxiliary_states` explains auxiliary states. ``rates`` holds the time derivatives of the
+    rows of states and auxiliary states, and ``seeds`` the formulas for coefficient 0 of the auxiliary states.
     """
 
     series: tuple[Series, ...]
@@ -92,10 +92,10 @@ class Layout(NamedTuple):
 
 
 def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
-    """Return the arrangement of a system's Taylor series in SIMD vectors of four.
+    """Return the arrangement of the Taylor series of a system in SIMD vectors of four.
 
     State i is in block j if ``edges[j] <= i < edges[j + 1]``; two blocks never share a vector. A product that occurs in
-    two sums is computed once or in each sum, whichever costs less.
+    two sums is computed once, or once in each sum, whichever costs less.
     """
     bundled = _with_bundles(system)
     return min((_Placer(bundled, edges, uses).layout() for uses in MOST_USES), key=cost)
@@ -107,7 +107,7 @@ def cost(layout: Layout) -> int:
 
 
 def _with_bundles(system: Recurrences) -> Recurrences:
-    """Return the system in which products that occur together in several sums are added up once."""
+    """Return the system in which products that occur together in several sums are replaced by one sum of them."""
     series = list(system.series)
     sums = [(i, s) for i, s in enumerate(series) if s.rule == "sum"]
     sums += [(-1 - i, rate) for i, rate in enumerate(system.rates)]
@@ -174,7 +174,10 @@ class _Placer:
         self.rows.append(row._replace(lanes=lanes))
 
     def _inlined(self, most_uses: int) -> set[int]:
-        """Return the products that occur only in sums, in at most ``most_uses``; each sum computes them itself."""
+        """Return the indices of the products that are computed inside the sums that contain them.
+
+        They occur in at most ``most_uses`` sums and in no other series.
+        """
         count: dict[int, int] = {}
         for s in (*self.series, *self.system.rates):
             for operand in s.operands:
@@ -183,7 +186,7 @@ class _Placer:
         return {operand for operand, uses in count.items() if uses <= most_uses}
 
     def level(self, i: int) -> int:
-        """Return how many steps one after another coefficient n of a series needs: 0 for states, which are known."""
+        """Return the number of successive computations that coefficient n of a series needs; it is 0 for states."""
         if i not in self.levels:
             s = self.series[i]
             older = {"driven": (1,), "primitive": (1,), "clock": (0,)}.get(s.rule, ())  # operands used up to n - 1 only
@@ -217,7 +220,11 @@ class _Placer:
         return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds)
 
     def _shape(self, i: int) -> tuple[int, ...]:
-        """Return the sorting key of a series among those of its rule: exp after pairs, sums of many products first."""
+        """Return the key by which series with the same recurrence rule are sorted.
+
+        Exponentials come after pairs such as sine and cosine; sums come in the order of decreasing numbers of
+        products.
+        """
         s = self.series[i]
         products = sum(operand in self.inlined for operand in s.operands)
         return (s.function == "exp", -products)
@@ -225,7 +232,7 @@ class _Placer:
     # -------------------------------------------------------------------------------------------- packs
 
     def pack(self, items: Sequence[tuple[int, int] | None]) -> Pack:
-        """Return a vector of series with signs; an unused lane (None) gets the series that costs no instruction."""
+        """Return the pack of up to four pairs (sign, series); an unused lane (None) gets one that needs no time."""
         addresses = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
         first = next(address for address in addresses if address is not None)
         if (
@@ -236,14 +243,14 @@ class _Placer:
         return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(addresses))
 
     def address(self, sign: int, series: int, lane: int) -> Address:
-        """Return the position of a series in its row, in the given lane if a copy of the series is there."""
+        """Return the position of a series in its row: the given lane if it holds a copy, otherwise the first lane."""
         first = self.place[series]
         return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
 
     def column(self, pairs: Sequence[_Pair | None], ends: str, needed: Sequence[bool] = ()) -> int:
         """Add a column, the convolutions of up to four pairs of series, and return its index.
 
-        A lane without a pair holds zero if its value is needed, else any product that costs no instruction.
+        In a lane without a pair, the column is zero if the value is needed, otherwise a product that costs no time.
         """
         a = self.pack([None if pair is None else pair[0] for pair in pairs])
         b = self.pack([None if pair is None else pair[1] for pair in pairs])
@@ -320,7 +327,10 @@ class _Placer:
         return Row("sum", lanes, tuple(made), tuple(terms), None if set(constants) == {ZERO} else constants)
 
     def _columns(self, lanes: list[list[tuple[int, int]]]) -> Iterable[int]:
-        """Yield columns that together contain all products of each lane, with a factor common to all lanes if any."""
+        """Yield the indices of columns that together contain all products of each lane.
+
+        While all lanes have a factor in common, products with this factor form a column, in which it is broadcast.
+        """
         rest = [[(sign, self.series[p].operands[0], self.series[p].operands[1]) for sign, p in lane] for lane in lanes]
         needed = [bool(lane) for lane in lanes]
         while any(rest):
@@ -340,9 +350,9 @@ class _Placer:
             yield self.column(picked, "both", needed)
 
     def _shared(self, lanes: list[list[tuple[int, int, int]]]) -> int | None:
-        """Return the first series that is a factor in every lane, or None if there is no such series or one lane only.
+        """Return the first series that is a factor in every lane, and can therefore be broadcast to all lanes.
 
-        It can be broadcast to all lanes.
+        Return None if there is no such series, or only one lane.
         """
         if len(lanes) < 2:
             return None
@@ -352,7 +362,7 @@ class _Placer:
     def _mixed(self, terms: list[tuple[int, int, int] | None], needed: Sequence[bool]) -> int:
         """Add a column of one product per lane, and return its index.
 
-        Each product is written as u v or v u so that the column reuses vectors of series that already exist.
+        Each product is written as u v or as v u, whichever allows the column to use more packs that already exist.
         """
         known = {pack for column in self.columns for pack in (column.a, column.b)}
         whole = {tuple(Address(1, row, lane) for lane in range(LANES)) for row in range(len(self.rows))}
@@ -376,6 +386,6 @@ class _Placer:
 
 
 def _first_positive(item: tuple[Node, list[tuple[int, int]]]) -> tuple[Node, list[tuple[int, int]]]:
-    """Return (weight, products), with both signs changed if the first product is negative."""
+    """Return (weight, products); if the first product is negative, the signs of all of them are changed."""
     weight, terms = item
     return item if terms[0][0] > 0 else (("neg", weight), [(-sign, operand) for sign, operand in terms])

@@ -1,9 +1,9 @@
 """Recurrences for the Taylor coefficients of a motion, built from its rates dy/dt with one rule for each operation.
 
-A series is the list of coefficients ``u[0], u[1], ...`` of one quantity along the motion. Every operation of a program
-becomes a rule that gives coefficient n of its result from coefficients up to n of its operands; the states follow by
-``x[n+1] = rate[n]/(n+1)``. Linear operations are sums with constant weights, and equal operations share one series.
-Sums over n terms occur only in products and in the rules that are solved from a product:
+A series is the list of Taylor coefficients ``u[0], u[1], ...`` of one quantity along the motion. Every operation of a
+program becomes a rule, which computes coefficient n of the result from coefficients up to n of the operands; for the
+states, ``x[n+1] = rate[n]/(n+1)``. Linear operations are sums with constant weights, and equal operations share one
+series. Sums over n terms (convolutions) occur only in products and in rules that are derived from a product:
 
 =====================  ====================================================================================
 product ``w = u v``    ``w[n] = sum(u[k] v[n-k], k = 0..n)``; a square adds each pair once and doubles it
@@ -42,10 +42,10 @@ TANGENTS = {"tan": 1, "tanh": -1}  # function -> sign in t w' = (1 + sign w^2) t
 class Series(NamedTuple):
     """One series of Taylor coefficients: its rule, its operands, and the constants of the rule.
 
-    ``weights`` holds the constants of a sum, one per operand, followed by the constant that is added to coefficient 0
-    (or None); for a function of ``a t + b`` (a clock), it holds a and b. ``function`` gives coefficient 0, from
-    coefficient 0 of the last operands, if the rule does not. ``sign`` is the s of the rule, ``number`` the index of a
-    state.
+    For a sum, ``weights`` holds one constant per operand, followed by the constant that is added to coefficient 0, or
+    None; for a function of ``a t + b`` (rule ``clock``), it holds a and b. If the rule does not determine coefficient
+    0, ``function`` computes it from coefficient 0 of the last operands. ``sign`` is the s of the rule, ``number`` the
+    index of a state.
     """
 
     rule: str  # state time sum product quotient root driven primitive clock, or theta (t u')
@@ -60,8 +60,8 @@ class Recurrences(NamedTuple):
     """The recurrences of a program: all series, in an order in which each coefficient can be computed.
 
     ``rates`` holds the series of the rate of each state. Auxiliary states, if any, come after the states of the
-    program; ``seeds`` holds formulas of the states and t for their coefficient 0, see
-    :mod:`symrot.codegen.taylor.auxiliary_states`.
+    program; ``seeds`` holds the formulas, in terms of the states and t, for coefficient 0 of the auxiliary states
+    (:mod:`symrot.codegen.taylor.auxiliary_states`).
     """
 
     states: tuple[str, ...]
@@ -92,7 +92,7 @@ def recurrences(program: Program) -> Recurrences:
     Raises
     ------
     InputError
-        For an operation that does not have a Taylor series everywhere, such as abs.
+        If an operation, such as abs, does not have a Taylor series everywhere.
     """
     return _Builder(program).result()
 
@@ -125,7 +125,7 @@ class _Builder:
         return self.known[series]
 
     def read(self, node: Node) -> _Linear:
-        """Return a formula as a constant plus weighted series; series that are missing are added."""
+        """Return a formula as a linear form (a constant plus weighted series); series that do not exist are added."""
         kind = node[0]
         if kind == "number":
             return _Linear(node, {})
@@ -137,7 +137,7 @@ class _Builder:
         return _READERS[kind](self, node, parts)
 
     def series_of(self, form: _Linear) -> int:
-        """Return the index of the series that equals a constant plus weighted series; it is added if it is new."""
+        """Return the index of the series that equals a linear form (a constant plus weighted series); add it if new."""
         if form.constant is None and list(form.terms.values()) == [ONE]:
             return next(iter(form.terms))
         return self.add(self.sum_of(form))
@@ -148,7 +148,7 @@ class _Builder:
         return Series("sum", tuple(i for i, _ in terms), (*(weight for _, weight in terms), form.constant))
 
     def factored(self, form: _Linear) -> tuple[Node, int]:
-        """Return (constant, series) whose product equals a sum of series; proportional sums share their series."""
+        """Return (constant, series) whose product equals a linear form; proportional linear forms share one series."""
         if form.constant is None and len(form.terms) == 1:
             ((series, weight),) = form.terms.items()
             return weight, series
@@ -173,7 +173,7 @@ class _Builder:
     def sum(self, left: _Linear, right: _Linear, sign: int) -> _Linear:
         """Return the sum or difference of two linear forms (a constant plus weighted series).
 
-        A bracket that may become zero during the motion is not expanded; see :meth:`bracket`.
+        A sum in brackets that may become zero during the motion is not expanded; see :meth:`bracket`.
         """
         if left.terms and right.terms:
             left, right = self.bracket(left), self.bracket(right)
@@ -182,7 +182,8 @@ class _Builder:
     def bracket(self, form: _Linear) -> _Linear:
         """Return a multiple of a sum with functions, such as ``m*(1 + tanh(u))``, as m times one series.
 
-        The expanded form ``m + m*tanh(u)`` would have the rounding error of m where the bracket tends to zero.
+        The expanded form ``m + m*tanh(u)`` would have a rounding error proportional to m where the sum tends to zero.
+        Any other linear form is returned unchanged.
         """
         parts = [*form.terms.values(), *([] if form.constant is None else [form.constant])]
         factors = [_number_and_rest(part) for part in parts]
@@ -216,7 +217,7 @@ class _Builder:
         return _Linear(None, {self.add(Series("quotient", (v,))): _folded(("/", _value(left), b))})
 
     def reciprocal(self, number: int) -> _Linear | None:
-        """Return 1/v by sech if v is a product of hyperbolic cosines, which would overflow; else None."""
+        """Return 1/v in terms of sech if v is a product of hyperbolic cosines, which could overflow; otherwise None."""
         series = self.series[number]
         if series.rule == "product":
             left, right = map(self.reciprocal, series.operands)
@@ -226,7 +227,7 @@ class _Builder:
         return self.secant(self.cosh_arguments[number])
 
     def secant(self, argument: _Linear) -> _Linear:
-        """Return the hyperbolic secant w = sech(u) as a series, by its equation t w' = -tanh(u) w t u'."""
+        """Return w = sech(u), the hyperbolic secant, as a series computed from the equation t w' = -tanh(u) w t u'."""
         u = self.series_of(argument)
         if ("sech", u) not in self.known:
             ((tangent, _),) = self.tangent("tanh", argument).terms.items()
@@ -261,15 +262,15 @@ class _Builder:
         return self.add(Series("theta", (series,)))
 
     def clock(self, form: _Linear) -> tuple[Node, Node | None] | None:
-        """Return (a, b) if a sum of series equals a t + b, else None."""
+        """Return the constants (a, b) if a linear form equals a t + b, otherwise None."""
         ((series, weight),) = form.terms.items() if len(form.terms) == 1 else ((-1, ONE),)
         return (weight, form.constant) if series >= 0 and self.series[series].rule == "time" else None
 
     def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: _Linear) -> int:
-        """Add functions of one argument whose derivatives contain each other; return the index of the first.
+        """Add the series of functions of one argument whose derivatives contain each other; return the first index.
 
-        Each function is given by its name and the sign of its derivative; ``partners`` are the positions of the
-        functions that their derivatives contain: cosine for sine.
+        Each function is given by its name and the sign of its derivative. ``partners`` holds, for each function, the
+        position of the function that its derivative contains: for sine the position of cosine.
         """
         clock = self.clock(argument)
         seed = () if clock else (self.series_of(argument),)
@@ -283,7 +284,7 @@ class _Builder:
         return self.known[key]
 
     def half_turn(self, name: str, argument: _Linear) -> _Linear:
-        """Return the series of sin, cos, sinh or cosh of an argument; the other function of the pair is added too."""
+        """Return sin, cos, sinh or cosh of an argument as a series; the other function of the pair is added too."""
         sine, cosine, *signs = HALF_TURNS[name]
         first = self.driven(((sine, signs[0]), (cosine, signs[1])), (1, 0), argument)
         if cosine == "cosh":
@@ -314,7 +315,7 @@ class _Builder:
         return _alone(own)
 
     def one_and_square(self, series: int, sign: int) -> _Linear:
-        """Return ``1 + sign*u^2`` for a series u, as a constant plus a weighted series."""
+        """Return ``1 + sign*u^2`` for a series u, as a linear form."""
         return _sum(_Linear(ONE, {}), _scaled(self.product(_alone(series), _alone(series)), sign), 1)
 
     def root(self, name: str, argument: _Linear) -> _Linear:
@@ -337,7 +338,7 @@ class _Builder:
         return self.primitive(name, self.theta(u), self.series_of(self.one_and_square(u, 1)), (u,))
 
     def angle(self, name: str, y: _Linear, x: _Linear) -> _Linear:
-        """Return w = atan2(y, x) as a series, by its equation (x^2 + y^2) t w' = x t y' - y t x'."""
+        """Return w = atan2(y, x) as a series computed from the equation (x^2 + y^2) t w' = x t y' - y t x'."""
         turning = _sum(self.product(x, self.theta_form(y)), self.product(y, self.theta_form(x)), -1)
         square = _sum(self.product(x, x), self.product(y, y), 1)
         return self.primitive(
@@ -378,7 +379,7 @@ def _value(form: _Linear) -> Node:
 
 
 def _folded(node: Node) -> Node:
-    """Return a constant formula simplified: numbers combined, the sign in front, factors of 1 removed."""
+    """Return a simplified constant formula: numbers combined, a sign moved to the front, factors of 1 removed."""
     kind, parts = node[0], children(node)
     if kind == "neg":
         sign, inner = split_sign(parts[0])
@@ -400,7 +401,7 @@ def _signed(sign: int, node: Node) -> Node:
 
 
 def split_sign(node: Node) -> tuple[int, Node]:
-    """Return the sign of a constant formula, and the formula without it."""
+    """Return the sign (1 or -1) of a constant formula, and the formula without this sign."""
     if node[0] == "neg":
         sign, inner = split_sign(node[1])
         return -sign, inner
@@ -410,7 +411,7 @@ def split_sign(node: Node) -> tuple[int, Node]:
 
 
 def _number_and_rest(weight: Node) -> tuple[Fraction, Node]:
-    """Return a constant formula as (number, formula), whose product it is."""
+    """Return (number, formula) whose product equals a constant formula."""
     sign, size = split_sign(weight)
     if size[0] == "number":
         return (sign * size[1], ONE) if size[1] else (Fraction(1), size)

@@ -1,8 +1,9 @@
 """C code of the Taylor series of one motion: one function computes the jet, all Taylor coefficients of all states.
 
-Orders n and n + 1 are computed together. Loops over the known coefficients read each number once for both orders; then
-the terms with the newest coefficients are added. No loop over the order is unrolled, so the code stays small for any
-order.
+The words row, pack, column and slot are explained in :mod:`symrot.codegen.taylor.lanes`: in short, a row is a SIMD
+vector of four series, and a column the convolution of two such vectors. Orders n and n + 1 are computed together. Loops
+over the known coefficients read each number once for both orders; then the terms with the newest coefficients are
+added. No loop over the order is unrolled, so the code stays small for any order.
 
 The code is placed between :file:`taylor.h`, the operations on SIMD vectors of four, and :file:`taylor.c`, the stepper.
 """
@@ -35,15 +36,14 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
     edges : sequence of int
         State i is in block j if ``edges[j] <= i < edges[j + 1]``; each block of states has its own error.
     scales : sequence of float
-        One per block: with 0 its error is relative to the block's own size, otherwise relative to this positive
-        number.
+        One number per block: the size to which errors of the block are relative; 0 means the norm of the block itself.
     order : int
         Order of the series: even, at least 4.
 
     Raises
     ------
     InputError
-        For an operation without a Taylor series, or an order or blocks that cannot be used.
+        If an operation has no Taylor series, or if the order or the blocks cannot be used.
     """
     system = checked_system(program, edges, scales, order)
     layout = min((lay_out(one, edges) for one in (system, with_companions(system))), key=cost)
@@ -67,15 +67,15 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
 
 
 def checked_system(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> Recurrences:
-    """Return the Taylor recurrences of a right-hand side; raise InputError for an order or blocks out of range."""
+    """Return the Taylor recurrences of a right-hand side; raise InputError if order or blocks cannot be used."""
     if order < 4 or order % 2:
         raise InputError(f"order of the Taylor method: expected an even number, at least 4, got {order}")
     system = recurrences(program)
     count = len(system.states)
     if [*edges[:1], *edges[-1:]] != [0, count] or list(edges) != sorted(set(edges)) or len(scales) != len(edges) - 1:
         raise InputError(
-            f"expected edges of blocks that rise from 0 to {count}, with one scale for each block; got edges "
-            f"{list(edges)} and scales {list(scales)}"
+            f"blocks: expected increasing edges from 0 to {count}, the number of states, and one scale per block, got "
+            f"edges {list(edges)} and scales {list(scales)}"
         )
     return system
 
@@ -90,7 +90,10 @@ def jet_source(layout: Layout, parameters: Sequence[str]) -> str:
 
 
 class _Jet:
-    """Writes the C function that computes the jet, all Taylor coefficients, for one layout of series in vectors."""
+    """Writes the C function that computes the jet, all Taylor coefficients, for one layout of series in vectors.
+
+    A phase is ``first`` for order 0, ``second`` for order 1, and ``later`` for all other orders.
+    """
 
     def __init__(self, layout: Layout, parameters: Sequence[str]) -> None:
         self.layout, self.rows, self.parameters = layout, layout.rows, parameters
@@ -111,7 +114,7 @@ class _Jet:
         return f"c[{self.constants.setdefault(weights, len(self.constants))}]"
 
     def at(self, pack: Pack, n: str) -> str:
-        """Return the C expression that reads coefficient n of a vector of four series from memory."""
+        """Return the C expression that reads coefficient n of a pack (a vector of four series) from memory."""
         if pack in self.packs:
             return f"k{self.packs[pack]}[{n}]"
         row = f"{self._array(pack[0].row)}[{n}]"
@@ -121,11 +124,11 @@ class _Jet:
         return f"x[{row}]" if row < self.own_rows else f"u{row}"
 
     def newest(self, pack: Pack) -> str:
-        """Return the C expression for the newest coefficients of a vector of four series, in one SIMD register."""
+        """Return the C expression for the newest coefficients of a pack (a vector of four series)."""
         return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
 
     def picked(self, pack: Pack) -> str:
-        """Return the C expression that collects the newest coefficients of four series from their rows."""
+        """Return the C expression that collects the newest coefficients of a pack from the rows of its four series."""
         rows = sorted({address.row for address in pack})
         if _is_row(pack):
             return f"r{rows[0]}"
@@ -140,7 +143,7 @@ class _Jet:
         return f"V_FLIP({value}, {', '.join('-1' if sign < 0 else '1' for sign in signs)})" if -1 in signs else value
 
     def column(self, index: int, phase: str, sums: str) -> str:
-        """Return the C expression for coefficient n of a column: four convolutions in a vector; empty if it is zero.
+        """Return the C expression for coefficient n of a column (a vector of four convolutions); empty for zero.
 
         It is the sum over known coefficients plus the terms k = 0 and k = n.
         """
@@ -166,7 +169,7 @@ class _Jet:
     def sum(self, row: Row, phase: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
         """Return the C expression for a vector of four weighted sums of series, times a factor.
 
-        Terms that are computed last are added last, so that the sum does not wait for them.
+        Terms that are computed last are added last, so that the other additions need not wait for them.
         """
         value = ""
         parts = [(self.picked(term.pack), term.weights) for term in row.terms]
@@ -183,9 +186,9 @@ class _Jet:
         return value or "V_ALL(0.0)"
 
     def _rest_of_time(self, row: Row) -> str:
-        """Return the C constants that multiply ``t_low``, the low part of the time, in four sums.
+        """Return the C text of the four constants that multiply ``t_low``, the low part of the time, in a row of sums.
 
-        The text is empty if the sums do not contain the time.
+        The text is empty if no sum of the row contains the time.
         """
         weights: list[Node] = []
         for number in row.lanes:
@@ -196,7 +199,7 @@ class _Jet:
         return self.constant(tuple(weights)) if any(weight != ("number", 0) for weight in weights) else ""
 
     def _weighted(self, weights: tuple[Node, ...], factor: str) -> str:
-        """Return the C expression of a vector of constants times a factor; empty if all of these are 1."""
+        """Return the C expression of a vector of constants times a factor; only the factor if all constants are 1."""
         ones = all(weight == ("number", 1) for weight in weights)
         if ones:
             return factor
@@ -204,7 +207,7 @@ class _Jet:
         return f"V_MUL({constant}, {factor})" if factor else constant
 
     def row(self, number: int, n: str, phase: str, sums: str) -> list[str]:
-        """Return the C statements that set ``r{number}`` to coefficient n of the four series in a row."""
+        """Return the C statements that set ``r{number}`` to coefficient n of the four series in that row."""
         row, name = self.rows[number], f"r{number}"
         terms = [self.picked(term.pack) for term in row.terms]
         total = self.slot(row.slots[0].columns, phase, sums) if row.slots else ""
@@ -271,7 +274,7 @@ class _Jet:
     def _clock_seed(self, row: Row, name: str) -> list[str]:
         """Return the C statements for coefficient 0 of functions of ``a t + b``.
 
-        The rounding error of ``a t + b`` is corrected to first order, by the function's slope.
+        The rounding error of ``a t + b`` is corrected to first order, with the slope of the function.
         """
         series = [self.layout.series[i] for i in row.lanes if i is not None]
         rates = self.constant(tuple(s.weights[0] for s in series))  # type: ignore[misc]
@@ -441,14 +444,14 @@ def _of(function: str, turn: str) -> str:
 
 
 def _calls(node: Node) -> list[Node]:
-    """Return all function calls inside a formula."""
+    """Return all function calls in a formula."""
     if node[0] == "call":
         return [node]
     return [call for child in children(node) for call in _calls(child)]
 
 
 def _with_calls(node: Node, calls: Mapping[Node, str]) -> Node:
-    """Return a formula with its function calls replaced by names."""
+    """Return a formula in which the function calls are replaced by names."""
     if node in calls:
         return ("symbol", calls[node])
     if node[0] in ("number", "symbol"):

@@ -1,10 +1,10 @@
 """Rates dy/dt with time counted from an epoch, for motions that start far from t = 0.
 
 A double holds 53 bits of ``a*t + b``: at t = 1e9 s the error of a phase is 1e-7 rad, however short the steps are. With
-``t = epoch + tau`` every polynomial of t, inside sine, cosine, exp or elsewhere, becomes a polynomial of tau whose
-coefficients are computed exactly and rounded once. In the arguments of sine, cosine and tangent, multiples of 2 pi are
-subtracted first. A product of factors of degree one stays a product: expanded, ``((t - c)/w)**2`` would be a difference
-of large numbers around a narrow pulse.
+``t = epoch + tau`` (shifted time tau) every polynomial of t, inside sine, cosine, exp or elsewhere, becomes a
+polynomial of tau whose coefficients are computed exactly and rounded once. In the arguments of sine, cosine and
+tangent, multiples of 2 pi are subtracted first. A product of factors of degree one is not expanded: ``((t - c)/w)**2``
+would become a difference of large numbers near a narrow pulse.
 
 Standard library only.
 """
@@ -29,9 +29,10 @@ HIGHEST = 12  # largest degree of a polynomial of t that is shifted as a whole
 
 
 def from_epoch(kernel: SceneKernel) -> SceneKernel:
-    """Return a scene's kernel whose time t is counted from the epoch, which becomes a constant of the scene.
+    """Return the kernel of a scene in which the time t is counted from the epoch, a new constant of the scene.
 
-    Conserved quantities that depend on time are marked as not conserved, because they still use the original time.
+    Conserved quantities that depend on time are marked as not conserved, because their formulas still contain the
+    original time.
     """
     rates, parameters = moved(kernel.rates, kernel.rate_parameters)
     timeless = [
@@ -43,25 +44,25 @@ def from_epoch(kernel: SceneKernel) -> SceneKernel:
 
 
 def moved(program: Program, parameters: Parameters) -> tuple[Program, Parameters]:
-    """Return a right-hand side whose time is counted from the epoch, and the formulas of all its parameters.
+    """Return a right-hand side in which time is counted from the epoch, and the formulas of all its parameters.
 
     Parameters
     ----------
     program : Program
-        ``dy = f(t, y, p)``, with the arguments t, y, p (optional) and dy; the time occurs in it.
+        ``dy = f(t, y, p)``, with the arguments t, y, p (optional) and dy; its formulas contain t.
     parameters : tuple of (name, Node)
-        The components of p as formulas of constants. The formulas in the result may contain ``epoch`` too, in s.
+        The components of p as formulas of constants. The formulas in the result may also contain ``epoch``, in s.
     """
     return _Mover(program, parameters).result()
 
 
 def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tuple[tuple[Node, ...], Parameters]:
-    """Return formulas whose time t is counted from the epoch, and the formulas of the parameters in them.
+    """Return formulas in which the time t is counted from the epoch, and the formulas of the parameters in them.
 
     Parameters
     ----------
     formulas : sequence of Node
-        Formulas of the time, of constants, and of states with any names.
+        Formulas that contain the time, constants, and states with any names.
     constants : collection of str
         The names of constants; all other names are states.
     """
@@ -76,7 +77,7 @@ def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tupl
 
 
 class _Form(NamedTuple):
-    """A formula with shifted time, and its coefficients if it is a polynomial of t with constant coefficients."""
+    """A formula in the shifted time, and its coefficients if it is a polynomial of t with constant coefficients."""
 
     node: Node | None  # None for a polynomial of degree one, whose formula is made from the terms when it is used
     terms: tuple[Node, ...] | None = None
@@ -133,10 +134,10 @@ class _Mover:
         return _Form((kind, *written, *node[2:]) if kind == "**" else (kind, *written), terms, centred)
 
     def gathered(self, node: Node) -> _Form | None:
-        """Return a sum with all its terms a t + b combined into one, or None if there is nothing to combine.
+        """Return a sum in which all terms of the form a t + b are combined, or None if there is nothing to combine.
 
-        Far from t = 0 the constants b may nearly cancel. There is nothing to combine if the sum has only such terms,
-        has fewer than two of them, or does not contain the time.
+        Far from t = 0 the constants b may nearly cancel. There is nothing to combine if all terms have this form, if
+        fewer than two have it, or if none of these terms contains the time.
         """
         lines: list[tuple[Node, ...]] = []
         others: list[tuple[bool, _Form]] = []
@@ -154,7 +155,7 @@ class _Mover:
         return _Form(gathered)
 
     def summands(self, node: Node, negative: bool) -> Iterator[tuple[bool, _Form]]:
-        """Yield the terms of a sum, each with a flag that is true if the term is subtracted."""
+        """Yield the terms of a sum as pairs (flag, term); the flag is true if the term is subtracted."""
         if node[0] in ("+", "-"):
             yield from self.summands(node[1], negative)
             yield from self.summands(node[2], negative != (node[0] == "-"))
@@ -164,9 +165,9 @@ class _Mover:
             yield negative, self.read(node)
 
     def written(self, form: _Form, turns: bool = False) -> Node:
-        """Return the formula tree of a formula with shifted time; a polynomial of t is written by Horner's rule.
+        """Return the formula tree of a formula in the shifted time; a polynomial of t is written by Horner's rule.
 
-        The polynomial's coefficients become parameters. ``turns`` means that the value matters only modulo 2 pi.
+        The coefficients of the polynomial become parameters. ``turns`` means that the value matters only modulo 2 pi.
         """
         whole = turns and form.terms is not None and len(form.terms) > 1 and not form.centred
         if form.node is not None and not whole:
@@ -200,7 +201,7 @@ class _Mover:
         return ("symbol", self.added[-1][0])
 
     def resolved(self, node: Node) -> Node:
-        """Return a formula with its parameters replaced by their formulas in terms of physical constants."""
+        """Return a formula in which parameters are replaced by their formulas in terms of physical constants."""
         if node[0] == "symbol":
             return self.formulas[node[1]]
         if node[0] == "number":
@@ -216,9 +217,9 @@ def _is_shifted(form: _Form) -> bool:
 
 
 def _terms(node: Node, parts: list[tuple[Node, ...] | None]) -> tuple[Node, ...] | None:
-    """Return the coefficients of t^0, t^1, .. in an operation, or None if its result is not a polynomial in t.
+    """Return the coefficients of t^0, t^1, .. of the result of an operation, or None if it is not a polynomial in t.
 
-    ``parts`` are the coefficients of its operands.
+    ``parts`` holds the coefficients of each operand, or None for an operand that is not a polynomial in t.
     """
     if any(part is None for part in parts):
         return None

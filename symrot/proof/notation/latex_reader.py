@@ -1,9 +1,9 @@
-r"""Reader of the LaTeX on a page, so that a displayed formula can be proven equal to the derived one.
+r"""Reader of the LaTeX on a page, so that a displayed formula can be proven equal to the derived formula.
 
-A page may write a side of an equation as a person would, ``R\,[\omega_b]_\times``, where the derivation has nine
-entries. With the declared meanings of the names on the page, the text is read by the usual rules of notation and proven
-equal to the derived expression. Text that contains a name without a declared meaning raises :class:`Unread`: it is only
-a label.
+A page may write a side of an equation as a person would, such as ``R\,[\omega_b]_\times``, where the derivation has
+nine entries. With the declared meanings of the names on the page, the text is parsed by the usual rules of notation and
+proven equal to the derived expression. Text that contains a name without a declared meaning is only a label; it raises
+:class:`Unread`.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -29,7 +29,7 @@ FUNCTIONS = {
 CLOSING = {"(": ")", "[": "]"}
 ENDS = {"", "+", "-", "\\times", "\\cdot", ",", "=", "&", "\\\\", ")", "]"}
 TIME = "time"
-"""Key of the letter that a time derivative is taken by, where it is not t."""
+"""Key, in the table of names, of the letter for time, if that letter is not t."""
 UNMARKED = str.maketrans("", "", "{} \t\n\r\f\v")
 
 
@@ -43,7 +43,7 @@ def key(latex: str) -> str:
 
 
 def parts(latex: str) -> list[list[str]]:
-    r"""Return the equations in a LaTeX text, which are separated by ``, \quad``; each is the list of its sides."""
+    r"""Return the equations in a LaTeX text, which ``, \quad`` separates; each is the list of its sides as text."""
     equations: list[list[str]] = [[""]]
     depth = 0
     for token, following in pairwise(tokens(latex)):
@@ -65,9 +65,10 @@ def read(latex: str, names: Mapping[str, Any], rates: Mapping[Expr, Expr] | None
     ----------
     latex : str
     names : mapping
-        Key of a name (see :func:`key`) -> Expr, Matrix, or a function of the arguments in parentheses after it.
+        A map from the key of a name (see :func:`key`) to its meaning: Expr, Matrix, or a function that takes the
+        arguments in parentheses after the name.
     rates : mapping, optional
-        Variable -> its rate, for ``\\dot x`` and ``\\frac{d}{dt}``.
+        A map from a variable to its rate, for ``\\dot x`` and ``\\frac{d}{dt}``.
 
     Raises
     ------
@@ -150,7 +151,7 @@ class _Interpreter(Cursor):
         return value.inv() ** -exponent if matrix and exponent < 0 else value**exponent
 
     def norm(self) -> Any:
-        """Read the length of a vector, such as ``|v|``, from after its first bar."""
+        """Read the length of a vector, such as ``|v|``, after its first bar; return its value."""
         inner = self.barred(self.sum, "|")
         square = inner.dot(inner) if isinstance(inner, MatrixBase) and 1 in inner.shape else None
         if square is None:
@@ -184,7 +185,7 @@ class _Interpreter(Cursor):
         return values[0] if len(values) == 1 else Matrix.vstack(*map(_as_matrix, values))
 
     def at_skew(self) -> bool:
-        r"""Return whether the next item is the index ``\times``, which makes the cross-product matrix of a vector."""
+        r"""Return whether the next item is the index ``\times``, the mark of a vector's cross-product matrix."""
         item = self.peek()
         return isinstance(item, Script) and item.text == "_" and alone(item.inside).text == "\\times"
 
@@ -218,7 +219,7 @@ class _Interpreter(Cursor):
         return _multiplied(self.value(above), _inverted(self.value(below)))
 
     def differentiated(self, operand: Row | None) -> Any:
-        """Read the formula to differentiate: the rest of the numerator of d/dt, or the term after the fraction."""
+        """Return the formula to differentiate: the rest of the numerator of d/dt, or the term after the fraction."""
         if operand is None:
             raise self.fail("d or \\partial in the numerator of a derivative")
         return self.value(operand) if operand.items else self.term()
@@ -231,7 +232,7 @@ class _Interpreter(Cursor):
     def font(self, font: Font) -> Any:
         r"""Return the value of a name in a special font.
 
-        It is a function of a matrix, the identity ``\mathbf{1}``, or a name with a declared meaning.
+        The name is a function of a matrix, the identity ``\mathbf{1}``, or a name with a declared meaning.
         """
         word, place = _text(font.inside), self.index
         if word == "1":
@@ -288,7 +289,7 @@ class _Interpreter(Cursor):
         raise Unread(text)
 
     def name_parts(self) -> Iterator[str]:
-        """Yield the parts of a name: a letter, a command or a letter with a mark, then its indices and primes."""
+        """Yield the parts of a name: a letter, a command or an accented letter, then its indices and primes."""
         item = self.next()
         if not isinstance(item, Token | Accent | Font) or item.text in ENDS:
             raise self.fail("a name", item)
@@ -309,7 +310,7 @@ READERS: dict[str, Callable[[_Interpreter, Any], Any]] = {
 
 
 def _text(node: Node) -> str:
-    """Return a part of a name as text for looking the name up; braces are left out."""
+    """Return a part of a name as text without braces, as it appears in the key of the name."""
     if isinstance(node, Row):
         return "".join(map(_text, node.items))
     if isinstance(node, Scripts):
@@ -320,7 +321,7 @@ def _text(node: Node) -> str:
 
 
 def _after(node: Node, mark: str) -> Row | None:
-    """Return the rest of a group or token that starts with a mark; None if it does not start with the mark."""
+    """Return the rest of a group or token after the mark with which it starts; None if it starts otherwise."""
     row = node if isinstance(node, Row) else Row((node,), node.start, node.start)
     return Row(row.items[1:], row.start, row.end) if row.items and row.items[0].text == mark else None
 
@@ -377,8 +378,8 @@ def _inverted(value: Any) -> Any:
 def _gradient(value: Any, variable: Any) -> Any:
     if isinstance(variable, MatrixBase):
         if isinstance(value, MatrixBase) or not all(entry.is_Symbol for entry in variable):
-            raise Unread("expected a derivative with respect to a symbol, got one with respect to a vector")
+            raise Unread("expected a derivative with respect to a symbol, got a derivative with respect to a vector")
         return Matrix([diff(value, entry) for entry in variable])
     if not getattr(variable, "is_Symbol", False):
-        raise Unread("expected a derivative with respect to a symbol, got one with respect to a formula")
+        raise Unread("expected a derivative with respect to a symbol, got a derivative with respect to a formula")
     return diff(value, variable)

@@ -1,7 +1,8 @@
 """Translation of LaTeX formulas into native MathML, for the part of LaTeX that the pages use.
 
-The same translation serves HTML and line breaking: a formula becomes a row of items, each with its LaTeX, its MathML,
-an estimate of its width, and whether a line may be broken before it. Unknown LaTeX raises InputError.
+The translation is used for HTML and for breaking lines. A formula becomes a row of items; an item has its LaTeX, its
+MathML, an estimate of its width in letters, and a kind, which says whether a line may be broken before it. Unknown
+LaTeX raises InputError.
 """
 
 from collections.abc import Callable, Iterator
@@ -40,7 +41,7 @@ FENCES = {"(": "(", ")": ")", "[": "[", "]": "]", "|": "|", "\\{": "{", "\\}": "
           "\\rbrace": "}", "\\lvert": "|", "\\rvert": "|", "\\langle": "⟨", "\\rangle": "⟩"}  # fmt: skip
 TABLES = {"matrix": ("", ""), "bmatrix": ("[", "]"), "pmatrix": ("(", ")"), "vmatrix": ("|", "|"), "cases": ("{", "")}
 THIN = '<mspace width="0.17em"></mspace>'
-WIDEST = 42  # letters to a line
+WIDEST = 42  # letters per line
 SMALL = 0.75  # scripts, relative to the line
 
 
@@ -80,7 +81,7 @@ SIGNS = {"+": "+", "-": "−"}
 
 
 class _Translation:
-    """The translation of a LaTeX tree into items (parts of a formula with MathML); LaTeX is copied from the source."""
+    """The translation of a LaTeX tree into items; the LaTeX of an item is copied from the source."""
 
     def __init__(self, latex: str) -> None:
         self.latex = latex
@@ -89,7 +90,7 @@ class _Translation:
         return complaint(self.latex, "formula", node.start, "LaTeX that the pages use")
 
     def row(self, row: Row) -> list[Item]:
-        """Return the items of a row; the LaTeX of an item reaches up to the next item."""
+        """Return the items of a row of the tree; the LaTeX of an item extends up to the next item."""
         items: list[Item] = []
         kind = "sign"
         for place, node in enumerate(row.items, start=1):
@@ -105,7 +106,7 @@ class _Translation:
         return items
 
     def argument(self, node: Node) -> list[Item]:
-        """Return the argument of a command as items: all items of a group in braces, or a single one."""
+        """Return the argument of a command as a list: all items of a group in braces, or a single item."""
         return self.row(node) if isinstance(node, Row) else [self.item(node)]
 
     def group(self, node: Node) -> Item:
@@ -113,7 +114,7 @@ class _Translation:
         return _joined(self.argument(node))
 
     def item(self, node: Node, after_operand: bool = False) -> Item:
-        """Return one item. A plus or minus sign is binary after an operand, and a prefix everywhere else."""
+        """Return the item of a node. A plus or minus sign is binary after an operand, and a prefix everywhere else."""
         if not isinstance(node, Token):
             return self.scripted(node, after_operand) if isinstance(node, Scripts) else ITEMS[type(node)](self, node)
         text = node.text
@@ -207,7 +208,7 @@ def _fence(mark: str, form: str) -> str:
 
 
 def _letter(letter: str, variant: str) -> str:
-    """Return the Unicode character of a letter in a font; MathML no longer has most font attributes."""
+    """Return the Unicode character of a letter in a font, since MathML no longer has most font attributes."""
     if not (letter.isascii() and letter.isalnum()):
         return letter
     if variant == "script":
@@ -241,7 +242,7 @@ def read(latex: str) -> list[Item]:
 
 
 def rows(latex: str, width: float) -> list[list[Item]]:
-    """Return a formula broken into lines of a given width where possible.
+    """Return the lines of a formula, each at most ``width`` letters wide if possible.
 
     Lines are broken before relations such as ``=``, and if that is not enough, before plus and minus.
     """
@@ -263,7 +264,7 @@ def _broken(items: list[Item], width: float) -> list[list[Item]]:
 
 
 def _stacked(items: list[Item]) -> Item:
-    """Return a row of items as a single item; a long sum becomes several lines inside of it."""
+    """Return a row of items as a single item; a long sum becomes several lines inside this item."""
     lines = _broken(items, WIDEST)
     if len(lines) == 1:
         return _joined(items)

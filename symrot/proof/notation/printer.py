@@ -73,9 +73,9 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
 
 
 def _common_scale(matrix: MatrixBase) -> Any:
-    """Return 1/D if D is the denominator of all nonzero entries of a matrix; otherwise 1.
+    """Return 1/D if all nonzero entries of a matrix have the same denominator D; otherwise return 1.
 
-    It is also 1 if an entry has a fraction in its numerator or denominator.
+    Return 1 too if an entry has a fraction in its numerator or denominator.
     """
     denominators = {entry.as_numer_denom()[1] for entry in matrix if entry != 0}
     if len(denominators) != 1 or len(matrix) < 2:
@@ -92,5 +92,5 @@ _PRINTER = PagePrinter({"mat_delim": "[", "mat_str": "matrix", "fold_short_frac"
 
 
 def formula(side: Any) -> str:
-    """Return the LaTeX of an expression or matrix on one line; a str is taken for LaTeX and returned unchanged."""
+    """Return the LaTeX of an expression or matrix on one line; return a str, which must be LaTeX, unchanged."""
     return side if isinstance(side, str) else str(_PRINTER.doprint(side)).replace("\n", " ")

@@ -1,4 +1,4 @@
-"""Printers of derivations as pages: Markdown for a code-hosting site, LaTeX for paper, HTML for a browser."""
+"""Printers of derivations: Markdown for a code-hosting site, LaTeX for paper, HTML for a browser."""
 
 from symrot.proof.pages.detail import excerpt
 from symrot.proof.pages.html import html_document

@@ -1,4 +1,4 @@
-"""One step of a derivation as a page, optionally with all rewritings that lead from its left side to its right side."""
+"""One step of a derivation as a page, optionally with all rewritings that lead from its left to its right side."""
 
 from sympy import MatrixBase, factor
 
@@ -14,7 +14,7 @@ LONGEST_IN_TEXT = 100  # letters of LaTeX
 
 
 def excerpt(whole: Page, number: int, detail: bool = False) -> Page:
-    """Return a page with one step; with ``detail``, also every expression between its two sides.
+    """Return a page with one step; with ``detail``, also every expression between the two sides of its equation.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def _chain(chain: Chain) -> list[Passage]:
 
 
 def _subtracted_multiples(link: Link) -> tuple[tuple[str, str], ...]:
-    """Return the multiples of hypotheses that a rewriting subtracts, if they are too long for a line of text."""
+    """Return equations "multiple of a hypothesis = 0" for what a rewriting subtracts; empty if they fit in the text."""
     terms = _terms(link)
     return () if _short(terms) else tuple((term, "0") for term in terms)
 

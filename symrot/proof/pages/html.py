@@ -1,6 +1,6 @@
 """Printer of derivations as HTML: one file with native MathML, without script or network.
 
-The same derivation always gives the same bytes.
+A derivation always gives the same bytes.
 """
 
 import re

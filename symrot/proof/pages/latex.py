@@ -1,4 +1,4 @@
-"""Printer of derivations as complete LaTeX documents; the same derivation always gives the same bytes."""
+"""Printer of derivations as complete LaTeX documents; a derivation always gives the same bytes."""
 
 import re
 
@@ -8,7 +8,7 @@ from symrot.proof.pages.parts import equation, footer, passage_equations, remark
 
 __all__ = ["latex_document"]
 
-WIDTH = 62  # letters to a line of a display
+WIDTH = 62  # letters per line of a displayed formula
 
 LATEX_HEAD = r"""\documentclass[a4paper]{article}
 \usepackage[T1]{fontenc}
@@ -65,7 +65,7 @@ ESCAPES = {"&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "^": r"\^{}", "~": r"
 
 
 def _prose(text: str) -> str:
-    """Return Markdown prose as LaTeX: formulas in ``$`` stay, code, links and emphasis are translated."""
+    """Return Markdown prose as LaTeX: formulas in ``$`` stay as they are; code, links and emphasis are translated."""
     linked = re.sub(r"\[([^\]$]+)\]\([^)]+\.md\)", r"\1", text)
     pieces = re.split(r"(\$[^$]+\$|`[^`]+`)", linked)
     return "".join(_piece(piece) for piece in pieces)

@@ -1,4 +1,4 @@
-"""Printer of derivations as Markdown for a code-hosting site; the same derivation always gives the same bytes."""
+"""Printer of derivations as Markdown for a code-hosting site; a derivation always gives the same bytes."""
 
 import re
 from collections.abc import Iterator
@@ -37,18 +37,18 @@ def markdown(page: Page) -> str:
 
 
 MARKED = re.compile(r"\\[^A-Za-z]|[\])}]_|\*")
-"""What Markdown would read as its own inside a formula in a line of text."""
+"""Pattern of what Markdown would take for its own markup inside an inline formula."""
 
 
 def _host_safe(part: str) -> str:
-    """Return a paragraph whose inline formulas are quoted as ``$`...`$`` where Markdown would corrupt them."""
+    """Return a paragraph in which inline formulas that Markdown would corrupt are written as ``$`...`$``."""
     if part.startswith("$$"):
         return part
     return re.sub(r"\$([^$]+)\$", lambda m: f"$`{m[1]}`$" if MARKED.search(m[1]) else m[0], part)
 
 
 def _contents(page: Page) -> Iterator[str]:
-    """Yield the table of contents of a long page, one line of links to its sections."""
+    """Yield the table of contents of a page with many sections: one line of links; nothing for other pages."""
     titles = [item.title for item in page.items if isinstance(item, Section)]
     if len(titles) > MANY_SECTIONS:
         anchors = (re.sub("[^a-z0-9 -]", "", title.lower()).replace(" ", "-") for title in titles)

@@ -1,4 +1,4 @@
-"""Parts common to all page formats: equations, the remarks below them, units, and the footer."""
+"""Parts of a page that all formats share: equations, the remarks below them, units, and the footer."""
 
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -69,6 +69,6 @@ def footer(page: Page) -> str:
 
 
 def passage_equations(passage: Passage) -> Iterator[str]:
-    """Yield the equations of a paragraph; a pair without a left side continues the equation before it."""
+    """Yield the LaTeX of a paragraph's equations; a pair with an empty left side continues the equation before it."""
     for left, right in passage.equations:
         yield f"{formula(left)} = {formula(right)}".lstrip()

@@ -1,1 +1,1 @@
-"""Proven limits of steps: enclosures of the formulas of torques on discs of the complex plane."""
+"""Proven limits of steps: bounds of the torque formulas on discs of the complex plane (enclosures)."""

@@ -1,8 +1,14 @@
 """Proven limits of steps, in Python, for SciPy's steppers and as a reference for tests.
 
-A step is limited so that it cannot pass over a feature of a torque's formula. The steppers in C use :file:`disc.h` and
-:file:`enclosure.h` for the same purpose. :mod:`symrot.codegen.enclosure.terms` explains which terms of the rates need
-bounds (an enclosure).
+A step is limited so that it cannot pass over a feature of a torque formula: a short part, such as a pulse, that the
+points at which the stepper evaluates the formula may not show. An enclosure is a set of terms of the rates together
+with the rules by which they are evaluated over discs of complex numbers. The radius of the resulting disc bounds the
+deviation of the term from a constant, which bounds the Taylor coefficients that a step omits.
+:mod:`symrot.codegen.enclosure.terms` explains which terms need bounds. The steppers in C use :file:`disc.h` and
+:file:`enclosure.h` for the same purpose.
+
+A disc is larger than the step: its radius in time is the length of the step times a factor called *reach*. The *missed
+share* is the part of a deviation on the disc that a step can omit.
 """
 
 import math
@@ -27,7 +33,8 @@ SHRINK = 0.3  # smallest factor by which a step is multiplied at once
 class Disc(NamedTuple):
     """Disc of all complex numbers within ``radius`` of a real ``centre``.
 
-    ``log_size`` bounds the logarithm of their absolute values, even if the numbers themselves over- or underflow.
+    If given, ``log_size`` is an upper bound of the logarithm of their absolute values. It is useful where the numbers
+    themselves overflow or underflow.
     """
 
     centre: float
@@ -45,7 +52,7 @@ def _product(a: Disc, b: Disc) -> Disc:
 
 
 def _or_infinite(bound: float) -> float:
-    """Return a bound, or infinity if the bound is not a number (0 times an infinite bound)."""
+    """Return the bound, or infinity if the bound is not a number, as for 0 times an infinite bound."""
     return math.inf if math.isnan(bound) else bound
 
 
@@ -73,8 +80,8 @@ def _inverse(a: Disc) -> Disc:
 def _sqrt(a: Disc, whole: float) -> Disc:
     """Return a disc that contains the square root of a disc.
 
-    If the disc reaches zero, there is no Taylor series. The radius is then the size of the root times ``whole``, which
-    is one over the share of a deviation that a step misses; see :file:`disc.h`.
+    If the disc contains zero, the root has no Taylor series there. The radius is then the size of the root times
+    ``whole``, which is 1 divided by the missed share; see :file:`disc.h`.
     """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
@@ -160,10 +167,11 @@ FUNCTIONS: dict[str, Callable[..., Disc]] = {
 
 
 def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
-    """Return the bounds of an enclosure as one Python function of (t, reach, whole, y, radii, weights, their sizes).
+    """Return a compiled Python function of (t, reach, whole, y, radii, w, a) that computes the bounds of an enclosure.
 
-    The function is much faster than the computation disc by disc and gives equal results. It omits the logarithms of
-    sizes, which matter only if a bound is infinite or not a number: the caller then computes disc by disc.
+    The arguments are those of :class:`Deviations` when it is called, the weights w and their absolute values a. The
+    function is much faster than the evaluation disc by disc and gives equal results. It omits the logarithms of sizes,
+    which matter only if a bound is infinite or not a number: the caller then evaluates disc by disc.
     """
     lines, place = ["def bounds(t, reach, whole, y, radii, w, a):"], 0
     for number in enclosure.series:
@@ -208,15 +216,16 @@ def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
 
 
 class Deviations:
-    """Bounds of the deviation of each rate from a constant, while time and states vary within complex discs.
+    """Function that bounds how far each rate deviates from a constant while time and states vary within complex discs.
 
     Parameters
     ----------
     enclosure : Enclosure
+        The terms of the rates that need bounds.
     parameters : mapping of str to number
-        Parameters of the right-hand side, by name.
+        Values of the parameters of the rates, by name.
     bounds : function, optional
-        The enclosure as one Python function, if it is already compiled.
+        Result of :func:`_one_function` for the enclosure, if it already exists.
     """
 
     def __init__(
@@ -238,9 +247,10 @@ class Deviations:
         self._sizes = [abs(weight) for weight in self._listed]
 
     def __call__(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return the bounds for times within ``reach`` of t and states within ``radii`` of y; infinite at poles.
+        """Return one bound per rate, for times within ``reach`` of t and states within ``radii`` of y.
 
-        ``whole`` is one over the share of a deviation that a step misses; square roots near zero need it.
+        A bound is infinite if a pole may lie in the discs. ``whole`` is 1 divided by the missed share; square roots
+        near zero need it.
         """
         self.spent += 1
         try:
@@ -252,7 +262,7 @@ class Deviations:
         return self.slowly(t, reach, whole, y, radii)
 
     def slowly(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return the same bounds as a call, computed disc by disc with logarithms, which over- or underflow later."""
+        """Return the same bounds as a call, evaluated disc by disc; with logarithms of sizes, fewer become infinite."""
         self.spent += SLOWER
         discs: dict[int, Disc] = {}
         try:
@@ -290,7 +300,7 @@ class Deviations:
 
 
 def deviations_of(enclosure: Enclosure) -> Callable[[Mapping[str, float]], Deviations]:
-    """Return a function from parameters to :class:`Deviations`; the enclosure is compiled to Python code once."""
+    """Return a function from parameters to :class:`Deviations`; the Python code of the bounds is compiled only once."""
     bounds = _one_function(enclosure)
     return lambda parameters: Deviations(enclosure, parameters, bounds)
 
@@ -305,18 +315,20 @@ def longest_followed(
     edges: Sequence[int],
     order: int,
 ) -> float:
-    """Return the longest step, at most h, that provably stays within the allowed error; see :file:`enclosure.h`.
+    """Return the length of the longest step, at most h, whose error is proven to be at most the allowed one.
+
+    The method is that of :file:`enclosure.h`.
 
     Parameters
     ----------
     y : N numbers
         States at t.
     path : N sequences
-        Absolute values of the coefficients 1, 2, .. of the polynomial that each state follows, in powers of time/h.
+        For each state, the absolute values of the coefficients 1, 2, .. of its polynomial in (time - t)/h.
     allowed : one number per block
-        Error allowed in the step.
+        Error allowed in the step, for each block of states (omega, attitude).
     edges : sequence of int
-        Edges of the blocks of states.
+        Edges of the blocks: block k consists of the states from edge k up to edge k + 1.
     order : int
         Order of the polynomials.
     """

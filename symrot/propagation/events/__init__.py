@@ -1,1 +1,1 @@
-"""Events: the times at which a formula of time and states becomes zero along a motion."""
+"""Events: the times at which a formula of time and states is zero along a motion."""

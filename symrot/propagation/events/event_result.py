@@ -1,4 +1,7 @@
-"""Results of a motion with events: times of the events, states at these times, and samples up to a terminal event."""
+"""Results of a motion with events: times of the events, states at these times, and samples up to a terminal event.
+
+A motion may run to later and to earlier times than its start; the two parts are its sides.
+"""
 
 from collections.abc import Callable, Generator, Iterator, Sequence
 from itertools import pairwise
@@ -48,11 +51,12 @@ class EventResult(NamedTuple):
     t, states : arrays, shapes (n,) and (n, N)
         Samples at the requested times; one sample at a terminal event replaces all samples beyond it.
     t_events, y_events : lists of arrays, shapes (k,) and (k, N)
-        Per event, in rising order of time: its times, and the states at these times.
+        For each event: its times in increasing order, and the states at these times.
     kinds : list of lists of str
-        Per event: ``"rising"``, ``"falling"`` or ``"touching"``, for a motion that runs away from its start.
+        For each event and each of its times: ``"rising"``, ``"falling"`` or ``"touching"``, in the direction in which
+        the motion is followed, away from its start.
     ended : bool
-        Whether a terminal event ended the motion, on either side of the start.
+        Whether a terminal event ended the motion after or before the start.
     warnings : tuple of str
         A sentence for each event whose formula comes nearer to zero than the error of the motion.
     error : PropagationError or None
@@ -71,7 +75,7 @@ class EventResult(NamedTuple):
 
 
 class _Side(NamedTuple):
-    """The motion on one side of its start (later or earlier times): its polynomials, and its states at given times."""
+    """The motion at times after its start, or before it: its polynomials, and a function from times to states."""
 
     pieces: Generator[Piece, None, None]
     states: Callable[[Floats], Floats]
@@ -81,7 +85,7 @@ class _Side(NamedTuple):
 
 
 def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]) -> EventResult:
-    """Return the samples of a motion at the times, and all events from its start to the earliest and the latest time.
+    """Return the samples of a motion at ``times``, and all events between its start and the outermost of the times.
 
     Raises
     ------
@@ -90,8 +94,8 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
     CompilerError
         If there is no C compiler.
     PropagationError
-        If the motion cannot be followed at all. A motion that stops before its last time is returned with its
-        ``error``.
+        If the motion cannot be followed at all. If it stops before the last time, the part before is returned, with the
+        error as ``error``.
     """
     began, plan = perf_counter(), motion.plan
     if uses_attitude(events) and not plan.structure.attitude:
@@ -158,7 +162,7 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
 def _searched(
     path: Path, events: Sequence[Event], p: Sequence[float], side: "_Side", start: float, end: float, accuracy: float
 ) -> tuple[SearchResult, IntegrationStopped | ZerosNotSeparated | None]:
-    """Return the events on one side of the start, and the error that ends the motion or the search before ``end``."""
+    """Return the events between the start and ``end``, and the error that ended the search earlier, or None."""
     if end == start:
         return SearchResult([], None, []), None
     try:
@@ -174,24 +178,24 @@ def _searched(
 
 
 def _warnings(events: Sequence[Event], doubts: Sequence[tuple[int, float]]) -> Iterator[str]:
-    """Yield a sentence for each event whose formula has an extremum nearer to zero than the error of the motion."""
+    """Yield a sentence for each event whose formula has an extremum that differs from zero by less than its error."""
     for number, event in enumerate(events):
         times = [t for each, t in doubts if each == number]
         if times:
             more = f" and at {len(times) - 1} more times" if len(times) > 1 else ""
             yield (
-                f"events: {event.formula!r} comes nearer to zero at t = {times[0]!r} s{more} than the motion is "
-                "accurate: whether it is zero there is not known"
+                f"events: {event.formula!r} differs from zero at t = {times[0]!r} s{more} by less than the error of "
+                "the motion: whether it is zero there is not known"
             )
 
 
 def _joined(
     before: list[tuple[EventZero, Floats]], after: list[tuple[EventZero, Floats]], t0: float
 ) -> list[tuple[EventZero, Floats]]:
-    """Return the zeros of a motion before and after its start as one list.
+    """Return one list of the zeros before and after the start t0 of a motion.
 
     A zero at the start itself is listed once. It is of kind ``"touching"`` if the formula has the same sign before and
-    after.
+    after the start.
     """
     at_start = {each.event: each for each, _ in before if each.t == t0}
     joined = [
@@ -204,7 +208,7 @@ def _joined(
 
 
 def _side(motion: Motion, end: float) -> _Side:
-    """Return the motion from its start to the time ``end``, as polynomials and as states."""
+    """Return the motion from its start to ``end``, s, as polynomials and as a function from times to states."""
     plan = motion.plan
     start, y0 = motion.start, np.array(plan.initial_state, dtype=np.float64)
     broken: list[PropagationError] = []
@@ -252,9 +256,9 @@ def _side(motion: Motion, end: float) -> _Side:
 
 
 def _without_residues(pieces: Sequence[Piece], blocks: Sequence[int]) -> Generator[Piece, None, None]:
-    """Yield the pieces of a motion with states set to zero that are rounding errors of earlier, larger values.
+    """Yield the pieces of a motion, with states set to zero where they are only rounding errors of earlier values.
 
-    An example is the angular velocity of a body that friction has stopped.
+    An example is the angular velocity of a body after friction has stopped it.
     """
     count = blocks[-1]
     terms = [np.abs(piece.rows[:, HEAD:]).reshape(len(piece.rows), -1, count) for piece in pieces]

@@ -1,10 +1,12 @@
 """Events: all times at which a formula of the motion is zero, located to the last bits.
 
-An event is a formula in t, omega_1..3, q0..q3, or an equation between two formulas. It is parsed like the formulas of a
-scene and printed as C, together with bounds of its rounding errors and of its values on intervals. The search runs
-along the polynomials of a motion (:file:`events.c`). It distinguishes sign changes from touches and locates both, even
-several in one step. It uses bounds instead of samples, so that it misses no zero. Poles, jumps past zero and zeros at
-the edge of the domain of a formula are not events.
+An event is given by a formula in t, omega_1..3, q0..q3, or by an equation between two formulas. The formula is parsed
+like the formulas of a scene and printed as C, together with bounds of its rounding errors and of its values on
+intervals. The search follows the polynomials of a motion (:file:`events.c`), which are grouped into pieces. It
+distinguishes sign changes of the formula from touches (zeros without a sign change) and locates both, even several in
+one step. It uses bounds instead of samples, so that it misses no zero. Poles, jumps past zero and zeros at the edge of
+the domain of a formula are not events. An entry is an interval of time that the C search returns since it may contain a
+zero; a doubt is an extremum whose distance from zero is less than the error of the motion.
 """
 
 import ctypes
@@ -60,10 +62,10 @@ class Event(NamedTuple):
         A formula in t, omega_1..3 (rad/s, body components) and q0..q3, with the functions of scene formulas;
         ``"lhs == rhs"`` means lhs - rhs.
     terminal : bool or int
-        Whether the motion ends at a zero; a number n ends it at the n-th zero.
+        Whether the motion ends at the first zero; with a number n it ends at the n-th zero.
     direction : int
-        1 for zeros through which the formula rises along the motion, -1 for zeros through which it falls, 0 for all
-        zeros, including touches.
+        1 to locate only zeros through which the formula rises along the motion, -1 only those through which it falls, 0
+        all zeros, including touches.
 
     Examples
     --------
@@ -86,7 +88,7 @@ class Event(NamedTuple):
 
 
 class ZerosNotSeparated(PropagationError):
-    """Error of a search that cannot separate the zeros of formulas beyond the time ``t``, s.
+    """Raised if a search cannot separate the zeros of the formulas beyond the time ``t``, s.
 
     ``zeros`` lists the zeros before that time.
     """
@@ -95,20 +97,23 @@ class ZerosNotSeparated(PropagationError):
         named = ", ".join(map(repr, formulas))
         super().__init__(
             f"events: expected formulas whose zeros can be separated, but beyond t = {t!r} s the zeros of {named} are "
-            f"not settled after {effort}"
+            f"not separated after {effort}"
         )
         self.t, self.formulas, self.effort = t, formulas, effort
         self.zeros: list[EventZero] = []
 
     def later(self, epoch: float) -> "ZerosNotSeparated":
-        """Return the same error with ``epoch``, s, added to its time: a clock that shows ``epoch`` instead of 0."""
+        """Return the same error with ``epoch``, s, added to its time.
+
+        The result is the time of the scene, if the clock of the motion shows 0 at the scene time ``epoch``.
+        """
         later = ZerosNotSeparated(self.t + epoch, self.formulas, self.effort)
         later.zeros = self.zeros
         return later
 
 
 class EventZero(NamedTuple):
-    """One zero of an event's formula: the number of the event, the time, s, and the kind of zero.
+    """A zero of an event's formula: the index of the event, the time, s, and the kind of zero.
 
     The kind is ``"rising"``, ``"falling"`` or ``"touching"``.
     """
@@ -119,12 +124,12 @@ class EventZero(NamedTuple):
 
 
 def read_events(events: Any) -> tuple[Event, ...]:
-    """Return the requested events, each given as a formula, an :class:`Event`, or a mapping with the fields of one.
+    """Return the requested events; each is given as a formula, an :class:`Event`, or a mapping with its fields.
 
     Raises
     ------
     InputError
-        If an entry has another form, or a formula contains a name that a motion does not have.
+        If an event is given in another form, or if a formula contains an unknown name.
     """
     if isinstance(events, str | Event) or hasattr(events, "keys"):
         events = [events]
@@ -169,12 +174,12 @@ def _checked(event: Event, where: str) -> Event:
 
 
 def uses_attitude(events: Iterable[Event]) -> bool:
-    """Return whether the formula of some event contains the attitude."""
+    """Return whether the formula of at least one event contains a quaternion component."""
     return any(names(event.node) & ATTITUDE for event in events)
 
 
 def timed(quantities: Program, events: Iterable[Event]) -> bool:
-    """Return whether some event depends on the time, directly or through the quantities in its formula."""
+    """Return whether at least one event depends on time, directly or through the quantities in its formula."""
     used = set().union(*(names(event.node) for event in events))
     return "t" in used or quantities.uses("t", tuple(f"{name} of t" for name in used))
 
@@ -182,7 +187,7 @@ def timed(quantities: Program, events: Iterable[Event]) -> bool:
 def event_library_source(
     quantities: Program, events: Sequence[Event], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
 ) -> str:
-    """Return the C source of a library that finds the events of a motion.
+    """Return the C source of a library that locates the events of a motion.
 
     Its functions take the parameters of ``quantities``, the kernel that computes omega and q from the states.
     """
@@ -192,9 +197,10 @@ def event_library_source(
 def guard_library_source(
     quantities: Program, formulas: Sequence[Node], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
 ) -> str:
-    """Return the C source of a library that finds the zeros of formulas along a motion.
+    """Return the C source of a library that locates the zeros of formulas along a motion.
 
-    At such zeros functions such as sign switch. The formulas contain t, omega, q and parameters of ``quantities``.
+    The formulas may be guards, at whose zeros functions such as sign switch. They contain t, omega, q and parameters of
+    ``quantities``, the kernel that computes omega and q from the states.
     """
     from symrot.codegen.printing.event_source import event_definitions
 
@@ -207,7 +213,7 @@ def guard_library_source(
 
 
 def _with_pi(node: Node) -> Node:
-    """Return a formula with the name pi replaced by its value, to 33 digits."""
+    """Return the formula in which the name pi is replaced by its value to 33 digits."""
     if node[0] == "symbol":
         return ("number", number.PI) if node[1] == "pi" else node
     if node[0] == "call":
@@ -216,7 +222,7 @@ def _with_pi(node: Node) -> Node:
 
 
 class _Library:
-    """A loaded library that finds events, built from :func:`event_library_source`."""
+    """A loaded library that locates events, built from :func:`event_library_source`."""
 
     def __init__(self, path: str) -> None:
         library: Any = ctypes.CDLL(path)
@@ -239,7 +245,7 @@ _library = cache(_Library)
 
 
 class _Search:
-    """A search for events along one motion: its state in C, and the number of operations so far."""
+    """A search for events along one motion: its state in C, and the number of its operations so far."""
 
     def __init__(self, path: Path | str, p: Sequence[float], formulas: Sequence[str], error: float = 0.0) -> None:
         self.library, self.formulas, self.doubt = _library(str(path)), formulas, error / STATE_ERROR
@@ -250,10 +256,11 @@ class _Search:
         self.again, self.spent, self.allowed = False, 0.0, MOST_OPERATIONS
 
     def entries(self, piece: Piece) -> tuple[list[list[float]], ZerosNotSeparated | None]:
-        """Return candidates for zeros in a piece of the motion: event, start and end, s, sign before, sign after.
+        """Return the intervals of a piece that may contain zeros: lists [event, start, end, sign before, sign after].
 
-        Extrema nearer to zero than the error of the motion are added to ``doubts``. If the search takes more operations
-        than the limit, which grows with the number of rows, it ends early and returns an error too.
+        Times are in s; a sign of 0 is not known. Extrema whose distance from zero is less than the error of the motion
+        are added to ``doubts``. If the search takes more operations than the limit, which grows with the number of
+        rows, it ends early and the second result is an error; otherwise it is None.
         """
         edges, rows = np.ascontiguousarray(piece.edges), np.ascontiguousarray(piece.rows)
         count, listed, answer = len(rows), [], (ctypes.c_int64 * 3)()
@@ -283,12 +290,12 @@ class _Search:
         return [entry[:5] for entry in listed if not entry[5]], None
 
     def terms(self, rows: Floats) -> int:
-        """Return the number of coefficients of each polynomial in the rows of a motion."""
+        """Return the number of coefficients of each polynomial in ``rows``."""
         count: int = (rows.shape[1] - HEAD) // self.library.states
         return count
 
     def sign(self, event: int, t: float, piece: Piece) -> int:
-        """Return the sign of an event's formula at a time in a piece; 0 if its rounding error exceeds the value."""
+        """Return the sign of an event's formula at the time t in a piece; 0 if the rounding error exceeds the value."""
         edges, side = piece.edges, 1.0 if piece.edges[-1] >= piece.edges[0] else -1.0
         place = int(np.searchsorted(side * edges, side * t, "left")) - 1
         row = np.ascontiguousarray(piece.rows[min(max(place, 0), len(piece.rows) - 1)])
@@ -306,8 +313,8 @@ class SearchResult(NamedTuple):
     stop : float or None
         Time of the terminal event, s.
     doubts : list of (int, float)
-        Number of the event and time, s, for each extremum nearer to zero than the error of the motion: whether the
-        formula touches zero there, crosses it twice or misses it is not known.
+        Index of the event and time, s, for each extremum whose distance from zero is less than the error of the motion:
+        whether the formula touches zero there, crosses it twice or misses it is not known.
     """
 
     zeros: list[EventZero]
@@ -329,12 +336,13 @@ def search(
     path : Path
         The library of :func:`event_library_source` for these events.
     p : sequence of float
-        Parameters of the kernel in the library.
+        Values of the parameters of the kernel in the library.
     pieces : iterable of Piece
         Consecutive pieces of the motion from t0 on, as polynomials (:mod:`symrot.propagation.events.polynomials`). The
         search takes pieces until it finds a terminal event.
     error : float
-        Error of the states, relative to their sizes. Extrema that this error may move past zero are listed as doubts.
+        Error of the states, relative to their sizes. An extremum is listed as a doubt if this error may move it past
+        zero.
 
     Raises
     ------
@@ -370,7 +378,7 @@ def search(
 
 
 def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: float) -> list[tuple[int, float]]:
-    """Return the doubts (event, time) that no located zero explains, without repetition, in the order of the motion."""
+    """Return the doubts (event, time) that do not lie at a located zero, once each, in the order of the motion."""
     settled: dict[int, list[float]] = {}
     for zero in zeros:
         insort(settled.setdefault(zero.event, []), zero.t)
@@ -387,7 +395,7 @@ def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: fl
 def signs_at_ends(
     path: Path | str, formulas: Sequence[str], p: Sequence[float], piece: Piece
 ) -> tuple[list[int], list[int]]:
-    """Return the signs of formulas just after the start of a piece, and their signs at its end.
+    """Return two lists: the signs of the formulas just after the start of a piece, and their signs at its end.
 
     A sign is 0 if the value is smaller than its rounding error.
     """
@@ -417,7 +425,7 @@ def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
 
 
 def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]], list[list[float]]]:
-    """Return two lists of time intervals with candidate zeros: those that end before the last edge, and the others.
+    """Return two lists of intervals that may contain zeros: those that end before the time ``last``, and the others.
 
     Adjacent intervals of the same event are joined.
     """
@@ -442,7 +450,7 @@ def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]],
 
 
 def _sign_before_end(searcher: _Search, event: int, piece: Piece) -> int:
-    """Return the last sign of an event's formula, before the end of a piece, that rounding cannot explain; or 0."""
+    """Return the sign of an event's formula just before the end of a piece; 0 if rounding errors exceed all values."""
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(last), abs(last - first)), 1.0 if last >= first else -1.0
     while width < abs(last - first):
@@ -457,12 +465,16 @@ def _settled(
     searcher: _Search, piece: Piece, events: Sequence[Event], entries: list[list[float]], t0: float, left: list[int],
     zeros: list[EventZero],
 ) -> float | None:  # fmt: skip
-    """Classify candidate zeros, add real zeros to ``zeros``, and return the time of a terminal event, s, or None."""
+    """Append the zeros in the given intervals to ``zeros``, and return the time of a terminal event, s, or None.
+
+    An interval contains no zero that counts as an event if the formula is zero throughout, or up to the end of the
+    piece.
+    """
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     side = 1.0 if last >= first else -1.0
 
     def sign(event: int, t: float, end: float, step: float) -> int:
-        """Return the first sign of a formula, at growing distance from a zero, that rounding cannot explain; or 0."""
+        """Return the sign of a formula near t, in the direction ``step``; 0 if rounding errors exceed all values."""
         width = 4 * NEAR * max(abs(t), abs(last - first))
         while width < abs(end - t):
             value = searcher.sign(event, t + step * width, piece)
@@ -501,9 +513,9 @@ def _settled(
 def stepped(
     integration: Integration, end: float, broken: list[PropagationError], records: list[Floats]
 ) -> Generator[Piece, None, None]:
-    """Yield the polynomials of an integration from its start to ``end``, piece by piece as the stepper proceeds.
+    """Yield the polynomials of an integration from its start to ``end``, s, piece by piece as the stepper proceeds.
 
-    The recorded steps are appended to ``records``. An error that ends the motion early is appended to ``broken``.
+    The recorded steps are appended to ``records``. If an error ends the motion early, it is appended to ``broken``.
     """
     room = integration.stepper.rows_per_call
     with closing(integration.runs(end)) as runs:

@@ -1,10 +1,11 @@
 """Motions by any method as piecewise polynomials in time, for the search for events.
 
-A row holds one polynomial, in the layout of the steps of :file:`taylor.c`: t, h, the low part of t, a unit of time,
-then coefficient 0 of all N states, coefficient 1, and so on, of powers of ``(time - t)/unit``. Steps of the Taylor
-stepper are such rows. The dense output of Dormand and Prince's method is converted to rows, exact up to rounding. Any
-other function of time is interpolated at Chebyshev points, on pieces that are halved until the polynomial has converged
-to rounding.
+A row is an array that holds the polynomials of all N states in one step, in the layout of :file:`taylor.c`: t, h, the
+low part of t, a unit of time, then coefficient 0 of all states, coefficient 1, and so on, of powers of
+``(time - t)/unit``. An edge is a time at which one row ends and the next begins. Steps of the Taylor stepper are such
+rows. The dense output of Dormand and Prince's method is converted to rows, exact up to rounding. Any other function of
+time is interpolated at Chebyshev points, on pieces that are halved until the polynomial agrees with the function up to
+rounding errors.
 """
 
 import math
@@ -35,7 +36,7 @@ FEWEST, MOST = 16, 1024  # pieces fitted at a time
 class Piece(NamedTuple):
     """Part of a motion as consecutive polynomials, in the order of the motion.
 
-    Row i of the coefficients is valid from edge i to edge i + 1; edges are times, s.
+    Row i is valid from edge i to edge i + 1; edges are times, s.
     """
 
     edges: Floats
@@ -57,9 +58,9 @@ def rows_of(stepper: Any, record: Floats) -> Floats:
 
 @cache
 def _nested(terms: int) -> Floats:
-    """Return the matrix that converts coefficients of DOP853's dense output to powers of s.
+    """Return the matrix that converts the coefficients of DOP853's dense output to coefficients of powers of s.
 
-    Dense output is a sum of s, s r, s^2 r, s^2 r^2, ... with r = 1 - s.
+    Dense output is a weighted sum of s, s r, s^2 r, s^2 r^2, ... with r = 1 - s.
     """
     matrix = np.zeros((terms, terms))
     power = np.zeros(terms)
@@ -74,7 +75,10 @@ def _nested(terms: int) -> Floats:
 
 @cache
 def _chebyshev() -> tuple[Floats, Floats, Floats]:
-    """Return Chebyshev points on [-1, 1], and matrices from values to Chebyshev coefficients and on to powers."""
+    """Return the Chebyshev points on [-1, 1] and two conversion matrices.
+
+    The first matrix converts values at the points to Chebyshev coefficients, the second one these to powers.
+    """
     from numpy.polynomial import chebyshev
 
     angles = (np.arange(POINTS) + 0.5) * (math.pi / POINTS)
@@ -93,9 +97,9 @@ def fitted(
     states: Callable[[Floats], Floats], edges: Floats, blocks: Sequence[int], scales: Sequence[float], depth: int = 0,
     left: list[int] | None = None, accuracy: float | Floats = 0.0,
 ) -> Piece:  # fmt: skip
-    """Return polynomials that fit a motion, to rounding, between given edges.
+    """Return polynomials that agree with a motion, up to rounding errors, between the given edges.
 
-    If one polynomial cannot fit the motion between two edges, the piece is halved and an edge is added.
+    If one polynomial cannot fit the motion between two edges, the interval is halved by a new edge.
 
     Parameters
     ----------
@@ -104,24 +108,24 @@ def fitted(
     edges : array, shape (k + 1,)
         Times, s, increasing or decreasing.
     blocks, scales
-        As for :func:`symrot.propagation.steppers.dop853.translation_unit`: errors are relative to these sizes.
+        Edges and scales of the blocks of states, as for :func:`symrot.propagation.steppers.dop853.translation_unit`.
     depth, left : int, list of int
         For recursive calls: number of halvings so far, and number of pieces that may still be added.
     accuracy : float
-        Error of the motion itself, relative to its largest size here: where its steps leave gaps, no fit can be closer.
-        Recursive calls pass one error per state.
+        Error of the motion itself, relative to the largest values of the states between the edges. Where the steps of
+        the motion do not join exactly, no fit can be closer. Recursive calls pass one error per state.
 
     Raises
     ------
     PropagationError
-        If even the shortest piece allowed cannot be fitted, or too many pieces are needed.
+        If even the shortest allowed interval cannot be fitted, or if too many intervals are needed.
     """
     left = [MOST_PIECES + len(edges)] if left is None else left
     left[0] -= len(edges) - 1
     if left[0] < 0:
         raise PropagationError(
-            f"expected a motion that polynomials can follow, but {MOST_PIECES} pieces were not enough near "
-            f"t = {float(edges[0])!r} s"
+            f"events: expected a motion that piecewise polynomials can approximate, but {MOST_PIECES} pieces were not "
+            f"enough near t = {float(edges[0])!r} s"
         )
     points, to_series, to_powers = _chebyshev()
     half, centre = 0.5 * np.diff(edges), edges[:-1] + 0.5 * np.diff(edges)
@@ -155,7 +159,8 @@ def fitted(
         if not (off <= ROUGH * size + accuracy).all():
             t = float(edges[int(bad.argmax())])
             raise PropagationError(
-                f"events: expected a motion that polynomials can follow, but it is rough near t = {t!r} s"
+                "events: expected a motion that piecewise polynomials can approximate, but it is not smooth near "
+                f"t = {t!r} s"
             )
         return Piece(edges, rows)
     parts, ends = [], [edges[:1]]
@@ -183,9 +188,9 @@ def fitted_pieces(
     blocks: Sequence[int],
     scales: Sequence[float],
 ) -> Generator[Piece, None, None]:
-    """Yield polynomials that fit a motion in closed form, which has no steps, in long pieces; see :func:`fitted`.
+    """Yield long pieces of polynomials that agree with a motion in closed form, which has no steps; see :func:`fitted`.
 
-    ``longest``, s, is a first guess of the length of a piece.
+    ``longest``, s, is a first guess of the interval of time that one polynomial can fit.
     """
     side, t, most, count = math.copysign(1.0, end - start), start, 8.0 * longest, FEWEST
     while t != end:

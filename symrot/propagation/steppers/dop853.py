@@ -1,14 +1,15 @@
-"""Dormand-Prince 8(5,3) around an emitted kernel: Python calls the C of :file:`dop853.c` once per span.
+"""Dormand-Prince 8(5,3) for an emitted kernel: Python calls the C functions of :file:`dop853.c` once per span.
 
-A library holds one kernel and the stepper compiled together (:func:`translation_unit`). An :func:`integration` follows
-a motion through sample times, or records every step so that the states can be computed at any time later.
+A kernel is the generated C function of the rates (time derivatives) of the states. A library contains one kernel and
+the stepper compiled together (:func:`translation_unit`). An :func:`integration` computes the states at sample times, or
+records every step so that the states can be computed later at any time.
 
-Tolerance: it limits the error of the whole trajectory, not of one step, see :func:`step_tolerance`.
+The tolerance limits the error of the whole trajectory, not of one step, see :func:`step_tolerance`.
 
-Time: a double holds 53 bits of ``a*t``, so that phases of a torque lose digits as the time grows. That costs accuracy,
-and also steps, since the step control sees rounding errors as a rough torque. A kernel whose clock can be moved (a
-:data:`Clock`) is therefore given the time since an epoch. The epoch moves with the motion every :data:`WINDOW` steps,
-and when steps are short compared with the time since the epoch.
+A double holds 53 bits of ``a*t``, so that phases of a torque lose digits as the time grows. That costs accuracy, and
+also steps, since rounding errors look like a rapidly varying torque to the step control. If a kernel can count time
+from any epoch (a :data:`Clock`), it is therefore given the time since an epoch, which is moved to the present time
+every :data:`WINDOW` steps, and when steps are short compared with the time since the epoch.
 """
 
 import math
@@ -57,13 +58,13 @@ cent of the time. Phase errors are alike in all windows and add up: with 8192 st
 def step_tolerance(tolerance: float) -> tuple[float, float]:
     """Return the error allowed in one step, and the fraction of the span that a step must cover to use all of it.
 
-    A shorter step is allowed a proportional share. Steps are about ``tolerance^(1/8)`` times as long as the motion's
-    natural time. With the fraction chosen here, the allowed error depends on the number of natural times in the span,
-    not on the number of steps: the error at the end then hardly depends on tolerance or span, except where the motion
-    amplifies errors.
+    A shorter step may use a proportional share of the error. Steps are about ``tolerance^(1/8)`` times as long as the
+    time in which the motion changes noticeably (its natural time). With the fraction chosen here, the allowed error
+    depends on the number of natural times in the span, not on the number of steps: the final error, in tolerances, then
+    hardly depends on tolerance or span, except where the motion amplifies errors.
 
-    Both constants are calibrated on free asymmetric bodies, also flipping about the intermediate axis, and on heavy
-    tops, against 40-digit references (``tests/propagation/test_dop853.py``): errors stay below 5 times the tolerance.
+    Both constants are calibrated against 40-digit references for free asymmetric bodies, some of which flip about the
+    intermediate axis, and for heavy tops (``tests/propagation/test_dop853.py``): errors stay below 5 tolerances.
     """
     check_tolerance(tolerance)
     return tolerance * STEP_SHARE, tolerance**0.125 * NATURAL_TIMES
@@ -89,19 +90,20 @@ def translation_unit(
     states, parameters : int
         Lengths of y and p.
     blocks : sequence of int
-        Edges of the blocks of states with separate error norms, from 0 to ``states``: omega, then quaternion.
+        Edges of the blocks of states whose errors are measured separately (omega, then quaternion), from 0 to
+        ``states``: block k consists of the states from edge k up to edge k + 1.
     scales : sequence of float
-        One per block. With 0, errors are relative to the size of the block (angular velocity); otherwise to this number
-        (1 for a unit quaternion, or for an angle in rad).
+        One number per block: the size to which errors of the block are relative (1 for a unit quaternion, or for an
+        angle in rad). 0 means the norm of the block itself (angular velocity).
     enclosure : str
         Output of :func:`symrot.codegen.enclosure.source.enclosure_source` for the kernel and order
-        :data:`DENSE_ORDER`; its bounds of the rates limit the steps.
+        :data:`DENSE_ORDER`: C code for bounds of the rates, which limit the steps.
     """
     edges = list(blocks)
     if edges[:1] != [0] or edges[-1] != states or edges != sorted(set(edges)) or len(scales) != len(edges) - 1:
         raise InputError(
-            f"blocks of {states} states rise from 0 to {states} and have one scale each; got blocks {edges} and "
-            f"scales {list(scales)}"
+            f"blocks: expected increasing edges from 0 to {states}, the number of states, and one scale per block, got "
+            f"edges {edges} and scales {list(scales)}"
         )
     bounds = c_text("propagation/enclosures/enclosure.h")
     return "\n".join(
@@ -133,7 +135,7 @@ def integration(
     breaks: Sequence[float] = (),
     clock: Clock | None = None,
 ) -> Integration:
-    """Return the integration of one motion, ready to be sampled or recorded; the arguments are checked.
+    """Return the integration of one motion, which can be sampled or recorded; the arguments are checked.
 
     Parameters
     ----------
@@ -146,11 +148,11 @@ def integration(
     tolerance : float
         Error of the whole trajectory to aim for, see :func:`step_tolerance`.
     max_step : float
-        Longest step, s, for a kernel with features that a longer step could pass over.
+        Longest step, s; needed if a longer step could pass over a short pulse in the rates.
     max_steps : int
         Number of steps after which the integration is given up.
     breaks : sequence of float
-        Times, s, at which the rates jump; the motion is stepped exactly to each and restarted there.
+        Times, s, at which the rates jump; a step ends exactly at each of them, and the integration restarts.
     clock : function, optional
         A :data:`Clock`, if the kernel can count time from an epoch.
 
@@ -165,14 +167,17 @@ def integration(
 
 
 class _Clocked(Integration):
-    """Integration with a kernel that counts time from an epoch; the epoch moves along with the motion."""
+    """Integration with a kernel that counts time from an epoch, which is moved repeatedly to the present time."""
 
     def __init__(self, clock: Clock, *arguments: Any) -> None:
         super().__init__(*arguments)
         self._clock = clock
 
     def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
-        """Return the C function that continues a run, after the epoch is moved if the run is far from it."""
+        """Return the C function that continues a run, its parameters, and the largest number of steps per call.
+
+        If the run has gone far from the epoch, the epoch is first moved to the present time.
+        """
         tried = self.stepper.tried(run)
         window = run.window
         if window is None:

@@ -1,12 +1,15 @@
 """SciPy as a fallback: motions stepped by any method of ``scipy.integrate.solve_ivp``.
 
-It steps motions if there is no C compiler, and for users who want LSODA. The tolerance means the same as for the
-steppers in C, as far as SciPy allows: the error of every block of states is relative to the largest size of the block
-along the motion, which a first coarse pass determines, and each step is allowed a share of it. SciPy is imported when a
-motion is first followed.
+SciPy is used if there is no C compiler, or if the user chooses one of its methods, such as LSODA. The tolerance means
+the same as for the steppers in C, as far as SciPy allows: the error of every block of states (omega, attitude) is
+relative to the largest norm of the block along the motion, which a first coarse pass determines, and each step may use
+a share of the tolerance. SciPy is imported when a motion is first followed.
 
-Time: if steps are short compared with the time, a double holds too few digits of the time. If the clock of the
-right-hand side can be moved (a :data:`Clock`), SciPy then restarts on a clock that shows 0 nearby.
+If steps are short compared with the time, a double holds too few digits of the time. If the right-hand side can count
+time from any epoch (a :data:`Clock`), SciPy then restarts with an epoch near the present time.
+
+The right-hand side is the function of the rates, ``dy/dt``. A segment is the time between two switching times; a piece
+is the solution of SciPy on one segment.
 """
 
 import math
@@ -40,12 +43,12 @@ __all__ = ["METHODS", "FallbackRecording", "Options", "WholeMotion", "integrate"
 
 Rhs = Callable[[float, Floats, Floats], ArrayLike]
 Clock = Callable[[float], tuple[Rhs, Sequence[float]]]
-"""Function from an epoch, s, to a right-hand side that counts time from the epoch, and its parameters."""
+"""Function from an epoch, s, to a right-hand side with time counted from the epoch, and its parameters."""
 Piece = tuple[float, float, Any]  # first time, last time, SciPy's solution between them
 
 
 class WholeMotion(NamedTuple):
-    """The motion of which SciPy follows only a part: its two ends, s, and the evaluations spent before the part."""
+    """The whole motion, of which SciPy follows a part: its two ends, s, and the evaluations spent before the part."""
 
     start: float
     end: float
@@ -53,17 +56,17 @@ class WholeMotion(NamedTuple):
 
 
 METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "LSODA": 0.001}
-"""SciPy's methods, each with the share of the tolerance that one step may use; calibrated as in dop853.py."""
+"""SciPy's methods, each with the share of the tolerance that one step may use, calibrated as in dop853.py."""
 
 DEFAULT = "DOP853"
 FIT_ORDER = 7  # degree of the polynomial that the states follow in a step
-SLACK = 1e4  # the same number as in dop853.c
+SLACK = 1e4  # enclosures exceed errors by this factor or less, as in dop853.c
 HELD, REGAIN = 0.5, 1.5  # a step above this fraction of the limit was held back; the next may grow by this factor
 FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
 STUCK = "the step shrank to nothing, as it does before a singularity"
-PILOT_TURN = 1e-3  # rad over the whole span
+PILOT_TURN = 1e-3  # rad over the whole span: errors of slower rotations are relative to this rate
 PILOT_TOLERANCE = 1e-3  # tolerance of the coarse pass
-EFFORT_CUT_OFF = 4  # share of the evaluations for a motion that cannot be followed to its end
+EFFORT_CUT_OFF = 4  # a motion that cannot be followed to its end gets one part in so many of the allowed evaluations
 BEFORE_POLE = 0.5  # part of the way of a coarse pass that stops early: beyond it states may grow without bound
 PILOT_STEPS = 10  # coarse steps: a shorter motion may use the whole share of the tolerance in every step
 MAX_EVALUATIONS = 1_000_000  # default limit: half a minute
@@ -71,7 +74,8 @@ PATIENCE = 50_000  # evaluations between two checks of the pace
 MAX_IDLE = 100  # consecutive steps too short for the clock of the scene, as after a restart of LSODA
 MAX_BROKEN = 1000  # derivatives that are not finite, before the motion stops
 _NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, FIT_ORDER + 1) / FIT_ORDER)  # Chebyshev points of a step
-_FIT = np.linalg.inv(_NODES[:, None] ** np.arange(1, FIT_ORDER + 1))  # from changes there to coefficients
+# The matrix converts changes of the states at these points to the coefficients of the polynomial.
+_FIT = np.linalg.inv(_NODES[:, None] ** np.arange(1, FIT_ORDER + 1))
 SMALLEST_RTOL = 100 * float(np.finfo(float).eps)  # the smallest relative tolerance that SciPy accepts
 
 
@@ -85,7 +89,7 @@ def method_name(text: str) -> str:
     """
     name = text.removeprefix("scipy").removeprefix(":") or DEFAULT
     if name not in METHODS:
-        raise InputError(f"SciPy's methods are {', '.join('scipy:' + known for known in METHODS)}; got {text!r}")
+        raise InputError(f"method: expected one of {', '.join('scipy:' + known for known in METHODS)}, got {text!r}")
     return name
 
 
@@ -98,17 +102,19 @@ class Options:
     method : str
         Name of a SciPy method, as for :func:`method_name`.
     blocks, scales
-        As for :func:`symrot.propagation.steppers.dop853.translation_unit`; the last edge may lie beyond N.
+        As for :func:`symrot.propagation.steppers.dop853.translation_unit`; the last edge of ``blocks`` may exceed the
+        number of states N.
     breaks, max_step
         As for :func:`symrot.propagation.steppers.dop853.integration`.
     max_steps : int
         Largest number of evaluations of the right-hand side.
     deviations : Deviations, optional
-        Bounds of the terms of the right-hand side that may hide a feature: they limit the steps.
+        Bounds on how far the right-hand side may deviate from a constant within a step. They limit the steps, so that
+        no step misses a short pulse.
     clock : callable, optional
         A :data:`Clock`, if the right-hand side can count time from an epoch.
     whole : WholeMotion, optional
-        The whole motion, if only a part of it is followed. Then ``max_steps`` limits the whole motion.
+        The whole motion, if only a part of it is followed. Then ``max_steps`` is the limit for the whole motion.
     """
 
     method: str = DEFAULT
@@ -140,7 +146,7 @@ def integrate(
     """
     times = np.asarray(times, dtype=np.float64)
     if times.ndim != 1 or not np.isfinite(times).all():
-        raise InputError(f"sample times are a sequence of finite numbers, got {times!r}")
+        raise InputError(f"times: expected a sequence of finite sample times in s, got {times!r}")
     motion = _Integration(rhs, p, y0, t0, tolerance, options)
     states = np.empty((len(times), len(motion.y0)))
     done = np.empty(0, dtype=np.intp)
@@ -165,10 +171,10 @@ def record(
     tolerance: float,
     options: Options = Options(),
 ) -> "FallbackRecording":
-    """Return the motion over ``span`` as a function of time; the arguments are as for :func:`integrate`.
+    """Return the motion over ``span`` as a function from times to states; the arguments are as for :func:`integrate`.
 
-    If the motion stops early or is interrupted, the attribute ``recording`` of the exception holds the motion until
-    then, if there is any.
+    If the motion stops early or is interrupted, the attribute ``recording`` of the exception holds the motion before
+    that time, unless it stopped at its start.
     """
     motion = _Integration(rhs, p, y0, t0, tolerance, options)
     low, high = min(*span, motion.t0), max(*span, motion.t0)
@@ -186,14 +192,14 @@ def record(
 
 
 class FallbackRecording(Recording):
-    """A motion by SciPy as a function of time; see :class:`symrot.propagation.steppers.stepping.Recording`."""
+    """A motion by SciPy as a function of time, see :class:`symrot.propagation.steppers.stepping.Recording`."""
 
     def __init__(self, motion: "_Integration", pieces: list[Piece], low: float, high: float) -> None:
         self._pieces = pieces
         super().__init__(motion.t0, motion.y0, (low, high), motion.stats())
 
     def edges(self, start: float, end: float) -> list[Floats]:
-        """Return the ends of SciPy's steps between two times, from ``start`` to ``end``, as a list of arrays.
+        """Return the times at which SciPy's steps from ``start`` to ``end`` begin and end, as a list of arrays.
 
         There is one array for each segment between switching times.
         """
@@ -210,7 +216,7 @@ class FallbackRecording(Recording):
 
 
 def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
-    """Fill in the states at all times that lie inside a piece of the motion, from SciPy's solution for that piece."""
+    """Write the states at the ``times`` inside each piece into ``states``, from the solution of the piece."""
     for low, high, solution in pieces:
         chosen = (times >= low) & (times <= high)
         if chosen.any():
@@ -218,7 +224,7 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
 
 
 class _ShiftedSolution:
-    """SciPy's interpolant of one step on a moved clock, as a function of time on the clock before the move."""
+    """SciPy's interpolant of one step, computed in time since ``epoch`` and called with times that are not shifted."""
 
     def __init__(self, solution: Any, epoch: float) -> None:
         self._solution, self._epoch = solution, epoch
@@ -238,7 +244,9 @@ class _Integration:
         self.unmoved = self.rhs, self.p
         self.y0, self.t0 = np.array(y0, dtype=np.float64), float(t0)
         if self.y0.ndim != 1 or not all(np.isfinite(values).all() for values in (self.t0, self.y0, self.p)):
-            raise InputError(f"initial time, state and parameters are finite numbers, got {t0!r}, {y0!r}, {p!r}")
+            raise InputError(
+                f"expected finite numbers as initial time, state and parameters, got {t0!r}, {y0!r}, {p!r}"
+            )
         check_tolerance(tolerance)
         check_longest_step(options.max_step)
         self.tolerance, self.breaks = tolerance, sorted(map(float, options.breaks))
@@ -253,28 +261,28 @@ class _Integration:
         self.final = False  # whether this is the final pass, not the coarse one
         self.mark = (0, self.t0)  # work and time at the last check of the pace
         self.whole, self.before = options.whole, self.deviations.spent if self.deviations else 0
-        with np.errstate(all="ignore"):  # the sentence says it
+        with np.errstate(all="ignore"):  # the error below reports it
             first = self._derivative(self.t0, self.y0)
         if not np.isfinite(first).all():
             raise IntegrationStopped(self.t0, NOT_FINITE_SENTENCE)
 
     @property
     def work(self) -> int:
-        """Number of evaluations so far, of the rates and of their bounds, which take as long; this sum is limited."""
+        """Number of evaluations of the rates and of their bounds so far; both take about as long. It is limited."""
         return self.evaluations + (self.deviations.spent - self.before if self.deviations else 0)
 
     def stats(self) -> Stats:
         return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
 
     def follow(self, times: Floats) -> Floats:
-        """Return the states at times on one side of t0, which are sorted by their distance from t0."""
+        """Return the states at the times, which all lie after t0 or all before it, sorted by their distance from t0."""
         states = np.empty((len(times), len(self.y0)))
         _evaluate(self.solutions(float(times[-1])), times, states)
         states[times == self.t0] = self.y0
         return states
 
     def partial(self, times: Floats) -> tuple[NDArray[np.intp], Floats]:
-        """Return indices and states of the sample times that lie before the time at which the motion stopped early."""
+        """Return the indices and the states of those sample times that the motion reached before it stopped early."""
         pieces = self.pieces if self.final else []  # results of the coarse pass are not returned
         way = max((max(abs(low - self.t0), abs(high - self.t0)) for low, high, _ in pieces), default=0.0)
         inside = np.flatnonzero(np.abs(times - self.t0) <= way)
@@ -284,10 +292,10 @@ class _Integration:
         return inside, states
 
     def solutions(self, end: float) -> list[Piece]:
-        """Return the motion from t0 to ``end`` as pieces (low, high, solution), one for each segment between switches.
+        """Return the motion from t0 to ``end`` as pieces (first time, last time, solution), one for each segment.
 
         If the coarse pass stops early, the final pass follows the motion up to the same time, so that no sample is
-        lost.
+        lost, and then the error of the coarse pass is raised.
         """
         self.final, self.pieces = False, []
         if end == self.t0:
@@ -335,9 +343,9 @@ class _Integration:
         return self.pieces
 
     def _follow_segment(self, segment: Segment, y: Floats, rtol: float, atol: Floats, bars: list[float]) -> None:
-        """Add SciPy's solution over a segment to the pieces, as far as SciPy can follow it.
+        """Append SciPy's solution over a segment, as far as SciPy can follow the motion, to ``pieces``.
 
-        No step is longer than the bounds of torques allow.
+        No step is longer than the bounds of the rates allow.
         """
         import scipy.integrate
 
@@ -359,7 +367,7 @@ class _Integration:
         finally:
             if interpolants:
                 lagging = self.method in ("BDF", "LSODA")  # their steps hold the end that they begin at
-                times = times[: len(interpolants) + 1]  # an interrupt may come between the two
+                times = times[: len(interpolants) + 1]  # an interrupt may come between the two appends
                 solution = scipy.integrate.OdeSolution(times, interpolants, alt_segment=lagging)
                 self.pieces.append((min(times[0], times[-1]), max(times[0], times[-1]), solution))
 
@@ -373,7 +381,7 @@ class _Integration:
             now, y = float(solver.t), solver.y.copy()  # time on the present clock
             before = self.epoch + now
             progress.report(before if self.final else self.t0, start, end if self.whole else self.goal)
-            self._judge_pace(before, end if self.final else segment.stop)  # a coarse pass is no part of the whole
+            self._judge_pace(before, end if self.final else segment.stop)  # a coarse pass has its own end
             broken = self.broken
             try:
                 message = solver.step()
@@ -423,7 +431,10 @@ class _Integration:
                     solver.max_step = longest
 
     def _move_clock(self, clock: Clock, now: float) -> float:
-        """Move the clock so that it shows about 0 at the time ``now``; return the exact time that it shows."""
+        """Move the epoch to about the present time; return the exact time since the new epoch.
+
+        ``now`` is the time since the old epoch.
+        """
         self.epoch, rest = two_sum(self.epoch, now)
         self.rhs, p = clock(self.epoch)
         self.p = np.array(p, dtype=np.float64)
@@ -446,9 +457,9 @@ class _Integration:
         return self.work + (self.whole.spent if self.whole else 0)
 
     def _proven(self, t: float, y: Floats, dense: Any, now: float, step: float, bars: list[float]) -> float:
-        """Return how much of a step, s, provably passes over no feature of a torque.
+        """Return the length of the part of a step, s, that is proven not to pass over a short pulse of a torque.
 
-        The step begins at the time ``now`` of the present clock.
+        The step begins at ``now``, the time since the epoch.
         """
         assert self.deviations is not None
         path = np.abs(_FIT @ (dense(now + _NODES * step).T - y)).T.tolist()
@@ -461,7 +472,9 @@ class _Integration:
             raise IntegrationStopped(self.epoch + float(t), f"{self.max_evaluations} evaluations were not enough")
         dy = np.asarray(self.rhs(t, y, self.p), dtype=np.float64)
         if dy.shape != self.y0.shape:
-            raise InputError(f"the right-hand side returns {len(self.y0)} numbers, got an array of shape {dy.shape}")
+            raise InputError(
+                f"expected a right-hand side that returns {len(self.y0)} numbers, got an array of shape {dy.shape}"
+            )
         if not math.isfinite(dy.sum()):
             self.broken += 1
             if self.broken > MAX_BROKEN:

@@ -1,4 +1,4 @@
-"""Motions that stop early: the exception, its reason as a sentence, and the samples computed before."""
+"""Motions that stop early: the exception, its reason as a sentence, and the samples computed before it was raised."""
 
 import math
 from collections.abc import Iterable
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 
 class IntegrationStopped(PropagationError):
-    """Error raised when a motion cannot be followed beyond the time t, s, on the way to the time ``stop``."""
+    """Raised if a motion to the time ``stop`` cannot be followed beyond the time t, s."""
 
     def __init__(self, t: float, reason: str, stop: float | None = None) -> None:
         way = "" if stop is None else f" on the way to {stop!r} s"
@@ -28,7 +28,10 @@ class IntegrationStopped(PropagationError):
         self.recording: Any = None  # the motion before t, if it was being recorded
 
     def later(self, epoch: float) -> "IntegrationStopped":
-        """Return the same error with ``epoch``, s, added to its times: a clock that shows ``epoch`` instead of 0."""
+        """Return the same error with ``epoch``, s, added to its times.
+
+        The results are times of the scene, if the clock of the motion shows 0 at the scene time ``epoch``.
+        """
         later = IntegrationStopped(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
         later.samples = self.samples
         return later
@@ -44,7 +47,7 @@ class Samples(NamedTuple):
     states : array, shape (k, N)
         States of the samples.
     cost : (int, int, int)
-        Accepted steps, rejected steps and evaluations until then.
+        Numbers of accepted steps, rejected steps and evaluations before the motion stopped.
     """
 
     numbers: NDArray[np.intp]
@@ -55,7 +58,7 @@ class Samples(NamedTuple):
 def add_samples(
     error: BaseException, numbers: NDArray[np.intp], states: Floats, cost: Iterable[int] | None = None
 ) -> None:
-    """Attach the samples computed before an error or interrupt, and their cost, to the exception as ``samples``."""
+    """Store the samples computed before an error or interrupt, and their cost, as ``samples`` of the exception."""
     before: Samples | None = getattr(error, "samples", None)
     if before is not None:  # samples on the other side of the start were finished before
         numbers, states = np.concatenate([numbers, before.numbers]), np.concatenate([states, before.states])
@@ -65,18 +68,18 @@ def add_samples(
 
 
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
-    """Return why steps shrank to zero at t: ``reason``, or that doubles lie too far apart at such times."""
+    """Return the reason why steps shrank to zero at t: ``reason``, or that adjacent doubles lie too far apart."""
     apart = math.ulp(t)
     if abs(stop - t0) > MANY_TICKS * apart:
         return reason
     advice = "choose t = 0 nearer to the motion"
-    return f"the clock is too coarse for its steps: doubles lie {apart:.3g} s apart there; {advice}"
+    return f"the time is too coarse for its steps: adjacent doubles lie {apart:.3g} s apart there; {advice}"
 
 
 def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
-    """Return a sentence that a motion would take far too many steps, or an empty text if it would not.
+    """Return a sentence that says that a motion would take far too many steps, or an empty text if it would not.
 
-    The last ``steps`` steps covered a time of ``way``, s; a time of ``left``, s, remains.
+    The last ``steps`` steps covered a time of ``way`` seconds; ``left`` seconds remain.
     """
     if steps * left <= HOPELESS * limit * way:
         return ""

@@ -1,8 +1,8 @@
-"""Smoothness of the torques of a plan, which decides whether Taylor series can be used. Does not use SymPy.
+"""Smoothness of the torques of a plan, which decides whether Taylor series can be used. This module does not use SymPy.
 
 A series needs derivatives of every order at its centre. Quotients, powers, sin, cos, exp and log have them wherever
 they are defined. The absolute value and the square root have no derivative at zero, and a motion may reach such a
-point, for example at rest. Dormand and Prince's method steps such torques instead.
+point, for example at rest. For such torques Dormand and Prince's method is used instead.
 """
 
 from symrot.dynamics.structure import FormulaTorque, Pattern, TorqueStructure

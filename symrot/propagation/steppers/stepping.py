@@ -1,8 +1,12 @@
 """Code that all steppers share: loaded libraries, integrations of motions, recordings, and error messages.
 
 :mod:`symrot.propagation.steppers.dop853` and :mod:`symrot.propagation.steppers.taylor` define their own parts in
-subclasses of :class:`Stepper`. :mod:`symrot.propagation.steppers.fallback` uses the sorting of times, the segments
-between switching times and the messages.
+subclasses of :class:`Stepper`. :mod:`symrot.propagation.steppers.fallback` uses the functions that sort times and
+divide a span at switching times, and the messages.
+
+A :class:`Run` is the state of one motion in the memory of the C code. The pace is the time that a motion covers per
+step; from it the remaining number of steps is estimated. To sample is to compute the states at given times; to record
+is to store every step, so that the states can be computed later.
 """
 
 import ctypes
@@ -64,10 +68,10 @@ NOT_FINITE_SENTENCE = "its rate of change is not finite there"
 
 
 class Switching(NamedTuple):
-    """The switching of a function in a torque, such as ``sign(omega_3)``, at a time, s.
+    """The switching of a function in a torque, such as ``sign(omega_3)``, at the time t, s.
 
-    ``how`` is ``"passed"`` if the argument changes its sign, ``"held"`` if it stays at zero from then on (dry friction
-    holds a wheel at rest), and ``"released"`` if it leaves zero after being held there.
+    ``how`` is ``"passed"`` if the argument of the function changes its sign, ``"held"`` if the argument stays at zero
+    from then on (dry friction holds a wheel at rest), and ``"released"`` if it leaves zero after being held there.
     """
 
     t: float
@@ -81,15 +85,15 @@ class Stats(NamedTuple):
     Attributes
     ----------
     accepted, rejected : int
-        Numbers of steps.
+        Numbers of accepted and rejected steps.
     evaluations : int
         Evaluations of the kernel.
     seconds : float
         Time of the whole propagation.
     switches : int
-        Changes of the Euler sequence if angles are the state; otherwise the number of switching times.
+        Number of changes of the Euler sequence if Euler angles are the state; otherwise the number of switching times.
     switching_times : tuple of float
-        Times, s, at which functions such as sign switch in the torques, without repetition.
+        Times, s, without repetition, at which functions such as sign switch in the torques.
     switchings : tuple of Switching
         The functions that switch, with their times.
 
@@ -135,10 +139,10 @@ def check_longest_step(max_step: float) -> None:
 def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
     array = np.asarray(values, dtype=np.float64)
     if array.shape != (length,):
-        raise InputError(f"this kernel takes {length} {what}, got an array of shape {array.shape}")
+        raise InputError(f"{what}: expected an array of shape ({length},) for this kernel, got shape {array.shape}")
     numbers: list[float] = array.tolist()
     if not math.isfinite(sum(numbers)) and not all(map(math.isfinite, numbers)):
-        raise InputError(f"the {what} must be finite numbers, got {numbers}")
+        raise InputError(f"{what}: expected finite numbers, got {numbers}")
     return numbers
 
 
@@ -177,7 +181,7 @@ def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
 
 
 def _inside(edge: float, other: float) -> float:
-    """Return a time just inside one end of a segment, near enough not to affect the choice of the first step."""
+    """Return a time just inside the end ``edge`` of a segment, too near to affect the choice of the first step."""
     time = edge + SLIVER * (other - edge)
     return time if time != edge else math.nextafter(edge, other)
 
@@ -198,11 +202,11 @@ def split_at(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
 
 
 class Recording(ABC):
-    """A motion that can be evaluated at any time of its span.
+    """A motion whose states can be computed at any time of its span.
 
-    ``recording(t)`` returns the states at a time or an array of times, shape (N,) or (n, N), and raises InputError for
-    a time outside ``span``. ``stats`` is the cost of the recording; ``epoch`` is the time of the scene at which its
-    clock shows 0.
+    ``recording(t)`` returns the states at one time, shape (N,), or at an array of times, shape (n, N), and raises
+    InputError for a time outside ``span``. ``stats`` is the cost of the motion; ``epoch`` is the time of the scene, s,
+    at which the clock of the motion shows 0.
     """
 
     epoch = 0.0
@@ -212,7 +216,7 @@ class Recording(ABC):
 
     @abstractmethod
     def _fill(self, times: Floats, states: Floats) -> None:
-        """Write the states at the times, all inside the span and different from t0, into an array."""
+        """Write the states at ``times``, which lie inside the span and differ from t0, into the array ``states``."""
 
     def __call__(self, t: ArrayLike) -> Floats:
         times = np.asarray(t, dtype=np.float64)
@@ -220,7 +224,7 @@ class Recording(ABC):
         outside = ~((flat >= self.span[0]) & (flat <= self.span[1]))
         if outside.any():
             low, high, asked = (time + self.epoch for time in (*self.span, float(flat[outside][0])))
-            raise InputError(f"the motion is known from {low} to {high} s, got the time {asked} s")
+            raise InputError(f"t: expected times from {low} to {high} s, where the motion is known, got {asked} s")
         states = np.empty((len(flat), len(self._y0)))
         self._fill(flat, states)
         states[flat == self._t0] = self._y0
@@ -228,7 +232,7 @@ class Recording(ABC):
 
 
 class SteppedRecording(Recording):
-    """A motion as a function of time, made of the recorded steps of a stepper in C."""
+    """A motion as a function from times to states, composed of the recorded steps of a stepper in C."""
 
     def __init__(self, task: "Integration", span: tuple[float, float], backward: Floats, forward: Floats) -> None:
         super().__init__(task.t0, task.y0, span, task.stats())
@@ -244,11 +248,14 @@ class SteppedRecording(Recording):
 
 
 class Window(NamedTuple):
-    """C function and parameters with which a run continues until the clock of its kernel is moved again."""
+    """C function and parameters with which a run continues until the epoch of its kernel is moved again.
+
+    The epoch is the time from which the kernel counts time.
+    """
 
     step: Callable[..., Any]
     parameters: Any
-    since: int  # steps tried when the clock was moved
+    since: int  # steps tried when the epoch was moved
 
 
 class Run(ctypes.Structure):
@@ -285,7 +292,7 @@ class Run(ctypes.Structure):
 class Stepper(ABC):
     """Functions of one loaded library; each subclass defines the parts that depend on its method.
 
-    The library exports ``symrot_NAME``, ``symrot_NAME_dense`` and ``symrot_NAME_sizes``.
+    The library exports ``symrot_NAME``, ``symrot_NAME_dense`` and ``symrot_NAME_sizes``, where NAME is ``name``.
     """
 
     name: ClassVar[str]
@@ -322,7 +329,7 @@ class Stepper(ABC):
         self.new_parameters: Any = ctypes.c_double * self.parameters
 
     def _function(self, ending: str, result: Any, *arguments: Any) -> Callable[..., Any]:
-        """Return the function ``symrot_NAME`` followed by an ending, such as ``_dense``, with its types declared."""
+        """Return the C function ``symrot_NAME`` plus an ending, such as ``_dense``, with its types declared."""
         try:
             function = getattr(self._library, f"symrot_{self.name}{ending}")
         except AttributeError as error:
@@ -333,16 +340,16 @@ class Stepper(ABC):
 
     @abstractmethod
     def row_length(self) -> int:
-        """Return the number of doubles in the record of one step."""
+        """Return the number of doubles that the record of one step takes."""
 
     @staticmethod
     @abstractmethod
     def allowance(tolerance: float) -> tuple[float, float]:
-        """Return the error allowed in one step, and the fraction of the span that a step must cover to use it all."""
+        """Return the error allowed in one step, and the part of the span that a step must cover to use all of it."""
 
     @abstractmethod
     def enter(self, run: Run, segment: Segment, allowed: float) -> None:
-        """Set the fields of a run that only this method uses, before the run steps the next segment."""
+        """Set the fields of a run that only this method uses, before the next segment is integrated."""
 
     @staticmethod
     @abstractmethod
@@ -355,7 +362,7 @@ class Stepper(ABC):
         """Return the numbers of accepted steps, rejected steps and evaluations of a run."""
 
     def dense(self, rows: Floats, times: Floats) -> Floats:
-        """Return the states at times inside recorded steps; all times lie on one side of t0."""
+        """Return the states at times inside recorded steps; the times lie all after t0 or all before it."""
         states = np.empty((len(times), self.states))
         self._dense(rows.ctypes.data, len(rows), times.ctypes.data, len(times), states.ctypes.data)
         return states
@@ -366,9 +373,9 @@ def _no_stepper(path: str, error: Exception) -> CompilerError:
 
 
 def is_sorted(times: Floats) -> bool:
-    """Return whether times never decrease; NaN counts as a decrease.
+    """Return whether the times never decrease; NaN counts as a decrease.
 
-    A few times are compared faster one by one than by NumPy.
+    If there are few times, they are compared one by one, which is faster than NumPy.
     """
     if len(times) > FEW:
         return b"\0" not in (times[1:] >= times[:-1]).tobytes()
@@ -379,8 +386,8 @@ def is_sorted(times: Floats) -> bool:
 class Integration:
     """The integration of one motion by a stepper in C: its checked arguments, and the cost of all calls so far.
 
-    ``load`` returns the stepper for the path of a library.
-    :func:`symrot.propagation.steppers.dop853.integration` explains the other parameters.
+    ``load`` returns the stepper for the path of a library. The other parameters are explained in
+    :func:`symrot.propagation.steppers.dop853.integration`.
     """
 
     def __init__(
@@ -402,7 +409,7 @@ class Integration:
         self.t0, self.max_step, self.max_steps = float(t0), float(max_step), max_steps
         self.breaks = sorted(map(float, breaks)) if len(breaks) else ()
         if not math.isfinite(self.t0):
-            raise InputError(f"the initial time must be finite, got {t0}")
+            raise InputError(f"t0: expected a finite initial time in s, got {t0}")
         check_longest_step(self.max_step)
         self.allowed, self.pace = stepper.allowance(tolerance)
         self.accepted = self.rejected = self.evaluations = 0
@@ -421,7 +428,7 @@ class Integration:
         return other
 
     def from_start(self, p: list[float], y0: Sequence[float]) -> "Integration":
-        """Return a copy of the integration with other parameters and another initial state; only these are checked."""
+        """Return a copy of the integration with the parameters p and the initial state y0; only these are checked."""
         if not math.isfinite(sum(p) + sum(y0)):  # a sum may overflow though each number is finite
             _numbers("parameters", p, len(p))
             _numbers("states", y0, len(y0))
@@ -438,19 +445,19 @@ class Integration:
     def sample(self, times: ArrayLike) -> tuple[Floats, Stats]:
         """Return the states at sample times, shape (n, N), and the cost of the motion.
 
-        The times, s, may be in any order, before or after ``t0``, and may repeat. The steps depend only on the first
-        and the last time.
+        The times, s, may be in any order, before or after ``t0``, and may repeat. The steps depend only on the earliest
+        and the latest time.
 
         Raises
         ------
         InputError
             If the times are not finite or have a wrong shape.
         PropagationError
-            If the motion cannot be followed to the end; the message says how far it came.
+            If the motion cannot be followed to the end; the message names the time that it reached.
         """
         times = np.asarray(times, dtype=np.float64, order="C")
         if times.ndim != 1:
-            raise InputError(f"sample times are a sequence of numbers, got an array of shape {times.shape}")
+            raise InputError(f"times: expected a sequence of sample times in s, got an array of shape {times.shape}")
         count = len(times)
         states = np.empty((count, self.stepper.states))
         if count == 0:
@@ -458,11 +465,11 @@ class Integration:
         low, high = float(times[0]), float(times[-1])
         if low >= self.t0 and is_sorted(times):
             if not math.isfinite(high):
-                raise InputError(f"sample times must be finite, got {high}")
+                raise InputError(f"times: expected finite sample times in s, got {high}")
             self.follow(times, states)
             return states, self.stats()
         if not bool(np.isfinite(times).all()):
-            raise InputError(f"sample times must be finite, got {times[~np.isfinite(times)][0]}")
+            raise InputError(f"times: expected finite sample times in s, got {times[~np.isfinite(times)][0]}")
         done = np.empty(0, dtype=np.intp)
         for part in split_at(times, self.t0):
             rows = np.empty((len(part), self.stepper.states))
@@ -479,7 +486,7 @@ class Integration:
         return states, self.stats()
 
     def sample_sorted(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the result of ``restarted().sample(times)``, but faster if the times increase from t0 on.
+        """Return the result of ``restarted().sample(times)``, faster if the times never decrease from t0 on.
 
         ``in_order`` promises that the times are finite and never decrease.
         """
@@ -502,16 +509,16 @@ class Integration:
 
     @cached_property
     def _ready(self) -> Run:
-        """State of the motion in C at its start, which each new run copies."""
+        """State of the motion in C at its start; each new run is a copy."""
         run = self.stepper.new_run(t=self.t0, max_step=self.max_step, **self.fields)
         run.y[:] = self.y0
         return run
 
     def record(self, span: tuple[float, float]) -> SteppedRecording:
-        """Return the motion as a function of time over a span and over all times between the span and t0.
+        """Return the motion as a function of time, over the shortest interval that contains ``span`` and t0.
 
-        The steps are the same as those of :meth:`sample` to the ends of the span, so that both give equal states. The
-        record of a step takes 8 N + 2 numbers by DOP853, and 21 N + 4 by Taylor series of order 20.
+        The steps are the same as in :meth:`sample` to the ends of the span, so that both give equal states. The record
+        of a step takes 8 N + 2 numbers with DOP853, and 21 N + 4 with Taylor series of order 20.
         """
         low, high = min(span), max(span)
         if not (math.isfinite(low) and math.isfinite(high)):
@@ -521,7 +528,10 @@ class Integration:
         return SteppedRecording(self, span, backward, forward)
 
     def follow(self, times: Floats, states: Floats) -> None:
-        """Write the states at times on one side of t0, sorted by their distance from t0, into an array."""
+        """Write the states at ``times`` into the array ``states``.
+
+        The times lie all after t0 or all before it, and are sorted by their distance from t0.
+        """
         count, done, first, out = len(times), 0, address(times), address(states)
         row = 8 * self.stepper.states
         for run in self.runs(float(times[-1])):
@@ -535,7 +545,7 @@ class Integration:
             done += run.next
 
     def _cost(self, run: Run) -> tuple[int, int, int]:
-        """Return accepted steps, rejected steps and evaluations of a run together with all earlier runs."""
+        """Return the numbers of accepted steps, rejected steps and evaluations in this run and all earlier runs."""
         accepted, rejected, evaluations = self.stepper.cost(run)
         return self.accepted + accepted, self.rejected + rejected, self.evaluations + evaluations
 
@@ -554,7 +564,10 @@ class Integration:
         return pieces
 
     def runs(self, end: float) -> Generator[Run, None, None]:
-        """Yield the run in C, prepared for each segment between switching times, and add its cost to the counts."""
+        """Yield the run once for each segment between switching times, prepared for that segment.
+
+        At the end, the cost of the run is added to the counts of the integration.
+        """
         stepper, self.goal = self.stepper, end
         pace = (self.way or abs(end - self.t0)) * self.pace
         run = stepper.new_run(t=self.t0, pace=pace, max_step=self.max_step, **self.fields)
@@ -575,7 +588,7 @@ class Integration:
         return self.stepper.run, self.p, self.stepper.steps_per_call
 
     def advance(self, run: Run, times: int | None, count: int, states: int | None, rows: int | None, room: int) -> int:
-        """Call the stepper in C once; raise IntegrationStopped if it cannot continue."""
+        """Call the stepper in C once and return its status; raise IntegrationStopped if it cannot continue."""
         stepper, (function, p, most) = self.stepper, self.step_function(run)
         attempts = min(most, self.max_steps - stepper.tried(run))
         status: int = function(ctypes.addressof(run), ctypes.addressof(p), times, count, states, rows, room, attempts)

@@ -1,10 +1,12 @@
 """Coefficients of Dormand and Prince's 8(5,3) pair with its dense output of order 7, as exact decimals.
 
-Stages are numbered from 1, as in the source; a coefficient left out is zero. Stage 13 is the derivative at the end of
-the step, which is stage 1 of the next step ("first same as last"); stages 14 to 16 serve the dense output alone.
+A pair is two Runge-Kutta methods with common stages, one of which estimates the error of the other. Stages are numbered
+from 1, as in the source; a coefficient that is not listed is zero. Stage 13 is the derivative at the end of the step,
+which is stage 1 of the next step ("first same as last"); stages 14 to 16 are used only for the dense output.
 
-:func:`c_header` prints them for :file:`dop853.c`; the printed file ``dop853_tableau.h`` is never edited, and a test
-compares the two byte for byte. Tests check the order conditions too, so that a wrong digit cannot hide.
+:func:`c_header` prints the coefficients for :file:`dop853.c`; the printed file ``dop853_tableau.h`` is never edited,
+and a test compares it byte for byte with what is printed. Tests also check the order conditions, so that a wrong digit
+is detected.
 
 Source: P. J. Prince, J. R. Dormand, J. Comput. Appl. Math. 7 (1981) 67; error estimates and dense output: E. Hairer,
 S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.5, II.6, and ``dop853.f``.

@@ -1,11 +1,12 @@
-"""Taylor series, usually of order 20, around an emitted jet: Python calls the C of :file:`taylor.c` once per span.
+"""Taylor series, usually of order 20: Python calls the C functions of :file:`taylor.c` once per span.
 
-A jet is the list of all Taylor coefficients of a right-hand side at one time. Smooth right-hand sides need only a few
-long steps. Each step is accurate to rounding if the tolerance is small, and the same coefficients give the states
-at any time inside it. A library holds one system and the stepper compiled together (:func:`translation_unit`).
-:mod:`symrot.propagation.steppers.dop853` has the same interface.
+The right-hand side is the function of the rates, ``dy/dt = f(t, y, p)``. A jet is the list of the Taylor coefficients
+of all states at one time, up to the order of the series; generated C code computes it. Smooth right-hand sides need
+only a few long steps. If the tolerance is small, each step is accurate up to rounding errors, and the same coefficients
+give the states at any time inside the step. A library contains the jet of one right-hand side and the stepper compiled
+together (:func:`translation_unit`). :mod:`symrot.propagation.steppers.dop853` has the same interface.
 
-Tolerance: it limits the error of the whole trajectory, not of one step, see :func:`step_tail`.
+The tolerance limits the error of the whole trajectory, not of one step, see :func:`step_tail`.
 """
 
 import ctypes
@@ -63,13 +64,13 @@ ORDERS = {  # for few and for many products: least tolerance, and the fastest or
 
 
 def step_tail(tolerance: float) -> tuple[float, float]:
-    """Return the allowed size of the last terms of a step's series, and the fraction of the span that allows all of it.
+    """Return the allowed size of the last terms of a series, and the part of the span a step must cover to use it all.
 
-    A step shorter than this fraction is allowed its share of the span to the power 7/4: if only the rotation amplifies
-    errors, they grow with the number of steps. The error at the end then hardly depends on the span.
+    For a shorter step the size is multiplied by the power 7/4 of the ratio of the step to that part of the span: errors
+    of single steps add up about as the number of steps to this power. The final error then hardly depends on the span.
 
-    The constant is calibrated on free asymmetric bodies, also flipping about the intermediate axis, and on heavy tops,
-    against references of 50 digits (``tests/propagation/test_taylor.py``): errors stay below 5 times the tolerance.
+    The constant is calibrated against references of 50 digits for free asymmetric bodies, some of which flip about the
+    intermediate axis, and for heavy tops (``tests/propagation/test_taylor.py``): errors stay below 5 tolerances.
     """
     check_tolerance(tolerance)
     return tolerance, 1.0 / STEPS_OF_ALL
@@ -78,8 +79,9 @@ def step_tail(tolerance: float) -> tuple[float, float]:
 def order_for(tolerance: float, program: Program | None = None) -> int:
     """Return the order of the series that is fastest for a tolerance; every order is accurate enough.
 
-    It depends on the number of products in the right-hand side. Measured by ``python -m symrot.bench.taylor --orders``:
-    below 1e-6 orders 16 to 24 lie within a tenth of each other.
+    The fastest order depends on the number of products in the right-hand side. It was measured with
+    ``python -m symrot.bench.taylor --orders``: for tolerances below 1e-6 the times of orders 16 to 24 differ by less
+    than a tenth.
     """
     formulas = (*program.temporaries, *program.outputs) if program else ()
     products = sum(operations(formula)["mul"] for _, formula in formulas)
@@ -87,7 +89,7 @@ def order_for(tolerance: float, program: Program | None = None) -> int:
 
 
 def refusal(program: Program) -> str:
-    """Return the reason why a right-hand side has no Taylor series, as a sentence; empty if it has a series."""
+    """Return a sentence that says why a right-hand side has no Taylor series, or an empty text if it has one."""
     from symrot.codegen.taylor.recurrences import recurrences
 
     try:
@@ -116,15 +118,15 @@ def translation_unit(
     order : int, optional
         Order of the series, even; default: 20. See :func:`order_for`.
     invariants : str
-        Output of :func:`symrot.codegen.taylor.invariant_source.invariant_definitions`: the motion is projected onto
-        these invariants. Their parameters follow the parameters of the program.
+        Output of :func:`symrot.codegen.taylor.invariant_source.invariant_definitions`: conserved quantities, to which
+        the stepper corrects the states. Their parameters follow the parameters of the program.
     enclosed : bool
-        Whether an enclosure of the rates limits the steps, see :mod:`symrot.codegen.enclosure.terms`.
+        Whether bounds of the rates on complex discs limit the steps, see :mod:`symrot.codegen.enclosure.terms`.
 
     Raises
     ------
     InputError
-        For a right-hand side that is not smooth, such as abs.
+        If the right-hand side is not smooth, for example because it contains abs.
     """
     from symrot.codegen.enclosure.source import enclosure_source
     from symrot.codegen.taylor.source import ORDER, taylor_definitions
@@ -153,10 +155,9 @@ def integration(
     max_steps: int = MAX_STEPS,
     project: bool = True,
 ) -> Integration:
-    """Return the integration of a motion by Taylor series, as :func:`symrot.propagation.steppers.dop853.integration`
-    does.
+    """Return the integration of a motion by Taylor series; see :func:`symrot.propagation.steppers.dop853.integration`.
 
-    Its ``stats`` count jets as evaluations: a jet is the set of all Taylor coefficients of one step.
+    Its ``stats`` count the jets (lists of Taylor coefficients) as evaluations.
 
     Parameters
     ----------
@@ -167,7 +168,7 @@ def integration(
     max_steps : int
         Number of steps after which the integration is given up.
     project : bool
-        Whether to project the motion onto its invariants, if the library has any.
+        Whether the states are corrected so that conserved quantities stay constant, if the library has any.
     """
     motion = Integration(_stepper, library, p, y0, t0, tolerance, max_step, max_steps)
     motion.fields["every"] = PROJECTED_EVERY if project else 0
@@ -196,7 +197,7 @@ class _Stepper(Stepper):
         self._jet = self._function("_jet", None, real, pointer, pointer, real, integer, pointer)
         if self._function("_carry", real, real, real)(1.0, 2.0**-60) != 2.0**-60:
             raise CompilerError(
-                f"the compiled kernel {path} ignores rounding errors that its sums add; compile without -ffast-math"
+                f"the compiled kernel {path} ignores rounding errors that it should add; compile without -ffast-math"
             )
 
     def row_length(self) -> int:

@@ -1,1 +1,1 @@
-"""Motions under torques that jump or bend, such as dry friction: smooth parts between exactly located switches."""
+"""Motions under torques that jump or bend, such as dry friction: smooth parts between accurately located switches."""

@@ -1,7 +1,7 @@
 """Times as sums of two doubles, and clocks that show 0 at such a time.
 
-At t = 1e6 s doubles lie 1e-10 s apart. A switch located to the last bit of one double then changes the motion by 1e-10
-of the effect that the torque has within a second. As a sum of two doubles a time has 32 digits.
+At t = 1e6 s adjacent doubles lie 1e-10 s apart. If the time of a switch is rounded to one double, the motion changes by
+up to 1e-10 of the effect that the torque has within a second. A sum of two doubles has 32 digits.
 """
 
 from fractions import Fraction
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 
 class Instant(NamedTuple):
-    """A time, s, as the sum of two doubles: ``high`` is the nearest double, ``low`` the remainder."""
+    """A time, s, as the sum of two doubles: ``high`` is the double nearest to the time, ``low`` the remainder."""
 
     high: float
     low: float = 0.0
@@ -28,7 +28,7 @@ class Instant(NamedTuple):
         return Fraction(self.high) + Fraction(self.low)
 
     def after(self, *seconds: float) -> "Instant":
-        """Return the instant that is later than this one by the sum of the given seconds."""
+        """Return the instant that is later than this instant by the sum of ``seconds``."""
         high, low = self
         for second in seconds:
             high, error = two_sum(high, second)
@@ -36,7 +36,7 @@ class Instant(NamedTuple):
         return Instant(*normalized(high, low))
 
     def __sub__(self, other: "Instant") -> float:
-        """Return the seconds from the instant ``other`` to this one."""
+        """Return the number of seconds from the instant ``other`` to this instant."""
         return (self.high - other.high) + (self.low - other.low)
 
     def since(self, times: Any) -> Any:
@@ -44,7 +44,10 @@ class Instant(NamedTuple):
         return (times - self.high) - self.low
 
     def reached(self, times: Floats, side: float) -> int:
-        """Return how many of the times, increasing (``side`` 1) or decreasing (-1), do not lie beyond this instant."""
+        """Return how many of the times do not lie beyond this instant.
+
+        The times increase if ``side`` is 1 and decrease if it is -1.
+        """
         count = int(np.searchsorted(side * times, side * self.high, "right"))
         while side * self.low < 0.0 and count and times[count - 1] == self.high:
             count -= 1

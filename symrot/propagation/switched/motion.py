@@ -1,11 +1,12 @@
-"""Motions under torques that jump or bend: followed from one switch to the next, each located to the last bits.
+"""Motions under torques that jump or bend, followed from one switch to the next; switches are located to the last bits.
 
-A switch is a function such as sign or abs in a torque; its guard is the formula inside, and its mode is the present
-value of the function. Between switches the modes are constant and the motion is smooth, so that any stepper can follow
-it, while the guards are searched for zeros like events (:mod:`symrot.formula.switches`). Where a guard changes its
-sign, the motion is stepped exactly to that time and continues with the mode of the other side. If the rates on both
-sides drive the guard back to zero (dry friction at rest, relay control) it stays at zero: the motion slides, and the
-mode takes the value that keeps the guard at zero, until that value leaves the range of the function.
+A switching function is a function such as sign or abs in a torque; its *guard* is its argument, and its *mode* is the
+number that replaces it in the formulas, such as the sign of the guard (:mod:`symrot.formula.switches`). Between
+switches the modes are constant and the motion is smooth (a *regime*), so that any stepper can follow it, while the
+guards are searched for zeros like the formulas of events. Where a guard changes its sign, the integration ends exactly
+at that time and continues with the new mode. If the rates before and after the change both drive the guard back to zero
+(dry friction at rest, relay control), the guard is *held* at zero: the motion *slides*, and the mode takes the value
+that keeps the guard at zero, until this value leaves the range of the function.
 
 Source: A. F. Filippov, Differential Equations with Discontinuous Righthand Sides, Kluwer 1988, sections 4 and 8.
 """
@@ -34,7 +35,7 @@ STATES = frozenset({*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range
 
 
 class SwitchedPropagator(Propagator):
-    """Propagator of a scene under torques with switches (sign, abs, ..); made by :func:`symrot.propagator`."""
+    """Propagator of a scene with switching functions (sign, abs, ..) in its torques; see :func:`symrot.propagator`."""
 
     def _planned(self, initial: Initial | None = None) -> Plan:
         return make_plan(self.scene, initial, switched=True)
@@ -45,7 +46,10 @@ class SwitchedPropagator(Propagator):
 
 @final
 class SwitchedMotion(MotionInParts):
-    """Motion under torques with switches (sign, abs, ..); each smooth part has a clock that shows 0 at its start."""
+    """Motion under torques with switching functions (sign, abs, ..).
+
+    In each smooth part, time is counted from the start of the part.
+    """
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
         start = float(plan.scene.span.start)
@@ -85,9 +89,9 @@ class SwitchedMotion(MotionInParts):
         return states, stats_of(cost, perf_counter() - began, _switchings(changes))
 
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to ``end``, once as polynomials and once as a function of time.
+        """Return the motion from its start to ``end``, s, as polynomials and as a function from times to states.
 
-        An error that ends the motion early is appended to ``broken``.
+        If an error ends the motion early, it is appended to ``broken``.
         """
         chunks: list[Chunk] = []
         run = SwitchedRun(self, self.system, end)
@@ -100,7 +104,7 @@ class SwitchedMotion(MotionInParts):
         return [chunk.piece() for chunk in chunks], states
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return the states as a function of time over a span, s."""
+        """Return a function from times in a span, s, to states, shape (n, N)."""
         chunks: list[Chunk] = []
         cost, began, changes = np.zeros(3, dtype=np.int64), perf_counter(), dict[tuple[float, str], str]()
         for end in {min(*span, self.start), max(*span, self.start)} - {self.start}:
@@ -117,7 +121,7 @@ def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:
 
 
 class SwitchedRecording(Recording):
-    """A motion under torques with switches (sign, abs, ..) as a function of time, made of its smooth parts."""
+    """A motion under torques with switching functions, as a function of time, composed of its smooth parts."""
 
     def __init__(
         self, t0: float, y0: tuple[float, ...], span: tuple[float, float], stats: Stats, chunks: list[Chunk]

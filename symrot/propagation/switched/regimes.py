@@ -1,7 +1,7 @@
 """Regimes: the smooth motions between switches of a torque, and the guards whose zeros end them.
 
-A guard is the formula inside a function such as sign or abs; a mode is the value of the function. See
-:mod:`symrot.propagation.switched.motion`.
+A guard is the argument of a function such as sign or abs; a mode is the number that replaces the function, such as the
+sign of the guard. See :mod:`symrot.propagation.switched.motion`.
 """
 
 import math
@@ -33,22 +33,24 @@ Modes = dict[str, int]
 
 
 class Guard(NamedTuple):
-    """A formula that is positive as long as a switching function (sign, abs, ..) keeps its present value, its mode.
+    """A formula that is positive as long as the mode of a switching function (sign, abs, ..) keeps its present value.
 
-    ``change`` says how the mode changes when the formula becomes negative.
+    ``change`` says how the mode changes when the formula becomes negative. ``where`` lists the conditions under which
+    the switching function affects the motion.
     """
 
     mode: str
     formula: str
     change: int  # 0: the mode changes to the opposite sign; 1 or -1: it changes to that sign, or by that number
-    # 0 for a mode that slides: motions near the switch no longer return to it
+    # 0 for a held mode: motions near the switch no longer return to it
     where: Conditions
 
 
 class RegimeParameters(NamedTuple):
-    """Parameters of a smooth motion for fixed values of its switching functions, as functions of the clock's epoch.
+    """Parameters of a smooth motion for given modes, as functions of the epoch, the time at which the clock shows 0.
 
-    ``invariants`` are pairs of doubles that do not depend on the clock; only Taylor steps use them.
+    ``invariants`` are the parameters of conserved quantities, as pairs of doubles that do not depend on the epoch; only
+    the Taylor stepper uses them.
     """
 
     rates: ShiftedParameters
@@ -58,10 +60,10 @@ class RegimeParameters(NamedTuple):
 
 
 class Regime:
-    """A smooth motion between two switches: its rates, and the guards (formulas inside sign, abs, ..) that end it.
+    """A smooth motion between two switches: its rates, and the guards (arguments of sign, abs, ..) that end it.
 
-    It ends when a guard becomes zero; some guards may stay at zero throughout. Its clock shows 0 at the instant at
-    which the motion enters the regime. That instant is a parameter of rates and guards.
+    The regime ends when a guard becomes zero; held guards are zero throughout. Time is counted from the instant at
+    which the motion enters the regime, and this instant is a parameter of rates and guards.
     """
 
     def __init__(
@@ -118,7 +120,7 @@ class Regime:
             yield Guard(mode, f"1 - ({guard})", 1, where)
 
     def _parameters_under(self, modes: Modes) -> RegimeParameters:
-        """Return the parameters of the regime for given modes (values of its switching functions)."""
+        """Return the parameters of the regime for given modes of its switching functions."""
         key = tuple(modes.values())
         if key not in self._parameters:
             values = {name: Fraction(value) for name, value in modes.items()}
@@ -136,9 +138,9 @@ class Regime:
         return self._parameters[key]
 
     def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
-        """Return the values of the named :attr:`formulas` for given modes (values of the switching functions).
+        """Return the values, by name, of the modes and of all parameters that occur in :attr:`formulas`.
 
-        They are for a clock that shows 0 at the instant ``zero``.
+        Time is counted from the instant ``zero``.
         """
         numbers = self._parameters_under(modes).guards.parameters(zero.exact)
         return {name: number for (name, _), number in zip(self.parameters, numbers, strict=True)} | {
@@ -146,9 +148,9 @@ class Regime:
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
-        """Return the parameters of the stepper, and the parameters of the guards: the formulas that end the regime.
+        """Return the parameters of the stepper, and the parameters of the library that searches for zeros of guards.
 
-        They are for a clock that shows 0 at the instant ``zero``.
+        Time is counted from the instant ``zero``.
         """
         rates, guards, quantities, invariants = self._parameters_under(modes)
         fixed = rates.fixed and guards.fixed and quantities.fixed
@@ -161,36 +163,33 @@ class Regime:
         return self._bound[place]
 
     def zeros(self, modes: Modes, zero: Instant, y: Floats) -> set[str]:
-        """Return the names of those states and parameters of the quantities that are zero."""
+        """Return the names of the states and of the parameters of the output quantities whose values are zero."""
         return {name for name, value in self._inputs(modes, zero, y).items() if value == 0.0}
 
     def attraction(self, modes: Modes, zero: Instant, t: float, y: Floats) -> list[float]:
-        """Return one number per guard held at zero; all are positive while motions near these guards return to them."""
+        """Return one number per held guard; all are positive while nearby motions return to the zeros of the guards."""
         names = [f"attraction {k} of t" for k in range(len(self.held))]
         values = {**self._inputs(modes, zero, y), "t": t}
         quantities = self.quantities.evaluate(values, FLOAT_FUNCTIONS, float, names)
         return [float(quantities[name]) for name in names]
 
     def _inputs(self, modes: Modes, zero: Instant, y: Floats) -> dict[str, float]:
-        """Return the values of the states and of the parameters of the quantities, by name."""
+        """Return the values, by name, of the states and of the parameters of the output quantities."""
         numbers = self._parameters_under(modes).quantities.parameters(zero.exact)
         values = zip((name for name, _ in self.quantity_parameters), numbers, strict=True)
         return dict((*values, *zip(self.plan.states, y.tolist(), strict=True)))
 
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
-        """Return a function from an epoch, s, to the parameters of rates that count time from the epoch.
+        """Return a function that computes the parameters of the rates for an epoch, s after the instant ``zero``.
 
-        Epochs are counted from the instant ``zero``. The result is None if the rates do not depend on the time.
+        With these parameters the rates count time from the epoch. Return None if the rates do not depend on time.
         """
         rates = self._parameters_under(modes).rates
         return None if rates.fixed else lambda since: rates.parameters(zero.exact + Fraction(since))
 
     @cached_property
     def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:
-        """Return the parameters of rates, guards and quantities as formulas of the epoch and of modes alone.
-
-        Modes are the values of switching functions such as sign.
-        """
+        """Return the parameters of rates, guards and output quantities as formulas in the epoch and modes only."""
         modes = {switch.mode for switch in self.switches}
         known = {name: value for name, value in self.constants.items() if name not in modes}
         kernel = self.motion.kernel
@@ -201,9 +200,7 @@ class Regime:
         return rates, guards, quantities
 
     def active(self, modes: Modes) -> list[bool]:
-        """Return, for each guard, whether its zero can end the regime for the given modes (values of switching
-        functions).
-        """
+        """Return, for each guard, whether its zero ends the regime for the given modes."""
         key = tuple(modes.values())
         if key not in self._active:
             self._active[key] = [hold(guard.where, modes, self.held) for guard in self.guards]
@@ -213,14 +210,14 @@ class Regime:
 def _distance(switch: Switch) -> Node:
     """Return a formula that is zero where a switching function changes its value.
 
-    It is the argument of the function; for a floor, the argument minus the integer below it. The integer is subtracted
-    before rounding, since far from t = 0 it cancels most digits of the argument.
+    For a sign it is the argument; for a floor, the argument minus the present integer. The integer is subtracted before
+    the formula is rounded, since far from t = 0 it cancels most digits of the argument.
     """
     return switch.guard if switch.kind == "sign" else ("-", switch.guard, ("symbol", switch.mode))
 
 
 def _with_parameters(program: Program, more: list[str]) -> Program:
-    """Return a program with additional parameters, which its outputs do not use."""
+    """Return the program with the additional parameters ``more``, which its outputs do not use."""
     arguments = list(program.signature.arguments)
     place = next((k for k, argument in enumerate(arguments) if argument.name == "p"), None)
     extra = tuple((name, "", "") for name in more)

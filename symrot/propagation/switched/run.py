@@ -1,4 +1,10 @@
-"""A motion under torques with switches (sign, abs, ..), followed from its start through all switches to one end."""
+"""A motion under torques with switching functions (sign, abs, ..), followed through all switches to one end.
+
+The words guard, mode, regime, held and slide are explained in :mod:`symrot.propagation.switched.motion`: in short, a
+guard is the argument of a switching function, its mode is the number that replaces the function, and the regime is the
+smooth motion for given modes. While the motion slides, a guard is held at zero. Modes whose guards are zero together
+are twins.
+"""
 
 import math
 from collections.abc import Callable, Generator
@@ -38,11 +44,11 @@ SHORT = 1e-9  # part of the span: distance beyond an instant without rates at wh
 CHATTERING = 1e-9  # part of the span: CHATTER switches within it count as infinitely many
 Consumer = Callable[["Chunk"], None]
 SwitchState = tuple[frozenset[tuple[str, int]], frozenset[str]]
-"""The values (modes) of all switching functions that are not held, and the modes that are held."""
+"""The names and values of all modes that are not held, and the names of the held modes."""
 
 
 class Chunk(NamedTuple):
-    """Part of a motion from ``start`` to ``stop``: states and polynomials, with times counted from ``zero``."""
+    """Part of a motion from ``start`` to ``stop``: states and polynomials as functions of the time since ``zero``."""
 
     start: Instant
     stop: Instant
@@ -51,11 +57,11 @@ class Chunk(NamedTuple):
     own_piece: Piece
 
     def states(self, times: Floats) -> Floats:
-        """Return the states at times, s, which are given on the clock of the scene."""
+        """Return the states, shape (n, N), at times of the scene, s."""
         return self.own_states(self.zero.since(times))
 
     def piece(self) -> Piece:
-        """Return the polynomials with their times converted to the clock of the scene."""
+        """Return the polynomials with their times converted to times of the scene."""
         rows, edges = self.own_piece.rows.copy(), self.own_piece.edges + self.zero.low + self.zero.high
         edges[0], edges[-1] = self.start.high, self.stop.high  # the same numbers as in the parts before and after
         time, low = two_sum(self.zero.high, rows[:, 0])
@@ -64,10 +70,10 @@ class Chunk(NamedTuple):
 
 
 class SwitchedRun(RunState):
-    """A motion under torques with switches while it is followed from its start to one end.
+    """The work of following a motion under torques with switching functions from its start to one end.
 
-    Its clock shows 0 at the last switch, which is known to twice the digits of a double. ``t`` and ``end`` are times on
-    that clock, s.
+    The clock shows 0 at the last switch, whose time is known to twice the digits of a double. ``t``, the present time,
+    and ``end`` are times on this clock, s.
     """
 
     def __init__(self, motion: Motion, system: SwitchedSystem, end: float) -> None:
@@ -84,11 +90,12 @@ class SwitchedRun(RunState):
         self.rested: set[str] = set()  # modes that were held at the present time though no torque was needed for it
         self.left: set[tuple[str, int]] = set()  # the values of all modes before the changes at the present time
         self.visited: dict[SwitchState, int] = {}  # states at the present time, with the number of changes before each
-        self.attraction: tuple[frozenset[str], list[float]] = frozenset(), []  # held modes, and its values at first
+        # Held modes, and the attraction when they were first held.
+        self.attraction: tuple[frozenset[str], list[float]] = frozenset(), []
         self.settled, self.hopped = 0, False
 
     def follow(self, consume: Consumer) -> None:
-        """Follow the motion to its end; pass each part to the function ``consume`` as soon as it is known."""
+        """Follow the motion to its end; call ``consume`` with each part as soon as the part is known."""
         with progress.within(self.motion.start, self._end.high, lambda: self.zero.high):
             try:
                 self._check_start()
@@ -116,13 +123,13 @@ class SwitchedRun(RunState):
         return self._end if t == self.end else self.zero.after(t)
 
     def _move_clock(self, zero: Instant) -> None:
-        """Move the clock so that it shows 0 at the instant ``zero``, which is the present time of the motion."""
+        """Make ``zero``, which is the present time of the motion, the instant at which the clock shows 0."""
         self.zero, self.t, self.end = zero, 0.0, float(zero.since(self._end.high))
         if self.side * self.end < 0.0:  # within rounding of the end
             self.end = 0.0
 
     def _check_start(self) -> None:
-        """Raise IntegrationStopped if the motion starts at a switch and can leave it to both sides.
+        """Raise IntegrationStopped if a guard is zero at the start and may become positive or negative.
 
         Then there are two motions from the same start.
         """
@@ -141,11 +148,15 @@ class SwitchedRun(RunState):
             if leaving == 2:
                 way = "past" if self.side < 0.0 else "future"
                 raise IntegrationStopped(
-                    self.t, f"the motion starts on {self._name(mode)} and has more than one {way}", self.end
+                    self.t, f"the motion starts where {self._name(mode)} switches and has more than one {way}", self.end
                 )
 
     def _segment(self, regime: Regime, consume: Consumer) -> Guard | None:
-        """Follow one smooth part of the motion; return the guard that ended it, or None at the end of the motion."""
+        """Follow one smooth part of the motion; return the guard that ended it, or None.
+
+        None means that the motion has reached its end, or that a mode was set and the motion has to be followed again
+        from the present time.
+        """
         if self.t != 0.0:
             self._move_clock(self._at(self.t))
         rates, values = regime.bound(self.modes, self.zero)
@@ -164,7 +175,7 @@ class SwitchedRun(RunState):
         source = smooth_pieces(self, regime, rates)
         start, passed = self.t, [self.t]
         violated: list[Guard] = []
-        left: list[bool] = []  # whether a formula left zero: repeat from there
+        left: list[bool] = []  # not empty if a guard left zero: the motion is followed again from there
 
         def watched() -> Generator[Piece, None, None]:
             for piece, states in source.pieces():
@@ -244,10 +255,10 @@ class SwitchedRun(RunState):
         return guard
 
     def _coincident(self, regime: Regime, active: list[bool], values: list[float], most: int) -> Guard | None:
-        """Return the guard to switch next at an instant at which the rates have no value, or None.
+        """Return the guard that should switch next at an instant at which the rates have no value, or None.
 
-        Its formula has a sign of at most ``most`` there. Functions that switch at the same instant do so one after the
-        other; in between, the rates need not have a value.
+        Just after the instant, the sign of its formula is at most ``most``. If several functions switch at one instant,
+        they switch one after the other, and the rates may have no value in between.
         """
         h = self.side * SHORT * self.span
         row = np.concatenate([[self.t, h, 0.0, h], self.y, np.zeros_like(self.y)])
@@ -261,27 +272,26 @@ class SwitchedRun(RunState):
         return min(guards, key=lambda pair: pair[0])[1] if guards else None
 
     def _arrive(self, instant: Instant) -> None:
-        """Make the instant of a switch the present time, at which the clock shows 0, unless the motion ends there."""
+        """Make the instant of a switch the present time, with the clock at 0, unless the motion ends there."""
         if self.t != self.end:
             self._move_clock(instant)
         self._forget_changes()
         self.hopped = False
 
     def _forget_changes(self) -> None:
-        """Forget which functions switched: the motion has left the time at which they did."""
+        """Clear the lists of functions that switched at one time, because the motion has left that time."""
         self.flipped, self.order = {}, []
         self.left, self.visited, self.released, self.rested = set(), {}, set(), set()
 
     def _hop(
         self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: IntegrationStopped
     ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
-        """Return a linear piece of motion past a point where a stepper is stuck, and the switch that it reaches; or
-        None.
+        """Return a short linear piece of motion (a hop) beyond a time where a stepper is stuck; None if too long.
 
         Steps shrink to zero where a torque has no derivative, though its impulse is finite. Examples are sqrt(1 - t)
         before a switch at 1 s, and sqrt(t - 1) after it. As long as the impulse is less than the tolerance, the states
-        may change linearly: up to a switch that is near, or away from the last switch. The result consists of the
-        polynomial, the states as a function of time, and the guard or None.
+        may change linearly: up to a nearby switch, or away from the last switch. The result consists of the polynomial,
+        a function from times to states, and the guard that becomes zero at the end of the hop, or None.
         """
         kernel, motion = regime.motion.kernel, regime.motion
         p = np.array(rates[: len(kernel.rate_parameters)])
@@ -322,7 +332,7 @@ class SwitchedRun(RunState):
         return None
 
     def _crosses(self, regime: Regime, guard: Guard, *places: tuple[float, Floats]) -> bool:
-        """Return whether the formula of a guard becomes negative between two points, each a time with its states."""
+        """Return whether the formula of a guard falls from >= 0 to <= 0 between two points (time, states)."""
         try:
             before, after = (
                 float(evaluate(parse(guard.formula), self._values(regime, place), FLOAT_FUNCTIONS, float))
@@ -338,8 +348,8 @@ class SwitchedRun(RunState):
     def _located(self, regime: Regime, guard: Guard, t: float) -> Instant:
         """Return the instant near the time t at which the formula of a guard is zero.
 
-        A formula that depends on time alone has full accuracy on a clock that shows 0 at t. One step of Newton's method
-        then locates its zero to twice the digits of t.
+        If the formula depends on time alone, it is evaluated to full accuracy in time counted from t, and one step of
+        Newton's method locates its zero to twice the digits of t. Otherwise the instant t is returned.
         """
         instant = self.zero.after(t)
         if guard.mode in self.held or guard.mode not in regime.of_time:
@@ -361,7 +371,7 @@ class SwitchedRun(RunState):
         return self._past(regime, guard, instant.after(correction))
 
     def _past(self, regime: Regime, guard: Guard, instant: Instant) -> Instant:
-        """Return the first instant, from a given one on, at which a formula of time alone is no longer positive.
+        """Return the first instant tried, from ``instant`` on, at which a guard of time alone is not positive.
 
         If the zero were rounded to an earlier instant, the function would switch back at once.
         """
@@ -375,7 +385,7 @@ class SwitchedRun(RunState):
         return instant
 
     def _is_rounding(self, regime: Regime, guard: Guard) -> bool:
-        """Return whether a formula of time alone, just after its switch, is negative only because time is rounded."""
+        """Return whether a guard of time alone is negative just after its switch only because time is rounded."""
         if guard.mode in self.held or guard.mode not in regime.of_time or not self.flipped.get(guard.mode):
             return False
         later = self.t + self.side * MOST_ULPS * math.ulp(self.zero.high)
@@ -385,7 +395,7 @@ class SwitchedRun(RunState):
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
     ) -> tuple[list[Guard], list[Guard]]:
-        """Return two lists of guards: negative from the start of a piece on, and negative at its end."""
+        """Return two lists of guards: those negative just after the start of a piece, and those negative at its end."""
         formulas = [guard.formula for guard in regime.guards]
         first, last = (
             [guard for guard, on, sign in zip(regime.guards, active, signs, strict=True) if on and sign < 0]
@@ -394,9 +404,9 @@ class SwitchedRun(RunState):
         return first, last
 
     def _settle(self, regime: Regime, active: list[bool], piece: Piece, states: Callable[[Floats], Floats]) -> bool:
-        """Give each switching function whose argument stays at zero its value at zero; return whether a value changed.
+        """Set the modes whose guards stay at zero to their values at zero; return whether a mode changed.
 
-        A value (mode) of 0 changes to the sign of its argument (guard) as soon as the argument is not zero.
+        A mode of 0 changes to the sign of its guard as soon as the guard is not zero.
         """
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
 
@@ -433,9 +443,9 @@ class SwitchedRun(RunState):
         return bool(changed)
 
     def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
-        """Return the argument of the switching function with a given mode, now or at another time with its states.
+        """Return the value of the guard that belongs to a mode, at the present time or at ``place`` = (time, states).
 
-        For a floor it is the argument minus the integer that is the present value.
+        For a floor it is the guard minus the mode.
         """
         regime = self._regime(self.modes)
         return float(
@@ -443,7 +453,7 @@ class SwitchedRun(RunState):
         )
 
     def _values(self, regime: Regime, place: tuple[float, Floats]) -> dict[str, float]:
-        """Return the values of all names in the arguments of switching functions, at one time with its states."""
+        """Return the values, by name, of all variables that occur in guards, at ``place`` = (time, states)."""
         t, y = place
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure.attitude else []
@@ -452,14 +462,14 @@ class SwitchedRun(RunState):
         return {**values, **regime.values(self.modes, self.zero), "t": t}
 
     def _switch(self, regime: Regime, guard: Guard) -> None:
-        """Change the value (mode) of a function whose argument (guard) crosses zero.
+        """Change the mode of a function whose guard crosses zero.
 
-        If the rates on both sides drive the argument back to zero, it is held there: the motion slides.
+        If the rates before and after the change drive the guard back to zero, it is held there: the motion slides.
         """
         mode, kind = guard.mode, self.by_name[guard.mode].kind
         if mode in self.held and (guard.change == 0 or not self._still_attracts(regime)):
             raise IntegrationStopped(
-                self.t, f"the motion slides along {self._names_of_held()}, but motions next to it lead away", self.end
+                self.t, f"the motion slides along {self._names_of_held()}, but nearby motions lead away", self.end
             )
         self.left.add((mode, self.modes[mode]))
         self.visited.setdefault(self._state(), len(self.order))
@@ -495,9 +505,9 @@ class SwitchedRun(RunState):
             self._wake(other)
 
     def _returns(self, mode: str) -> bool:
-        """Return whether a change of a sign would restore an earlier state of all functions: it then has to be held.
+        """Return whether a mode has to be held: its change of sign would restore an earlier state of all functions.
 
-        If a function jumped since that state, the jump is held, and not a function that only bends.
+        If a function that jumps has switched since that state, a function that only bends is not held.
         """
         first = self.visited.get(self._state(flip=mode))
         if first is None:
@@ -506,18 +516,18 @@ class SwitchedRun(RunState):
         return not (jumps and is_continuous(self.by_name[mode]))
 
     def _state(self, flip: str = "", hold: str = "") -> SwitchState:
-        """Return the state of all switching functions now, after ``flip`` changes sign, or after ``hold`` is held."""
+        """Return the state of all switching functions: now, or if ``flip`` changed sign, or if ``hold`` were held."""
         modes = {**self.modes, flip: -self.modes[flip]} if flip else self.modes
         held = self.held | {self.system.twins[hold][0][0]} if hold else self.held
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether a function in the argument of another has switched after the latter, at the present time."""
+        """Return whether, at the present time, a function inside the guard of ``mode`` has switched after ``mode``."""
         last = len(self.order) - self.order[::-1].index(mode)
         return bool(self._inside(mode) & set(self.order[last:]))
 
     def _inside(self, mode: str) -> set[str]:
-        """Return the names in the argument of a switching function."""
+        """Return the names that occur in the guard of a mode."""
         return set(names(self.by_name[mode].guard))
 
     def _asleep(self) -> set[str]:
@@ -525,7 +535,7 @@ class SwitchedRun(RunState):
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
-        """Set the value (mode) of a switching function that begins to affect the motion, from its argument."""
+        """Set the mode of a switching function that begins to affect the motion to the value that fits its guard."""
         try:
             guard = self._guard_value(mode)
         except (ArithmeticError, ValueError, IntegrationStopped):
@@ -547,9 +557,10 @@ class SwitchedRun(RunState):
         self._regime(self.modes)
 
     def _comes_to_rest(self, regime: Regime) -> bool:
-        """Set signs that stay at zero without any torque to their values at zero; return whether there is such a sign.
+        """Set held modes that stay at zero without torque to their values at zero; return whether there are any.
 
-        A body at rest then moves with the values of all functions at zero, not with a mean of the two sides.
+        A body at rest then moves with the values of all functions at zero, not with a mean of the values for positive
+        and negative guards.
         """
         resting = [mode for mode in sorted(self.held - self.rested) if self.system.matters_at_zero(mode)]
         if resting:
@@ -563,18 +574,15 @@ class SwitchedRun(RunState):
         return bool(resting)
 
     def _still_attracts(self, regime: Regime) -> bool:
-        """Return whether nearby motions return to the guards held at zero faster than errors drive them away.
+        """Return whether nearby motions return to the zeros of the held guards faster than errors drive them away.
 
-        If they do not, numerical errors would decide to which side the motion goes.
+        If they do not, numerical errors would decide which sign the guards get.
         """
         now, least = regime.attraction(self.modes, self.zero, self.t, self.y), ERRORS * regime.motion.tolerance
         return all(value > least * first for value, first in zip(now, self.attraction[1], strict=True))
 
     def _leaves_zero(self, regime: Regime, active: list[bool], piece: Piece) -> bool:
-        """Give each sign that is 0 the sign that its formula has at the end of a piece, unless that is zero too.
-
-        The result says whether a sign changed.
-        """
+        """Set each mode that is 0 to the sign of its guard at the end of a piece; return whether a mode changed."""
         numbers = [
             n
             for n, (guard, on) in enumerate(zip(regime.guards, active, strict=True))
@@ -590,7 +598,7 @@ class SwitchedRun(RunState):
         return any(signs[n] for n in numbers)
 
     def _regime(self, modes: Modes) -> Regime:
-        """Return the regime (smooth motion) for given modes, with the arguments of held functions kept at zero."""
+        """Return the regime (smooth motion) for given modes, in which the held guards are zero."""
         try:
             return self.system.regime(self.held, modes)
         except InputError:
@@ -602,9 +610,9 @@ class SwitchedRun(RunState):
         return " and ".join(self._name(mode) for mode in sorted(self.held))
 
     def _check_held_alone(self) -> None:
-        """Raise IntegrationStopped if a function that is not held jumps where the motion slides.
+        """Raise IntegrationStopped if the guard of another jumping function is zero wherever the held guards are.
 
-        Its value there is not determined: its argument is zero, and changes only with the arguments of held functions.
+        The value of this function is then not determined while the motion slides.
         """
         y = self.y.tolist()
         steps = [PERTURBATION * max(abs(self.t), self.span), *(PERTURBATION * max(1.0, abs(x)) for x in y)]

@@ -1,4 +1,4 @@
-"""Present state of a motion under torques with switches (sign, abs, ..): its clock, its states and its cost."""
+"""Present state of a motion under torques with switching functions (sign, abs, ..): clock, states and cost."""
 
 from collections import deque
 from collections.abc import Callable
@@ -16,20 +16,20 @@ CHATTER = 50  # number of recent switches whose times are stored
 
 
 class RunState:
-    """Present state of a motion between its start and one end, on a clock that shows 0 at the last switch.
+    """Present state of a motion that is followed to one end; time is counted from the last switch.
 
     Attributes
     ----------
     zero : Instant
-        The time at which that clock shows 0.
+        The instant from which time is counted: the last switch.
     t, end, start : float
-        Present time, end and start of the motion, s, on that clock.
+        Present time, end and start of the motion, in s after ``zero``.
     span, side : float
         Length of the whole motion, s, and its direction, 1 or -1.
     y : array, shape (N,)
         The states at ``t``.
     spent, mark : int, (int, float)
-        SciPy's evaluations; evaluations and distance in time, s, when the pace was last checked.
+        Number of SciPy's evaluations so far; this number and the time covered, s, when the pace was last checked.
     interrupt : KeyboardInterrupt or None
         An interrupt that came while SciPy followed the motion beyond a switch.
     recent : deque of Instant
@@ -51,9 +51,10 @@ class RunState:
         return Instant(self.motion.start) - self.zero
 
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
-        """Return a function from an epoch, s, to ``stepped`` (library or function of the rates) and its parameters.
+        """Return a function of an epoch, s, that returns the rates ``stepped`` and their parameters for this epoch.
 
-        With these parameters the rates count time from the epoch. The result is None if they do not depend on time.
+        ``stepped`` is a library or a function. With these parameters the rates count time from the epoch. Return None
+        if the rates do not depend on time.
         """
         parameters = regime.rates_since(self.modes, self.zero)
         return (lambda since: (stepped, parameters(since))) if parameters else None

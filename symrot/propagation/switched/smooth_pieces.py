@@ -1,4 +1,7 @@
-"""Pieces of a smooth motion up to the next switch, by any stepper: polynomials, and states as a function of time."""
+"""Pieces of a smooth motion up to the next switch, by any stepper: polynomials, and functions from times to states.
+
+A window is the interval of time that SciPy follows before the search for a switch.
+"""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -30,7 +33,7 @@ OVERHEAD = 200  # evaluations that take as long as the other work for a window
 
 
 class SteppedPieces:
-    """Pieces of a smooth motion by a stepper in C, up to the next switch."""
+    """Iterator over pieces of a smooth motion that a stepper in C follows, until the caller finds a switch."""
 
     def __init__(self, run: RunState, regime: Regime, motion: SteppedMotion, rates: list[float]) -> None:
         if not np.isfinite(run.y).all():
@@ -43,7 +46,7 @@ class SteppedPieces:
         self.integration.way, self.end = run.span, run.end
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
-        """Yield each piece in the order of the motion: its polynomials, and its states as a function of time."""
+        """Yield each piece in the order of the motion: its polynomials, and a function from times to states."""
         integration, room = self.integration, ROOM
         for run in integration.runs(self.end):
             while run.t != run.stop:
@@ -66,20 +69,20 @@ class SteppedPieces:
                 room = min(2 * room, integration.stepper.rows_per_call)
 
     def cost(self) -> NDArray[np.int64]:
-        """Return steps accepted, steps rejected and evaluations so far."""
+        """Return the numbers of steps accepted, steps rejected and evaluations so far."""
         integration = self.integration
         return np.array([integration.accepted, integration.rejected, integration.evaluations])
 
 
 class SciPyPieces:
-    """Pieces of a smooth motion by SciPy, which follows one interval of time (window) after another."""
+    """Iterator over pieces of a smooth motion that SciPy follows, one interval of time (window) after another."""
 
     def __init__(self, run: RunState, regime: Regime, motion: SciPyMotion, rates: list[float]) -> None:
         self.run, self.motion, self.rates, self.counts = run, motion, rates, np.zeros(3, dtype=np.int64)
         self.clock = run.clock(regime, motion.rates)
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
-        """Yield each piece in the order of the motion: its polynomials, and its states as a function of time."""
+        """Yield each piece in the order of the motion: its polynomials, and a function from times to states."""
         from symrot.propagation.steppers import fallback
 
         run, t, y = self.run, self.run.t, self.run.y
@@ -115,9 +118,10 @@ class SciPyPieces:
             y, t, length = recording(stop), stop, min(2.0 * length, run.span / FEWEST)
 
     def _first_length(self) -> float:
-        """Return the length of the first window, s: at most twice the longest recent smooth part, and a few rotations.
+        """Return the length of the first window, s.
 
-        A longer window would waste work beyond the next switch.
+        It is twice the longest recent smooth part or twice the time of a few rotations, whichever is shorter, within
+        limits. If the window were longer, the work beyond the next switch would be wasted.
         """
         run = self.run
         (_, rates, *_), _ = error_blocks(self.motion.plan)
@@ -143,14 +147,14 @@ class SciPyPieces:
             raise IntegrationStopped(t, f"{MAX_EVALUATIONS} evaluations were not enough", run.end)
 
     def cost(self) -> NDArray[np.int64]:
-        """Return steps accepted, steps rejected and evaluations so far."""
+        """Return the numbers of steps accepted, steps rejected and evaluations so far."""
         return self.counts
 
 
 def smooth_pieces(run: RunState, regime: Regime, rates: list[float]) -> SteppedPieces | SciPyPieces:
-    """Return the pieces of the smooth motion that begins at the present state of a run.
+    """Return an iterator over the pieces of the smooth motion that begins at the present state of a run.
 
-    ``regime`` has the rates of the motion, ``rates`` the values of their parameters.
+    ``regime`` contains the rates of the motion; ``rates`` lists the values of their parameters.
     """
     motion = regime.motion
     if isinstance(motion, SteppedMotion):

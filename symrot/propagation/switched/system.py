@@ -1,4 +1,9 @@
-"""All switches of the torques of a motion, and the smooth motions (regimes) between them."""
+"""All switching functions (sign, abs, ..) of the torques of a motion, and the smooth motions (regimes) in between.
+
+A guard is the argument of a switching function; its mode is the number that replaces the function in the formulas, such
+as the sign of the guard. While a motion slides, guards are held at zero. See
+:mod:`symrot.propagation.switched.motion`.
+"""
 
 import math
 from collections.abc import Mapping
@@ -26,9 +31,9 @@ CONTINUOUS = ("abs(", "max(", "min(", "clip(", "sqrt(")  # first characters of l
 
 
 class SwitchedSystem:
-    """All switching functions (sign, abs, ..) in the torques of a plan, and the regimes (smooth motions) between them.
+    """All switching functions (sign, abs, ..) in the torques of a plan, and the regimes (smooth motions) in between.
 
-    There is one regime for each combination of arguments (guards) that stay at zero.
+    There is one regime for each set of guards that are held at zero.
     """
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
@@ -37,7 +42,7 @@ class SwitchedSystem:
 
     @cached_property
     def switches(self) -> list[Switch]:
-        """The switching functions of all torques; their values (modes) have the names of constants of the plan."""
+        """The switching functions of all torques; their modes are constants of the plan and have the same names."""
         return [switch for switches in self._switches_by_torque for switch in switches]
 
     @cached_property
@@ -46,11 +51,11 @@ class SwitchedSystem:
 
     @cached_property
     def twins(self) -> dict[str, list[tuple[str, int]]]:
-        """For each mode, the modes in the same torque that change together with it, itself included.
+        """For each mode, the modes of the same torque that change at the same time (twins), the mode itself included.
 
-        A mode is the value of a switching function. Functions that jump come first. Each mode has the sign of its
-        argument relative to the first argument. Examples are sign(omega_3) and abs(2*omega_3) in bearing friction that
-        is greater at rest.
+        Each twin is a pair (mode, sign): the sign is 1 if its guard has the same sign as the guard of the first twin,
+        else -1. Functions that jump come first. For example, sign(omega_3) and abs(2*omega_3) are twins in a bearing
+        friction that is greater at rest.
         """
         numbers: dict[str, Node] = {name: ("number", value) for name, value in self.constants.items()}
         for mode in self.switches:
@@ -67,14 +72,14 @@ class SwitchedSystem:
         return twins
 
     def tied(self, held: frozenset[str]) -> dict[str, tuple[str, int]]:
-        """Return, for each mode that equals a held mode or its negative, the held mode and the sign (1 or -1)."""
+        """Return, for each mode that equals a held mode or the negative of one, the pair (held mode, 1 or -1)."""
         return {twin: (mode, sign) for mode in held for twin, sign in self.twins[mode] if twin != mode}
 
     def matters_at_zero(self, mode: str) -> bool:
-        """Return whether the value of a sign at zero affects a motion that is held there.
+        """Return whether the motion while a guard is held depends on the value of its sign at zero.
 
-        It does if another function that jumps switches at the same place, or if a torque is not linear in the sign.
-        Otherwise only a mean of the two sides matters.
+        It does if another function that jumps has its zero at the same place, or if a torque is not linear in the sign.
+        Otherwise it depends only on a mean of the values 1 and -1.
         """
         if next(switch for switch in self.switches if switch.mode == mode).at_zero != 0:
             return False
@@ -84,7 +89,7 @@ class SwitchedSystem:
 
     @cached_property
     def settled(self) -> set[str]:
-        """The modes of switching functions with constant arguments: without time, states and modes that change."""
+        """The modes of switching functions with constant guards: without time, states and modes that change."""
         settled = set[str]()
         for switch in self.switches:
             if names(switch.guard) <= self.constants.keys() - ({each.mode for each in self.switches} - settled):
@@ -96,15 +101,15 @@ class SwitchedSystem:
         return {"pi": PI, **self.plan.constants}
 
     def initial_modes(self) -> Modes:
-        """Return the modes (values of the switching functions) at the start.
+        """Return the modes at the start of the motion, by name.
 
-        An argument that is zero at the start counts as positive until the motion decides its sign.
+        A guard that is zero at the start counts as positive until the motion determines its sign.
         """
         return dict(self._initial_modes[0])
 
     @property
     def undecided(self) -> set[str]:
-        """The modes of switching functions whose arguments are zero at the start and depend on more than the time."""
+        """The modes of switching functions whose guards are zero at the start and depend on states."""
         return self._initial_modes[1]
 
     @cached_property
@@ -112,9 +117,9 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the modes (values of the switching functions) next to a start at which the argument of one is zero.
+        """Return the modes just after a start at which the guard of ``mode`` is zero, if it gets the given sign.
 
-        That mode becomes ``sign``; modes that depend on it change with it.
+        Modes that depend on ``mode`` change with it.
         """
         return self._modes_at_start({mode: sign})[0]
 
@@ -142,10 +147,10 @@ class SwitchedSystem:
         return modes, undecided
 
     def regime(self, held: frozenset[str], modes: Modes) -> Regime:
-        """Return the regime (smooth motion) in which the arguments of the functions ``held`` stay at zero.
+        """Return the regime (smooth motion) in which the guards of the modes ``held`` stay at zero.
 
-        It is derived on first use. The values of the other functions (modes) are used only to choose between the parts
-        of a ``where``.
+        It is derived on first use. The values of the other modes are used only to choose between the parts of a
+        ``where``.
         """
         key = held, tuple(modes.values()) if self._chooses else ()
         if key not in self._regimes:
@@ -184,7 +189,7 @@ class SwitchedSystem:
 
 
 def _switches(torque: FormulaTorque) -> list[Switch]:
-    """Return the switching functions of a torque; their values (modes) have the names of constants of the plan."""
+    """Return the switching functions of a torque; their modes are constants of the plan and have the same names."""
     own = {name: f"{torque.prefix}{name}" for name in torque.parameters}
     return [
         Switch(
@@ -200,21 +205,21 @@ def _switches(torque: FormulaTorque) -> list[Switch]:
 
 
 def _is_mixed(torque: FormulaTorque, mode: str) -> bool:
-    """Return whether a torque is not linear in a mode, the value of a switching function."""
+    """Return whether a formula of the torque is not linear in a mode."""
     own = mode.removeprefix(torque.prefix)
     nodes = [parse(formula, switching=True) for formula in torque.choices or torque.formulas]
     return own in torque.parameters and any(between_sides(node, own) != node for node in nodes)
 
 
 def is_continuous(switch: Switch) -> bool:
-    """Return whether a switching function such as abs is continuous where it switches."""
+    """Return whether a switching function is continuous where it switches, as abs is."""
     return switch.label.startswith(CONTINUOUS)
 
 
 def _bends(switch: Switch | TorqueSwitch) -> bool:
-    """Return whether a formula bends but does not jump where a switching function switches.
+    """Return whether a formula has a kink but no jump where a switching function switches.
 
-    Either value of the function then gives the right result at the switch.
+    At the switch, either value of the mode then gives the right result.
     """
     return switch.at_zero == 1
 
@@ -224,9 +229,8 @@ def _chosen(
 ) -> TorqueStructure:
     """Return a torque reduced to the parts of its formulas that apply for given modes of its switching functions.
 
-    A mode is the value of such a function. Functions without effect are left out. A function that switches together
-    with a held function is ``tied`` to it: if the formula jumps there, it takes the value of the held function or its
-    negative. Formulas become linear in held modes.
+    Switching functions without effect are left out. ``tied`` names the modes that equal a held mode or its negative:
+    where the formula jumps, each is replaced by the held mode or its negative. Formulas become linear in held modes.
     """
     if not isinstance(torque, FormulaTorque):
         return torque

@@ -1,1 +1,1 @@
-"""Campaigns against certificates: corrupted files and object code, measured rounding errors."""
+"""Campaigns against certificates: corrupted files and object code, and measured rounding errors."""

@@ -1,8 +1,8 @@
-"""Tell whether a certificate claims only what another one claims, or what is proven here: the judge of campaigns.
+"""Decide whether a certificate claims only what another one claims, or what is proven here: the judge of campaigns.
 
-Whatever is not recognised is another claim. Two claims are the same if they are the same text, or the same expression
-of SymPy; what vanishes, up to a rational factor. A law that is none of the other's is proven anew by
-:func:`symrot.certificates.laws.laws.prove_law`, bounds on another box are found again from nothing.
+A claim that is not recognised counts as different. Two claims are the same if they are the same text or the same
+expression of SymPy; an expression that vanishes may differ by a rational factor. A law that the other certificate lacks
+is proven anew by :func:`symrot.certificates.laws.laws.prove_law`; bounds on another box are computed anew.
 """
 
 import ast
@@ -35,7 +35,7 @@ UNREADABLE = (KeyError, TypeError, ValueError, AttributeError, SyntaxError)
 
 
 def same_but_for_bounds(data: Data, other: Data, double: Operations, single: Operations | None) -> bool:
-    """Tell whether certificates are the same text but for bounds of rounding errors, and those hold.
+    """Return whether certificates differ only in bounds of rounding errors, and these bounds hold.
 
     Parameters
     ----------
@@ -57,10 +57,10 @@ def same_but_for_bounds(data: Data, other: Data, double: Operations, single: Ope
 
 
 def is_weaker_or_equal(data: Data, other: Data) -> bool:
-    """Tell whether what ``recheck.py`` looks at in a certificate is claimed by another one too, or proven here.
+    """Return whether all that ``recheck.py`` reads in a certificate is claimed by another one too, or proven here.
 
-    That is: files, places of inputs, formulas of outputs, laws. Inputs and outputs are known by their places, so that
-    the name of one that no formula or law needs is none of it.
+    That is: files, places of inputs, formulas of outputs, laws. Inputs and outputs are identified by their places, so
+    the name of an input that no formula and no law uses does not matter.
     """
     try:
         known, claimed = _Claims(data), _Claims(other)
@@ -70,7 +70,7 @@ def is_weaker_or_equal(data: Data, other: Data) -> bool:
 
 
 class _Claims:
-    """What a certificate claims: ``plain`` things, and ``laws`` as (what vanishes, what is given)."""
+    """The claims of a certificate: ``plain`` ones, and ``laws`` as (vanishing expression, given expressions)."""
 
     def __init__(self, data: Data) -> None:
         spec = data["spec"]
@@ -97,7 +97,7 @@ class _Claims:
         return _expression(ast.parse(text.strip(), mode="eval").body, self.symbols)
 
     def proves(self, law: Any) -> bool:
-        """Tell whether a law follows from the formulas: for the prover of symrot, which evaluates nothing."""
+        """Return whether symrot's prover, which evaluates nothing, proves a law from the formulas."""
         names: dict[str, Symbol] = {}
         text, given = self.texts[law]
         vanishing = _expression(ast.parse(text.strip(), mode="eval").body, names)

@@ -1,9 +1,9 @@
-"""Corrupt C files and certificates, and count what is accepted all the same: it has to be nothing.
+"""Corrupt C files and certificates, and count those that are accepted all the same: the count must be zero.
 
-``python -m tests.campaigns.certificates.mutations --c 2000 --certificates 1000`` runs the campaigns. A corrupted C file is judged
-by its meaning alone: its hash in the certificate is put right and the certificate sealed anew, as a forger would, so
-that only the mathematics can refuse it. A tampered certificate is tried as it is, and once more sealed anew. A
-corrupted file that computes provably the same is no corruption: equality of operations decides.
+``python -m tests.campaigns.certificates.mutations --c 2000 --certificates 1000`` runs the campaigns. A mutant is one
+corrupted file. A corrupted C file is judged by its meaning alone: the certificate gets its new hash and a new seal, as
+a forger would do, so that only the mathematics can refuse it. A tampered certificate is tried as it is, and again with
+a new seal. A mutant that provably computes the same is no corruption: equality of operations decides this.
 """
 
 import json
@@ -41,7 +41,7 @@ def _bodies(text: str) -> list[tuple[int, int]]:
 
 
 def _one_of(pattern: str, text: str, random: Random) -> re.Match[str] | None:
-    """Return an occurrence of a pattern inside a function, any with the same probability."""
+    """Return a random match of a pattern inside a function; all matches are equally likely."""
     found = [m for start, end in _bodies(text) for m in re.compile(pattern).finditer(text, start, end)]
     return random.choice(found) if found else None
 
@@ -84,7 +84,7 @@ def _constant(text: str, random: Random) -> str | None:
 
 
 def _last_digit(text: str, random: Random) -> str | None:
-    """One unit in the last place of a coefficient, of a series where there is one."""
+    """Change a coefficient by one unit in the last place, in a series if there is one."""
     from math import nextafter
 
     match = _one_of(r"(?<![\w.])\d\.\d{6,}(?:e[-+]?\d+)?(?=f?\b)", text, random)
@@ -126,7 +126,7 @@ def _choice(text: str, random: Random) -> str | None:
 
 
 def _comment(text: str, random: Random) -> str | None:
-    """Hide the end of a statement in a comment, or a spliced line."""
+    """Hide the end of a statement in a comment or behind a spliced line."""
     match = _one_of(r"(?<=[\w)\]]) [-+] (?=[\w(])", text, random)
     if match is None:
         return None
@@ -136,7 +136,7 @@ def _comment(text: str, random: Random) -> str | None:
 
 
 def _second(text: str, random: Random) -> str | None:
-    """A second definition, before or behind the first."""
+    """Add a second definition, before or after the first."""
     head = r"^(?:static inline )?(?:void|double|float) \w+\([^)]*\)\n"
     match = re.search(head + r"\{.*?^\}\n", text, re.DOTALL | re.MULTILINE)
     if match is None:
@@ -175,7 +175,7 @@ EDITS: dict[str, Callable[[str, Random], str | None]] = {
 
 
 def corrupt_c(text: str, random: Random) -> Edit:
-    """Return one corruption of a C file, of a kind drawn at random among those that apply."""
+    """Return one corruption of a C file, of a random kind among those that apply."""
     while True:
         kind = random.choice(list(EDITS))
         found = EDITS[kind](text, random)
@@ -194,7 +194,7 @@ def _leaves(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any,
 
 
 def _altered(value: Any, random: Random) -> Any:
-    """Return another value of the kind of a leaf, or of a list or object."""
+    """Return another value of the same kind, for a leaf, a list or an object."""
     if isinstance(value, bool) or value is None:
         return 1
     if isinstance(value, int | float):
@@ -214,7 +214,7 @@ def _altered(value: Any, random: Random) -> Any:
 
 
 def tamper(data: Data, random: Random) -> tuple[str, Data]:
-    """Return a certificate with one of its values altered, and the name of the part it is in; not the seal."""
+    """Return a certificate with one altered value (not the seal), and the name of the part that contains the value."""
     parts = [part for part in data if part != "seal" and data[part]]
     while True:
         part = random.choice(parts)
@@ -229,7 +229,7 @@ def tamper(data: Data, random: Random) -> tuple[str, Data]:
 
 
 class Files:
-    """One kernel in a folder: its texts, its certificate, and what symrot says of it."""
+    """One kernel in a folder: its texts, its certificate, and symrot's answer about the kernel."""
 
     def __init__(self, directory: Path, subject: KernelUnderTest, certificate: str) -> None:
         is_scene = any(name.startswith("../../") for name in subject.files)
@@ -248,17 +248,17 @@ class Files:
 
     @property
     def operations(self) -> tuple[Operations, Operations | None]:
-        """The functions in double and in float, as they are read back."""
+        """Return the functions in double and in float, as they are read back."""
         double, *single = operations_of(self.data, self.source).values()
         return double, single[0] if single else None
 
     def same_bits(self, other: str, random: Random) -> bool:
-        """Tell whether another text of the C file computes the same bits, by running both."""
+        """Return whether another text of the C file computes the same bits when both are run."""
         named = {Path(file).name: text for file, text in self.texts.items()}
         return same_bits(named, self.name, other, self.data, random)
 
     def restore(self) -> None:
-        """Write everything as it was."""
+        """Write all files as they were."""
         for name, text in self.texts.items():
             path = (self.directory / name).resolve()
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -266,7 +266,7 @@ class Files:
         self.path.write_text(certificate_json(self.data), encoding="utf-8")
 
     def accepted(self) -> list[str]:
-        """Return by whom the files are accepted as they are: "recheck", "exact", "audit"."""
+        """Return which checkers accept the files as they are: "recheck", "exact", "audit"."""
         found = []
         for judge, module, refusals in (("recheck", recheck, Exception), ("exact", exact_check, exact_check.REFUSALS)):
             try:
@@ -283,7 +283,7 @@ class Files:
 
 
 def _digests(text: str, data: Data) -> list[str]:
-    """Return what stands for the operations of the functions of a C text; nothing if it cannot be read."""
+    """Return the operations of a C text's functions in comparable form, or nothing if the text cannot be read."""
     try:
         return [
             operations.digest()
@@ -295,7 +295,9 @@ def _digests(text: str, data: Data) -> list[str]:
 
 
 class Campaign:
-    """What became of mutants: by kind, tried and same; and the survivors."""
+    """The results on mutants: per kind, how many were tried and how many compute the same; and the survivors, wrongly
+    accepted.
+    """
 
     def __init__(self) -> None:
         self.tried: Counter[str] = Counter()
@@ -318,11 +320,11 @@ class Campaign:
 
 
 def corrupted_c(kernels: Sequence[Files], count: int, random: Random) -> Campaign:
-    """Corrupt C files, put right their hash and seal the certificate anew; no one may accept what results.
+    """Corrupt C files, correct their hash and seal the certificate anew; every checker has to refuse the result.
 
-    A mutant whose operations, of all functions, are those of the original computes the same, rounding for rounding, and
-    so does one that puts -x where only x^2 counts: the audit refuses it, as its operations are others; ``recheck.py``
-    and the exact check take it, as its formulas are the same, and a run of both shows the same bits.
+    A mutant with the operations of the original, in all functions, computes the same, rounding for rounding. So does a
+    mutant that writes -x where only x^2 matters: the audit refuses it because its operations differ; ``recheck.py`` and
+    the exact check accept it because its formulas are equal, and running both shows equal bits.
     """
     campaign = Campaign()
     for _ in range(count):
@@ -346,12 +348,13 @@ def corrupted_c(kernels: Sequence[Files], count: int, random: Random) -> Campaig
 
 
 def tampered_certificates(kernels: Sequence[Files], count: int, random: Random, sealed: bool) -> Campaign:
-    """Alter one value of a certificate; with ``sealed``, seal it anew, as a forger would.
+    """Alter one value of a certificate; with ``sealed``, seal it anew, as a forger would do.
 
-    Without the seal everything has to be refused by both. With it, the audit has to refuse everything: a certificate is
-    what symrot prints, byte for byte; but for bounds on another box, if they are those that are found there.
-    ``recheck.py`` and the exact check have to refuse whatever changes files, formulas, series or laws, by
-    :mod:`tests.campaigns.certificates.claims`; proofs of laws (cases, steps, cofactors, witnesses) ``recheck.py`` does not look at.
+    Without the new seal both checkers have to refuse everything. With it, the audit has to refuse everything except
+    bounds on another box that are right for that box, since a certificate is what symrot prints, byte for byte.
+    ``recheck.py`` and the exact check have to refuse every change of files, formulas, series or laws, judged by
+    :mod:`tests.campaigns.certificates.claims`; ``recheck.py`` does not read proofs of laws (cases, steps, cofactors,
+    witnesses).
     """
     campaign = Campaign()
     for _ in range(count):
@@ -382,7 +385,7 @@ SAMPLE = (
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the campaigns and print what survived; exit 1 if anything did."""
+    """Run the campaigns and print the survivors; exit with 1 if there are any."""
     from symrot.workshop.kernel_text import kernel_text
 
     parser = ArgumentParser(

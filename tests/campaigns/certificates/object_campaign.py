@@ -1,7 +1,8 @@
 """Measure the comparison of object code with the C text: ``python -m tests.campaigns.certificates.object_campaign``.
 
-First a table of kernels x compilers x flags: how many one-sample functions have which verdict, and the time. Then
-corrupted object files (``--mutants N``): how many are refused; one that gives the same bits is none, and not counted.
+It prints a table of kernels x compilers x flags: how many one-sample functions have which verdict, and the time. Then
+it corrupts object files (``--mutants N``) and prints how many are refused; a file that still gives the same bits is no
+corruption and is not counted.
 """
 
 import sys
@@ -28,7 +29,9 @@ SPARE = 6  # times as many are drawn at most as are counted
 
 
 def campaign(sources: Sequence[Path], compiler: str, flags: Sequence[str]) -> tuple[Counter[str], float, list[str]]:
-    """Return counts of verdicts, milliseconds per function (without compiling) and a sentence for each not accepted."""
+    """Return counts of verdicts, milliseconds per function (without compiling), and a sentence for each function not
+    accepted.
+    """
     counts, seconds, reports = Counter[str](), 0.0, []
     with TemporaryDirectory(prefix="symrot-") as directory:
         for source in sources:
@@ -50,11 +53,12 @@ def campaign(sources: Sequence[Path], compiler: str, flags: Sequence[str]) -> tu
 def corrupted(
     sources: Sequence[Path], compiler: str, flags: Sequence[str], count: int, seed: int
 ) -> tuple[Counter[str], list[str]]:
-    """Return what became of corrupted files, by kind, and a line for each that was not refused.
+    """Return the outcomes of corrupted files, by kind, and a line for each that was not refused.
 
-    "refused"; "accepted": identical, and the bits of its outputs are others, which is a failure of the checker. A file
-    that was accepted and gives the same bits on many inputs is no corruption, nor is one that only contracts, by flags
-    that do: said, not counted, and another is drawn in its place.
+    The outcomes are "refused" and "accepted"; "accepted" means that the comparison says identical although the bits of
+    outputs differ, a failure of the checker. An accepted file that gives the same bits on many inputs is no corruption,
+    nor is a file that only contracts because its flags allow this: such a file is reported, not counted, and another is
+    drawn.
     """
     counts, reports = Counter[str](), []
     each = max(1, count // len(sources))
@@ -74,7 +78,7 @@ def corrupted(
 
 
 def _outcome(source: Path, text: str, good: Path, mutant: Mutant) -> str:
-    """Return what became of a corrupted file; other flags may contract, and then the bits are others by right."""
+    """Return the outcome of a corrupted file; flags that allow contraction may change the bits legitimately."""
     try:
         verdicts = {item.verdict for item in compare_object(text, mutant.path, (), source.name)}
     except SymrotError:
@@ -87,7 +91,7 @@ def _outcome(source: Path, text: str, good: Path, mutant: Mutant) -> str:
 
 
 def _changed(good: Path, mutant: Path) -> str:
-    """Return the first instruction that a corrupted file has in another form."""
+    """Return a text about the first instruction that differs in a corrupted file."""
     before, after = read_listing(good).code, read_listing(mutant).code
     for place, instruction in before.items():
         other = after.get(place)
@@ -97,7 +101,7 @@ def _changed(good: Path, mutant: Path) -> str:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Print the table, then the corrupted files; return 1 if one that computes something else is accepted."""
+    """Print the table, then the corrupted files; return 1 if a file that computes something else is accepted."""
     parser = ArgumentParser(prog="python -m tests.campaigns.certificates.object_campaign", description=__doc__)
     parser.add_argument("--kernels", type=Path, default=Path("generated/c"), help="folder of kernels")
     parser.add_argument("--every", type=int, default=1, help="take every n-th kernel")

@@ -1,8 +1,8 @@
-"""Object files that are not what the C text says: for the campaign that every checker of object code has to refuse.
+"""Object files that differ from their C text: every checker of object code has to refuse them.
 
-Four kinds: a bit of the machine code or of a constant flipped, relocations exchanged, the source edited before it is
-compiled, and the flags changed. A mutant that is accepted must be one in name only; :func:`same_bits` runs both files
-on many inputs and compares the bits of all outputs, which shares nothing with the comparison of terms.
+Four kinds: a flipped bit of the machine code or of a constant, exchanged relocations, a source that was edited before
+it was compiled, and other flags. An accepted mutant must compute the same: :func:`same_bits` runs both files on many
+inputs and compares the bits of all outputs, which shares nothing with the comparison of terms.
 """
 
 import ctypes
@@ -31,7 +31,7 @@ SAMPLES, SECONDS = 300, 60
 
 @dataclass(frozen=True)
 class Mutant:
-    """A corrupted object file: kind, what was done to it, where it lies."""
+    """A corrupted object file: its kind, the change, and its path."""
 
     kind: str
     what: str
@@ -60,7 +60,7 @@ def _sections(content: bytes) -> list[_Section]:
 
 
 def _spans(content: bytes, sections: list[_Section], functions: Sequence[str]) -> list[tuple[int, int]]:
-    """Return where in the file the code of some functions stands: from, to."""
+    """Return where in the file the code of the functions is, as (start, end)."""
     (table,) = (section for section in sections if section.name == ".symtab")
     strings, spans = sections[table.link], []
     for at in range(table.offset, table.offset + table.size, 24):
@@ -77,7 +77,9 @@ def _flipped(content: bytes, at: int, bit: int) -> bytes:
 
 
 def _links(content: bytes, functions: Sequence[str]) -> list[tuple[int, tuple[int, int, int], int]]:
-    """Return the relocations of the code of some functions: place of the entry, the entry, what it writes over."""
+    """Return the relocations in the code of the functions: the place of the entry, the entry, and the place that it
+    overwrites.
+    """
     sections = _sections(content)
     text = next(section for section in sections if section.name == ".text")
     table = next((section for section in sections if section.name == ".rela.text"), None)
@@ -92,7 +94,7 @@ def _links(content: bytes, functions: Sequence[str]) -> list[tuple[int, tuple[in
 
 
 def _code(content: bytes, functions: Sequence[str], random: Random) -> tuple[str, bytes] | None:
-    """Flip a bit of an instruction, but for what the linker will write over."""
+    """Flip a bit of an instruction that the linker will not overwrite."""
     written = {at + byte for _, _, at in _links(content, functions) for byte in range(4)}
     start, stop = random.choice(_spans(content, _sections(content), functions))
     at, bit = random.choice([at for at in range(start, stop) if at not in written]), random.randrange(8)
@@ -118,7 +120,7 @@ def _constants(content: bytes, functions: Sequence[str], random: Random) -> tupl
 
 
 def _relocations(content: bytes, functions: Sequence[str], random: Random) -> tuple[str, bytes] | None:
-    """Exchange what two relocations of the code of the functions point to."""
+    """Exchange the targets of two relocations in the code of the functions."""
     kind = 0xFFFFFFFF  # calls with calls, constants with constants
     inside = [(at, row) for at, row, _ in _links(content, functions)]
     pairs = [(a, b) for a in inside for b in inside if a[1][1:] < b[1][1:] and a[1][1] & kind == b[1][1] & kind]
@@ -170,11 +172,11 @@ def mutants(
     source : Path
         A C file as symrot emits it.
     directory : Path
-        Where the files are written; ``good.o`` is the uncorrupted one.
+        The folder for the files; ``good.o`` is the uncorrupted one.
     compiler, flags : str, sequence of str
-        What is compiled with.
+        The compiler and its flags.
     count, seed : int
-        How many, and the seed of the choice.
+        The number of mutants, and the seed of their choice.
     """
     random, text = Random(f"{seed} {source.name} {compiler} {' '.join(flags)}"), source.read_text(encoding="utf-8")
     functions = [
@@ -203,7 +205,7 @@ def mutants(
 
 
 def _from_other_flags(source: Path, path: Path, compiler: str, random: Random) -> str | None:
-    """Compile with flags that void the certificate; None where the text itself refuses them."""
+    """Compile with flags that void the certificate; return None if the text itself refuses these flags."""
     chosen = random.choice(OTHER_FLAGS)
     try:
         compile_object(compiler, chosen, source, path)
@@ -231,7 +233,9 @@ def _from_edited(
 
 
 def same_bits(source: Path, good: Path, mutant: Path, seed: int = 1) -> bool:
-    """Return whether two object files of one kernel give the same bits on many inputs, NaN for NaN; a crash is a no."""
+    """Return whether two object files of one kernel give the same bits on many inputs, NaN for NaN; False after a
+    crash.
+    """
     outputs = []
     for path in (good, mutant):
         library = path.with_suffix(".so")

@@ -1,9 +1,10 @@
-"""Points where a kernel errs most: random ones, those where the method's own bound is large, and climbs from there.
+"""An adversary: points where a kernel has large rounding errors, by random draws, by the method's own bound, and by
+climbs.
 
-A large error needs roundings that are coarse, and that all err one way. Where they are coarse, the bound at single
-points tells: it jumps where a result exceeds a power of two. So points climb first to where that bound is large, then
-to where the roundings agree. A step changes last bits of an input or two, which leaves alone the roundings of whatever
-does not depend on them, or changes these inputs by up to a third of their range.
+An error is large where roundings are coarse and add up with one sign. The bound at single points shows where roundings
+are coarse: it jumps where a result exceeds a power of two. So points first climb to where this bound is large, then to
+where the roundings agree in sign. A step changes the last bits of one or two inputs, which keeps the roundings of
+everything that does not depend on them, or changes these inputs by up to a third of their range.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -34,7 +35,7 @@ Errors = Callable[[Points], NDArray[np.float64]]  # of points, shape (inputs, n)
 
 @dataclass(frozen=True)
 class Field:
-    """The points of a kernel that count: those of its precision in a box and a region."""
+    """The admissible points of a kernel: numbers of its precision in a box and a region."""
 
     places: tuple[str, ...]
     precision: str
@@ -43,16 +44,16 @@ class Field:
 
     @cached_property
     def ends(self) -> NDArray[np.float64]:
-        """Least and largest value of each input, shape (2, inputs, 1)."""
+        """Return the smallest and largest value of each input, shape (2, inputs, 1)."""
         return np.array([[[float(self.box[place][k])] for place in self.places] for k in (0, 1)])
 
     @property
     def kind(self) -> Any:
-        """The type of the numbers."""
+        """Return the type of the numbers."""
         return FLOAT[self.precision]
 
     def points(self, count: int, rng: np.random.Generator) -> Points:
-        """Return random points: anywhere, near sides of the region, near its corners."""
+        """Return random points: anywhere, near the boundary of the region, and near its corners."""
         low, high = self.ends
         part = rng.random((len(self.places), count))
         ends = rng.random(part.shape) < rng.choice([0.0, 0.5, 0.9], size=count)
@@ -61,7 +62,7 @@ class Field:
         return np.asarray(points[:, inside])
 
     def near(self, points: Points, rng: np.random.Generator) -> tuple[Points, NDArray[np.bool_]]:
-        """Return a point near each, and which of them are in the region."""
+        """Return a point near each given point, and which of these are in the region."""
         low, high = self.ends
         shape = points.shape
         at = points.astype(np.float64)
@@ -73,7 +74,9 @@ class Field:
         return self.inside(np.clip(at + step * (rng.random(shape) < MOVED / len(self.places)), low, high))
 
     def inside(self, points: NDArray[np.float64]) -> tuple[Points, NDArray[np.bool_]]:
-        """Return points rounded to the precision, brought to the unit spheres of the region, and which are in it."""
+        """Return the points rounded to the precision and moved onto the unit spheres of the region, and which are in
+        the region.
+        """
         low, high = self.ends
         groups = [[self.places.index(place) for place in group] for group in self.region.unit]
         for rows in groups:
@@ -88,7 +91,7 @@ class Field:
 
 
 def pointwise(graph: OutputGraph, field: Field, libm_ulp: float) -> Errors:
-    """Return the bounds that the method finds at single points: where they are large, roundings are coarse."""
+    """Return the bounds that the method computes at single points: where they are large, roundings are coarse."""
     rows = [field.places.index(place) for place in graph.places]
 
     def bounds(points: Points) -> NDArray[np.float64]:
@@ -102,25 +105,25 @@ def pointwise(graph: OutputGraph, field: Field, libm_ulp: float) -> Errors:
 
 
 def top(errors: NDArray[np.float64], count: int = RESTARTS) -> NDArray[np.intp]:
-    """Return the places of the largest errors, the largest first."""
+    """Return the indices of the largest errors, the largest first."""
     return np.argsort(-errors, kind="stable")[:count]
 
 
 def climb(errors_of: Errors, field: Field, start: Points, rounds: int, rng: np.random.Generator) -> Points:
-    """Return points that climbs from each start lead to, the largest errors first.
+    """Return the points to which climbs from each start lead, the largest errors first.
 
     Parameters
     ----------
     errors_of : callable
-        What is climbed.
+        The function that climbs increase.
     field : Field
-        Where.
+        The admissible points.
     start : ndarray, shape (inputs, n)
         The first ``RESTARTS`` of them are climbed from; if there are fewer, from some several times.
     rounds : int
         Steps of each climb, the best of ``CANDIDATES_PER_STEP`` tried ones each, if it is better than none.
     rng : numpy.random.Generator
-        Of the steps.
+        The generator of the steps.
     """
     points = start[:, np.arange(RESTARTS) % start.shape[1]]
     errors = errors_of(points)
@@ -140,7 +143,7 @@ def climb(errors_of: Errors, field: Field, start: Points, rounds: int, rng: np.r
 
 
 def distinct(points: Sequence[Points]) -> Points:
-    """Return the points of some lists, each once, in order."""
+    """Return the points of several lists, each once, in order."""
     every = np.concatenate(points, axis=1)
     _, first = np.unique(every, axis=1, return_index=True)
     return np.asarray(every[:, np.sort(first)])

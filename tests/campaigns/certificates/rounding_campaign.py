@@ -1,9 +1,10 @@
-"""Measured rounding errors against their bounds, for all kernels: ``python -m tests.campaigns.certificates.rounding_campaign``.
+"""Measured rounding errors against their bounds, for all kernels: ``python -m
+tests.campaigns.certificates.rounding_campaign``.
 
-Prints for each kernel and precision the output with the largest ratio of bound and measured error, then for each class
-of kernels the bar, the largest ratio and what misses it; exit code 1 if an error is larger than its bound, a bound
-looser than its class allows, or a kernel without a bound. A computation that several kernels have in common on equal
-boxes is measured once.
+It prints for each kernel and precision the output with the largest ratio of bound to measured error. Then it prints for
+each class of kernels the bar (the largest ratio allowed), the largest ratio, and the kernels that miss the bar. The
+exit code is 1 if an error exceeds its bound, a bound is looser than its class allows, or a kernel has no bound. A
+computation that several kernels share on equal boxes is measured once.
 """
 
 import sys
@@ -28,9 +29,9 @@ __all__ = ["CLASSES", "Class", "Row", "class_of", "compare", "loosest", "rows", 
 
 @dataclass(frozen=True)
 class Class:
-    """Kernels that share a bar: the largest ratio of bound and measured error, infinite for none.
+    """Kernels that share a bar: the largest allowed ratio of bound to measured error, infinite for no limit.
 
-    A kernel belongs to the first class whose beginnings and endings its name has.
+    A kernel belongs to the first class with a beginning and an ending of its name.
     """
 
     title: str
@@ -55,7 +56,7 @@ POINTS = 100_000
 
 @dataclass(frozen=True)
 class Row:
-    """One output: measured error, bound, both in units of 2^-53 or 2^-24."""
+    """One output with its measured error and its bound, both in units of 2^-53 or 2^-24."""
 
     kernel: str
     precision: str
@@ -66,17 +67,17 @@ class Row:
 
     @property
     def ratio(self) -> float:
-        """The bound over the measured error; 1 where both are zero."""
+        """Return the bound divided by the measured error; 1 if both are zero."""
         return self.bound / self.measured if self.measured else 1.0
 
     @property
     def holds(self) -> bool:
-        """Whether the error is within the bound."""
+        """Return whether the error is within the bound."""
         return self.measured <= self.bound
 
     @property
     def tight(self) -> bool:
-        """Whether the bound is as near to the error as its family has to be."""
+        """Return whether the bound is as near to the error as its class demands."""
         return self.ratio <= loosest(self.kernel)
 
 
@@ -86,7 +87,7 @@ def class_of(kernel: str) -> Class:
 
 
 def loosest(kernel: str) -> float:
-    """Return the largest ratio of bound and measured error of a kernel."""
+    """Return the largest ratio of bound to measured error of a kernel."""
     return class_of(kernel).loosest
 
 
@@ -124,7 +125,7 @@ def _rows(name: str, operations: Operations, points: int, seed: int, budget: int
 
 
 def _keys(name: str, text: str) -> dict[tuple[str, str], str]:
-    """Return (precision, output) of a kernel -> what its computation has in common with equal ones."""
+    """Return a mapping (precision, output) -> key; equal computations of kernels have equal keys."""
     keys = {}
     for operations in operations_of(name, text):
         problem = library_problem(definition(name), operations)
@@ -148,7 +149,7 @@ def _measured(work: _Work, points: int) -> list[Row] | str:
 
 
 def table(texts: Mapping[str, str], points: int = POINTS, workers: int = 2) -> Iterator[tuple[str, list[Row] | str]]:
-    """Yield the rows of each kernel, or why it has no bound; equal computations of several kernels are measured once.
+    """Yield the rows of each kernel, or the reason why it has no bound; a computation that several kernels share is measured once.
 
     Parameters
     ----------
@@ -192,7 +193,7 @@ def _line(rows: Sequence[Row]) -> str:
 
 
 def class_lines(all_rows: Iterable[Row]) -> list[str]:
-    """Return a line for each class: bar, kernels, largest ratio and where it is; and those that miss it."""
+    """Return lines for each class (bar, kernels, largest ratio and its place, kernels that miss the bar)."""
     rows = list(all_rows)
     lines = []
     for each in CLASSES:
@@ -212,7 +213,7 @@ def class_lines(all_rows: Iterable[Row]) -> list[str]:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print a line for each kernel and precision, then one for each class."""
+    """Print a line for each kernel and precision, then a line for each class."""
     parser = ArgumentParser(description="Measured rounding errors against their bounds.")
     parser.add_argument("kernels", nargs="*", help="names (default: all)")
     parser.add_argument("--points", type=int, default=POINTS, help=f"points per kernel ({POINTS})")

@@ -1,9 +1,10 @@
-"""Measured rounding errors, to hold the bounds against: the kernel's operations replayed, next to exact values.
+"""Measured rounding errors, to compare with the bounds: the kernel's operations, replayed beside exact values.
 
-What is measured is what is bounded: the error at points of the same box and region, choices followed as computed, with
-the sin, cos and atan2 of this machine, which err less than a bound allows. Points are looked for by an adversary
-(:mod:`tests.campaigns.certificates.rounding_adversary`), in extended precision; those with the largest errors are done again with
-mpmath at 600 bits, of which cancellations leave far more than 200, and only these count.
+The measured error is the one that is bounded: at points of the same box and region, with choices as computed, and with
+sin, cos and atan2 of this machine, whose errors are smaller than a bound allows. An adversary
+(:mod:`tests.campaigns.certificates.rounding_adversary`) searches for points in extended precision. The points with the
+largest errors are computed again with mpmath at 600 bits, of which cancellations leave far more than 200; only these
+results count.
 """
 
 from collections.abc import Callable, Sequence
@@ -47,7 +48,7 @@ _EXACT: dict[str, Callable[..., Any]] = {
 
 @dataclass(frozen=True)
 class Measured:
-    """The largest error seen of an output, and the inputs at which it was seen."""
+    """The largest error seen of an output, and the inputs that gave it."""
 
     output: str
     error: float
@@ -69,11 +70,11 @@ def measure(
     operations, box, region
         As for :func:`symrot.certificates.rounding.bounds.bound_outputs`.
     bounds : sequence of OutputBound
-        What that returned: the search also starts where a bound is largest.
+        The result of that function: the search also starts where a bound is largest.
     points : int
         Points per kernel, all outputs together.
     seed : int
-        Of the random points.
+        The seed of the random points.
     """
     rng = np.random.default_rng(seed)
     places = operations.inputs
@@ -100,13 +101,13 @@ def measure(
 
 
 def _coarse(operations: Operations, field: Field, output: str, points: Points, rng: np.random.Generator) -> Points:
-    """Return points where the method's bound of an output is large, found from some."""
+    """Return points where the method's bound of an output is large, found by climbs from given points."""
     bounds = pointwise(output_graph(operations, dict(operations.outputs)[output]), field, LIBM_ULP)
     return climb(bounds, field, points[:, top(bounds(points))], AIMED, rng)
 
 
 def _climbed(own: Operations, field: Field, start: Points, rounds: int, rng: np.random.Generator) -> Points:
-    """Return points of large errors of a kernel's one output."""
+    """Return points of large errors of one output of a kernel."""
     ((output, _),) = own.outputs
 
     def errors(points: Points) -> NDArray[np.float64]:
@@ -132,7 +133,7 @@ def _confirm(operations: Operations, each: OutputBound, points: Points, used: in
 
 
 def _confirmed(operations: Operations, computed: Sequence[Any], column: int, root: int, point: Any) -> Any:
-    """Return the exact value of a node at one point; the series and the formula of a function are the same there."""
+    """Return the exact value of a node at one point; a function's series and its formula are equal there."""
     values: dict[int, Any] = {}
 
     def value(index: int) -> Any:

@@ -1,7 +1,7 @@
-"""A kernel's operations replayed at many points at once: rounded, as the kernel does them, next to exact values.
+"""A kernel's operations, replayed at many points at once: rounded as in the kernel, beside nearly exact values.
 
-Every operation is done twice: rounded, and as exactly as can be, along the same branches: to 64 bits, for float kernels
-to 53. That is enough to look for large errors, not to state them (:mod:`tests.campaigns.certificates.rounding_measured`).
+Every operation is done twice along the same branches: rounded, and with 64 bits, or 53 bits for float kernels. That
+suffices to search for large errors, not to state them (:mod:`tests.campaigns.certificates.rounding_measured`).
 """
 
 from collections.abc import Callable
@@ -34,7 +34,9 @@ _WIDE_CALLS: dict[str, Callable[..., Any]] = {"sin": np.sin, "cos": np.cos, "ata
 
 
 def meant(value: Fraction, precision: str) -> tuple[Fraction, bool]:
-    """Return what a constant stands for, and whether times pi; itself where that is not told by the constant."""
+    """Return the exact value that a constant stands for, and whether it is times pi; the constant itself if that is not
+    known.
+    """
     try:
         constant = intended_value(value, precision)
     except CertificateError:
@@ -43,7 +45,7 @@ def meant(value: Fraction, precision: str) -> tuple[Fraction, bool]:
 
 
 def behind(operations: Operations, output: str) -> Operations:
-    """Return the operations that one output needs, of the same inputs."""
+    """Return the operations that one output needs, with the same inputs."""
     builder = GraphBuilder()
     builder.nodes = list(operations.nodes)
     root = dict(operations.outputs)[output]
@@ -82,7 +84,7 @@ def replay(operations: Operations, points: Points) -> tuple[list[Any], list[Any]
 
 
 def scan(operations: Operations, region: Region, points: Points) -> dict[str, NDArray[np.float64]]:
-    """Return the errors of all outputs at points, -1 where a point is too near to where an angle is not defined."""
+    """Return the errors of all outputs at points; -1 where a point is too near to a point without an angle."""
     with np.errstate(all="ignore"):
         computed, exact = replay(operations, points)
         outside = np.zeros(points.shape[1], bool)

@@ -1,4 +1,4 @@
-"""Do two C texts of a kernel compute the same bits? Run both, where reading cannot tell: x*x and (-x)*(-x)."""
+"""Do two C texts of a kernel compute the same bits? Run both, where reading cannot tell, as for x*x and (-x)*(-x)."""
 
 import ctypes
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ SAMPLES, RUNS = 3, 20
 
 
 def same_bits(files: Mapping[str, str], name: str, other: str, data: Mapping[str, Any], random: Random) -> bool:
-    """Tell whether all functions of NAME.c and of another text of it give the same bits at random points.
+    """Return whether all functions of NAME.c and of another text of this file give the same bits at random points.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def same_bits(files: Mapping[str, str], name: str, other: str, data: Mapping[str
     name : str
         The kernel.
     other : str
-        The other text of NAME.c. One that does not compile is not the same.
+        The other text of NAME.c; if it does not compile, the result is False.
     data : mapping
         The kernel's certificate: its functions, places of inputs and outputs.
     """
@@ -61,7 +61,7 @@ def _loaded(text: str, files: Mapping[str, str]) -> ctypes.CDLL:
 def _called(
     loaded: ctypes.CDLL, name: str, arrays: Mapping[str, list[float]], places: list[str], kind: Any, many: int
 ) -> list[bytes]:
-    """Return what the arrays hold after a call of one sample, or of many."""
+    """Return the contents of the arrays after a call for one sample, or for many."""
     real = ctypes.c_float if kind is np.float32 else ctypes.c_double
     held = {base: np.array(values, kind) for base, values in arrays.items()}
     arguments: list[Any] = [ctypes.c_size_t(many)] if many else []

@@ -1,10 +1,10 @@
-"""A campaign against the checker itself: generated claims whose truth is known by other means. No wrong verdict passes.
+"""A campaign against the checker: generated claims whose truth is known by other means; no wrong verdict may pass.
 
-True claims are made by rewriting a random formula with rules that hold by name (angle addition, the distributive law,
-``(A B)^T = B^T A^T``); false ones by one random edit of a true one, confirmed to be false at rational points by exact
-arithmetic of its own, which shares nothing with the engine. Run it by ``python -m tests.campaigns.checker.identities --count N``;
-with ``--real`` the claims are those of :mod:`tests.campaigns.checker.real_identities`: real powers, roots of negative expressions,
-logarithms, inverse functions outside their domains, and towers of functions.
+Rewriting a random formula by named rules (angle addition, the distributive law, ``(A B)^T = B^T A^T``) gives true
+claims. One random edit of a true claim gives a false one, confirmed at rational points by exact arithmetic that shares
+nothing with the engine. ``python -m tests.campaigns.checker.identities --count N`` runs it; with ``--real`` the claims
+come from :mod:`tests.campaigns.checker.real_identities`: real powers, roots of negative expressions, logarithms,
+inverse functions outside their domains, and towers of functions.
 """
 
 import sys
@@ -147,7 +147,7 @@ def _fits(kind: str, node: Node) -> bool:
 
 
 def _matched(pattern: Node, node: Node, found: dict[str, Node]) -> bool:
-    """Fill ``found`` so that the pattern with its letters replaced is the piece."""
+    """Return whether the pattern, with its letters replaced, is the piece; write the replacements into ``found``."""
     if pattern.kind == "name" and pattern.value in _KINDS:
         if pattern.value in found:
             return found[pattern.value] == node
@@ -183,7 +183,7 @@ _UNDER = tuple((given, seeds, (*_compiled(rules), *_COMPILED)) for given, seeds,
 
 
 def rewritten(tree: Node, source: Random, rules: Rules = _COMPILED) -> Node:
-    """Return a tree with one random rule used at one random piece, read again as text."""
+    """Return a tree after one random rule at one random piece, read again as text."""
     places = [(path, node) for path, node in walk(tree) if node.kind not in ("list",)]
     for _ in range(60):
         path, node = source.choice(places)
@@ -207,7 +207,7 @@ def _inside(tree: Node, path: Sequence[int], names: Sequence[str]) -> bool:
 
 
 def path_in_exponent(tree: Node, path: Sequence[int]) -> bool:
-    """Return whether a piece is an exponent, or a part of one."""
+    """Return whether a piece is an exponent or a part of one."""
     for place in path:
         if tree.kind == "power" and place == 1:
             return True
@@ -220,7 +220,7 @@ Generated = tuple[str, tuple[str, ...], bool]
 
 
 def claims(count: int, seed: int = 0) -> Iterator[Generated]:
-    """Yield generated claims as text, with their hypotheses and their truth: half of them true."""
+    """Yield generated claims as text with their hypotheses and their truth: half of them true."""
     source = Random(seed)
     made = 0
     while made < count:
@@ -245,13 +245,17 @@ def claims(count: int, seed: int = 0) -> Iterator[Generated]:
 
 
 def _nested(node: Node, inside: bool = False) -> bool:
-    """Return whether a determinant stands in another one: of a matrix quadratic in a quaternion it has degree 72."""
+    """Return whether a determinant contains another one, whose degree is too large: 72 for a matrix quadratic in a
+    quaternion.
+    """
     here = node.kind == "call" and node.value == "det"
     return (here and inside) or any(_nested(child, inside or here) for child in node.args)
 
 
 def _setting(source: Random) -> tuple[tuple[str, ...], Sequence[str], Rules]:
-    """Return hypotheses, seeds and rules: half of all claims are plain, a quarter wider, a quarter under hypotheses."""
+    """Return hypotheses, seeds and rules: half of all claims are plain, a quarter has more functions, a quarter
+    hypotheses.
+    """
     chosen = source.randrange(4)
     if chosen < 2:
         return (), SEEDS, _COMPILED
@@ -281,19 +285,19 @@ def judged(number: int, generated: Generated) -> Judged:
 
 
 def campaign(count: int, seed: int = 0, real: bool = False, workers: int = 1, log: Path | None = None) -> Tally:
-    """Check generated claims, judge every verdict, and return what came out.
+    """Check generated claims, judge every verdict, and return the counts.
 
     Parameters
     ----------
     count, seed : int
-        The first ``count`` claims of a seed; fewer of the same seed are the first of them.
+        The number of claims and the seed; a smaller number with the same seed gives the first of these claims.
     real : bool
         Claims of :mod:`tests.campaigns.checker.real_identities`.
     workers : int
         Processes.
     log : Path, optional
-        To which every answer is appended. Claims that are in it already are not checked again, unless their answers
-        were wrong or late.
+        File to which every answer is appended. Claims in the file are not checked again, unless their answers were
+        wrong or late.
 
     Raises
     ------
@@ -321,9 +325,9 @@ def campaign(count: int, seed: int = 0, real: bool = False, workers: int = 1, lo
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a campaign; exit code 1 for an answer that is wrong, late or missing, or too many undecided ones.
+    """Run a campaign; the exit code is 1 if an answer is wrong, late or missing, or if too many are undecided.
 
-    Of claims made by rewriting 1 % may be undecided, or true and refused; of real functions any number.
+    Of claims made by rewriting, 1 % may be undecided or, if true, refused; of claims about real functions, any number.
     """
     parser = ArgumentParser(prog="python -m tests.campaigns.checker.identities", description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=1000, help="claims (default: 1000)")

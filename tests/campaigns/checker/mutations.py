@@ -1,6 +1,8 @@
-"""One random fault in a claim, as printers and authors make them. Shares no table with the search that must undo it.
+"""One random fault in a claim, of the kinds that printers and authors make; shares no table with the search that must
+undo it.
 
-Every mutation has the code of the diagnosis that would name it; what is dropped or exchanged is lost to the search.
+Every mutation has the code of the diagnosis that should name it; what it drops or exchanges is not available to the
+search.
 """
 
 from collections.abc import Callable, Collection, Iterator
@@ -37,7 +39,7 @@ def _sign_of_term(node: Node, is_matrix: IsMatrix) -> Made:
 
 
 def _factor(node: Node, is_matrix: IsMatrix) -> Made:
-    """Yield twice and half of a term or product, and a product without one of its factors."""
+    """Yield a term or product times 2 and times 1/2, and the product without one of its factors."""
     if node.kind not in ("product", "name", "call") or is_matrix(node):
         return
     for by in (Fraction(2), Fraction(1, 2)):
@@ -74,7 +76,7 @@ def _of_angle(by: Fraction) -> Callable[[Node, IsMatrix], Made]:
 
 
 def _scaled(term: Node, by: Fraction) -> Node:
-    """Return an angle times 2 or 1/2, ``x/2`` doubled being ``x``."""
+    """Return an angle times 2 or 1/2; ``x/2`` doubled is ``x``."""
     if term.kind == "neg":
         return negated(_scaled(term.args[0], by))
     factors = list(term.args) if term.kind == "product" else [term]
@@ -109,7 +111,7 @@ def _missing_term(node: Node, is_matrix: IsMatrix) -> Made:
 
 
 def _transposed(node: Node, is_matrix: IsMatrix) -> Made:
-    """Yield a matrix for its transpose, an angle for its opposite, and rows for columns where entries are written."""
+    """Yield the transpose of a matrix, the opposite of an angle, and written entries with rows as columns."""
     if node.kind == "transpose":
         yield node.args[0]
     elif node.kind == "call" and node.value in TURNS:
@@ -154,7 +156,7 @@ def _with(node: Node, edit: Callable[[Node], Node]) -> Node:
 
 
 def _sequence_type(node: Node, is_matrix: IsMatrix) -> Made:
-    """Yield turns about other axes, of the same kind of sequence and of the other, and the reversed order."""
+    """Yield rotations about other axes, of the same and of the other kind of sequence, and the reversed order."""
     if node.kind != "product" or not all(f.kind == "call" and f.value in TURNS for f in node.args):
         return
     angles = [factor.args for factor in node.args]
@@ -165,7 +167,7 @@ def _sequence_type(node: Node, is_matrix: IsMatrix) -> Made:
 
 
 def _frame(node: Node, is_matrix: IsMatrix) -> Made:
-    """Yield ``R W`` for ``W R``, where W is skew, and components of the angular velocity in the other frame."""
+    """Yield ``R W`` for ``W R`` with skew W, and components of the angular velocity in the other frame."""
     if (
         node.kind == "product"
         and len(node.args) == 2
@@ -216,7 +218,7 @@ def places(claim: Claim, code: str, is_matrix: IsMatrix) -> list[tuple[str, Path
 
 
 def mutated(claim: Claim, code: str, source: Random, is_matrix: IsMatrix, among: Collection[tuple[str, Path]]) -> Claim:
-    """Return a claim with one random mutation of a code, at one of the places given."""
+    """Return a claim with one random mutation of a code, at one of the given places."""
     assert claim.relation is not None
     place, path = source.choice(list(among))
     sign, left, right = claim.relation
@@ -242,7 +244,7 @@ def mutated(claim: Claim, code: str, source: Random, is_matrix: IsMatrix, among:
 
 
 def _flattened(node: Node) -> Node:
-    """Return a tree with sums in sums and products in products made flat, as the reader gives them."""
+    """Return a tree without sums directly in sums or products in products, as the reader gives trees."""
     args = [_flattened(child) for child in node.args]
     if node.kind in ("sum", "product"):
         return (sum_of if node.kind == "sum" else product)(args)
@@ -252,7 +254,7 @@ def _flattened(node: Node) -> Node:
 
 
 def _pieces(tree: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
-    """Yield the pieces that may go wrong: no exponents, no indices, no variables of derivatives."""
+    """Yield the pieces that a mutation may change: no exponents, indices or variables of derivatives."""
     yield path, tree
     for place, child in enumerate(tree.args):
         fixed = tree.kind in ("power", "index") or (tree.kind == "call" and tree.value in ("diff", "integrate"))

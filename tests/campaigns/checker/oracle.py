@@ -1,6 +1,7 @@
-"""Values of trees at rational points by exact arithmetic that shares nothing with the engine: the oracle of the campaign.
+"""Values of trees at rational points by exact arithmetic that shares nothing with the engine: the oracle of the
+campaign.
 
-An angle is given by the rational cosine and sine of its half, a function of time by that and its rate.
+An angle is given by the rational cosine and sine of its half; a function of time by these and its rate.
 """
 
 from collections.abc import Sequence
@@ -21,11 +22,13 @@ QUATERNIONS = (("p0", "p1", "p2", "p3"), ("q0", "q1", "q2", "q3"))
 
 
 class Undefined(Exception):
-    """No value at this point."""
+    """The formula has no value at this point."""
 
 
 def multiple(product: Node, times: Fraction) -> tuple[Node, Fraction]:
-    """Return the factor of a product that is no number, and ``times`` times all numbers; ``Undefined`` without one."""
+    """Return the factor of a product that is no number, and ``times`` times all its numbers; raise ``Undefined``
+    without such a factor.
+    """
     rest = []
     for factor in product.args:
         if factor.kind == "number":
@@ -41,14 +44,14 @@ def multiple(product: Node, times: Fraction) -> tuple[Node, Fraction]:
 
 @dataclass
 class RationalPoint:
-    """Rational values of everything: ``halves`` are (cos, sin) of half the angles, ``rates`` of the functions."""
+    """Rational values of all names: ``halves`` are (cos, sin) of half the angles, ``rates`` the rates of functions."""
 
     halves: dict[str, tuple[Any, Any]]
     values: dict[str, Any]
     rates: dict[str, Fraction]
 
     def angle(self, node: Node) -> tuple[Any, Any]:
-        """Return (cos, sin) of an angle; ``Undefined`` for one that is no combination of whole and half angles."""
+        """Return (cos, sin) of an angle; raise ``Undefined`` if it is no combination of whole and half angles."""
         return self._turned(node, Fraction(1))
 
     def _turned(self, node: Node, times: Fraction) -> tuple[Any, Any]:
@@ -286,7 +289,7 @@ def random_point(source: Random) -> RationalPoint:
 
 
 def truth(left: Node, right: Node, source: Random, wanted: int = 3) -> bool | None:
-    """Return whether two sides agree exactly at rational points; None if too few of those drawn are defined."""
+    """Return whether two sides agree exactly at rational points; None if they are defined at too few of those drawn."""
     defined = 0
     for _ in range(4 * wanted):
         point = random_point(source)

@@ -1,7 +1,8 @@
-"""Exact values of roots, absolute values, exponentials and inverse functions too, and points that obey hypotheses.
+"""The oracle with roots, absolute values, exponentials and inverse functions, and points that obey hypotheses; all
+exact.
 
-A letter under an inverse sine or tangent is given by the angle that it is the sine or tangent of, an exponent by its
-exponential; so all values stay rational, and whatever would not be is undefined.
+A letter under an inverse sine or tangent is given by the angle whose sine or tangent it is, an exponent by its
+exponential. So all values are rational; a formula that would have another value is undefined.
 """
 
 from collections.abc import Callable, Sequence
@@ -23,7 +24,9 @@ INVERSES = {"asin": "k", "acos": "k", "atan": "l"}
 
 @dataclass
 class WiderPoint(RationalPoint):
-    """A point with (cos, sin) of half the angles behind ``k`` and ``l``, and roots of ``exp(u)``, ``exp(v)``."""
+    """A rational point with (cos, sin) of half the angles behind ``k`` and ``l``, and roots of ``exp(u)`` and
+    ``exp(v)``.
+    """
 
     hidden: dict[str, tuple[Fraction, Fraction]] = field(default_factory=dict)
     bases: dict[str, Fraction] = field(default_factory=dict)
@@ -80,7 +83,7 @@ def _root(value: Fraction) -> Fraction:
 
 
 def _on_sphere(names: Sequence[str]) -> Callable[[dict[str, Any]], None]:
-    """Return the move of a point onto a unit sphere, by the stereographic map of all names but the first."""
+    """Return a function that moves a point onto a unit sphere, by stereographic projection of all names but the first."""
 
     def move(values: dict[str, Any]) -> None:
         rest = [values[name] for name in names[1:]]
@@ -106,7 +109,7 @@ HYPOTHESES: dict[str, Callable[[dict[str, Any]], None]] = {
 
 
 def wider_point(source: Random, given: Sequence[str] = ()) -> WiderPoint:
-    """Return a point of random rationals that obeys hypotheses of the table."""
+    """Return a point of random rationals that obeys the hypotheses."""
     plain = random_point(source)
     for hypothesis in given:
         HYPOTHESES[hypothesis](plain.values)

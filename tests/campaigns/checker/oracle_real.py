@@ -1,9 +1,9 @@
-"""Values of trees at real points in 60 digits, and where there is none: the oracle of the campaign over real functions.
+"""Values of trees at real points in 60 digits, or none: the oracle of the campaign over real functions.
 
-Arithmetic of mpmath's floating point numbers alone, which shares nothing with the engine: it proves nothing, but tells
-two values apart, and a value from none. The rules are those of real functions: a power ``u^(p/q)``, q > 1, of u >= 0
-only; logarithms of positive numbers; ``asin`` and ``acos`` between -1 and 1; no division by zero. A piece that is
-multiplied by zero must have a value too. Near the edge of a domain, and beyond e^100, the oracle does not answer.
+It uses mpmath's floating-point numbers alone and shares nothing with the engine. It proves nothing, but distinguishes
+two values, and a value from none. The rules are those of real functions: a power ``u^(p/q)``, q > 1, only for u >= 0;
+logarithms of positive numbers; ``asin`` and ``acos`` between -1 and 1; no division by zero. A piece that is multiplied
+by zero must have a value too. Near the edge of a domain, and beyond e^100, the oracle does not answer.
 """
 
 from collections.abc import Mapping, Sequence
@@ -49,15 +49,15 @@ class NoValue(Exception):
 
 
 class Unclear(Exception):
-    """The judge cannot tell."""
+    """The judge cannot decide."""
 
 
 class Edge(Unclear):
-    """The judge cannot tell since the point is on the edge of the domain, or close to it."""
+    """The judge cannot decide since the point is on the edge of the domain or close to it."""
 
 
 class Large(Unclear):
-    """There is a value, but one too large to be compared."""
+    """There is a value, but it is too large to be compared."""
 
 
 def _context(digits: int) -> Any:
@@ -71,7 +71,7 @@ _CONTEXTS = {digits: _context(digits) for digits in (DIGITS, MORE_DIGITS)}
 
 @dataclass(frozen=True)
 class Unknown:
-    """A real number beyond what is computed, or made of one: its sign is 1 or -1 where that is known, else 0."""
+    """A real number that is too large to be computed, or depends on one: its sign is 1 or -1 if known, otherwise 0."""
 
     sign: int = 0
 
@@ -81,7 +81,7 @@ _EVERYWHERE = {"abs": 0, "exp": 1, "sinh": 0, "cosh": 1, "tanh": 0, "sin": 0, "c
 
 
 def _of_unknown(node: Node, parts: Sequence[Any]) -> Unknown:
-    """Return what a piece with parts beyond what is computed is, if it has a value."""
+    """Return the value of a piece that has ``Unknown`` parts, if it has a value."""
     signs = [part.sign if isinstance(part, Unknown) else (part > 0) - (part < 0) for part in parts]
     if node.kind == "sum":
         nonzero = {sign for sign, part in zip(signs, parts, strict=True) if isinstance(part, Unknown) or part}
@@ -104,7 +104,7 @@ def _of_unknown(node: Node, parts: Sequence[Any]) -> Unknown:
 
 
 class _Judge:
-    """Values at one point, in one precision."""
+    """Values at one point in one precision."""
 
     def __init__(self, point: Point, digits: int) -> None:
         self.mp, self.point = _CONTEXTS[digits], point
@@ -113,7 +113,7 @@ class _Judge:
         self.failed: Node | None = None  # the piece without a value
 
     def value(self, node: Node) -> Any:
-        """Return the value of a tree, or an ``Unknown`` for a real number that is too large, or made of one."""
+        """Return the value of a tree; an ``Unknown`` for a real number that is too large or depends on one."""
         try:
             return self.small_value(node)
         except Large as large:
@@ -245,7 +245,7 @@ class _Judge:
 
 
 def _rational(node: Node) -> Fraction:
-    """Return an exponent: a number, perhaps with a sign or divided by another."""
+    """Return an exponent: a number, perhaps with a sign, or a quotient of numbers."""
     if node.kind == "neg":
         return -_rational(node.args[0])
     if node.kind == "inv":
@@ -266,9 +266,9 @@ def real_value(node: Node, point: Point, digits: int = DIGITS) -> Any:
     Raises
     ------
     NoValue
-        Where it is no real number.
+        If it is no real number.
     Unclear
-        Where the judge cannot tell, or does not know a function.
+        If the judge cannot decide, or does not know a function.
     """
     try:
         return _Judge(point, digits).small_value(node)
@@ -283,9 +283,9 @@ def _generic_judges(count: int) -> tuple[_Judge, ...]:
 
 
 def has_values(sides: Sequence[Node], count: int) -> bool:
-    """Return whether at one of so many generic points all sides have values, as far as the judge can tell.
+    """Return whether all sides have values at one of ``count`` generic points, as far as the judge can tell.
 
-    The piece that had no value at the last point is looked at first: it often has none at the next one either.
+    The piece that had no value at the last point is evaluated first, since it often has none at the next point either.
     """
     pieces = list(sides)
     for judge in _generic_judges(count):
@@ -307,7 +307,7 @@ def has_values(sides: Sequence[Node], count: int) -> bool:
 
 
 def lacks_a_value(sides: Sequence[Node], point: Point) -> bool:
-    """Return whether some piece of the sides is certainly no real number at a point, whatever is unclear elsewhere."""
+    """Return whether some piece of the sides is certainly no real number at a point, even if others are unclear."""
     judge = _Judge(point, MORE_DIGITS)
     for side in sides:
         for _, piece in walk(side):
@@ -328,12 +328,12 @@ def _value_or_unknown(node: Node, point: Point, digits: int) -> Any:
 
 
 def compare(left: Node, right: Node, point: Point) -> bool:
-    """Return whether two sides have one value at a point, twice as many digits asked where they seem to differ.
+    """Return whether two sides have one value at a point; if they seem to differ, twice as many digits decide.
 
     Raises
     ------
     NoValue
-        Where one of them is no real number.
+        If a side is no real number.
     Unclear
     """
     gaps = []
@@ -359,7 +359,7 @@ def generic_point(source: Random, names: Sequence[str] = NAMES) -> dict[str, Fra
 
 
 def far_point(source: Random, names: Sequence[str] = NAMES) -> dict[str, Fraction]:
-    """Return a random point whose numbers have sizes from 1e-12 to 1e12, all sizes alike: no narrow domain is left out."""
+    """Return a random point with numbers of all sizes from 1e-12 to 1e12, so that narrow domains are reached too."""
     return {
         name: source.choice((-1, 1)) * Fraction(10) ** source.randint(-12, 12) * Fraction(10 ** source.random())
         for name in names

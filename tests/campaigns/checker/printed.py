@@ -7,9 +7,9 @@ A formula of the corpus has one of these outcomes; the first two are wrong answe
 accused    a correct formula is called false or doubtful
 believed   a faulty formula is called true, conditional or recognised
 refused    the text cannot be read
-context    one of these two, of a formula whose meaning is said in words, which the check does not read yet
+context    like accused or believed, but the formula gets its meaning from words that the check does not read yet
 unknown    a correct formula is called a definition or undecided; a faulty one is not called false or doubtful
-right      the verdict is the expected one, or one that the corpus counts as right in its place
+right      the verdict is the expected one, or another one that the corpus counts as right
 
 The command ends with exit code 1 if there is a wrong answer.
 """

@@ -1,8 +1,9 @@
 """Claims about real powers, roots of negative expressions, logarithms, inverse functions and towers, for the campaign.
 
-A claim is a formula against what rules of real functions make of it (each holds wherever both sides have a value), what
-wrong rules make of it, or something else. Sides with a value nowhere are wanted: nothing may be said to be true of
-them. What is true is judged by :mod:`tests.campaigns.checker.oracle_real`, point by point, for the verdict and its evidence.
+A claim sets a formula equal to its rewriting by a rule of real functions (which holds wherever both sides have a
+value), by a wrong rule, or to something else. Sides that have a value nowhere are included: nothing may be called true
+of them. :mod:`tests.campaigns.checker.oracle_real` judges the truth, point by point, of the verdict and of its
+evidence.
 """
 
 from collections.abc import Iterator, Sequence
@@ -97,7 +98,7 @@ _LETTERS = ("X", "Y")
 
 
 def real_claims(count: int, seed: int = 0) -> Iterator[str]:
-    """Yield claims as text; the same for the same seed."""
+    """Yield claims as text; equal seeds give equal claims."""
     source = Random(seed)
     made = 0
     while made < count:
@@ -137,7 +138,7 @@ def _filled(pattern: Node, found: dict[str, Node]) -> Node:
 
 
 def _rewritten(tree: Node, source: Random, rules: Sequence[tuple[Node, Node]]) -> Node:
-    """Return a tree with one random rule used at one random piece that it fits."""
+    """Return a tree after one random rule at one random piece that it fits."""
     places = [(path, node) for path, node in walk(tree) if not _in_exponent(tree, path)]
     for _ in range(80):
         path, node = source.choice(places)
@@ -177,16 +178,16 @@ _OF_THE_DOMAIN = ("nowhere", "no real", "not negative", "a positive number", "fr
 
 
 def fault(claim: str, verdict: Verdict | str, source: Random) -> str:
-    """Return what is wrong with a verdict, or with the sentence of a refusal; empty where nothing is.
+    """Return a text about the fault of a verdict or of a refusal; empty if there is no fault.
 
     Parameters
     ----------
     claim : str
         ``left == right`` with the names of :data:`tests.campaigns.checker.oracle_real.NAMES`.
     verdict : Verdict or str
-        Or the sentence by which the claim was refused.
+        The verdict, or the sentence by which the claim was refused.
     source : Random
-        Of the points.
+        The source of the random points.
     """
     _, left, right = read_relation(claim)
     if isinstance(verdict, str):
@@ -254,7 +255,7 @@ def _number(shown: str) -> Node:
 
 
 def _placed(side: Node, point: dict[str, Node]) -> Node:
-    """Return a side with the values of a counterexample put in for its names; sines of a name are unclear."""
+    """Return a side with a counterexample's values in place of its names; sines of a name are unclear."""
     if any(name not in NAMES for name in point):
         raise Unclear
     return read_expression(text(_filled(side, point)))

@@ -1,8 +1,8 @@
 """The catalogue's own formulas as claims, for the campaign against diagnosis: as derived, and as the pages show them.
 
-An equation of a step becomes a claim with its hypotheses, entry by entry where the whole is too long for the reader.
-Derivations multiply matrices out; the pages show products, so these are written here as products: order, transposes and
-sequences can only go wrong where they stand.
+An equation of a step becomes a claim with its hypotheses; if it is too long for the reader, each entry becomes a claim.
+Derivations multiply matrices out, but pages show products, so the claims here contain products: only there can a fault
+of order, transpose or sequence occur.
 """
 
 from collections.abc import Iterator, Sequence
@@ -112,7 +112,7 @@ STATEMENTS: tuple[tuple[str, str, tuple[tuple[str, str], ...], tuple[str, ...]],
 
 
 def _of_sequences() -> Iterator[tuple[str, str, tuple[tuple[str, str], ...], tuple[str, ...]]]:
-    """Yield the rates of all 24 sequences in both frames, and the Euler parameters of 12, each from its name."""
+    """Yield the rates of all 24 sequences in both frames and the Euler parameters of 12, each made from its name."""
     angles = ("phi(t)", "theta(t)", "psi(t)")
     for sequence in SEQUENCES:
         turns = [f"R{axis.lower()}({angle})" for axis, angle in zip(sequence, angles, strict=True)]
@@ -145,7 +145,7 @@ FUNCTIONS_OF_TIME = ("phi", "theta", "psi", "x", "y")
 
 
 def claims_of_statements() -> Iterator[tuple[str, Claim]]:
-    """Yield (derivation, claim) of the statements with products."""
+    """Yield (derivation, claim) for the statements with products."""
     for name, source, define, given in (*STATEMENTS, *_of_sequences()):
         texts = [source, *(formula for _, formula in define), *given]
         functions = tuple(f for f in FUNCTIONS_OF_TIME if any(f"{f}(t)" in text for text in texts))
@@ -168,7 +168,7 @@ def _names(tree: Any) -> Iterator[str]:
 
 
 def claims_of_steps() -> Iterator[tuple[str, Claim]]:
-    """Yield (derivation, claim) of the equations of all steps; those too long for the reader entry by entry."""
+    """Yield (derivation, claim) for the equations of all steps; those too long for the reader entry by entry."""
     for name in names():
         for number, step in enumerate(derivation(name).steps, start=1):
             if step.relation == "=":
@@ -186,7 +186,7 @@ def _of_step(step: Step, label: str) -> list[Claim]:
 
 
 def _claim(left: Any, right: Any, hypotheses: Sequence[Any], label: str) -> Claim | None:
-    """Return an equation as a claim; None for one beyond what the reader takes."""
+    """Return an equation as a claim, or None if the reader does not accept it."""
     source = f"{as_text(left)} == {as_text(right)}"
     symbols = sorted(set().union(*(side.free_symbols for side in (left, right, *hypotheses))), key=str)
     signs: list[Relation] = [read_relation(f"{symbol} > 0") for symbol in symbols if symbol.is_positive]
@@ -203,7 +203,7 @@ def _claim(left: Any, right: Any, hypotheses: Sequence[Any], label: str) -> Clai
 
 @cache
 def catalogue_claims() -> tuple[tuple[str, Claim], ...]:
-    """Return all claims of the catalogue, those with products first; none that says that something is itself."""
+    """Return all claims of the catalogue, first those with products, without claims of the form x == x."""
     return tuple(
         (name, claim)
         for name, claim in (*claims_of_statements(), *claims_of_steps())

@@ -1,8 +1,8 @@
-"""A campaign against diagnosis: one random fault in a formula of the catalogue, and where the original is offered.
+"""A campaign against diagnosis: one random fault in a formula of the catalogue; is the original among the repairs?
 
-``python -m tests.campaigns.checker.repairs --count N`` takes claims of the catalogue in turn by code of the fault, keeps
-the faults that make them false, and asks for repairs. A repair is the original when both sides and all definitions are
-proven to have the original's values; ``--faults 2`` makes two faults at once.
+``python -m tests.campaigns.checker.repairs --count N`` takes the codes of faults in turn, puts a fault into claims of
+the catalogue, keeps faults that make a claim false, and asks for repairs. A repair is the original if both sides and
+all definitions are proven to have the original's values; ``--faults 2`` makes two faults at once.
 """
 
 import sys
@@ -35,7 +35,7 @@ MOST_TRIES = 40
 
 @dataclass(frozen=True)
 class Fault:
-    """A formula of the catalogue, the same with a fault, the codes of what was done, and the verdict on it."""
+    """A formula of the catalogue, the formula with a fault, the codes of the mutations, and the verdict on the fault."""
 
     derivation: str
     original: Claim
@@ -46,7 +46,7 @@ class Fault:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What one diagnosis gave: the place of the original among the repairs (0: not there), and the time it took."""
+    """The result of one diagnosis: the rank of the original among the repairs (0: absent), and the time."""
 
     fault: Fault
     code: str
@@ -58,7 +58,7 @@ class Outcome:
 
 
 def matrix_test(claim: Claim) -> IsMatrix:
-    """Return whether a piece of a claim is a matrix, by its form and the definitions."""
+    """Return a function that says whether a piece of a claim is a matrix, by its form and the definitions."""
     matrices = {name for name, value in claim.definitions.values.items() if getattr(value, "is_Matrix", False)}
 
     def is_matrix(node: Node) -> bool:
@@ -115,7 +115,7 @@ def _decided(claim: Claim) -> Decision | None:
 def campaign(
     count: int, seed: int = 0, at_once: int = 1, progress: Callable[[int], None] = lambda done: None
 ) -> list[Outcome]:
-    """Diagnose claims with faults and return what came out."""
+    """Diagnose claims with faults and return the outcomes."""
     found = []
     for done, fault in enumerate(faults(count, seed, at_once), start=1):
         start = perf_counter()
@@ -146,14 +146,14 @@ def _is_true(claim: Claim, repair: Repair) -> bool:
 
 
 def rank_of(fault: Fault, repairs: Sequence[Repair]) -> tuple[int, bool]:
-    """Return the place of the original among repairs, from 1 (0 if it is not there), and whether one is written so."""
+    """Return the rank of the original among repairs, from 1 (0 if absent), and whether a repair is written like it."""
     found = [repaired(fault.claim, repair) for repair in repairs]
     rank = next((rank for rank, claim in enumerate(found, start=1) if _same(fault.original, claim)), 0)
     return rank, any(_written(claim) == _written(fault.original) for claim in found)
 
 
 def _written(claim: Claim) -> tuple[Node, ...]:
-    """Return the trees of a claim, up to the order of terms and of scalar factors."""
+    """Return the trees of a claim, with terms and scalar factors in a fixed order."""
     assert claim.relation is not None
     is_matrix = matrix_test(claim)
     return tuple(canonical(tree, is_matrix) for tree in (*claim.relation[1:], *(tree for _, tree in claim.define)))
@@ -182,7 +182,7 @@ WIDTHS = (7, 7, 7, 7, 12, 10, 11)
 
 
 def table(outcomes: Sequence[Outcome]) -> list[str]:
-    """Return the lines of a report: by code, how often the original came first, among the first three, not at all."""
+    """Return the lines of a report: per code, how often the original came first, among the first three, or not at all."""
     heads = ("faults", "first", "in 3", "%", "as written", "named so", "no repair")
     lines = [
         f"{'code of the fault':<26}" + "".join(f"{head:>{width}}" for head, width in zip(heads, WIDTHS, strict=True))
@@ -215,7 +215,7 @@ def _row(label: str, cells: Sequence[object]) -> str:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a campaign; exit code 1 when a repair is not true, or the original is too rarely among the first three."""
+    """Run a campaign; exit with 1 if a repair is not true, or the original is too rarely among the first three."""
     parser = ArgumentParser(prog="python -m tests.campaigns.checker.repairs", description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=150, help="faults (default: 150)")
     parser.add_argument("--seed", type=int, default=0)

@@ -1,4 +1,4 @@
-"""One run of a campaign: claim after claim, in one process or several, with a log from which it can go on."""
+"""One run of a campaign: claim after claim, in one process or several, with a log from which the run can be resumed."""
 
 import json
 import signal
@@ -32,7 +32,9 @@ CHUNK = 8
 
 @dataclass(frozen=True)
 class Judged:
-    """A claim, the verdict on it, the processor time that it took in seconds, what is wrong with it, and why a true claim was refused."""
+    """A claim, its verdict, the processor time in seconds, the fault of the verdict, and the reason if a true claim was
+    refused.
+    """
 
     number: int
     claim: str
@@ -47,12 +49,12 @@ class Judged:
 
 
 class _NoAnswer(BaseException):
-    """Raised in the middle of whatever takes too long; no handler of ordinary exceptions keeps it."""
+    """Raised inside a check that takes too long; no handler of ordinary exceptions catches it."""
 
 
 @contextmanager
 def _given_up_after(seconds: float) -> Iterator[None]:
-    """Raise ``_NoAnswer`` when the seconds are over, where the system has timers; only a main thread can be stopped."""
+    """Raise ``_NoAnswer`` after so many seconds, if the system has timers; this can stop only a main thread."""
     if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -71,7 +73,7 @@ def _given_up_after(seconds: float) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Answer:
-    """A verdict, or the sentence by which a claim was refused; or, in ``failure``, why there is neither."""
+    """A verdict, or the sentence by which a claim was refused; or, in ``failure``, the reason why there is neither."""
 
     verdict: Verdict | str
     seconds: float
@@ -85,7 +87,7 @@ class Answer:
 
 
 def answer_of(ask: Callable[[], Verdict]) -> Answer:
-    """Return what a user would get, and after how many seconds of processor time."""
+    """Return the answer that a user would get, and the processor time in seconds."""
     before = process_time()
     try:
         with _given_up_after(GIVEN_UP_SECONDS):
@@ -106,12 +108,12 @@ Judge = Callable[[int, Any], Judged]
 
 
 def judged_claims(judge: Judge, claims: Iterable[tuple[int, Any]], workers: int, log: Path | None) -> Iterator[Judged]:
-    """Yield what became of each claim, as soon as it is known; each is in the log before it is yielded.
+    """Yield the result of each claim as soon as it is known; the log contains each result before it is yielded.
 
     Parameters
     ----------
     judge : function
-        One that other processes can be sent, if there are several workers.
+        A function that other processes can receive, if there are several workers.
     claims : iterable of (int, claim)
     workers : int
         Processes; 1 for this one alone.
@@ -151,12 +153,12 @@ def _judged(judge: Judge, chunk: Sequence[tuple[int, Any]]) -> list[Judged]:
 
 
 def read_log(log: Path | None) -> dict[int, Judged]:
-    """Return the claims of a log by number, the last line of each; without a line that an interruption cut off.
+    """Return the claims of a log by number, the last line of each; a line that an interruption cut off is left out.
 
     Raises
     ------
     InputError
-        If the file is no log of a campaign.
+        If the file is not the log of a campaign.
     """
     rows: dict[int, Judged] = {}
     if log is None or not log.exists():
@@ -177,7 +179,7 @@ def read_log(log: Path | None) -> dict[int, Judged]:
 
 @dataclass
 class Tally:
-    """What a run came to so far: verdicts of each kind; wrong, refused and late ones; the slowest claim."""
+    """The counts of a run so far: verdicts of each kind; wrong, refused and late ones; the slowest claim."""
 
     counts: Counter[str] = field(default_factory=Counter)
     wrong: list[str] = field(default_factory=list)
@@ -205,7 +207,7 @@ class Tally:
         return self.counts.total()
 
     def show(self, of: int, row: Judged) -> None:
-        """Show progress on standard error: each wrong or late answer as it comes, and the count now and then."""
+        """Print progress on standard error: each wrong or late answer at once, and the counts now and then."""
         if row.wrong or row.late:
             sys.stderr.write(f"\r{row.number}: {row.wrong or f'{row.seconds:.0f} s'}: {row.claim}\n")
         if self.count % (20 if sys.stderr.isatty() else 500) == 0:

@@ -1,1 +1,1 @@
-"""Random torques against the truth."""
+"""Random torques: symrot's motions compared with the truth."""

@@ -19,7 +19,7 @@ PER_SWING = 128
 
 
 class Drive(NamedTuple):
-    """A torque of time with its first and second antiderivative, and a time shorter than half of any of its swings."""
+    """A torque of time with its first and second antiderivative, and a time shorter than half of each of its swings."""
 
     torque: Callable[[Any], Any]
     once: Callable[[Any], Any]
@@ -42,7 +42,7 @@ def sine_drive(m: float, b: float) -> Drive:
 
 
 class _Arcs:
-    """Arcs in order of time; each is a function of time that returns omega_3 and angle."""
+    """Arcs (pieces of a motion) in order of time; each is a function of time that returns omega_3 and the angle."""
 
     def __init__(self) -> None:
         self.starts: list[Any] = []
@@ -65,7 +65,7 @@ class _Arcs:
 
 
 def _root(function: Callable[[Any], Any], before: bool, low: Any, high: Any) -> Any:
-    """Return where a function that is positive at low, or not, changes sign before high, by halving to the last bit."""
+    """Return the time between low and high at which a function changes from its sign at low, bisected to the last bit."""
     for _ in range(200):
         middle = (low + high) / 2
         if middle in (low, high):
@@ -80,7 +80,7 @@ def _root(function: Callable[[Any], Any], before: bool, low: Any, high: Any) -> 
 def _first_change(function: Callable[[Any], Any], before: bool, low: Any, high: Any, swing: float) -> Any:
     """Return the first time after low at which a function changes sign, or high.
 
-    ``before`` says whether the function is positive just after low, where it may be zero. It is looked at
+    ``before`` says whether the function is positive just after low, where it may be zero. It is evaluated
     :data:`PER_SWING` times in each swing of the drive.
     """
     cells = int(min(np.ceil(float(high - low) / swing * PER_SWING), 400_000))
@@ -117,7 +117,7 @@ def _breakaway(drive: Drive, force: Any, t: Any, end: Any) -> Any:
 def _slip(
     found: _Arcs, c: Any, force: Any, drive: Drive, t: Any, w: Any, angle: Any, end: Any, side: Any
 ) -> tuple[Any, Any, Any]:
-    """Add the arc of one slip and return where it ends: at rest, or at the end."""
+    """Add the arc of one slip and return where it ends: at rest, or at the end of the span."""
 
     def arc(at: Any) -> tuple[Any, Any]:
         s = at - t

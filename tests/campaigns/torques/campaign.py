@@ -1,9 +1,9 @@
 """Random torques against the truth: ``python -m tests.campaigns.torques.campaign --count 10000``.
 
-Prints, by family and by method, how many motions were right, how many ended in a sentence and how many were wrong in
-silence, with what makes each wrong one again; exits with 1 if any was wrong. See :mod:`tests.campaigns.torques.verdict` for
-what right means. With ``--save FILE`` each result is written as it comes, and the same command goes on where an
-interrupted one stopped.
+It prints, by family and by method, how many motions were right, how many ended with a message and how many were wrong
+without one, with the command that repeats each wrong case; the exit code is 1 if any was wrong.
+:mod:`tests.campaigns.torques.verdict` says what right means. With ``--save FILE`` each result is written at once, and
+the same command resumes an interrupted campaign.
 """
 
 import argparse
@@ -30,7 +30,7 @@ COLUMNS = tuple(OUTCOMES)
 
 
 def case_of(family: str, index: int, seed: int, methods: tuple[str, ...] = ()) -> Case:
-    """Return one case; ``methods`` replaces its method by one of them."""
+    """Return one case; ``methods``, if given, replace its method by one of them."""
     draw = Draw.new(family, index, seed)
     case = FAMILIES[family][0](draw, family, index, seed)
     if methods and case.method not in (*methods, "function", "table"):
@@ -54,7 +54,7 @@ def _broken(job: tuple[str, int], why: str, seed: int, methods: tuple[str, ...],
 
 
 def switches_are_read() -> bool:
-    """Whether formulas know the functions that jump: a scene that names all of them is read."""
+    """Return whether formulas may use all functions that jump: a scene that names all of them can be read."""
     import symrot
 
     text = ("step(t-1)+sign(t)+min(t, 1)+max(t, 1)", "clip(t, 0, 1)+floor(t)+mod(t, 1)", "where(t < 1, 0, 1)")
@@ -82,13 +82,13 @@ def jobs_of(count: int, families: list[str], seed: int) -> list[tuple[str, int]]
 
 
 class Record:
-    """Results of a campaign in a file, one JSON object a line; without a file, none are kept."""
+    """Results of a campaign in a file, one JSON object per line; without a file, no results are kept."""
 
     def __init__(self, path: str, seed: int, methods: tuple[str, ...]) -> None:
         self.path, self.run = Path(path) if path else None, {"seed": seed, "methods": list(methods)}
 
     def results(self) -> list[Result]:
-        """Return the results of this campaign that the file holds; a line cut off by an interruption is none."""
+        """Return the results of this campaign in the file; a line cut off by an interruption does not count."""
         results = []
         if self.path is not None and self.path.exists():
             for line in self.path.read_text().splitlines():
@@ -107,7 +107,7 @@ class Record:
 
 
 def table(results: list[Result], by: str) -> list[str]:
-    """Return the lines of outcomes by ``family`` or ``method``."""
+    """Return the lines of outcomes by ``family`` or by ``method``."""
     rows = sorted({getattr(r, by) for r in results})
     lines = [f"{by:22}{'cases':>8}" + "".join(f"{name:>12}" for name in COLUMNS)]
     for row in [*rows, "all"]:

@@ -1,6 +1,6 @@
 """Random cases by family: a body, its start, a torque, a method, sample times and times of dense output.
 
-A case is a pure function of seed, family and index, so that one line of the table is enough to make it again.
+A case depends only on seed, family and index, so one line of the table suffices to make it again.
 """
 
 import zlib
@@ -33,7 +33,7 @@ COARSE = {"scipy:RK45": 1e-8, "scipy:Radau": 1e-7}
 
 @dataclass
 class Case:
-    """One run and its truth. ``method`` is a key of :data:`METHODS`, or ``function`` or ``table``."""
+    """One run and its truth; ``method`` is a key of :data:`METHODS`, or ``function`` or ``table``."""
 
     family: str
     index: int
@@ -50,7 +50,7 @@ class Case:
 
     @property
     def key(self) -> str:
-        """What ``--case`` takes."""
+        """Return the argument of ``--case`` for this case."""
         return f"{self.family}:{self.index}"
 
 
@@ -61,7 +61,7 @@ def log_uniform(random: Random, low: float, high: float) -> float:
 
 @dataclass
 class Draw:
-    """The random choices that all families share: a span, a width, how fast the body turns."""
+    """The random choices that all families share: a span, a width, and the body's angular speed."""
 
     random: Random
     t0: float
@@ -85,7 +85,7 @@ class Draw:
 
     @property
     def span(self) -> float:
-        """Seconds asked for."""
+        """Return the length of the span, s."""
         return self.high - self.low
 
     def sign(self) -> float:
@@ -93,7 +93,7 @@ class Draw:
         return float(self.random.choice([-1.0, 1.0]))
 
     def moments(self, kind: str) -> tuple[float, float, float]:
-        """Return principal moments: of a ``sphere``, or of a body that can be."""
+        """Return principal moments of a body, of a ``sphere`` if asked."""
         size = log_uniform(self.random, 1e-2, 1e2)
         if kind == "sphere":
             return size, size, size
@@ -102,7 +102,7 @@ class Draw:
         return float(size * a), float(size * b), float(size * c)
 
     def attitude(self) -> tuple[float, float, float, float]:
-        """Return the identity mostly, or a random unit quaternion."""
+        """Return the identity in most cases, otherwise a random unit quaternion."""
         if self.random.random() < 0.6:
             return 1.0, 0.0, 0.0, 0.0
         q = self.random.normal(size=4)
@@ -110,15 +110,15 @@ class Draw:
         return float(q[0]), float(q[1]), float(q[2]), float(q[3])
 
     def time_shape(self, switches: bool = False, name: str = "") -> Shape:
-        """Return a random shape of time, or the one of that name."""
+        """Return a random shape of time, or the one with the given name."""
         makers = SWITCHES_IN_TIME if switches else IN_TIME
         name = name or str(self.random.choice(sorted(makers)))
         return makers[name](self.random, self.low, self.high, self.width)
 
     def structure(self, family: str, switches: bool = False) -> tuple[Random, str, str]:
-        """Return two names of shapes, out of :data:`PAIRS` for a family, and the random choices that go with them.
+        """Return two names of shapes, out of :data:`PAIRS` for a family, and the random choices that belong to them.
 
-        The numbers of a formula vary from case to case and its structure does less, for each is compiled once.
+        The numbers of a formula vary from case to case, its structure less, since each structure must be compiled once.
         """
         pair = np.random.default_rng([zlib.crc32(family.encode()), int(self.random.integers(PAIRS))])
         first, second = (str(pair.choice(sorted(SWITCHES_IN_TIME if switches else IN_TIME))) for _ in range(2))
@@ -131,7 +131,7 @@ class Draw:
 
 
 def fitted(draw: Draw, shape: Shape, inertia: float) -> tuple[Shape, float]:
-    """Return a shape of time times a moment m that turns the body as drawn, and the rate that it makes."""
+    """Return a shape of time times a moment m that turns the body as drawn, and the rate that results."""
     total, peak = impulse(shape, draw.low, draw.high)
     rate = draw.turn / draw.span
     m = inertia * rate / total if total > 1e-9 * peak * draw.span and peak > 1e-200 else inertia * rate / draw.span
@@ -143,7 +143,7 @@ def finish(
     draw: Draw, family: str, index: int, seed: int, shape: str, problem: Problem, tolerance: float | None = None,
     method: str | None = None,
 ) -> Case:  # fmt: skip
-    """Return the case of a problem, with its method, sample times and dense times drawn."""
+    """Return the case of a problem, with random method, sample times and dense times."""
     random, method = draw.random, method or draw.method()
     aim = tolerance or log_uniform(random, *TOLERANCES)
     aim = max(aim, COARSE.get(method, 0.0))
@@ -200,7 +200,7 @@ def _problem(
 
 
 def _three(draw: Draw, kind: str, switches: bool = False) -> tuple[Problem, str]:
-    """Return a torque with up to three components, on a body that may tumble."""
+    """Return a torque with up to three components, for a body that may tumble."""
     moments, random = draw.moments(kind), draw.random
     structure, *names = draw.structure(f"{kind} {switches}", switches)
     shapes = [draw.time_shape(switches, name) for name in names]
@@ -230,7 +230,7 @@ def _factors(text: str) -> tuple[str, str]:
 
 
 def time_axis(draw: Draw, family: str, index: int, seed: int) -> Case:
-    """Time alone, about the principal axis that the body turns about."""
+    """Torques of time about the principal axis of rotation."""
     shape = draw.time_shape()
     return finish(draw, family, index, seed, shape.name, _axis(draw, shape))
 
@@ -253,19 +253,19 @@ def time_product(draw: Draw, family: str, index: int, seed: int) -> Case:
 
 
 def time_sphere(draw: Draw, family: str, index: int, seed: int) -> Case:
-    """Time alone, on a body with three equal moments: the momentum in the body is an integral of the torque."""
+    """Torques of time on a body with three equal moments: the momentum in the body is an integral of the torque."""
     problem, name = _three(draw, "sphere")
     return finish(draw, family, index, seed, name, problem)
 
 
 def time_tumbling(draw: Draw, family: str, index: int, seed: int) -> Case:
-    """Time alone, on an asymmetric body."""
+    """Torques of time on an asymmetric body."""
     problem, name = _three(draw, "body")
     return finish(draw, family, index, seed, name, problem)
 
 
 def switch_time(draw: Draw, family: str, index: int, seed: int) -> Case:
-    """Switches of time, about one axis."""
+    """Switches in time, about one axis."""
     shape = draw.time_shape(switches=True)
     if draw.random.random() < 0.25:
         structure, *_ = draw.structure(family)
@@ -274,7 +274,7 @@ def switch_time(draw: Draw, family: str, index: int, seed: int) -> Case:
 
 
 def switch_tumbling(draw: Draw, family: str, index: int, seed: int) -> Case:
-    """Switches of time, on a body that may tumble."""
+    """Switches in time, on a body that may tumble."""
     problem, name = _three(draw, "body", switches=True)
     return finish(draw, family, index, seed, name, problem)
 
@@ -305,7 +305,7 @@ def function(draw: Draw, family: str, index: int, seed: int) -> Case:
 
 
 def table(draw: Draw, family: str, index: int, seed: int) -> Case:
-    """A pulse as a table whose samples are dense where it is."""
+    """A pulse as a table whose samples are dense at the pulse."""
     names = ["gauss", "sech2", "tanh", "doublet", "lorentz"]
     draw.width = max(draw.width, 1e-4 * draw.span)
     shape = IN_TIME[str(draw.random.choice(names))](draw.random, draw.low, draw.high, draw.width)
@@ -338,7 +338,7 @@ def scene_of(problem: Problem, tolerance: float, torque: bool = True) -> dict[st
 
 
 def toml_of(problem: Problem, tolerance: float) -> str:
-    """Return the scene as a file that shows the case."""
+    """Return the scene as the text of a file that shows the case."""
     scene = scene_of(problem, tolerance)
     torque = scene["torque"][0]
     known = ", ".join(f"{name} = {value!r}" for name, value in torque["parameters"].items())
@@ -352,7 +352,7 @@ def toml_of(problem: Problem, tolerance: float) -> str:
 
 
 def uses_switches(problem: Problem) -> bool:
-    """Whether a torque names a function that jumps or bends."""
+    """Return whether a torque contains a function that jumps or bends."""
     return bool(set().union(*map(names_of, problem.texts)) & set(SWITCHES))
 
 

@@ -1,4 +1,4 @@
-"""A second way to the truth of a case: momentum, work and energy, or the reference once more with other steps."""
+"""A second way to the truth of a case: momentum, work and energy, or the reference repeated with other steps."""
 
 from dataclasses import replace
 
@@ -15,7 +15,7 @@ NODES = 20
 
 
 def impulse_of(problem: Problem, stop: float) -> "np.ndarray":
-    """Return the integral of a torque of time from t0 to ``stop``, N m s, shape (3,), by Gauss's rule on a told mesh."""
+    """Return the integral of a torque of time from t0 to ``stop``, N m s, shape (3,), by Gauss's rule on a given mesh."""
     mesh = time_mesh(
         problem.t0, stop, problem.features, problem.breaks, min(problem.longest, (problem.high - problem.low) / 25)
     )
@@ -23,7 +23,7 @@ def impulse_of(problem: Problem, stop: float) -> "np.ndarray":
 
 
 def work_of(problem: Problem, angle: float) -> float:
-    """Return the work of a torque of the angle about axis 3 from angle 0 on, J, within a full turn."""
+    """Return the work, J, of a torque of the angle about axis 3, from angle 0, within a full turn."""
     features = [feature._replace(value=None, period=0.0) for feature in problem.features]
     torque = torque_function(problem.texts, problem.parameters)
 
@@ -44,9 +44,9 @@ def _integral(function: "object", mesh: "np.ndarray") -> "np.ndarray":
 
 
 def contradiction(problem: Problem, truth: Truth, again: bool = False) -> str:
-    """Return in one sentence how the truth fails a law that it must keep, or nothing.
+    """Return a sentence that says how the truth breaks a law, or an empty result.
 
-    With ``again`` the whole reference is repeated with other steps, where no law is at hand.
+    With ``again`` the whole reference is repeated with other steps where no law is available.
     """
     high = min(problem.high, problem.reach)
     names = set().union(*map(names_of, problem.texts))

@@ -1,9 +1,9 @@
-"""The reference: Gauss-Legendre collocation of order 32 in extended precision, told where the features are.
+"""The reference: Gauss-Legendre collocation of order 32 in extended precision, which is told where the features are.
 
-Nothing is left to the step control alone. The caller names every feature, of time or of a state, and no step is longer
-than half the width of a feature near it or a third of the distance to one that is further away; the pieces end exactly
-at the times of jumps, and the nodes lie inside them. Within that limit a step is accepted when the last Legendre
-coefficients of its derivative are at rounding level.
+Step control alone decides nothing: the caller names every feature of time or of a state. No step is longer than half
+the width of a feature near it, or than a third of the distance to a feature further away; the pieces end exactly at the
+times of jumps, and the nodes lie inside them. Within this limit a step is accepted if the last Legendre coefficients of
+its derivative are at rounding level.
 """
 
 from collections.abc import Callable, Sequence
@@ -43,7 +43,7 @@ class Feature(NamedTuple):
     local: bool = False
 
     def distance(self, value: Any) -> Any:
-        """Return how far a value is from the center."""
+        """Return the distance of a value from the center."""
         if not self.period:
             return np.abs(value - self.center)
         turned = np.mod(value - self.center, self.period)
@@ -51,7 +51,9 @@ class Feature(NamedTuple):
 
 
 class Basis(NamedTuple):
-    """Nodes on [0, 1], weights, integrals from 0 to the nodes, and Legendre coefficients of values at the nodes."""
+    """Nodes on [0, 1], weights, integrals from 0 to the nodes, and the matrix from values at the nodes to Legendre
+    coefficients.
+    """
 
     nodes: Any
     weights: Any
@@ -92,7 +94,9 @@ def _extended(values: Any) -> Any:
 
 
 class Dense:
-    """The motion as pieces: edges in order of time, states at the start of each and the coefficients of its rates."""
+    """The motion as pieces: edges in order of time, the state at the start of each piece and the coefficients of its
+    rates.
+    """
 
     def __init__(self) -> None:
         self.starts: list[Any] = []
@@ -101,7 +105,7 @@ class Dense:
         self.coefficients: list[Any] = []
 
     def add(self, t: Any, h: Any, y: Any, coefficients: Any) -> None:
-        """Keep one step: from (t, y) over h, with Legendre coefficients (NODES, batch, N) of dy/dt."""
+        """Store one step: from (t, y) over h, with Legendre coefficients (NODES, batch, N) of dy/dt."""
         self.starts.append(t)
         self.lengths.append(h)
         self.states.append(y)
@@ -126,7 +130,7 @@ class Dense:
 
 
 def time_mesh(start: float, stop: float, features: Sequence[Feature], breaks: Sequence[float], longest: float) -> Any:
-    """Return edges from start to stop that no feature of time slips through, and that contain every break."""
+    """Return edges from start to stop that contain every break and are close enough to see every feature of time."""
     sign = 1.0 if stop >= start else -1.0
     low, high = min(start, stop), max(start, stop)
     inner = sorted({float(b) for b in breaks if low < b < high})
@@ -156,7 +160,7 @@ def follow(
 ) -> Dense:  # fmt: skip
     """Follow a batch of states, shape (batch, N), from start to stop (before or after).
 
-    Errors of a step are judged against ``scales``, shape (N,). ``observe(times, states, weights)`` is told the nodes of
+    Errors of a step are judged against ``scales``, shape (N,). ``observe(times, states, weights)`` receives the nodes of
     every step that was accepted, and their weights in an integral over time. ``doubles`` are the same rates computed in
     doubles: they show what rounding does to a formula.
 
@@ -211,7 +215,7 @@ def _state_limit(feature: Feature, y: Any) -> Any:
 
 
 def _step(rates: Any, doubles: Any, basis: Basis, t: Any, h: Any, y: Any, scales: Any, accuracy: float) -> Any:
-    """Return (rates at the nodes, coefficients, whether it was easy), or None where the step is too long."""
+    """Return (rates at the nodes, coefficients, whether the step was easy), or None if the step is too long."""
     times = (t + h * basis.nodes)[:, None]
     values = np.broadcast_to(rates(times[:1], y[None]), (NODES, *y.shape))
     size = np.asarray(scales, dtype=EXTENDED) / abs(h)
@@ -242,9 +246,9 @@ def _step(rates: Any, doubles: Any, basis: Basis, t: Any, h: Any, y: Any, scales
 
 
 def _noise(rates: Any, doubles: Any, times: Any, states: Any, values: Any, size: Any) -> float:
-    """Return what rounding changes the rates by: below that nothing can be resolved.
+    """Return how much rounding changes the rates: nothing below that can be resolved.
 
-    It is seen from the rates in doubles, whose rounding is coarser by a known factor, or from the last bits of times.
+    The rates in doubles, whose rounding is coarser by a known factor, or the last bits of times show it.
     """
     if doubles is not None:
         return 4 * COARSER * float(np.max(np.abs(doubles(times, states) - values) / size))

@@ -1,7 +1,8 @@
-"""Formulas of torques over arrays of any floating type: Python's own grammar, NumPy's functions, nothing of symrot's.
+"""Formulas of torques over arrays of any floating-point type: Python's own grammar and NumPy's functions, no code of
+symrot.
 
-The truth of a case is computed in extended precision (:data:`EXTENDED`), and once more in doubles where it matters how
-much the rounding of the formula itself moves the torque.
+The truth of a case is computed in extended precision (:data:`EXTENDED`), and again in doubles where it matters how much
+the rounding of the formula itself changes the torque.
 """
 
 import re
@@ -43,7 +44,7 @@ def names_of(text: str) -> set[str]:
 
 
 def compiled(text: str, parameters: Mapping[str, float], kind: Any = EXTENDED) -> Callable[[Mapping[str, Any]], Any]:
-    """Return a formula as a function of its variables by name, in the floating type ``kind``.
+    """Return a formula as a function of its variables by name, in the floating-point type ``kind``.
 
     Numbers written in the formula are doubles, as symrot rounds them; so are the parameters.
     """
@@ -61,7 +62,7 @@ def compiled(text: str, parameters: Mapping[str, float], kind: Any = EXTENDED) -
 def torque_function(
     texts: Sequence[str], parameters: Mapping[str, float], kind: Any = EXTENDED
 ) -> Callable[[Any, Any], Any]:
-    """Return the torque, shape (..., 3), as a function of times (...) and states (..., 7), omega then quaternion."""
+    """Return the torque, shape (..., 3), as a function of times (...) and states (..., 7): omega, then the quaternion."""
     parts = [compiled(text, parameters, kind) for text in texts]
 
     def torque(t: Any, y: Any) -> Any:

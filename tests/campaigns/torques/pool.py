@@ -1,4 +1,4 @@
-"""Cases in subprocesses, each with a time limit: one that does not end is ended and counted."""
+"""Cases in subprocesses, each with a time limit: a case that does not end is stopped and counted."""
 
 import multiprocessing
 import time
@@ -43,9 +43,10 @@ class _Worker:
 def run_all(
     work: Callable[..., Any], jobs: list[Any], workers: int, limit: float, broken: Callable[[Any, str], Any]
 ) -> Iterator[Any]:
-    """Yield ``work(job, started)`` for each job, in the order in which they end; ``broken(job, why)`` for one that does not.
+    """Yield ``work(job, started)`` for each job, in the order in which they end; ``broken(job, why)`` for a job without
+    a result.
 
-    The job calls ``started`` when the part begins that has the limit, s.
+    The job calls ``started`` when the part with the time limit (s) begins.
     """
     context = multiprocessing.get_context("spawn")
     waiting = list(reversed(jobs))

@@ -19,9 +19,9 @@ TURNED = 8 * 2.0**-52  # rad of attitude per rad turned
 
 @dataclass
 class Problem:
-    """A body, its start and a torque as texts, with what the reference is told.
+    """A body, its start and a torque as texts, with the features for the reference.
 
-    ``low`` and ``high`` are the first and last time asked for, on both sides of ``t0``; ``speed`` is a size of omega
+    ``low`` and ``high`` are the first and last time of the span, on both sides of ``t0``; ``speed`` is a size of omega
     that the motion reaches, for the reference's own error control.
     """
 
@@ -62,8 +62,8 @@ class Truth:
 def unseen_rate(span: float) -> float:
     """Return the rate below which omega need not be resolved, rad/s.
 
-    A rate that turns the body by less than 1e-3 rad over the whole span is at rest for whoever looks at the attitude;
-    relative errors of a body that never moves faster would measure nothing.
+    A body that turns by less than 1e-3 rad over the whole span is at rest as far as the attitude shows; relative errors
+    of such a slow motion would measure nothing.
     """
     return UNSEEN / span
 
@@ -77,7 +77,7 @@ def attitude_apart(p: Any, q: Any) -> Any:
 
 
 def _cross(u: Any, v: Any) -> Any:
-    """Return the vector products of arrays (..., 3): ``np.cross`` spends most of its time on other shapes."""
+    """Return the vector products of arrays (..., 3), faster than ``np.cross`` for these shapes."""
     out = np.empty(u.shape, dtype=EXTENDED)
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         out[..., i] = u[..., j] * v[..., k] - u[..., k] * v[..., j]
@@ -101,7 +101,7 @@ def _rates(problem: Problem, kind: Any = EXTENDED) -> Callable[[Any, Any], Any]:
 
 
 def _perturbed(problem: Problem, scale: float) -> Any:
-    """Return the start and three changed ones, shape (4, 7): omega along and across, and the attitude."""
+    """Return the start and three changed starts, shape (4, 7): omega changed along and across itself, and the attitude."""
     random = np.random.default_rng(7)
     start = np.array([*problem.omega, *problem.quaternion], dtype=EXTENDED)
     start[3:] /= np.sqrt((start[3:] ** 2).sum())
@@ -121,7 +121,7 @@ def _perturbed(problem: Problem, scale: float) -> Any:
 
 
 def _growth(states: Any, scale: float) -> tuple[float, float]:
-    """Return the growth in omega and attitude of the changes, from states (n, 4, 7)."""
+    """Return how much the changes have grown in omega and in attitude, from states (n, 4, 7)."""
     rates = np.sqrt(((states[:, 1:, :3] - states[:, :1, :3]) ** 2).sum(axis=-1)).max() / scale
     turns = attitude_apart(states[:, 1:, 3:], np.repeat(states[:, :1, 3:], 3, axis=1)).max()
     return float(rates / PERTURBATION), float(turns / PERTURBATION)

@@ -1,4 +1,4 @@
-"""Torques of time and of a state, as text with the features that a reference is told."""
+"""Shapes: torques of time or of a state as text, with the features that a reference is told."""
 
 import re
 from collections.abc import Callable
@@ -15,7 +15,7 @@ Random = np.random.Generator
 
 
 class Shape(NamedTuple):
-    """A factor of a torque: text, parameters, features, times of jumps, and the longest step that sees it."""
+    """A factor of a torque: text, parameters, features, times of jumps, and the longest step that resolves it."""
 
     name: str
     text: str
@@ -30,7 +30,7 @@ def _log(random: Random, low: float, high: float) -> float:
 
 
 def centers(random: Random, low: float, high: float, width: float) -> float:
-    """Return the place of a feature: inside mostly, at an end, just outside, or a round number."""
+    """Return the place of a feature: mostly inside the span, or at an end, just outside, or at a round number."""
     kind, span = random.random(), high - low
     if kind < 0.1:
         return float(low + random.uniform(-3, 3) * width)
@@ -216,7 +216,7 @@ _IN_VALUE = {
 
 
 def in_value(name: str, variable: str, center: float, width: float, other: float = 0.0) -> Shape:
-    """Return a shape of a state; its features are not in it, since only the caller knows how fast the state changes."""
+    """Return a shape of a state, without its features: only the caller knows how fast the state changes."""
     text = _IN_VALUE[name].replace("{x}", variable)
     parameters = {"c": center, "w": width} | ({"d": other} if name == "two_bumps" else {})
     return Shape(name, text, parameters, [], [])
@@ -234,7 +234,9 @@ def product(first: Shape, second: Shape) -> Shape:
 
 
 def impulse(shape: Shape, low: float, high: float) -> tuple[float, float]:
-    """Return the integral of the size of a shape of time over a span, and its largest size, roughly."""
+    """Return the integral of the absolute value of a shape of time over a span, and its largest value, both
+    approximate.
+    """
     mesh = time_mesh(low, high, shape.features, shape.breaks, min(shape.longest, (high - low) / 20)).astype(float)
     nodes, weights = matrices().nodes.astype(float), matrices().weights.astype(float)
     h = np.diff(mesh)

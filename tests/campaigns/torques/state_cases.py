@@ -62,7 +62,7 @@ def angle(draw: Draw, family: str, index: int, seed: int) -> Case:
 
 
 def angle_turns(draw: Draw, family: str, index: int, seed: int) -> Case:
-    """A bump of the angle passed on every second turn: the formula's angle jumps by two turns at the cut of atan2."""
+    """A bump of the angle, passed on every second turn: the formula's angle jumps by two turns at the cut of atan2."""
     random, c = draw.random, log_uniform(draw.random, 1e-2, 1e2)
     draw.low = draw.t0
     width = log_uniform(random, 1e-3, 0.3)
@@ -77,7 +77,7 @@ def angle_turns(draw: Draw, family: str, index: int, seed: int) -> Case:
 
 
 def angle_time(draw: Draw, family: str, index: int, seed: int) -> Case:
-    """A bump of the angle times a pulse or switch of time that is on when the body passes."""
+    """A bump of the angle times a pulse or switch of time that acts as the body passes."""
     random, c = draw.random, log_uniform(draw.random, 1e-2, 1e2)
     draw.low = draw.t0
     omega, width = random.uniform(1, 5) / draw.span, log_uniform(random, 1e-4, 1)
@@ -97,7 +97,7 @@ def angle_time(draw: Draw, family: str, index: int, seed: int) -> Case:
 
 
 def rate(draw: Draw, family: str, index: int, seed: int) -> Case:
-    """A bump or soft step of the rate, met by a body that a steady torque speeds up."""
+    """A bump or soft step of the rate, met by a body that a steady torque accelerates."""
     random, c = draw.random, log_uniform(draw.random, 1e-2, 1e2)
     draw.low = draw.t0
     gain = random.uniform(1, 30) / draw.span  # of rate, over the span
@@ -118,7 +118,7 @@ def rate(draw: Draw, family: str, index: int, seed: int) -> Case:
 
 
 def soft_friction(draw: Draw, family: str, index: int, seed: int) -> Case:
-    """Friction -k*tanh(omega_3/w), softened over a width of rate."""
+    """Friction -k*tanh(omega_3/w): smooth over a width w of the rate."""
     random, c = draw.random, log_uniform(draw.random, 1e-2, 1e2)
     draw.low = draw.t0
     omega = draw.sign() * max(draw.spin, 0.5) / draw.span
@@ -241,7 +241,7 @@ def switch_state(draw: Draw, family: str, index: int, seed: int) -> Case:
 
 
 def poles(draw: Draw, family: str, index: int, seed: int) -> Case:
-    """Torques with a pole inside the span, or ones that overflow: a sentence, or the truth, and never no end."""
+    """Torques with a pole inside the span or with overflow: a message or the truth, and never an endless run."""
     random = draw.random
     c = log_uniform(random, 1e-1, 1e1)
     kind = str(

@@ -1,4 +1,4 @@
-"""Run symrot on a case and judge what it returns against the truth."""
+"""Run symrot on a case and judge the result by the truth."""
 
 import math
 import re
@@ -37,7 +37,7 @@ WRONG = ("wrong", "traceback", "no end")
 
 
 class Answer(NamedTuple):
-    """What symrot returned: states (omega, quaternion) at times, why it stopped early, and whether it warned."""
+    """The result of symrot: states (omega, quaternion) at times, the reason if it stopped early, and whether it warned."""
 
     times: Any
     states: Any  # (n, 7); only rows that it vouches for
@@ -125,10 +125,10 @@ def _without_formula(case: Case) -> Any:
 
 
 def measure(answer: Answer, truth: Truth, tolerance: float) -> tuple[str, float, float, str]:
-    """Return the outcome of an answer, its largest error in tolerances, the growth it is allowed, and the detail.
+    """Return an answer's outcome, its largest error in tolerances, the growth allowed, and a text with details.
 
-    Errors of omega are relative to the largest on the way; what the rounding of the torque's own formula explains is
-    taken off first.
+    Errors of omega are relative to the largest omega on the way; the part that rounding of the torque's formula
+    explains is subtracted first.
     """
     growth = max(1.0, *truth.growth)
     if not len(answer.times):
@@ -158,7 +158,7 @@ def measure(answer: Answer, truth: Truth, tolerance: float) -> tuple[str, float,
 
 
 def judge(case: Case, started: Callable[[], None] = lambda: None) -> Result:
-    """Return the outcome of a case; ``started`` is called when the truth is known and symrot's turn comes."""
+    """Return the outcome of a case; ``started`` is called when the truth is known and symrot's run begins."""
 
     def result(outcome: str, detail: str, worst: float = 0.0, growth: float = 1.0, seconds: float = 0.0) -> Result:
         return Result(case.key, case.family, case.method, case.shape, outcome, detail, worst, growth, seconds)
@@ -199,7 +199,7 @@ def _warnings_exist() -> bool:
 
 
 def _within(answer: Answer, case: Case) -> Answer:
-    """Return the part of an answer that the reference reaches."""
+    """Return the part of an answer that the reference covers."""
     part = answer.times <= case.problem.reach
     if part.all():
         return answer
@@ -207,5 +207,5 @@ def _within(answer: Answer, case: Case) -> Answer:
 
 
 def grouped(sentence: str) -> str:
-    """Return a sentence without its numbers, to count alike ones together."""
+    """Return a sentence without its numbers, so that equal failures are counted together."""
     return re.sub(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", "#", sentence)[:160]

@@ -1,4 +1,4 @@
-"""LaTeX is answered in LaTeX: the reading and the repairs, which are read back as the same equations."""
+"""A claim in LaTeX is answered in LaTeX; reading and repairs, parsed again, are the same equations."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Powers with an exponent that is no number, over a positive base; the letter e, and the letters i and j."""
+"""Powers with a symbolic exponent over a positive base; the letter e, and the letters i and j."""
 
 import pytest
 

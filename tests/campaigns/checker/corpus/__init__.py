@@ -1,1 +1,3 @@
-"""Printed formulas that judge `symrot check`: one TOML file per chapter of the subject, with an independent numeric oracle in verify.py."""
+"""Printed formulas that judge `symrot check`: one TOML file per chapter, with an independent numeric oracle in
+verify.py.
+"""

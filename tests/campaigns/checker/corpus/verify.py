@@ -27,7 +27,7 @@ RELATIVE = 1e-6
 
 
 def close(*sides):
-    """Tell whether all sides agree: numbers, vectors or matrices."""
+    """Return whether all arguments agree: numbers, vectors or matrices."""
     arrays = [np.asarray(side, dtype=complex) for side in sides]
     first = arrays[0]
     return all(
@@ -164,12 +164,12 @@ def _readings(inverse):
 
 
 def _among(values, table):
-    """Tell whether a row of the table has these values, all with the same sign or all with the other."""
+    """Return whether a row of the table has these values, all with the same sign or all with the opposite sign."""
     return any(bool(np.any(np.all(abs(table - sign * values) < 1e-9, axis=1))) for sign in (1, -1))
 
 
 def rate_like(formula):
-    """Tell whether a formula of (phi, theta, psi, dphi, dtheta, dpsi) is a component of the angular velocity in any usual reading."""
+    """Return whether a formula of (phi, theta, psi, dphi, dtheta, dpsi) is a component of omega in any usual reading."""
     table = _readings(inverse=False)
     values = np.array([formula(*angles, *rates) for angles, rates in POINTS])
     return bool(
@@ -181,7 +181,7 @@ def rate_like(formula):
 
 
 def solved_like(formula):
-    """Tell whether a formula of (phi, theta, psi, p, q, r) is the rate of one angle in any usual reading."""
+    """Return whether a formula of (phi, theta, psi, p, q, r) is the rate of one angle in any usual reading."""
     table = _readings(inverse=True)
     values = np.array([formula(*angles, *rates) for angles, rates in POINTS])
     return bool(
@@ -193,7 +193,7 @@ def solved_like(formula):
 
 
 def rotation(matrix):
-    """Tell whether a matrix is a rotation at all."""
+    """Return whether a matrix is a rotation."""
     matrix = np.asarray(matrix, dtype=float)
     return close(matrix @ matrix.T, np.eye(3)) and close(np.linalg.det(matrix), 1)
 
@@ -236,7 +236,7 @@ def qeuler(sequence, *angles):
 
 
 def qrate(q, omega, frame="b"):
-    """Return the rate of a unit quaternion whose matrix rotates with omega, from the quaternion of a small rotation."""
+    """Return the rate of a unit quaternion whose matrix rotates with omega, computed from a small rotation."""
 
     def path(t):
         step = qaxis(unit(omega), np.linalg.norm(omega) * t)
@@ -292,7 +292,7 @@ def centre(dimension, place):
 
 
 def amount(dimension, place):
-    """Return the length, area or volume."""
+    """Return the length, area or volume of a wire, shell or solid."""
     return sample(dimension, place)[1].sum()
 
 
@@ -404,7 +404,7 @@ class Cloud:
     """Particles with masses and places that move as one rigid body."""
 
     def __init__(self, masses, places):
-        """Take masses and an array of places, one row a particle."""
+        """Store the masses and an array of places, one row per particle."""
         self.masses, self.places = np.array(masses, dtype=float), np.array(places, dtype=float)
 
     @property
@@ -474,7 +474,7 @@ def top_euler(I1, I3, angles, rates):
 
 
 def steady(I1, I3, theta, precession, spin):
-    """Return the torque about the line of nodes that steady precession at constant theta with relative spin rate needs."""
+    """Return the torque about the line of nodes for steady precession at constant theta with a relative spin rate."""
     at = lambda t: (precession * t, theta, spin * t)  # noqa: E731
     omega = lambda t: wb("ZXZ", at(t), (precession, 0, spin))  # noqa: E731
     return body(I1, I1, I3).torque(omega(0.0), diff(omega, 0.0, 1e-3))[0]
@@ -525,7 +525,7 @@ def holds(check, seed):
 
 
 def disagreement(entry):
-    """Return one sentence if the check of an entry contradicts its label, else an empty text."""
+    """Return a sentence if the check of an entry contradicts its label, otherwise an empty text."""
     if "check" not in entry:
         return "" if entry["expected"] == "definition" else f"{entry['id']}: has no check"
     try:
