@@ -25,15 +25,9 @@ from symrot.workshop.workers import workers
 
 __all__ = ["certificate_files", "kernel_files", "kernel_lines", "stale", "stored_bounds", "write_all", "write_files"]
 
-<<<<<<< HEAD
 SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",), "js": (".js",)}
-RECHECK = "recheck.py"  # re-checks certificates without symrot
-SCENES = "scenes"  # subfolder of each target's folder for the kernels of shipped scenes; the library is directly in it
-=======
-SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",)}
 RECHECK = "recheck.py"  # the program that checks certificates without symrot
 SCENES = "scenes"  # subfolder for the kernels of shipped scenes; library kernels are directly in the target's folder
->>>>>>> main
 
 
 def kernel_lines() -> list[str]:
