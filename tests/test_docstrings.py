@@ -187,11 +187,13 @@ def test_the_python_page_lists_every_public_name():
 
 OPTIONAL = {
     "matplotlib",
+    "mpl_toolkits",
     "PIL",
+    "imageio_ffmpeg",
     "heyoka",
     "symforce",
     "casadi",
-}  # extras (matplotlib requires PIL), peers of benchmarks
+}  # extras (matplotlib brings mpl_toolkits and requires PIL), peers of benchmarks
 
 
 def undeclared(imports, dependencies):

@@ -73,7 +73,29 @@ def show(
 
 
 def in_notebook(trajectory: Trajectory) -> str:
-    """Return the HTML that shows a trajectory in a notebook: its page, in a frame of its own."""
+    """Return the HTML that shows a trajectory in a notebook: its page, in a frame of its own.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        A motion; a notebook calls this function through ``Trajectory._repr_html_``.
+
+    Returns
+    -------
+    str
+        An ``iframe`` that holds the whole page.
+
+    Raises
+    ------
+    InputError
+        For a trajectory without attitude under a torque without a formula.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.in_notebook(symrot.propagate("t_handle")).startswith("<iframe")
+    True
+    """
     text = escape(page(*_scene_and_motion(trajectory)), quote=True)
     return f'<iframe srcdoc="{text}" style="width:100%;height:760px;border:0" title="motion"></iframe>'
 
