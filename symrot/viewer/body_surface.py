@@ -10,12 +10,15 @@ from fractions import Fraction
 from math import cos, pi, sin, sqrt
 from typing import NamedTuple
 
+from symrot.errors import InputError
 from symrot.formula.tree import Node, evaluate, names, parse
 from symrot.inertia.composite import Part
+from symrot.inertia.principal import Principal, principal_axes, require_admissible
 from symrot.inertia.shapes import SHAPES, Coordinate, Shape, scalars
+from symrot.inertia.tensor import about_center_of_mass
 from symrot.scene.body import Body
 
-__all__ = ["Patch", "patches"]
+__all__ = ["Patch", "Point", "how_drawn", "patches"]
 
 Point = tuple[float, float, float]
 
@@ -66,6 +69,15 @@ def patches(body: Body) -> list[Patch]:
     if not body.parts:
         return _equivalent_box(body)
     return [patch for part in body.parts for patch in _of_part(part, body)]
+
+
+def how_drawn(body: Body) -> str:
+    """Return one sentence about the picture of a body of which only the inertia is known; empty for a body of parts."""
+    if body.parts:
+        return ""
+    if body.about == "fixed_point" and _about_its_center(body) is None:
+        return "The body is drawn as a box with the proportions of its moments about the fixed point."
+    return "The body is drawn as the uniform box with its moments."
 
 
 def _of_part(part: Part, body: Body) -> Iterator[Patch]:
@@ -149,16 +161,33 @@ def _value(text: str, values: Mapping[str, float]) -> float:
     return float(evaluate(node, {name: known[name] for name in names(node)}, FUNCTIONS, float))
 
 
+def _about_its_center(body: Body) -> tuple[Principal, float, Point] | None:
+    """Return principal moments about the centre of mass, the mass and the centre; None if they are not known."""
+    if body.mass is None or body.center_of_mass is None:
+        return None
+    try:
+        inertia = about_center_of_mass(body.inertia, body.mass, body.center_of_mass)
+        principal = principal_axes(inertia)
+        require_admissible(principal, "body")
+    except InputError:
+        return None
+    x, y, z = map(float, body.center_of_mass)
+    return principal, float(body.mass), (x, y, z)
+
+
 def _equivalent_box(body: Body) -> list[Patch]:
     """Return the faces of the uniform box with the moments of a body; its size does not depend on the unknown mass."""
-    moments = [float(moment) for moment in body.principal.moments]
+    central = _about_its_center(body)
+    principal, mass, center = central or (body.principal, None, (0.0, 0.0, 0.0))
+    moments = [float(moment) for moment in principal.moments]
     squares = [max(sum(moments) - 2 * moment, 0.0) for moment in moments]  # (B + C - A), proportional to a^2
-    sides = [sqrt(square) for square in squares]
-    sides = [max(side / max(sides), FLATTEST) for side in sides]
+    scale = sqrt(6 / mass) if mass else 1 / sqrt(max(squares))  # a^2 = 6 (B + C - A)/m
+    longest = scale * sqrt(max(squares))
+    sides = [max(scale * sqrt(square), FLATTEST * longest) for square in squares]
 
     def corner(signs: Sequence[float]) -> Point:
         local = [sign * side / 2 for sign, side in zip(signs, sides, strict=True)]
-        return _moved(body.principal.axes, local, (0.0, 0.0, 0.0))
+        return _moved(principal.axes, local, center)
 
     faces = []
     for axis in range(3):

@@ -13,7 +13,7 @@ from symrot.errors import InputError
 from symrot.files.writing import write
 from symrot.kinematics.conversions import quaternion_to_dcm
 from symrot.propagation.trajectory import Trajectory
-from symrot.viewer.body_surface import Patch, patches
+from symrot.viewer.body_surface import Patch, Point, patches
 
 __all__ = ["SUFFIXES", "require_encoder", "write_film"]
 
@@ -23,7 +23,9 @@ SUFFIXES = (".gif", ".mp4")
 RATE = 20  # frames per second
 LONGEST = 8.0  # s, duration of a film
 FASTEST = 1.5 * pi  # rad/s, rotation in the film, unless the film would be longer than LONGEST
-TRAIL_POINTS = 1500
+TRAIL_POINTS, PER_STEP, MOST_POINTS = 1500, 12, 20000  # of the path of the body's axis
+MOST_FLAT = 60
+LONGEST_TITLE = 60
 SIZE = 5.0  # inches at 100 dots per inch
 REACH = 1.75  # half the width of the picture, relative to the size of the body
 TIP = 1.35  # length of the drawn axis of the body
@@ -87,26 +89,38 @@ def _frames(trajectory: Trajectory, times: Floats) -> Iterator[Floats]:
 
     scene = trajectory.scene
     surface = patches(scene.body)
-    size = max((float(np.max(np.abs(patch.points))) for patch in surface), default=1.0) or 1.0
-    axis = 2 if scene.body.principal.symmetry_axis is None else scene.body.principal.symmetry_axis
+    size = max((float(np.max(np.linalg.norm(patch.points, axis=1))) for patch in surface), default=1.0) or 1.0
+    principal = scene.body.principal
+    axis = np.array(principal.axes, dtype=float)[:, 2 if principal.symmetry_axis is None else principal.symmetry_axis]
     inertia = np.array(scene.body.inertia, dtype=float)
-    path = quaternion_to_dcm(_attitudes(trajectory, np.linspace(times[0], times[-1], TRAIL_POINTS)))[:, :, axis] * TIP
+    rotors = [torque.vector("angular_momentum") for torque in scene.torques if torque.kind == "rotor"]
+    rotor = np.sum(np.array(rotors, dtype=float).reshape(-1, 3), axis=0)
+    points = min(max(TRAIL_POINTS, PER_STEP * trajectory.stats.accepted), MOST_POINTS)
+    path = quaternion_to_dcm(_attitudes(trajectory, np.linspace(times[0], times[-1], points))) @ axis * TIP
     omegas = trajectory.sol(times).T[:, :3]
     dcms = quaternion_to_dcm(_attitudes(trajectory, times))
-    scales = [1.5 / max(float(np.max(np.linalg.norm(v, axis=1))), 1e-300) for v in (omegas, omegas @ inertia)]
+    scales = [1.5 / max(float(np.max(np.linalg.norm(v, axis=1))), 1e-300) for v in (omegas, omegas @ inertia + rotor)]
     polygons = [face / size for patch in surface for face in _polygons(patch)]
     shades = [_shade(patch, place) for patch in surface for place in range(len(_polygons(patch)))]
+    curves = [np.array(part) / size for patch in surface if patch.rows == 1 for part in _curves(patch)]
     figure = Figure(figsize=(SIZE, SIZE), dpi=100)
     canvas = FigureCanvasAgg(figure)
     for number, (time, dcm, omega) in enumerate(zip(times, dcms, omegas, strict=True)):
         figure.clear()
         axes: Any = figure.add_axes((0, 0, 1, 1), projection="3d", computed_zorder=False)
         _draw(axes, [face @ dcm.T for face in polygons], shades, path, number / max(len(times) - 1, 1))
-        arrows = ((dcm @ omega * scales[0], OMEGA, "\u03c9"), (dcm @ inertia @ omega * scales[1], MOMENTUM, "L"))
+        for points_of_curve in curves:
+            style = {"marker": "o", "linestyle": ""} if len(points_of_curve) < 2 else {"linewidth": 4}
+            axes.plot(*(points_of_curve @ dcm.T).T, color=BODY, zorder=2, **style)
+        arrows = (
+            (dcm @ omega * scales[0], OMEGA, "\u03c9"),
+            (dcm @ (inertia @ omega + rotor) * scales[1], MOMENTUM, "L"),
+        )
         for vector, colour, name in arrows:
             axes.quiver(0, 0, 0, *vector, color=colour, linewidth=2, arrow_length_ratio=0.1, zorder=5)
             axes.text(*(1.1 * vector), name, color=colour, fontsize=13, fontstyle="italic", zorder=6)
-        figure.text(0.02, 0.95, scene.title[:60], fontsize=11, color=EDGE, parse_math=False)
+        title = scene.title if len(scene.title) <= LONGEST_TITLE else f"{scene.title[: LONGEST_TITLE - 2]} .."
+        figure.text(0.02, 0.95, title, fontsize=11, color=EDGE, parse_math=False)
         figure.text(0.02, 0.03, f"t = {time:.4g} s", fontsize=11, color=EDGE)
         canvas.draw()
         yield np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
@@ -135,7 +149,8 @@ def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, 
         axes.plot(*np.array([np.zeros(3), end]).T, color=AXES, linewidth=1, zorder=1)
         axes.text(*(1.06 * end), name, color=AXES, fontsize=12, fontstyle="italic")
     colours = [tuple(shade * c for c in to_rgb(BODY)) for shade in shades]
-    axes.add_collection3d(Poly3DCollection(polygons, facecolors=colours, edgecolors=colours, linewidths=0.4, zorder=2))
+    edges = EDGE if len(polygons) <= MOST_FLAT else colours  # a body of a few flat faces shows its edges
+    axes.add_collection3d(Poly3DCollection(polygons, facecolors=colours, edgecolors=edges, linewidths=0.6, zorder=2))
     axes.plot(*path.T, color=TRAIL, alpha=0.3, linewidth=1, zorder=3)
     axes.plot(*path[: max(2, round(part * len(path)))].T, color=TRAIL, linewidth=1.6, zorder=4)
 
@@ -150,6 +165,11 @@ def _polygons(patch: Patch) -> list[Floats]:
         for i in range(patch.rows - 1)
         for j in range(patch.columns - 1)
     ]
+
+
+def _curves(patch: Patch) -> list[list[Point]]:
+    """Return a curve as one list of points, and separate points as lists of one."""
+    return [patch.points] if patch.columns else [[point] for point in patch.points]
 
 
 def _shade(patch: Patch, place: int) -> float:

@@ -9,6 +9,8 @@ from base64 import b64encode
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import hypot
+from shlex import quote
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -29,14 +31,15 @@ from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import tableau
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene.scene import Scene
-from symrot.viewer.body_surface import Patch, patches
+from symrot.viewer.body_surface import Patch, how_drawn, patches
 
 __all__ = ["PageModel", "page_model", "with_attitude"]
 
 Floats = NDArray[np.float64]
 
 REFERENCES = 41  # times at which the page compares its motion with symrot's
-FEWEST_SAMPLES, MOST_SAMPLES, PER_STEP = 2000, 12000, 6  # of a motion that the page does not compute itself
+FEWEST_SAMPLES, MOST_SAMPLES = 6000, 16000  # of a motion that the page does not compute itself
+FINEST = 0.1  # rad, rotation between two of these samples: the cubic between them is right to a few 1e-6
 DIGITS = 5  # of the points of a body, relative to its size
 DEFAULT_SEQUENCE = "ZXZ"
 SUBSCRIPTS = "\u2081\u2082\u2083"
@@ -90,12 +93,11 @@ def page_model(scene: Scene, trajectory: Trajectory | None = None) -> PageModel:
     """
     scene = with_attitude(scene)
     reason = _why_played(scene, trajectory)
-    data = _facts(scene)
+    data = _facts(scene, trajectory is not None)
     if reason:
-        motion = propagator(scene)(_times(scene, REFERENCES)) if trajectory is None else trajectory
-        samples = _samples(motion)
+        motion = propagator(scene)(_times(scene, FEWEST_SAMPLES)) if trajectory is None else trajectory
         text = _script(_angle_kernels(data["sequence"]))
-        return PageModel(text, data | {"played": reason, **samples, "conserved": [], "sliders": []})
+        return PageModel(text, data | _played(motion, reason) | {"conserved": [], "sliders": []})
     plan = Plan(scene, _free_structure(scene), ())
     kernel = scene_kernel(plan)
     times = _times(scene, REFERENCES)
@@ -116,7 +118,7 @@ def page_model(scene: Scene, trajectory: Trajectory | None = None) -> PageModel:
             ],
             "tableau": _tableau(),
             "tolerance": 1e-14,
-            "reference": {"t": _packed(times), "y": _packed(np.hstack([reference.omega, reference.quaternion]))},
+            "reference": _reference(times, np.hstack([reference.omega, reference.quaternion])),
         },
     )
 
@@ -150,20 +152,22 @@ def _free_structure(scene: Scene) -> Any:
     return structure
 
 
-def _facts(scene: Scene) -> dict[str, Any]:
-    """Return the texts and numbers that every page needs."""
+def _facts(scene: Scene, is_driven: bool) -> dict[str, Any]:
+    """Return the texts and numbers that every page needs; ``is_driven`` says whether a torque without formula acts."""
     body = scene.body
     principal = body.principal
     axis = 2 if principal.symmetry_axis is None else principal.symmetry_axis
     surface = patches(body)
-    size = max((max(map(abs, point)) for patch in surface for point in patch.points), default=1.0) or 1.0
+    size = max((hypot(*point) for patch in surface for point in patch.points), default=1.0) or 1.0
+    torques = [torque for torque in scene.torques if torque.kind != "rotor"]
+    rotors = [torque.vector("angular_momentum") for torque in scene.torques if torque.kind == "rotor"]
     down = next((torque.vector("direction") for torque in scene.torques if torque.kind == "gravity"), None)
     return {
         "name": scene.name,
         "title": scene.title or scene.name,
-        "source": scene.source,
-        "body": body.description,
-        "drawnFromParts": bool(body.parts),
+        "source": scene.source.rstrip("."),
+        "command": f"symrot show {quote(scene.name)}",
+        "drawn": how_drawn(body),
         "start": float(scene.span.start),
         "stop": float(scene.span.stop),
         "omega": [float(value) for value in scene.initial.omega_b],
@@ -174,9 +178,12 @@ def _facts(scene: Scene) -> dict[str, Any]:
         "inertia": [[float(entry) for entry in row] for row in body.inertia],
         "principal": [float(moment) for moment in principal.moments],
         "axes": [[float(entry) for entry in row] for row in principal.axes],
-        "axis": axis,
+        "axis": [float(row[axis]) for row in principal.axes],
+        "axisName": f"body axis {axis + 1}" if principal.given_axes else "symmetry axis",
+        "rotor": [float(sum(column)) for column in zip(*rotors, strict=True)] if rotors else [0.0, 0.0, 0.0],
+        "hasTorque": bool(torques) or scene.table is not None or is_driven,
         "symmetric": principal.kind == "symmetric",
-        "free": not scene.torques and scene.table is None,
+        "free": not scene.torques and scene.table is None and not is_driven,
         "fixedPoint": body.about == "fixed_point",
         "center": None if body.center_of_mass is None else [float(value) for value in body.center_of_mass],
         "down": None if down is None else [float(value) for value in down],
@@ -205,14 +212,36 @@ def _packed(values: Floats) -> str:
     return b64encode(np.ascontiguousarray(values, dtype="<f8").tobytes()).decode("ascii")
 
 
-def _samples(motion: Trajectory) -> dict[str, Any]:
-    """Return a motion as evenly spaced samples of omega and quaternion, dense enough to be drawn."""
-    count = min(max(FEWEST_SAMPLES, PER_STEP * motion.stats.accepted), MOST_SAMPLES)
-    times = np.linspace(motion.t[0], motion.t[-1], count)
-    states = motion.sol(times).T
-    if states.shape[1] != 7:
+def _played(motion: Trajectory, reason: str) -> dict[str, Any]:
+    """Return a motion as evenly spaced samples of omega and quaternion, dense enough to be drawn.
+
+    Of a motion with too many rotations for a page, the first part is taken, and the reason says so.
+    """
+    if not motion.has_attitude:
         raise InputError('show: expected a trajectory with attitude; add "quaternion" to output.quantities')
-    return {"start": float(times[0]), "stop": float(times[-1]), "samples": {"count": count, "y": _packed(states)}}
+    start, stop = float(motion.t.min()), float(motion.t.max())
+    rotation = float(np.max(np.linalg.norm(motion.omega, axis=1))) * (stop - start)
+    if rotation > FINEST * MOST_SAMPLES:
+        whole = stop
+        stop = start + (stop - start) * FINEST * MOST_SAMPLES / rotation
+        reason += (
+            f", and it plays the first {stop - start:.4g} s of {whole - start:.4g} s, which has {rotation:.0f} rad"
+        )
+    count = max(FEWEST_SAMPLES, min(MOST_SAMPLES, round(rotation / FINEST)))
+    times = np.linspace(start, stop, count)
+    between = start + (stop - start) * (np.arange(REFERENCES) + 0.5) / REFERENCES
+    return {
+        "played": reason,
+        "start": start,
+        "stop": stop,
+        "samples": _packed(motion.sol(times).T),
+        "reference": _reference(between, motion.sol(between).T),
+    }
+
+
+def _reference(times: Floats, states: Floats) -> dict[str, str]:
+    """Return states of symrot's own motion, with which the page compares the motion that it shows."""
+    return {"t": _packed(times), "y": _packed(states)}
 
 
 def _tableau() -> dict[str, Any]:

@@ -44,7 +44,7 @@ def page(scene: Scene, trajectory: Trajectory | None = None) -> str:
     parts = {
         "version": __version__,
         "title": escape(scene.title or scene.name),
-        "name": escape(scene.name),
+        "command": escape(model.data["command"]),
         "style": "\n".join(_text(name) for name in STYLES),
         "data": _in_script(json.dumps(model.data, separators=(",", ":"))),
         "libraries": _text(LIBRARIES),

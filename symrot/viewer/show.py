@@ -6,10 +6,11 @@ from fractions import Fraction
 from html import escape
 from pathlib import Path
 
+from symrot.errors import InputError
 from symrot.files.writing import check_target, write
 from symrot.propagation.propagate import propagator
 from symrot.propagation.trajectory import Trajectory
-from symrot.scene.scene import Scene, load_scene
+from symrot.scene.scene import Initial, Scene, load_scene
 from symrot.viewer import film
 from symrot.viewer.model import with_attitude
 from symrot.viewer.page import page
@@ -100,10 +101,23 @@ def in_notebook(trajectory: Trajectory) -> str:
     return f'<iframe srcdoc="{text}" style="width:100%;height:760px;border:0" title="motion"></iframe>'
 
 
+def _state_at(scene: Scene, time: Fraction) -> Initial:
+    """Return the state of a scene's motion at a time, from which a page begins."""
+    state = propagator(with_attitude(scene))([float(time)])
+    first, second, third = map(Fraction, state.omega[0].tolist())
+    a, b, c, d = map(Fraction, state.quaternion[0].tolist())
+    return Initial((first, second, third), (a, b, c, d))
+
+
 def _scene_and_motion(motion: Scene | Trajectory | str | Path) -> tuple[Scene, Trajectory | None]:
     """Return the scene of a page, and the trajectory if the page must play it because its torque has no formula."""
     if isinstance(motion, Trajectory):
         start, stop = (Fraction(float(time)) for time in (motion.t.min(), motion.t.max()))
-        scene = replace(motion.scene, span=motion.scene.span._replace(start=start, stop=stop))
+        if start == stop:
+            raise InputError(f"show: expected a trajectory over a span of time, got the single time {float(start)!r} s")
+        scene = motion.scene
+        if start != scene.span.start and not motion.has_external_torque:
+            scene = replace(scene, initial=_state_at(scene, start))
+        scene = replace(scene, span=scene.span._replace(start=start, stop=stop))
         return scene, motion if motion.has_external_torque else None
     return (motion if isinstance(motion, Scene) else load_scene(motion)), None

@@ -1,5 +1,6 @@
 """Pages that move: one file without links, which runs in a browser and says how far it can be trusted."""
 
+import base64
 import html
 import json
 import re
@@ -77,7 +78,7 @@ def test_a_title_cannot_end_the_script():
 
 
 def test_a_trajectory_shows_its_own_start_and_span(tmp_path):
-    trajectory = symrot.propagator("t_handle")([1.0, 3.0], omega=[0, 5, 1])
+    trajectory = symrot.propagator("t_handle")([0.0, 3.0], omega=[0, 5, 1])
     text = trajectory.show(tmp_path / "page.html").read_text(encoding="utf-8")
     data = json.loads(re.search(r'id="data">(.*?)</script>', text, re.DOTALL)[1])
     assert data["omega"] == [0, 5, 1]
@@ -151,3 +152,64 @@ def test_a_missing_encoder_is_named(tmp_path, monkeypatch):
     monkeypatch.setattr("symrot.viewer.film.find_spec", lambda name: None)
     with pytest.raises(InputError, match=r"symrot\[film\]"):
         symrot.show("t_handle", tmp_path / "x.mp4")
+
+
+def data_of(path):
+    return json.loads(re.search(r'id="data">(.*?)</script>', path.read_text(encoding="utf-8"), re.DOTALL)[1])
+
+
+def doubles(text, columns):
+    return np.frombuffer(base64.b64decode(text), dtype="<f8").reshape(-1, columns)
+
+
+@pytest.mark.parametrize("times", [[5.0, 6.5, 8.0], [8.0, 5.0], [-3.0, -1.0]])
+def test_a_page_begins_with_the_state_of_the_trajectory(times, tmp_path):
+    """A part of a motion, in any order of its times, shows that part, not the start of the scene."""
+    trajectory = symrot.propagator("t_handle")(times)
+    data = data_of(trajectory.show(tmp_path / "page.html"))
+    expected = symrot.propagator("t_handle")(np.sort(times))
+    states = doubles(data["reference"]["y"], 7)
+    assert data["start"] == min(times)
+    assert states[0, :3] == pytest.approx(expected.omega[0], abs=1e-10)
+    assert states[-1, :3] == pytest.approx(expected.omega[-1], abs=1e-6)
+    assert data["omega"] == pytest.approx(list(expected.omega[0]), abs=1e-10)
+
+
+def test_a_single_time_is_refused(tmp_path):
+    with pytest.raises(InputError, match="single time"):
+        symrot.propagator("t_handle")([3.0]).show(tmp_path / "page.html")
+
+
+def test_a_body_under_a_torque_of_python_is_not_free(tmp_path):
+    trajectory = symrot.propagator("tumbling_prism", torque=lambda t, omega, q: (0.01, 0, 0))([5.0, 2.0, 0.0])
+    data = data_of(trajectory.show(tmp_path / "page.html"))
+    assert not data["free"] and data["hasTorque"]
+    assert data["start"] < data["stop"]
+
+
+def test_the_rotor_of_a_played_motion_belongs_to_its_momentum(tmp_path):
+    torques = [
+        {"kind": "rotor", "angular_momentum": [0, 0, 5]}, {"kind": "expression", "torque": ["0", "0", "1e-9*sin(t)"]},
+    ]  # fmt: skip
+    data = data_of(symrot.show(scene_of({"principal": [1, 2, 2.5]}, torque=torques), tmp_path / "page.html"))
+    assert data["rotor"] == [0, 0, 5]
+
+
+def test_a_long_fast_motion_is_played_in_part_and_says_so(tmp_path):
+    """Samples farther apart than a tenth of a radian would show another motion."""
+    torque = [{"kind": "expression", "torque": ["0", "0", "sin(t)/1000"]}]
+    scene = scene_of(
+        {"principal": [1, 1, 1.5]}, torque=torque, initial={"omega": [30, 0, 100]}, span={"t": [0, 100], "samples": 3}
+    )
+    data = data_of(symrot.show(scene, tmp_path / "page.html"))
+    assert "plays only the first" in data["played"] or "plays the first" in data["played"]
+    rates = doubles(data["samples"], 7)
+    step = (data["stop"] - data["start"]) / (len(rates) - 1)
+    assert step * np.linalg.norm(rates[:, :3], axis=1).max() < 0.11
+
+
+def test_the_axis_of_symmetry_need_not_be_an_axis_of_the_body(tmp_path):
+    body = {"inertia": {"xx": "5/2", "yy": 2, "zz": "5/2", "xz": "1/2"}}
+    data = data_of(symrot.show(scene_of(body), tmp_path / "page.html"))
+    assert np.abs(data["axis"]) == pytest.approx([np.sqrt(0.5), 0, np.sqrt(0.5)])
+    assert data["axisName"] == "symmetry axis"

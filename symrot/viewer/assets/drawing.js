@@ -7,7 +7,8 @@ const ARROWS = {
 };
 const LONGEST = 1.5;      // length of the longest ω, L or M, relative to the body
 const TIP = 1.3;          // distance of the tip of the body's axis from the point of rotation
-const TRAIL = 2000;       // points of a path
+const TRAIL = 2000;       // fewest points of a path
+const MOST = 40000;       // most points of a path
 
 export class Drawing {
     constructor(canvas, labels, data, colours) {
@@ -41,6 +42,7 @@ export class Drawing {
         this.#addArrows();
         this.#addPaths();
         this.#addGround();
+        this.#addGravity();
     }
 
     #addBody() {
@@ -51,7 +53,12 @@ export class Drawing {
             color: this.colours.body, side: DoubleSide, roughness: 0.55, metalness: 0.15, vertexColors: true,
             transparent: true, opacity: 1,
         });
-        const hole = new MeshStandardMaterial({color: 0x000000, side: DoubleSide, transparent: true, opacity: 0.25});
+        this.hasHoles = this.data.patches.some((patch) => patch.hole);
+        this.solid.opacity = this.#opacity(false);
+        const hole = new MeshStandardMaterial({
+            color: 0x101820, side: DoubleSide, transparent: true, opacity: 0.45, polygonOffset: true,
+            polygonOffsetFactor: -2, polygonOffsetUnits: -2,
+        });
         const edge = new LineBasicMaterial({color: this.colours.edge});
         this.data.patches.forEach((patch, number) => {
             const points = Float32Array.from(patch.points), count = points.length/3;
@@ -94,6 +101,11 @@ export class Drawing {
         });
         this.body.add(shape);
         this.parts.body = [shape];
+    }
+
+    /** A body is translucent if it has holes, or if Poinsot's ellipsoid is drawn around it. */
+    #opacity(inside) {
+        return inside ? 0.35 : this.hasHoles ? 0.6 : 1;
     }
 
     #addAxes() {
@@ -146,7 +158,7 @@ export class Drawing {
         const {Line, BufferGeometry, BufferAttribute, LineBasicMaterial, Group} = libraries;
         const line = (colour, parent, name, opacity = 1) => {
             const geometry = new BufferGeometry();
-            geometry.setAttribute("position", new BufferAttribute(new Float32Array(3*TRAIL), 3));
+            geometry.setAttribute("position", new BufferAttribute(new Float32Array(3*MOST), 3));
             const path = new Line(geometry, new LineBasicMaterial({color: colour, opacity, transparent: opacity < 1}));
             path.frustumCulled = false;
             const group = new Group();
@@ -167,7 +179,8 @@ export class Drawing {
         const {Mesh, ConeGeometry, MeshStandardMaterial, GridHelper, SphereGeometry, Group, Line, BufferGeometry,
             LineBasicMaterial, Vector3} = libraries;
         if (!this.data.fixedPoint) return;
-        const ground = new Group();
+        const ground = new Group(), down = new Vector3(...(this.data.down ?? [0, 0, -1]));
+        ground.quaternion.setFromUnitVectors(new Vector3(0, 0, -1), down);
         const grid = new GridHelper(6, 12, this.colours.space, this.colours.grid);
         grid.rotation.x = Math.PI/2;
         grid.position.z = -0.6;
@@ -177,19 +190,33 @@ export class Drawing {
         ground.add(grid, stand, new Mesh(new SphereGeometry(0.035), new MeshStandardMaterial({color: this.colours.edge})));
         this.world.add(ground);
         const {center, size} = this.data;
-        if (center) {
+        if (center && !this.data.drawn.includes("proportions")) {
             const ends = [new Vector3(), new Vector3(...center).divideScalar(size)];
             const stem = new Line(new BufferGeometry().setFromPoints(ends), new LineBasicMaterial({color: this.colours.edge}));
             this.body.add(stem);
         }
     }
 
+    #addGravity() {
+        if (!this.data.down) return;
+        const {ArrowHelper, Vector3, Group} = libraries, down = new Vector3(...this.data.down), group = new Group();
+        const start = down.clone().multiplyScalar(-0.5).add(new Vector3(-1.6, 0.6, 0));
+        group.add(new ArrowHelper(down, start, 0.8, this.colours.space, 0.14, 0.08));
+        this.world.add(group);
+        this.parts.gravity = [group];
+        const end = start.clone().addScaledVector(down, 0.9);
+        this.#pin("g", this.colours.space, () => group.visible ? group.localToWorld(end.clone()) : null);
+    }
+
     /** Show Poinsot's ellipsoid and plane, and the cones, of a free body with this state. */
-    construction({omega, momentum, energy, inertia, axes, quaternion}) {
+    construction(state) {
+        for (const group of [...(this.parts.poinsot ?? []), ...(this.parts.cones ?? [])]) group.removeFromParent();
+        const visible = {poinsot: this.wished?.poinsot ?? false, cones: this.wished?.cones ?? false};
+        Object.assign(this.parts, {poinsot: [], cones: []});
+        if (!state) return;      // the body is at rest
+        const {omega, momentum, energy, inertia, axes, quaternion, symmetryAxis} = state;
         const {Mesh, SphereGeometry, MeshStandardMaterial, DoubleSide, RingGeometry, Vector3, Matrix4, ConeGeometry,
             Quaternion, Group} = libraries;
-        for (const group of [...(this.parts.poinsot ?? []), ...(this.parts.cones ?? [])]) group.removeFromParent();
-        const visible = {poinsot: this.parts.poinsot?.[0]?.visible ?? false, cones: this.parts.cones?.[0]?.visible ?? false};
         const scale = LONGEST/this.arrows.omega.size, length = Math.hypot(...momentum);
         const translucent = (colour, opacity) => new MeshStandardMaterial({
             color: colour, transparent: true, opacity, side: DoubleSide, depthWrite: false,
@@ -211,10 +238,10 @@ export class Drawing {
         this.world.add(plane);
         this.parts.poinsot = [ellipsoid, plane];
         this.parts.cones = [];
-        if (this.data.symmetric) {
+        if (symmetryAxis >= 0) {
             const omegaUnit = new Vector3(...omega).normalize();
             const turn = new Quaternion(quaternion[1], quaternion[2], quaternion[3], quaternion[0]);
-            const axis = new Vector3(...axes.map((row) => row[this.data.axis]));
+            const axis = new Vector3(...axes.map((row) => row[symmetryAxis]));
             const spaceOmega = omegaUnit.clone().applyQuaternion(turn);
             const cone = (direction, about, colour, parent) => {
                 const height = LONGEST*Math.abs(direction.dot(about)), side = Math.sign(direction.dot(about)) || 1;
@@ -244,8 +271,9 @@ export class Drawing {
     }
 
     show(name, visible) {
+        this.wished = {...this.wished, [name]: visible};
         for (const group of this.parts[name] ?? []) group.visible = visible;
-        if (name === "poinsot") this.solid.opacity = visible ? 0.35 : 1;
+        if (name === "poinsot") this.solid.opacity = this.#opacity(visible && this.parts.poinsot?.length > 0);
     }
 
     isShown(name) {
@@ -255,7 +283,7 @@ export class Drawing {
     /** Set the points of a path; `points` are triples in the units of the path. */
     path(name, points, scale) {
         const line = this.paths[name], array = line.geometry.attributes.position.array;
-        const count = Math.min(points.length, TRAIL);
+        const count = Math.min(points.length, MOST);
         for (let k = 0; k < count; ++k) {
             for (let i = 0; i < 3; ++i) array[3*k + i] = scale*points[k][i];
         }
@@ -309,6 +337,7 @@ export class Drawing {
 
     static TIP = TIP;
     static TRAIL = TRAIL;
+    static MOST = MOST;
     static LONGEST = LONGEST;
     static ARROWS = ARROWS;
 }

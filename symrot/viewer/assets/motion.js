@@ -163,7 +163,7 @@ export class Motion {
         const {k, table, size} = this, end = new Float64Array(size), rise = new Float64Array(size);
         for (;;) {
             const last = this.t + this.h*(1 + 1e-12) >= this.stop;
-            const h = last ? this.stop - this.t : this.h;
+            const h = (last ? this.stop : this.t + this.h) - this.t;      // what the clock really moves by
             if (this.steps.length >= MOST_STEPS) return this.#fail(`the motion needs more than ${MOST_STEPS} steps`);
             if (!(h > 4*2**-52*Math.abs(this.t))) return this.#fail("the motion needs steps below the rounding of time");
             for (let stage = 2; stage <= 12; ++stage) this.#stage(stage, h);
@@ -261,8 +261,8 @@ export class Motion {
 }
 
 /**
- * A motion given by evenly spaced samples of omega and quaternion. Between samples omega is interpolated linearly, since
- * it may jump, and the quaternion by the cubic whose slope is q*(0, omega)/2 at both ends.
+ * A motion given by evenly spaced samples of omega and quaternion. Between samples omega is the cubic through four
+ * samples, and the quaternion the cubic whose slope is q*(0, omega)/2 at both ends.
  */
 export class SampledMotion {
     constructor(start, stop, states) {
@@ -283,7 +283,12 @@ export class SampledMotion {
         const place = Math.min(Math.max((time - start)/h, 0), states.length - 1);
         const low = Math.min(Math.floor(place), states.length - 2), s = place - low, r = 1 - s;
         const a = states[low], b = states[low + 1];
-        for (let i = 0; i < 3; ++i) out[i] = r*a[i] + s*b[i];
+        const before = states[Math.max(low - 1, 0)], after = states[Math.min(low + 2, states.length - 1)];
+        const inside = low > 0 && low + 2 < states.length;
+        for (let i = 0; i < 3; ++i) {
+            const line = r*a[i] + s*b[i];      // and the cubic through four samples, except at the ends
+            out[i] = inside ? line - s*r/6*((2 - s)*(before[i] - 2*a[i] + b[i]) + (1 + s)*(a[i] - 2*b[i] + after[i])) : line;
+        }
         for (let i = 0; i < 4; ++i) {
             const first = h*SampledMotion.#slope(a, i), last = h*SampledMotion.#slope(b, i), rise = b[3 + i] - a[3 + i];
             out[3 + i] = a[3 + i] + s*(rise + r*(r*(first - rise) + s*(rise - last)));

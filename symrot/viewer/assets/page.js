@@ -31,7 +31,8 @@ const number = (value, digits = 4) => value === 0 ? "0" : Math.abs(value) < 1e-3
     ? Number(value.toPrecision(digits)).toExponential().replace("e+", "e") : String(Number(value.toPrecision(digits)));
 
 const [CLOCK, CLOCK_UNIT] = [[86400, "days"], [3600, "h"], [1, "s"]].find(([size]) => data.stop - data.start >= (size > 1 ? 4*size : 0));
-const moment = (t) => `${number(t/CLOCK)} ${CLOCK_UNIT}`;      // a time as text
+const PLACES = Math.min(Math.max(4, 4 + Math.ceil(Math.log10(Math.abs(data.stop)/(data.stop - data.start)))), 15);
+const moment = (t) => `${number(t/CLOCK, PLACES)} ${CLOCK_UNIT}`;      // a time as text
 
 const dot = (a, b) => a.reduce((sum, value, i) => sum + value*b[i], 0);
 const cross = (a, b) => [a[1]*b[2] - a[2]*b[1], a[2]*b[0] - a[0]*b[2], a[0]*b[1] - a[1]*b[0]];
@@ -43,6 +44,8 @@ function rotate([w, x, y, z], v) {
 }
 
 /* --- the motion --------------------------------------------------------------------------------------------------- */
+
+const MOMENTS = ["A", "B", "C"];
 
 /** The scene with its present constants and initial values; `motion` is computed from them. */
 class Model {
@@ -56,7 +59,7 @@ class Model {
 
     restart() {
         if (!computed) {
-            this.motion = new SampledMotion(data.start, data.stop, unpack(data.samples.y, 7));
+            this.motion = new SampledMotion(data.start, data.stop, unpack(data.samples, 7));
             return;
         }
         const values = Float64Array.from([...kernel.names.map((name) => this.constants[name]), Math.PI]);
@@ -85,7 +88,7 @@ class Model {
 
     #invariants() {
         const {constants} = this;
-        const moments = ["A", "B", "C"].map((name, k) => [constants[name], this.#rest(constants[name], data.constants[name], data.momentsRest[k])]);
+        const moments = MOMENTS.map((name, k) => [constants[name], this.#rest(constants[name], data.constants[name], data.momentsRest[k])]);
         return new FreeBody(moments, this.omega.map((rate, k) => [rate, this.#rest(rate, data.omega[k], data.omegaRest[k])]));
     }
 
@@ -93,6 +96,13 @@ class Model {
         const c = this.constants ?? {};
         if (!computed || c.A === undefined) return data.inertia;
         return [[c.A, 0, 0], [0, c.B, 0], [0, 0, c.C]];
+    }
+
+    /** Return the index of the axis of a body with two equal moments, or -1; the three moments of a sphere count as none. */
+    get symmetryAxis() {
+        const m = this.moments, same = (a, b) => Math.abs(a - b) <= 1e-12*Math.max(a, b);
+        const axes = [0, 1, 2].filter((k) => same(m[(k + 1) % 3], m[(k + 2) % 3]));
+        return axes.length === 1 ? axes[0] : -1;
     }
 
     get moments() {
@@ -114,12 +124,10 @@ class Model {
         const length = Math.hypot(y[3], y[4], y[5], y[6]);
         const quaternion = [y[3]/length, y[4]/length, y[5]/length, y[6]/length], omega = [y[0], y[1], y[2]];
         const state = {t, y, quaternion, omegaBody: omega, omega: rotate(quaternion, omega)};
-        const axis = [0, 0, 0];
-        axis[data.axis] = 1;
-        state.axis = rotate(quaternion, axis);
+        state.axis = rotate(quaternion, data.axis);
         const ownMomentum = times(this.inertia, omega);
         if (!computed) {
-            state.momentum = rotate(quaternion, ownMomentum);
+            state.momentum = rotate(quaternion, ownMomentum.map((value, i) => value + data.rotor[i]));
             state.torque = null;
             state.energy = dot(ownMomentum, omega)/2;
             return state;
@@ -141,12 +149,12 @@ class Model {
 
     /** Return the largest difference from symrot's own motion: of ω relative to its size, and of the quaternion. */
     agreement() {
-        if (!data.reference) return null;
         const at = unpack(data.reference.t, 1), states = unpack(data.reference.y, 7);
         const largest = Math.max(...states.map((y) => Math.hypot(y[0], y[1], y[2]))) || 1;
         let worst = 0;
         states.forEach((expected, k) => {
-            const y = this.motion.at(Math.min(at[k][0], this.motion.t));
+            if (at[k][0] > this.motion.t) return;
+            const y = this.motion.at(at[k][0]);
             const sign = y[3]*expected[3] + y[4]*expected[4] + y[5]*expected[5] + y[6]*expected[6] < 0 ? -1 : 1;
             for (let i = 0; i < 7; ++i) {
                 const difference = i < 3 ? (y[i] - expected[i])/largest : sign*y[i] - expected[i];
@@ -168,19 +176,21 @@ class Model {
 class Page {
     constructor() {
         this.model = new Model();
-        this.drawing = new Drawing(element("canvas"), element("labels"), data, colours);
+        this.drawing = this.#picture();
         this.t = data.start;
         this.playing = !REDUCED;
-        this.speed = this.#usualSpeed();
+        this.stop = data.stop;
+        this.fastest = Math.hypot(...data.omega);
         this.frames = 0;
         element("title").textContent = data.title;
-        element("source").textContent = [data.source, data.drawnFromParts ? "" : "The body is drawn as the uniform box with its moments."].filter(Boolean).join(". ");
+        element("source").textContent = [data.source, data.drawn].filter(Boolean).join(". ");
         element("keys").textContent = KEYS;
         this.#layers();
         this.#controls();
         this.#sliders();
         this.#panels();
         this.recompute();
+        this.setSpeed(this.#usualSpeed());
         const resize = () => {
             this.drawing.resize();
             for (const {panel} of this.panels) panel.resize();
@@ -193,20 +203,31 @@ class Page {
 
     /** The speed at which the body rotates about twice a second, or the whole span takes sixteen seconds. */
     #usualSpeed() {
-        const rate = Math.hypot(...data.omega) || 1, span = data.stop - data.start;
-        return Math.min(12/rate, span/16);
+        return Math.min(12/(this.fastest || 1), (data.stop - data.start)/16);
+    }
+
+    /** Return the picture; where the browser has no WebGL, a sentence takes its place, and plots and sliders still work. */
+    #picture() {
+        try {
+            return new Drawing(element("canvas"), element("labels"), data, colours);
+        } catch (error) {
+            element("canvas").hidden = true;
+            element("labels").textContent = "This browser has no WebGL, so the body is not drawn; the plots below show the motion.";
+            return new Proxy({}, {get: () => () => undefined});
+        }
     }
 
     #layers() {
         const layers = [
             ["space", "space axes x, y, z", true], ["axes", "body axes 1, 2, 3", true], ["omega", Drawing.ARROWS.omega.title, true],
             ["momentum", Drawing.ARROWS.momentum.title, true],
-            ...(computed && !data.free ? [["torque", Drawing.ARROWS.torque.title, true]] : []),
+            ...(computed && data.hasTorque ? [["torque", Drawing.ARROWS.torque.title, true]] : []),
             ["trail", "path of the body's axis", true], ["polhode", "polhode (ω in the body)", data.free && !data.symmetric],
             ["herpolhode", "herpolhode (ω in space)", false],
         ];
         if (data.free) layers.push(["poinsot", "Poinsot's ellipsoid on its plane", false]);
-        if (data.free && data.symmetric) layers.push(["cones", "body cone and space cone", true]);
+        if (data.free && (data.symmetric || data.constants?.A !== undefined)) layers.push(["cones", "body and space cone, if two moments are equal", data.symmetric]);
+        if (data.down) layers.push(["gravity", "direction of gravity g", true]);
         this.layers = layers;
         for (const [name, title, shown] of layers) {
             const label = document.createElement("label");
@@ -228,7 +249,8 @@ class Page {
         element("speed").addEventListener("input", (event) => this.setSpeed(this.#usualSpeed()*2**Number(event.target.value)));
         element("view").addEventListener("change", (event) => { this.drawing.follow = event.target.value === "body"; });
         document.addEventListener("keydown", (event) => {
-            if (event.target.matches("input[type=number], select")) return;
+            if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.("input[type=number], select")) return;
+            if (event.key === " " && event.target.closest?.("button, summary, input[type=checkbox]")) return;
             const step = (data.stop - data.start)/200, speed = element("speed");
             const actions = {
                 " ": () => this.toggle(), ArrowLeft: () => this.seek(this.t - step), ArrowRight: () => this.seek(this.t + step),
@@ -236,11 +258,10 @@ class Page {
                 ArrowUp: () => { speed.value = Number(speed.value) + 1; speed.dispatchEvent(new Event("input")); },
                 ArrowDown: () => { speed.value = Number(speed.value) - 1; speed.dispatchEvent(new Event("input")); },
             };
-            if (!actions[event.key] || event.target.matches("input[type=range]") && event.key.startsWith("Arrow")) return;
+            if (!actions[event.key] || event.target.matches?.("input[type=range]") && event.key.startsWith("Arrow")) return;
             event.preventDefault();
             actions[event.key]();
         });
-        this.setSpeed(this.speed);
         this.#showPlaying();
     }
 
@@ -256,7 +277,7 @@ class Page {
     }
 
     toggle() {
-        if (!this.playing && this.t >= data.stop) this.t = data.start;
+        if (!this.playing && this.t >= this.stop) this.t = data.start;
         this.playing = !this.playing;
         this.#showPlaying();
     }
@@ -267,7 +288,7 @@ class Page {
     }
 
     seek(t) {
-        this.t = Math.min(Math.max(t, data.start), data.stop);
+        this.t = Math.min(Math.max(t, data.start), this.stop);
         this.#pose();
         this.#describe();
     }
@@ -293,7 +314,7 @@ class Page {
         const angles = new Float64Array(3);
         kernel.angles_of_quaternion(Float64Array.from(data.quaternion), angles);
         this.angles = [...angles];
-        const rows = data.sliders.map((slider) => [slider, slider.name.startsWith("omega_") ? "rates" : ["A", "B", "C"].includes(slider.name) ? "moments" : "torque"]);
+        const rows = data.sliders.map((slider) => [slider, slider.name.startsWith("omega_") ? "rates" : MOMENTS.includes(slider.name) ? "moments" : "torque"]);
         const attitude = this.angles.map((value, k) => [{name: `angle_${k}`, label: "φθψ"[k], unit: "deg", value: value*180/Math.PI, low: -180, high: 180}, "attitude"]);
         for (const [{name, label, unit, value, low, high}, key] of [...rows.slice(0, 3), ...attitude, ...rows.slice(3)]) {
             const row = document.createElement("label");
@@ -302,21 +323,34 @@ class Page {
             row.querySelector("span").textContent = unit && unit !== "1" ? `${label}, ${unit.replace("^2", "²")}` : label;
             range.setAttribute("aria-label", label);
             typed.setAttribute("aria-label", `${label}, typed`);
-            const place = (current) => { range.value = 1000*(current - low)/(high - low); typed.value = number(current, 5); };
+            const place = (current) => {
+                range.value = 1000*(current - low)/(high - low);
+                typed.value = Math.abs(current) < 1e-13*Math.max(Math.abs(low), Math.abs(high)) ? "0" : number(current, 5);
+            };
             place(value);
             range.addEventListener("input", () => {
                 typed.value = number(low + range.value/1000*(high - low), 5);
                 this.change(name, Number(typed.value));
             });
             typed.addEventListener("change", () => {
-                if (typed.value.trim() === "" || !Number.isFinite(Number(typed.value))) return place(value);
-                range.value = 1000*(Number(typed.value) - low)/(high - low);
-                this.change(name, Number(typed.value));
+                const wish = Number(typed.value);
+                if (typed.value.trim() !== "" && Number.isFinite(wish) && (wish >= 0 || low < 0)) return this.change(name, wish);
+                this.#place();
+                element("warning").textContent = `${label}: expected ${low < 0 ? "a number" : "a number that is not negative"}.`;
             });
-            this.inputs[name] = () => place(value);
+            this.inputs[name] = place;
             group(key).append(row);
         }
         element("reset").addEventListener("click", () => this.reset());
+    }
+
+    /** Put all sliders and fields to the present numbers of the model. */
+    #place() {
+        for (const [name, place] of Object.entries(this.inputs ?? {})) {
+            const index = name.split("_")[1];
+            const isAngle = /^angle_[0-2]$/.test(name), isRate = /^omega_[1-3]$/.test(name);
+            place(isAngle ? this.angles[index]*180/Math.PI : isRate ? this.model.omega[index - 1] : this.model.constants[name]);
+        }
     }
 
     reset() {
@@ -324,33 +358,36 @@ class Page {
         const angles = new Float64Array(3);
         kernel.angles_of_quaternion(Float64Array.from(data.quaternion), angles);
         this.angles = [...angles];
-        for (const place of Object.values(this.inputs)) place();
         this.recompute();
     }
 
     /** Give a constant or an initial value another number, and compute the motion again. */
     change(name, value) {
-        const {model} = this, [kind, index] = name.split("_");
-        if (kind === "omega") model.omega[index - 1] = value;
-        else if (kind === "angle") {
+        const {model} = this, index = name.split("_")[1];
+        if (/^omega_[1-3]$/.test(name)) model.omega[index - 1] = value;
+        else if (/^angle_[0-2]$/.test(name)) {
             this.angles[index] = value*Math.PI/180;
             const q = new Float64Array(4);
             kernel.quaternion_of_angles(Float64Array.from(this.angles), q);
             model.quaternion = [...q];
         } else {
-            const moments = {...model.constants, [name]: value}, sorted = [moments.A, moments.B, moments.C].sort((a, b) => a - b);
-            if (["A", "B", "C"].includes(name) && !(sorted[0] > 0 && sorted[0] + sorted[1] >= sorted[2]*(1 - 1e-12))) {
+            const pair = MOMENTS.includes(name) ? MOMENTS.filter((other) => other !== name && data.constants[other] === data.constants[name]) : [];
+            const moments = {...model.constants, [name]: value};
+            if (pair.length === 1) moments[pair[0]] = value;      // the body of the scene is symmetric, and stays so
+            const sorted = [moments.A, moments.B, moments.C].sort((a, b) => a - b);
+            if (MOMENTS.includes(name) && !(sorted[0] > 0 && sorted[0] + sorted[1] >= sorted[2]*(1 - 1e-12))) {
+                this.#place();
                 element("warning").textContent = "No body has these moments: each must be positive, and none larger than the sum of the others.";
                 return;
             }
-            model.constants[name] = value;
+            Object.assign(model.constants, moments);
         }
         this.recompute();
     }
 
     #panels() {
         const angleNames = ["φ", "θ", "ψ"];
-        const up = data.down?.map((value) => -value), held = data.axis + 1;
+        const up = data.down?.map((value) => -value);
         const about = up ? "the vertical" : data.free ? "the angular momentum" : "the z axis of space";
         const definitions = [
             {title: "Angular velocity in the body", unit: "rad/s", names: ["ω₁", "ω₂", "ω₃"], value: (state) => state.omegaBody},
@@ -360,7 +397,7 @@ class Page {
             kernel.angles_of_quaternion(Float64Array.from(state.quaternion), angles);
             return Array.from(angles, (angle) => angle*180/Math.PI);
         }});
-        definitions.push({title: `Angle of body axis ${held} to ${about}`, unit: "deg", names: ["angle"], value: (state) => {
+        definitions.push({title: `Angle of the ${data.axisName} to ${about}`, unit: "deg", names: ["angle"], value: (state) => {
             const reference = up ?? (data.free ? state.momentum : [0, 0, 1]), size = Math.hypot(...reference) || 1;
             const sine = Math.hypot(...cross(state.axis, reference))/size;
             return [Math.atan2(sine, dot(state.axis, reference)/size)*180/Math.PI];
@@ -388,11 +425,12 @@ class Page {
         this.seconds = (performance.now() - begun)/1000;
         const reached = model.motion.t, span = reached - data.start;
         this.stop = reached;
+        this.#place();
         element("warning").textContent = model.motion.failure ? `The motion ends early: ${model.motion.failure}.` : "";
         this.first = model.at(data.start);
         const momentum = Math.hypot(...this.first.momentum), energy = Math.max(Math.abs(this.first.energy), Math.abs(this.first.kinetic ?? 0));
         this.scales = data.conserved.map(({unit, output}, k) => (unit === "J" ? energy : unit === "kg m^2/s" ? momentum : 0) || Math.abs(this.first.conserved[k]) || 1);
-        const points = [], count = Drawing.TRAIL, largest = {omega: 0, momentum: 0, torque: 0};
+        const points = [], count = Math.min(Math.max(Drawing.TRAIL, 4*model.motion.detail), Drawing.MOST), largest = {omega: 0, momentum: 0, torque: 0};
         for (let k = 0; k < count; ++k) {
             const state = model.at(data.start + span*k/(count - 1));
             for (const name of ["omega", "momentum", "torque"]) {
@@ -405,11 +443,12 @@ class Page {
         drawing.path("herpolhode", points.map(({omega}) => omega), Drawing.LONGEST/(largest.omega || 1));
         drawing.path("polhode", points.map(({omegaBody}) => omegaBody), Drawing.LONGEST/(largest.omega || 1));
         this.trailCount = points.length;
-        if (data.free && momentum > 0) {
-            drawing.construction({
+        this.fastest = largest.omega;
+        if (data.free) {
+            drawing.construction(momentum > 0 && {
                 omega: this.first.omegaBody, momentum: this.first.momentum, energy: this.first.kinetic ?? this.first.energy,
                 inertia: model.moments, axes: model.constants?.A === undefined ? data.axes : [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
-                quaternion: this.first.quaternion,
+                quaternion: this.first.quaternion, symmetryAxis: model.symmetryAxis,
             });
             for (const [name] of this.layers) if (["poinsot", "cones"].includes(name)) {
                 const box = element("layers").querySelectorAll("input")[this.layers.findIndex(([other]) => other === name)];
@@ -419,6 +458,9 @@ class Page {
         for (const {panel, value} of this.panels) {
             panel.fill(sampled((t) => value(model.at(t)), data.start, reached, model.motion.detail));
         }
+        const reshaped = computed && Object.keys(data.constants).some(
+            (name) => /^([ABC]|center_of_mass_\d)$/.test(name) && model.constants[name] !== data.constants[name]);
+        element("kept").textContent = reshaped ? "The picture keeps the body of the scene." : "";
         this.#trust();
         this.seek(Math.min(this.t, reached));
     }
@@ -427,9 +469,9 @@ class Page {
     #trust() {
         const {model} = this, lines = [];
         if (!computed) {
-            lines.push("Between samples the attitude is interpolated; the picture shows it to a few parts in a million.");
+            lines.push(`Between samples the motion is interpolated, and agrees with the motion that symrot computed to ${number(model.agreement(), 2)}.`);
         } else {
-            const last = model.at(this.stop), drifts = this.drift(last).map(Math.abs);
+            const drifts = data.conserved.length ? this.panels.at(-1).panel.largest() : [];
             lines.push(`Computed in this page in ${model.motion.steps.length} steps of Dormand-Prince 8(5,3), ${number(1000*this.seconds, 2)} ms.`);
             if (drifts.length) lines.push(`Conserved: ${data.conserved.map(({name}) => name).join(", ")}; largest relative drift ${number(Math.max(...drifts), 2)}.`);
             this.agreement = model.isOriginal ? model.agreement() : null;
@@ -453,7 +495,7 @@ class Page {
         if (this.playing || !this.state) return;
         const {omegaBody, axis} = this.state;
         element("description").textContent = `At ${moment(this.t)}: angular velocity ${omegaBody.map((value) => number(value, 3)).join(", ")} rad/s in the body;`
-            + ` body axis ${data.axis + 1} points to ${axis.map((value) => number(value, 2)).join(", ")} in space.`;
+            + ` the ${data.axisName} points to ${axis.map((value) => number(value, 2)).join(", ")} in space.`;
     }
 
     #frame(now) {

@@ -64,6 +64,11 @@ export class Panel {
         this.cursor(this.time);
     }
 
+    /** Return the largest size of each curve. */
+    largest() {
+        return this.plot.data.slice(1).map((column) => column.reduce((most, value) => Math.max(most, Math.abs(value)), 0));
+    }
+
     cursor(time) {
         this.time = time;
         const x = this.plot.valToPos(time, "x"), inside = x >= 0 && x <= this.plot.over.clientWidth;
