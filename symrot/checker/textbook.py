@@ -1,7 +1,7 @@
 """Verdicts on the claims of a document, with allowance for characters that the extraction of its text lost."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from symrot.checker.claim.claims import Claim, read_claims
@@ -61,6 +61,8 @@ def findings(
 
 
 def _finding(data: dict[str, Any], claim: Claim, repair: bool) -> Finding:
+    if "editable" not in data:
+        claim = replace(claim, editable=("left",))  # what a document prints stands on the left
     verdict, other = check_readings(claim, repair)
     if verdict:
         return Finding(data, verdict, "holds", "", "")

@@ -45,6 +45,8 @@ class Repair:
         The smaller, the nearer to the claim.
     proven : bool
         Whether the exact engine proved it.
+    changes : dict of str to str
+        The changed parts of the claim, ``"left"``, ``"right"`` or the name of a definition, with their new text.
 
     Examples
     --------
@@ -58,6 +60,7 @@ class Repair:
     code: str
     cost: float
     proven: bool = True
+    changes: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

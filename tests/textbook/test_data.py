@@ -14,7 +14,7 @@ ALL = 400
 
 HEAD = {"schema", "document", "title", "kind", "lost", "note", "claim"}
 TEXTS = {"id", "where", "printed", "kind", "claim", "value", "printed_value", "against", "note"}
-LISTS = {"lost", "symbols", "functions", "given", "alternatives"}
+LISTS = {"lost", "symbols", "functions", "given", "alternatives", "editable"}
 REQUIRED = {"id", "where", "printed", "kind", "against"}
 KINDS = {"formula", "table", "number"}
 BUILT_IN = set(

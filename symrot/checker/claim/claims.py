@@ -36,6 +36,7 @@ from symrot.errors import InputError, complaint
 from symrot.exact.decision import ShapeMismatch, matched_sides
 
 __all__ = [
+    "SIDES",
     "Claim",
     "Definitions",
     "Refusal",
@@ -48,6 +49,9 @@ __all__ = [
     "read_entries",
     "relation_text",
 ]  # fmt: skip
+
+
+SIDES = ("left", "right")
 
 
 @dataclass(frozen=True)
@@ -98,6 +102,9 @@ class Claim:
         Units by name.
     notes : tuple of str
         Sentences about how the text is read.
+    editable : tuple of str
+        The parts that repairs may change: ``"left"``, ``"right"``, and names of definitions. The other parts are what
+        the claim is measured against.
     """
 
     id: str = ""
@@ -114,6 +121,7 @@ class Claim:
     sources: Mapping[str, str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    editable: tuple[str, ...] = SIDES
 
     @property
     def text(self) -> str:
@@ -397,7 +405,7 @@ def _with_rotated_axes(relation: Relation) -> Relation:
 # -- TOML -------------------------------------------------------------------------------------------------------------
 
 TEXT_KEYS = ("id", "where", "source", "note", "printed", "kind", "claim", "latex", "value", "printed_value", "against")
-LIST_KEYS = ("symbols", "functions", "given", "alternatives", "lost")
+LIST_KEYS = ("symbols", "functions", "given", "alternatives", "lost", "editable")
 OTHER_KEYS = ("define", "units")
 """The keys of a claim, by the type of their value."""
 
@@ -500,7 +508,7 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
     sources |= {f"given.{n}": text for n, text in enumerate(entry.get("given", ()))}
     claim = Claim(
         name, entry.get("where", ""), symbols, functions, tuple(define), hypotheses, sources=sources,
-        units=check_units(entry.get("units", {}), known, place),
+        units=check_units(entry.get("units", {}), known, place), editable=_editable(entry, define, place),
     )  # fmt: skip
     others = list(entry.get("alternatives", ()))
     kinds = [key for key in ("claim", "latex", "value") if key in entry]
@@ -603,6 +611,16 @@ def _names(entry: dict[str, Any], key: str, place: str) -> tuple[str, ...]:
         twice = next(name for number, name in enumerate(names) if name in names[:number])
         raise InputError(f"{place}: {key}: expected every name once, got {twice!r} twice")
     return tuple(names)
+
+
+def _editable(entry: dict[str, Any], define: Sequence[tuple[str, Node]], place: str) -> tuple[str, ...]:
+    """Return the parts of a claim that repairs may change: both sides, unless the claim names them."""
+    parts = tuple(entry.get("editable", SIDES))
+    known = (*SIDES, *(name for name, _ in define))
+    for part in parts:
+        if part not in known:
+            raise InputError(f"{place}: editable: expected left, right or the name of a definition, got {part[:40]!r}")
+    return parts
 
 
 def _check_name(name: str, key: str, place: str) -> None:

@@ -47,7 +47,7 @@ COST = {
     "commutator_order": 0.65, "quaternion_storage_order": 0.7,
     "inertia_product_sign": 0.65, "sign_of_term": 0.8, "overall_sign": 0.75,
     "sin_cos_swap": 1.0, "wrong_symbol": 1.0, "half_angle": 1.05, "double_half_angle": 1.05, "factor": 1.1,
-    "wrong_sequence_type": 1.2, "extra_term": 1.5, "missing_term": 1.6,
+    "two_faults": 1.6, "wrong_sequence_type": 1.2, "extra_term": 1.5, "missing_term": 1.6,
     # added to the cost of the code
     "in_definition": 0.4, "number_off_by_one": 0.15, "square_left_out": 0.15, "name_transposed": 0.02,
     "rows_as_columns": 0.01, "cross_product_order": 0.02, "factor_removed": 0.1, "product_doubled_or_halved": 0.05,
@@ -71,10 +71,14 @@ COST = {
 MOST_NEIGHBOURS = 12
 """The most names that are tried in place of one name."""
 
+MOST_TERMS_IN_PAIRS = 6
+"""The most terms of a sum of which two signs are changed together."""
+
 FEW = 3
 """The number of occurrences of an angle up to which all of them are as easily wrong together as one alone."""
 
 OPPOSITE = {"sin": "cos", "cos": "sin", "tan": "cot", "cot": "tan", "sec": "csc", "csc": "sec"}
+OFTEN_SQUARED = ("exp", "sinh", "cosh", "tanh")
 FAMILIES = (("A", "B", "C"), ("phi", "theta", "psi"), ("x", "y", "z"), ("alpha", "beta", "gamma"), ("a", "b", "c"))
 _STEM = re.compile(r"([A-Za-z]+?)_?([0-9]+|[xyz]{1,2}|[sb])")
 PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)", re.ASCII)
@@ -219,6 +223,9 @@ def _of_sum(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
         first, second = (set(p.args) for p in plain)
         if first == second:
             yield "commutator_order", sum_of([negated(term) for term in terms]), 0.0
+    for first, second in itertools.combinations(range(len(terms)), 2) if 2 < len(terms) <= MOST_TERMS_IN_PAIRS else ():
+        signs = [negated(term) if place in (first, second) else term for place, term in enumerate(terms)]
+        yield "two_faults", sum_of(signs), 0.0
     for place, term in enumerate(terms):
         others = [*terms[:place], *terms[place + 1 :]]
         yield "sign_of_term", sum_of([*terms[:place], negated(term), *terms[place + 1 :]]), 0.0
@@ -295,6 +302,8 @@ def _of_call(node: Node, functions: Collection[str]) -> Iterator[Change]:
         yield "quaternion_product_order", replace(node, args=arguments[::-1]), 0.0
     elif name == "cross":
         yield "sign_of_term", replace(node, args=arguments[::-1]), COST["cross_product_order"]
+    elif name in OFTEN_SQUARED:
+        yield "factor", Node("power", None, (node, number(2))), COST["square_left_out"]
     elif name in functions:
         for other in neighbours(name, functions):
             yield "wrong_symbol", replace(node, value=other), 0.0

@@ -17,8 +17,9 @@ MOST_PAIRS_OF = 60
 def by_entries(numeric: NumericFilter) -> list[Candidate]:
     """Return the repairs of a matrix, given by its rows, in which each wrong entry has its own edit."""
     candidates: list[Candidate] = []
-    for place, other in (("right", numeric.left), ("left", numeric.right)):
-        tree = numeric.tree_at(place)
+    references = {"right": numeric.left, "left": numeric.right}
+    for place in numeric.sides_to_edit:
+        tree, other = numeric.tree_at(place), references[place]
         cells = matrix_entries(tree)
         try:
             values = [entries_of(point.value(other)) for point in numeric.points]

@@ -72,8 +72,13 @@ class NumericFilter:
 
     @property
     def places(self) -> tuple[str, ...]:
-        """The trees that may be edited, by place: both sides, and the definitions that the claim uses."""
-        return (*SIDES, *self.used)
+        """The trees that may be edited, by place: the sides and the used definitions that the claim does not fix."""
+        return tuple(place for place in (*SIDES, *self.used) if place in self.claim.editable)
+
+    @property
+    def sides_to_edit(self) -> tuple[str, ...]:
+        """The sides that may be edited."""
+        return tuple(place for place in SIDES if place in self.claim.editable)
 
     @property
     def names(self) -> list[str]:
