@@ -264,14 +264,16 @@ def _check_textbook(options: Namespace) -> int:
     from symrot.textbook import DOCUMENTS
 
     names = DOCUMENTS if options.textbook == "all" else (options.textbook,)
-    target = Path(options.output) / "errata.md"
-    if options.all:
-        files.check_target(target, (".md",), "--output")
+    pages = {Path(options.output) / "errata.md": errata.page, Path(options.output) / "errata.html": errata.html}
+    for target in pages if options.all else ():
+        files.check_target(target, (".md", ".html"), "--output")
     documents = errata.survey(names, not options.no_repair, progress)
     progress("")
     if options.all:
-        files.write(target, lambda stream: stream.write(errata.page(documents).encode("utf-8")))
-        say([f"{target}: written"])
+        for target, page in pages.items():
+            content = page(documents).encode("utf-8")
+            files.write(target, lambda stream, content=content: stream.write(content))  # type: ignore[misc]
+            say([f"{target}: written"])
     elif options.json:
         say_json(errata.facts(documents))
     else:
@@ -401,7 +403,7 @@ def _check_arguments(parser: ArgumentParser) -> None:
                      "time is undecided because of its time.")  # fmt: skip
     parser.add_argument("--textbook", metavar="NAME", help="check the claims of a document: chen, sahakian, brown, "
                         "beer-johnston, or all")  # fmt: skip
-    parser.add_argument("--all", action="store_true", help="with --textbook all: write the page of errata")
+    parser.add_argument("--all", action="store_true", help="with --textbook all: write the pages of errata")
     parser.add_argument("-o", "--output", metavar="DIR", default="generated", help="folder of --all (./generated)")
     parser.add_argument("--given", dest="hypotheses", metavar="HYPOTHESIS", action="append", default=[],
                         help="'a == b', 'x > 0' or 'x != 0', with a claim as text; may be repeated")  # fmt: skip

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import symrot
+from symrot.textbook import errata
 
 FOLDER = Path(symrot.__file__).parent / "textbook"
 DOCUMENTS = {"chen": 60, "sahakian": 95, "brown": 150, "beer-johnston": 70}  # name -> the least number of claims
@@ -69,6 +70,8 @@ def formulas(claim):
 
 
 CLAIMS = [(document, claim) for document in DOCUMENTS for claim in load(document)["claim"]]
+
+PROPOSALS = {formula.claim: formula.proposal for erratum in errata() for formula in erratum.formulas}
 
 
 def each_claim(law):
@@ -148,6 +151,7 @@ def test_names_are_declared_once_and_none_hides_a_built_in(claim):
     assert len(declared) == len(set(declared))
     assert not set(declared) & BUILT_IN
     used = set().union(*(read_names(text) for _, text, _ in formulas(claim)))
+    used |= set().union(*(read_names(text) for text in PROPOSALS.get(claim["id"], {}).values()))
     assert set(declared) <= used
 
 
@@ -155,3 +159,17 @@ def test_names_are_declared_once_and_none_hides_a_built_in(claim):
 def test_the_reader_of_these_tests_refuses_what_is_not_the_claim_language(text):
     with pytest.raises(ValueError, match=r"position|bracket"):
         read_names(text)
+
+
+def test_a_template_has_holes_for_parts_of_its_claim_and_words_are_courteous():
+    claims = {claim["id"]: claim for _, claim in CLAIMS}
+    for erratum in errata():
+        assert not re.search(r"\b(wrong|mistake|blunder|careless|nonsense|of course)\b", erratum.why.lower()), (
+            erratum.title
+        )
+        assert erratum.formulas[0].template, erratum.title
+        for formula in erratum.formulas:
+            claim = claims[formula.claim]
+            parts = {"left", "right", "printed", *(name for name, _ in claim.get("define", []))}
+            assert set(re.findall(r"@(\w+)@", formula.template + formula.corrected)) <= parts
+            assert set(formula.letters) <= {*parts, *claim.get("symbols", []), *claim.get("functions", [])}

@@ -144,6 +144,16 @@ class Claim:
             other.__dict__["definitions"] = self.definitions
         return other
 
+    def with_parts(self, parts: Mapping[str, Node]) -> "Claim":
+        """Return the claim with other trees of some of its parts: ``"left"``, ``"right"`` or names of definitions."""
+        assert self.relation is not None
+        sign, left, right = self.relation
+        relation = (sign, parts.get("left", left), parts.get("right", right))
+        if not parts.keys() - {*SIDES}:
+            return self.with_relation(relation)
+        define = tuple((name, parts.get(name, tree)) for name, tree in self.define)
+        return replace(self, relation=relation, define=define)
+
     @cached_property
     def definitions(self) -> Definitions:
         """The symbols, positive where a hypothesis says so, and the definitions.

@@ -12,7 +12,7 @@ from symrot.checker.latex.reader import Names, read_latex
 from symrot.errors import InputError
 from symrot.latex.tokens import GREEK
 
-__all__ = ["LatexNotation", "latex_of", "latex_of_text"]
+__all__ = ["LatexNotation", "Writer", "latex_of", "latex_of_text"]
 
 COMMANDS = {
     **{name: f"\\{name}" for name in ("sin", "cos", "tan", "cot", "sec", "csc", "exp", "sinh", "cosh", "tanh", "det")},
@@ -78,7 +78,7 @@ def latex_of(
         return None
     timed = {str(n.args[0].value) for side in relation[1:] for _, n in walk(side) if _is_rate(n)} | {*functions}
     try:
-        written = " = ".join(_Writer(timed, vectors).formula(side) for side in relation[1:])
+        written = " = ".join(Writer(timed, vectors).formula(side) for side in relation[1:])
         same = read_latex(written, names=Names(functions=functions)).text
     except (InputError, KeyError):
         return None
@@ -111,7 +111,7 @@ def _by_time_alone(node: Node) -> bool:
     return len(node.args) - 1 in DOTS and all((v.kind, v.value) == ("name", "t") for v in node.args[1:])
 
 
-class _Writer:
+class Writer:
     """Writer of LaTeX: it turns trees into text, in which functions of time have no ``(t)``."""
 
     def __init__(self, timed: Collection[str], vectors: Mapping[str, bool]) -> None:
@@ -225,7 +225,7 @@ class _Writer:
     def transpose(self, node: Node) -> str:
         return f"{self.formula(node.args[0], ATOM)}^T"
 
-    writers: ClassVar[Mapping[str, Callable[["_Writer", Node], str]]] = {
+    writers: ClassVar[Mapping[str, Callable[["Writer", Node], str]]] = {
         "number": number, "name": name, "sum": sum, "neg": negative, "product": product, "inv": inverse, "power": power,
         "call": call, "transpose": transpose,
     }  # fmt: skip

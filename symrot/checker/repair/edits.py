@@ -223,8 +223,8 @@ def _of_sum(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
         first, second = (set(p.args) for p in plain)
         if first == second:
             yield "commutator_order", sum_of([negated(term) for term in terms]), 0.0
-    for first, second in itertools.combinations(range(len(terms)), 2) if 2 < len(terms) <= MOST_TERMS_IN_PAIRS else ():
-        signs = [negated(term) if place in (first, second) else term for place, term in enumerate(terms)]
+    for both in itertools.combinations(range(len(terms)), 2) if 2 < len(terms) <= MOST_TERMS_IN_PAIRS else ():
+        signs = [negated(term) if place in both else term for place, term in enumerate(terms)]
         yield "two_faults", sum_of(signs), 0.0
     for place, term in enumerate(terms):
         others = [*terms[:place], *terms[place + 1 :]]

@@ -120,12 +120,7 @@ class NumericFilter:
 
     def edited(self, changes: Sequence[Change]) -> Claim:
         """Return the claim with the changes made to its trees."""
-        trees = {change.place: change.edit.tree for change in changes}
-        relation = ("==", trees.get("left", self.left), trees.get("right", self.right))
-        if not trees.keys() & self.definitions.keys():
-            return self.claim.with_relation(relation)
-        define = tuple((name, trees.get(name, tree)) for name, tree in self.claim.define)
-        return replace(self.claim, relation=relation, define=define)
+        return self.claim.with_parts({change.place: change.edit.tree for change in changes})
 
     def text(self, changes: Sequence[Change]) -> str:
         """Return a repair as text: the edited equation, and the edited definitions."""
