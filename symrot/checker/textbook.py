@@ -33,7 +33,7 @@ OUTCOMES = {
 """Outcome of a claim -> its description, from good to bad."""
 
 ANGLES = ("sin", "cos", "tan", "cot", "sec", "csc")
-"""Functions of angles. A length, a mass or a moment is not zero by its meaning; an angle may be anything."""
+"""Functions of angles."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,8 @@ class Finding:
     parts, corrected : mapping of str to Node
         The trees of the claim by place, and the corrected ones of them.
     conditions : tuple of str
-        Conditions that the document does not state: of a conditional claim, and on angles.
+        Conditions that the document does not state, and that quantities with their usual signs may break. A formula
+        that is true needs all of them, a conditional one any of them.
     """
 
     claim: dict[str, Any]
@@ -95,7 +96,7 @@ def finding_of(data: dict[str, Any], claim: Claim, repair: bool, proposal: Mappi
     claim = replace(claim, alternatives=readings)
     verdict, other = check_readings(claim, repair)
     if verdict:
-        conditions = tuple(condition for condition in verdict.conditions if _is_on_an_angle(condition))
+        conditions = tuple(condition for condition in verdict.conditions if _may_be_broken(condition))
         return Finding(data, verdict, "conditional" if conditions else "holds", conditions=conditions)
     if other is not None:
         return Finding(data, verdict, "other reading", other.text, other.text)
@@ -114,10 +115,16 @@ def finding_of(data: dict[str, Any], claim: Claim, repair: bool, proposal: Mappi
     return Finding(data, verdict, "fails or lost" if is_loss else "fails", "", right, parts, corrected)
 
 
-def _is_on_an_angle(condition: str) -> bool:
-    """Return whether a condition is one on an angle, such as ``sin(theta) != 0``."""
-    trees = read_relation(condition)[1:]
-    return any(node.kind == "call" and node.value in ANGLES for tree in trees for _, node in walk(tree))
+def _may_be_broken(condition: str) -> bool:
+    """Return whether quantities with their usual signs may break a condition.
+
+    It is one on an angle, such as ``sin(theta) != 0``, or an inequality with a difference. A length, a mass or a moment
+    is positive by its meaning.
+    """
+    sign, *trees = read_relation(condition)
+    nodes = [node for tree in trees for _, node in walk(tree)]
+    is_on_an_angle = any(node.kind == "call" and node.value in ANGLES for node in nodes)
+    return is_on_an_angle or (sign != "!=" and any(node.kind == "neg" for node in nodes))
 
 
 def _correction(claim: Claim, verdict: Verdict, proposal: Mapping[str, str]) -> dict[str, Node]:

@@ -26,7 +26,8 @@ BUILT_IN = set(
     )
 )
 TOKEN = re.compile(
-    r"\s*(?:(?P<number>\d+(?:\.\d+)?(?![\w.]))|(?P<name>[A-Za-z]\w*)|(?P<mark>\*\*|==|[-+*/(),\[\]]|\.T\b))", re.ASCII
+    r"\s*(?:(?P<number>\d+(?:\.\d+)?(?![\w.]))|(?P<name>[A-Za-z]\w*)|(?P<mark>\*\*|==|!=|>|[-+*/(),\[\]]|\.T\b))",
+    re.ASCII,
 )
 OPENING = {")": "(", "]": "["}
 
@@ -134,8 +135,9 @@ def test_a_claim_is_an_equation_or_a_value_with_its_printed_digits(claim):
         assert claim["printed_value"].lstrip("-") in claim["printed"]
         assert not {"alternatives", "given"} & set(claim)
         assert "==" not in claim["value"]
-    for text in [claim.get("claim"), *claim.get("given", []), *claim.get("alternatives", [])]:
+    for text in [claim.get("claim"), *claim.get("alternatives", [])]:
         assert text is None or len(text.split("==")) == 2, text
+    assert all(len(re.split("==|!=|>", text)) == 2 for text in claim.get("given", []))
     assert all(len(pair) == 2 and "==" not in pair[1] for pair in claim.get("define", []))
 
 

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 
-from symrot.checker.claim.reader import read_expression, read_relation
-from symrot.checker.claim.tree import Node
+from symrot.checker.claim.reader import Relation, read_expression, read_relation
+from symrot.checker.claim.tree import Node, number, sum_of
 from symrot.checker.textbook import Finding, findings
 from symrot.report.errata.typesetting import filled, latex, marked
 from symrot.textbook import DOCUMENTS, Document, Erratum, PrintedFormula, document, errata
@@ -148,10 +148,12 @@ def _example(item: Finding, letters: Mapping[str, str]) -> str:
 # -- conditions --------------------------------------------------------------------------------------------------------
 
 WORDS = {
-    "sin": "{} is no multiple of 180 degrees",
-    "cos": "{} is no odd multiple of 90 degrees",
+    ("sin", "!="): "{} is no multiple of 180 degrees",
+    ("cos", "!="): "{} is no odd multiple of 90 degrees",
+    ("sin", ">="): "{} lies between 0 and 180 degrees",
+    ("cos", ">="): "{} lies between -90 and 90 degrees",
 }
-"""Function of an angle that must not vanish -> the words of a book for it."""
+"""Function of an angle, and what must hold of it against zero -> the words of a book for it."""
 
 
 def condition_words(condition: str) -> str:
@@ -162,12 +164,23 @@ def condition_words(condition: str) -> str:
     >>> condition_words("sin(theta) != 0")
     '$\\\\sin(\\\\theta) \\\\neq 0$: $\\\\theta$ is no multiple of 180 degrees'
     """
-    sign, left, right = read_relation(condition)
+    sign, left, right = _without_negative_terms(read_relation(condition))
     signs = {"!=": "\\neq", ">=": "\\ge", "<=": "\\le", "==": "="}
     formula = f"${_typeset(left)} {signs.get(sign, sign)} {_typeset(right)}$"
-    if sign == "!=" and left.kind == "call" and left.value in WORDS:
-        return f"{formula}: {WORDS[str(left.value)].format(f'${_typeset(left.args[0])}$')}"
+    words = WORDS.get((str(left.value), sign)) if left.kind == "call" and right == number(0) else None
+    if words:
+        return f"{formula}: {words.format(f'${_typeset(left.args[0])}$')}"
     return formula
+
+
+def _without_negative_terms(relation: Relation) -> Relation:
+    """Return a relation of a sum to zero with the negative terms on the other side: ``b >= a`` for ``-a + b >= 0``."""
+    sign, left, right = relation
+    negative = [term.args[0] for term in left.args if term.kind == "neg"] if left.kind == "sum" else []
+    positive = [term for term in left.args if term.kind != "neg"]
+    if not negative or not positive or right != number(0):
+        return relation
+    return sign, sum_of(positive), sum_of(negative)
 
 
 def _typeset(node: Node, letters: Mapping[str, str] = {}, functions: Collection[str] = ()) -> str:

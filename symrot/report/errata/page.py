@@ -91,12 +91,14 @@ def _of_conditions(items: Sequence[Finding]) -> Iterator[Block]:
         return
     yield Block("entry", "Conditions left out")
     yield Block("text", "These formulas hold under a condition that the document does not state.")
-    grouped: dict[tuple[str, ...], dict[str, list[str]]] = {}
+    grouped: dict[str, dict[str, list[str]]] = {}
     for item in items:
-        grouped.setdefault(item.conditions, {}).setdefault(item.claim["where"], []).append(f"`{item.claim['id']}`")
-    for conditions, places in grouped.items():
+        joint = " or " if item.verdict.verdict == "conditional" else " and "
+        words = joint.join(map(condition_words, item.conditions))
+        grouped.setdefault(words, {}).setdefault(item.claim["where"], []).append(f"`{item.claim['id']}`")
+    for words, places in grouped.items():
         listed = "; ".join(f"{where}: {', '.join(names)}" for where, names in places.items())
-        yield Block("item", f"{' or '.join(map(condition_words, conditions))} -- {listed}")
+        yield Block("item", f"{words} -- {listed}")
 
 
 def _of_extraction(items: Sequence[Finding]) -> Iterator[Block]:
