@@ -20,6 +20,9 @@ NUMBERED = re.compile(r"\((12\.\d+)\)")
 SHORTEST = 4
 """The fewest letters, digits and signs of a piece that is a formula."""
 
+LONGEST = 9
+"""The most letters, digits and signs that a claim must print of a piece."""
+
 Piece = tuple[int, str]
 """The number of a line, and a piece of its text."""
 
@@ -70,7 +73,7 @@ def is_covered(piece: str, printed: str, numbers: set[str]) -> bool:
     if numbered:
         return numbered[1] in numbers
     text = plain(piece)
-    size = max(min(len(text), SHORTEST), len(text) // 2 if len(text) < 60 else 12)
+    size = max(min(len(text), SHORTEST), min(len(text) // 2, LONGEST))
     return any(text[start : start + size] in printed for start in range(len(text) - size + 1))
 
 

@@ -46,6 +46,8 @@ def _marked(old: Node, new: Node) -> tuple[Node, Node]:
         return old, new
     if new.kind in ("sum", "product") and old.kind != new.kind and old in new.args:
         return old, _marked_members(Node(new.kind, None, (old,)), new)[1]
+    if old.kind in ("sum", "product") and old.kind != new.kind and new in old.args:
+        return _marked_members(old, Node(old.kind, None, (new,)))[0], new
     if old.kind == new.kind and old.value == new.value:
         if old.kind in ("sum", "product"):
             return _marked_members(old, new)
@@ -156,10 +158,15 @@ class _Typesetter(Writer):
         """Return factors side by side; ``alone`` says that nothing stands beside them."""
         alone = alone and len(factors) == 1
         written = ""
+        after_function = False
         for factor in factors:
             piece = self.formula(factor, 0 if alone else PRODUCT + 1)
             inner = piece.removeprefix("\\boxed{")
-            written += (" \\cdot " if written and inner[0].isdigit() else " ") + piece
+            sign = " \\cdot " if written and inner[0].isdigit() else " \\, " if after_function else " "
+            written += sign + piece
+            after_function = (
+                inner.startswith("\\") and " " in inner and not inner.endswith(")") and factor.kind == "call"
+            )
         return written.strip()
 
     def power(self, node: Node) -> str:
