@@ -162,7 +162,7 @@ def condition_words(condition: str) -> str:
     Examples
     --------
     >>> condition_words("sin(theta) != 0")
-    '$\\\\sin(\\\\theta) \\\\neq 0$: $\\\\theta$ is no multiple of 180 degrees'
+    '$\\\\sin \\\\theta \\\\neq 0$: $\\\\theta$ is no multiple of 180 degrees'
     """
     sign, left, right = _without_negative_terms(read_relation(condition))
     signs = {"!=": "\\neq", ">=": "\\ge", "<=": "\\le", "==": "="}
