@@ -119,7 +119,11 @@ def _differs(echo: str, source: str) -> bool:
 def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
     verdict = with_rounding(claim, check_claim(claim, repair))
     repairs = tuple(replace(repair, text=notation.rewritten(repair.text)) for repair in verdict.repairs)
-    return replace(verdict, repairs=repairs, notes=(*claim.notes, *verdict.notes))
+    requires, conditions = (
+        tuple(notation.condition(text) for text in texts) for texts in (verdict.requires, verdict.conditions)
+    )
+    notes = (*claim.notes, *verdict.notes)
+    return replace(verdict, repairs=repairs, notes=notes, requires=requires, conditions=conditions)
 
 
 def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], notation: Notation) -> Verdict:

@@ -53,6 +53,8 @@ class Scope(ABC):
         Divisors of the text that may vanish; evaluation adds to them.
     radicands : list of Expr
         Formulas under its even roots that may be negative; evaluation adds to them.
+    bases : list of Expr
+        Bases of powers whose exponents are no numbers; the powers are read for positive bases.
     """
 
     values: dict[str, Any] = field(default_factory=dict)
@@ -62,6 +64,7 @@ class Scope(ABC):
     where: str = ""
     divisors: list[Divisor] = field(default_factory=list)
     radicands: list[Expr] = field(default_factory=list)
+    bases: list[Expr] = field(default_factory=list)
 
     def fail(self, node: Node, expected: str) -> InputError:
         return complaint(self.source, self.where, node.span[0], expected)

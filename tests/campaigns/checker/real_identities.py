@@ -5,6 +5,7 @@ wrong rules make of it, or something else. Sides with a value nowhere are wanted
 them. What is true is judged by :mod:`tests.campaigns.checker.oracle_real`, point by point, for the verdict and its evidence.
 """
 
+import re
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from random import Random
@@ -238,7 +239,14 @@ def _fault_of_true(left: Node, right: Node, source: Random, conditions: Sequence
 
 
 def _conditions(requirement: str) -> list[tuple[str, Node, Node]]:
-    return [read_relation(part) for part in requirement.split(" and ")]
+    return [condition for part in requirement.split(" and ") for condition in _links(part)]
+
+
+def _links(condition: str) -> Iterator[tuple[str, Node, Node]]:
+    """Yield the relations of a condition such as ``0 <= x < pi``."""
+    pieces = re.split(r"([<>!=]=|[<>])", condition)
+    for left, sign, right in zip(pieces[::2], pieces[1::2], pieces[2::2], strict=False):
+        yield sign, read_expression(left), read_expression(right)
 
 
 def _obeyed(condition: tuple[str, Node, Node], point: dict[str, Fraction]) -> bool:
@@ -246,7 +254,8 @@ def _obeyed(condition: tuple[str, Node, Node], point: dict[str, Fraction]) -> bo
     value = real_value(left, point) - real_value(right, point)
     if value != 0 and abs(value) < 1e-20:
         raise Unclear
-    return bool({"==": value == 0, ">=": value >= 0, ">": value > 0, "!=": value != 0}[sign])
+    signs = {"==": value == 0, ">=": value >= 0, ">": value > 0, "<=": value <= 0, "<": value < 0, "!=": value != 0}
+    return bool(signs[sign])
 
 
 def _number(shown: str) -> Node:
