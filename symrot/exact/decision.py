@@ -24,8 +24,8 @@ from symrot.exact.ring.ratio import Ratio, TooLarge
 from symrot.exact.ring.ring import FormulaRing
 
 __all__ = [
-    "Case", "Decision", "Search", "Shape", "ShapeMismatch", "arguments", "congruence", "first_decision", "flatten", "matched_sides",
-    "place_in_matrix", "prove", "refute", "shape_text", "subtract",
+    "Case", "Decision", "Search", "Shape", "ShapeMismatch", "arguments", "congruence", "first_decision", "flatten",
+    "matched_sides", "place_in_matrix", "prove", "refute", "shape_text", "subtract",
 ]  # fmt: skip
 
 MOST_SEARCHED = 4

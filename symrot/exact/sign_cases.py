@@ -63,7 +63,9 @@ def _insides(ring: FormulaRing, numerator: PolyElement) -> dict[int, PolyElement
 
 def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator[Constraint]:
     """Yield what the radicands of square roots say about the signs of polynomials: a radicand is never negative."""
-    radicands = [ring._polynomial(root) for root in ring.roots if root.index == 2 and not isinstance(root.expression, Abs)]
+    radicands = [
+        ring._polynomial(root) for root in ring.roots if root.index == 2 and not isinstance(root.expression, Abs)
+    ]
     for formula in ring.domain:
         ratio = ring.ratio(formula)
         divisors = [ring.ratios.factors[number] for number, power in ratio.factors if power % 2]

@@ -203,7 +203,7 @@ class Claim:
         divisors = tuple(dict.fromkeys(divisor.value for divisor in interpreter.divisors))
         radicands = tuple(dict.fromkeys(interpreter.radicands))
         same = text(left) == text(right)  # equal sides are equal for all bases
-        bases = () if same else tuple(dict.fromkeys(interpreter.bases))
+        bases = () if same else interpreter.assumed_bases
         return Equation(lhs, rhs, tuple(hypotheses), divisors, tuple(nonzero), radicands, bases)
 
 

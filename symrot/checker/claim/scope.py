@@ -1,6 +1,7 @@
 """The scope in which a claim is evaluated: its names, the divisors and roots of its text, and its errors."""
 
 from abc import ABC, abstractmethod
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -65,6 +66,13 @@ class Scope(ABC):
     divisors: list[Divisor] = field(default_factory=list)
     radicands: list[Expr] = field(default_factory=list)
     bases: list[Expr] = field(default_factory=list)
+
+    @property
+    def assumed_bases(self) -> tuple[Expr, ...]:
+        """The bases of powers that nothing else in the text, such as a logarithm of the base, shows to be positive."""
+        powers = Counter(self.bases)
+        radicands = Counter(self.radicands)
+        return tuple(base for base, times in powers.items() if radicands[base] <= times)
 
     def fail(self, node: Node, expected: str) -> InputError:
         return complaint(self.source, self.where, node.span[0], expected)

@@ -155,9 +155,9 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
     """Return the conditions on signs under which residuals with a square root vanish; None if no sign suffices.
 
     Let the residual be ``a + b g`` with the root ``g``, ``g^2 = P``. If ``a^2 - b^2 P`` is zero, g is ``a/b`` or
-    ``-a/b`` everywhere. The claim says ``g = -a/b``, which holds exactly where ``-a/b >= 0``. Where b is zero, a is zero
-    too, and the claim holds, so that the text leaves out ``b != 0``. The list is empty if that is so wherever the claim
-    is defined.
+    ``-a/b`` everywhere. The claim says ``g = -a/b``, which holds exactly where ``-a/b >= 0``. Where b is zero, a is
+    zero too, and the claim holds, so that the text leaves out ``b != 0``. The list is empty if that is so wherever the
+    claim is defined.
     """
     for root, place in ring.roots.items():
         if root.index != 2 or root.expression.is_number:

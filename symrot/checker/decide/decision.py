@@ -55,7 +55,7 @@ from symrot.exact.ring.ratio import MOST_PRODUCTS, TooLarge
 from symrot.exact.ring.ring import FormulaRing, as_zero
 from symrot.exact.ring.roots import is_positive_where_defined, written
 
-__all__ = ["Equation", "decide_equation", "is_large"]
+__all__ = ["Equation", "decide_equation", "for_positive_bases", "is_large"]
 
 MUCH_LARGER = 5
 """A formula with more than this many times the pieces of another one certainly has the longer text."""
@@ -136,8 +136,6 @@ def _decide(equation: Equation) -> Decision:
         decision = first_decision(case, STAGES)
         if decision.verdict == "true" and not relations and any(side.has(atan2) for side in case.sides):
             decision = _conditional_at_branch_cut(decision, case)
-        if decision.verdict == "true":
-            decision = _for_positive_bases(decision, equation)
         return replace(decision, products=ring.ratios.products)
     except TooLarge as reason:
         try:
@@ -315,18 +313,18 @@ def leave_open(case: _ClaimCase) -> Decision:
 
 
 STAGES = (
-    nonzero_by_hypothesis, subtract, domain_of_text, prove, arguments, nearby_witness, branch, entail, distant_witness, condition,
-    refute, congruence, leave_open,
+    nonzero_by_hypothesis, subtract, domain_of_text, prove, arguments, nearby_witness, branch, entail, distant_witness,
+    condition, refute, congruence, leave_open,
 )  # fmt: skip
 
 
-def _for_positive_bases(decision: Decision, equation: Equation) -> Decision:
-    """Return a decision that is conditional if powers are read for positive bases whose sign is not known.
+def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
+    """Return a decision that is conditional if it is true and powers are read for positive bases of unknown sign.
 
     ``a**b`` may have a value for a negative a too, if b is a whole number; nothing is proven about that.
     """
     bases = [base for base in equation.bases if leaves_of([base]) and not is_positive_where_defined(base)]
-    if not bases:
+    if not bases or decision.verdict != "true":
         return decision
     text = range_text([(base, "> 0") for base in bases])
     required = Requirement("positive_base", text, signs=tuple(bases), strict=tuple(bases))

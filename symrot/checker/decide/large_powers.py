@@ -19,7 +19,6 @@ from symrot.exact.decide import is_zero
 from symrot.exact.domain.known_points import holds
 from symrot.exact.domain.needs import Need, leaves_of, needs_of
 from symrot.exact.evidence import Counterexample
-from symrot.exact.functions import TRIGONOMETRIC
 from symrot.exact.intervals import DIGITS, enclosure
 
 __all__ = ["LARGEST_DEGREE", "ShorterPowers", "degree_of", "point_of_difference", "shorter_powers"]

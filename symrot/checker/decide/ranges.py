@@ -117,7 +117,7 @@ def _nonnegative_at_zero(product: Expr, factor: Expr) -> bool:
 
 
 def _with_plain_functions(formula: Expr) -> Expr:
-    """Return a formula in which arguments of functions are in normal form: ``cos(0)`` for ``cos(sin(x)/cos(x) - tan(x))``."""
+    """Return a formula with arguments of functions in normal form: ``cos(0)`` for ``cos(sin(x)/cos(x) - tan(x))``."""
     try:
         return with_plain_arguments([formula])[0][0]
     except InputError:
@@ -131,7 +131,7 @@ def _leaves(formula: Expr) -> list[Expr]:
 def _factors(formula: Expr) -> tuple[int, dict[Expr, int]] | None:
     """Return a formula as (sign, factor -> power), without positive numbers; None if it cannot be factored."""
     above, below = sympy.fraction(sympy.together(formula))
-    sign, powers = 1, {}
+    sign, powers = 1, dict[Expr, int]()
     for part, direction in ((above, 1), (below, -1)):
         try:
             constant, pairs = sympy.factor_list(part)
@@ -304,7 +304,9 @@ class _Conditions:
             self.products = [entry for entry in self.products if entry != same]
         self.products = [entry for n, entry in enumerate(self.products) if entry not in self.products[:n]]
         implied = [_bound(factor).formula for factors, _, sign in self.products if sign == "> 0" for factor in factors]
-        self.nonzero = {formula: None for formula in self.nonzero if formula not in implied and not self._excludes(formula)}
+        self.nonzero = {
+            formula: None for formula in self.nonzero if formula not in implied and not self._excludes(formula)
+        }
 
     def _simpler(self, entry: tuple[Mapping[Expr, int], int, str]) -> tuple[Mapping[Expr, int], int, str] | None:
         """Return a product without factors of known sign, or None if it has become a bound or holds anyway."""
@@ -323,7 +325,9 @@ class _Conditions:
             return None
         open_factors, may_vanish = {}, False
         for factor, bound in bounds.items():
-            known, zero = self.ranges[bound.quantity].sign_of(bound.root) if bound.quantity in self.ranges else (0, True)
+            known, zero = (
+                self.ranges[bound.quantity].sign_of(bound.root) if bound.quantity in self.ranges else (0, True)
+            )
             zero = zero and bound.formula not in self.nonzero
             if not known:
                 open_factors[factor] = 1
@@ -332,7 +336,7 @@ class _Conditions:
             direction *= known * bound.slope
         if not open_factors and direction > 0 and (sign == ">= 0" or not may_vanish):
             return None
-        return (open_factors, direction, sign) if open_factors and not may_vanish else entry[:2] + (sign,)
+        return (open_factors, direction, sign) if open_factors and not may_vanish else (*entry[:2], sign)
 
     def _new_range(self, quantity: Expr) -> _Range:
         """Return the range that a quantity has anyway: -1 to 1 for a sine or cosine, nonnegative for a square."""
@@ -367,7 +371,6 @@ class _Conditions:
             own.high_closed = False
         return bool(own.sign_of(bound.root)[0])
 
-
     def grants(self, quantity: Expr, own: _Range) -> bool:
         """Return whether ``cos(u) > -1`` or ``cos(u) < 1`` follows because the cosine or sine of u/2 is not zero."""
         if not isinstance(quantity, cos):
@@ -401,14 +404,17 @@ class _Conditions:
 
 def _texts(conditions: _Conditions) -> list[str]:
     positive = _with_positive_symbols(conditions.ranges)
-    one_sided, two_sided = [], []
+    one_sided: list[str] = []
+    two_sided: list[str] = []
     for quantity, own in conditions.ranges.items():
         text = _range_text(quantity, own)
         if text and not _follows(quantity, own, positive) and not conditions.grants(quantity, own):
             (two_sided if text.count("=") + text.count("<") > 1 and text.count("<") > 1 else one_sided).append(text)
     products = [each for each in conditions.products if not _holds(each[1] * Mul(*each[0]), each[2], positive)]
     one_sided += [_product_text(factors, direction, sign) for factors, direction, sign in products]
-    one_sided += [f"{as_text(formula)} {sign}" for formula, sign in conditions.whole if not _holds(formula, sign, positive)]
+    one_sided += [
+        f"{as_text(formula)} {sign}" for formula, sign in conditions.whole if not _holds(formula, sign, positive)
+    ]
     nonzero = [_nonzero_text(formula) for formula in conditions.nonzero if not _holds(formula, "!= 0", positive)]
     return [*sorted(dict.fromkeys(one_sided)), *sorted(dict.fromkeys(two_sided)), *sorted(dict.fromkeys(nonzero))]
 

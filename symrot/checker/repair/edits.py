@@ -39,7 +39,6 @@ FAULT_DESCRIPTIONS = {
     "requires_condition": "it holds under a condition only",
     "sign_branch": "it holds on one branch of a root only",
     "principal_value": "it holds for principal values of the inverse function only",
-    "positive_base": "powers with letters in the exponent are read for positive bases only",
 }
 """Code of a diagnosis -> its sentence."""
 

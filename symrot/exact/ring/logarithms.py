@@ -66,7 +66,8 @@ def product_of(
     the index n and the polynomial P of its relation ``g^n = P``.
     """
     sign, exponent = 1, Integer(0)
-    numbers, powers = [(content, Rational(1))], {}
+    numbers = [(content, Rational(1))]
+    powers: dict[Expr, Rational] = {}
     stack = [(above, Rational(1)), (below, Rational(-1))]
     while stack:
         poly, times = stack.pop()
@@ -79,7 +80,7 @@ def product_of(
         numbers.append((Rational(abs(int(constant)), int(denominator)), times))
         sign *= -1 if constant < 0 else 1
         for factor, n in pairs:
-            place = factor.leading_expv().index(1) if factor.is_generator else None
+            place = factor.leading_expv().index(1) if factor.is_generator else -1
             formula = factor.as_expr(*generators)
             if place in roots:
                 index, inside = roots[place]

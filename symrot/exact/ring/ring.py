@@ -164,7 +164,9 @@ class FormulaRing:
         logarithms = [node for node in logarithms_in(expressions) if _is_of_real(node)]
         if not logarithms:
             return {}
-        plain = tuple(each for each in self.hypotheses if not each.has(sympy.log) and not any(map(is_root, each.atoms(Pow))))
+        plain = tuple(
+            each for each in self.hypotheses if not each.has(sympy.log) and not any(map(is_root, each.atoms(Pow)))
+        )
         inner = FormulaRing([node.args[0] for node in logarithms], plain)
         roots = {place: (root.index, inner._polynomial(root)) for root, place in inner.roots.items()}
         products = {}
