@@ -7,7 +7,7 @@ are the functions of them; so each argument is replaced by its normal form befor
 from collections.abc import Sequence
 
 import sympy
-from sympy import Expr
+from sympy import Expr, Pow
 
 from symrot.exact.angles.inverse import INVERSE
 from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC
@@ -37,7 +37,7 @@ def with_plain_arguments(
     for level in range(MOST_LEVELS):
         nodes = [node for node in _functions(formulas) if _level(node) == level]
         arguments = sorted({argument for node in nodes for argument in node.args}, key=sympy.default_sort_key)
-        if level == 0 or not arguments:
+        if not any(map(_is_compound, arguments)):
             continue
         ring = FormulaRing(arguments, hypotheses, domain)
         shorter, further = _shortest(ring, arguments)
@@ -79,10 +79,16 @@ def _functions(formulas: Sequence[Expr]) -> set[Expr]:
 
 
 def _level(node: Expr) -> int:
-    """Return how many functions, roots and divisors are inside each other in the arguments of a function."""
+    """Return how many functions are inside each other in the arguments of a function."""
     return max(map(_depth, node.args))
 
 
 def _depth(formula: Expr) -> int:
-    own = isinstance(formula, FUNCTIONS) or (formula.is_Pow and not (formula.exp.is_Integer and formula.exp > 0))
-    return own + max(map(_depth, formula.args), default=0)
+    return isinstance(formula, FUNCTIONS) + max(map(_depth, formula.args), default=0)
+
+
+def _is_compound(argument: Expr) -> bool:
+    """Return whether an argument contains a function, a root or a divisor."""
+    return bool(argument.atoms(*FUNCTIONS)) or any(
+        not (power.exp.is_Integer and power.exp > 0) for power in argument.atoms(Pow)
+    )
