@@ -46,6 +46,11 @@ def test_a_verdict_shows_the_change_and_its_entry():
     assert data["entry"] == [3, 3] and data["changed"] == [list(span) for span in nearest.changed]
 
 
+@pytest.mark.parametrize("claim", ["x/x == 2", "2*x/x == 1"])
+def test_no_repair_cancels_to_a_bare_number(claim):
+    assert symrot.check(claim).repairs == ()
+
+
 def test_the_printed_repair_has_carets_under_the_change():
     shown = lines([symrot.check("sin(2*x) == sin(x)*cos(x)")], "sin(2*x) == sin(x)*cos(x)")
     place = next(n for n, line in enumerate(shown) if "true instead" in line)

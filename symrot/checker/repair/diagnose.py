@@ -9,10 +9,12 @@ repairs.
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import combinations, islice
 
+from sympy import Expr
+
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.tree import Node
-from symrot.checker.decide.decision import decide_equation
+from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.repair.canonical_form import canonical
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, Edit, normalise_factors, single_edits
 from symrot.checker.repair.entries import by_entries
@@ -184,7 +186,10 @@ class _Search:
             text = self.numeric.text(candidate.changes)
             try:
                 read_relation(text.partition(" with ")[0])  # it may be too long for the reader
-                decision = decide_equation(self.numeric.edited(candidate.changes).equation)
+                equation = self.numeric.edited(candidate.changes).equation
+                if is_bare_number(equation):
+                    continue
+                decision = decide_equation(equation)
             except InputError:
                 continue
             self.products += decision.products
@@ -192,6 +197,12 @@ class _Search:
                 repairs.append(Repair(text, code, round(cost, 3)))
                 self.accepted.append(candidate)
         return repairs
+
+
+def is_bare_number(equation: Equation) -> bool:
+    """Return whether both sides of an equation with letters cancel to one number, as those of ``x/x == 1`` do."""
+    sides = (equation.left, equation.right)
+    return all(isinstance(side, Expr) and side.is_number for side in sides) and bool(equation.divisors)
 
 
 def _tidied(change: Change) -> Change:

@@ -1,4 +1,4 @@
-"""Pairs of edits that make a claim true together, found by a join of their effects instead of by trying all pairs.
+"""Pairs of edits that make a claim true together: a join of their effects instead of a trial of all pairs.
 
 At a point, an edit of one term changes the difference of the sides by an amount that edits of other terms leave alone.
 So two such edits correct the claim if their amounts sum to the whole difference. In a product, the ratios of edited
@@ -55,7 +55,7 @@ def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
     """Return the differences of the sides, and by how much each edit of a side lessens them."""
     point = numeric.points[0]
     whole = tuple(numeric.differences(point, ()))
-    effects = {}
+    effects: dict[int, Values] = {}
     for number, change in enumerate(changes):
         if not numeric.affordable():
             break
@@ -75,7 +75,7 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
     if len(left) != 1 or len(right) != 1 or not left[0] or not right[0]:
         return (), {}
     whole = left[0] / right[0]
-    effects = {}
+    effects: dict[int, Values] = {}
     for number, change in enumerate(changes):
         if change.place not in SIDES or not numeric.affordable():
             continue
