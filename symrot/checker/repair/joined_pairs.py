@@ -26,7 +26,10 @@ Values = tuple[float, ...]
 
 def joined_pairs(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[Candidate]:
     """Yield pairs of edits in different parts of a claim that make it true at the test points, the cheapest first."""
-    sums, products = _differences(numeric, changes), _quotients(numeric, changes)
+    try:
+        sums, products = _differences(numeric, changes), _quotients(numeric, changes)
+    except UndefinedValue:  # the claim itself has no value at the point
+        return
     pairs = chain(
         _completing(sums, lambda value, own: value - own), _completing(products, lambda value, own: value / own)
     )
